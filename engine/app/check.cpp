@@ -106,6 +106,7 @@ int check(const std::string& path) {
     if (!note.empty()) print("# " + note + "\n");
   }
   for (const std::string& line : model->mobility()) print("# mobility: " + line + "\n");
+  for (const std::string& remark : model->remarks()) print("# " + remark + "\n");
   for (const std::string& unusual : model->unusual_geometry()) {
     print("# hint: " + unusual + "; is that meant?\n");
   }

@@ -74,14 +74,18 @@ void show_alone(const std::string& response, StoredResult& result) {
   result.headline = result.signed_headline = {static_cast<std::size_t>(at)};
 }
 
-/// Whether the study was calibrated, and what it held constant; empty where neither holds, where a table of errors was
-/// solved instead of the study, and where this program cannot read the study.
+/// What is to be known of the mechanism's numbers, whether the study was calibrated, and what it held constant, the
+/// last two only where a study was solved, no table of errors; empty where this program cannot read the study.
 std::string study_lines(const StoredResult& result, std::size_t width) {
-  if (kind_of(result).report.words(result).from_tables) return {};
   const std::optional<Study> study = study_in(result, registry());
   if (!study) return {};
+  std::vector<std::string> lines = build_model(study->mechanism)->remarks();
+  if (!kind_of(result).report.words(result).from_tables) {
+    lines.push_back(calibration_text(*study));
+    lines.push_back(held_errors_text(*study));
+  }
   std::string text;
-  for (const std::string& line : {calibration_text(*study), held_errors_text(*study)}) {
+  for (const std::string& line : lines) {
     if (!line.empty()) text += prose_of(line, width);
   }
   return text;

@@ -42,6 +42,8 @@ class CalibratedModel final : public Model {
   std::vector<PlatformPoint> metric_points() const override { return model_->metric_points(); }
   std::vector<std::string> mobility() const override { return model_->mobility(); }
   std::optional<Sketch> sketch(std::span<const double> pose) const override { return model_->sketch(pose); }
+  std::vector<std::string> remarks() const override { return model_->remarks(); }
+
   std::vector<std::string> unusual_geometry() const override { return model_->unusual_geometry(); }
 
  private:

@@ -301,6 +301,9 @@ class Model {
   /// How the mechanism can move, in lines for people; none where it was never asked.
   virtual std::vector<std::string> mobility() const { return {}; }
 
+  /// What is to be known of its numbers beside results: sentences for people. None unless a model says otherwise.
+  virtual std::vector<std::string> remarks() const { return {}; }
+
   /// How the mechanism looks at a reachable pose (SI), or without a pose at home; empty where the model has no picture.
   virtual std::optional<Sketch> sketch(std::span<const double> /*pose*/) const { return std::nullopt; }
 

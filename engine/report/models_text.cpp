@@ -43,6 +43,7 @@ std::string mechanism_text(const CatalogEntry& entry) {
   for (const GeometryParameter& parameter : model.geometry) geometry.push_back(parameter.published);
   const std::unique_ptr<Model> model_of_defaults = entry.build(geometry, 0);
   for (const std::string& line : model_of_defaults->mobility()) text += "  " + line + "\n";
+  for (const std::string& remark : model_of_defaults->remarks()) text += "  " + remark + "\n";
   for (const std::string& unusual : model_of_defaults->unusual_geometry()) {
     text += "  hint: " + unusual + "; is that meant?\n";
   }

@@ -11,6 +11,7 @@
 #include "engine/base/nan.h"
 #include "engine/linalg/decompositions.h"
 #include "models/chain/deformation_solver.h"
+#include "models/chain/nominal.h"
 
 namespace poesy::chain {
 namespace {
@@ -97,7 +98,7 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   }
   if (is_linear) {
     if (is_singular_) return;
-    find_map(errors, varied);
+    find_map(displacements, errors, varied);
     if (platform != nullptr) find_platform_map(errors, varied);
     return;
   }
@@ -230,8 +231,10 @@ void BlockSolver::find_slopes(std::span<const FrameError<double>> errors, std::s
   });
 }
 
-/// The same errors in coordinates of the residuals, padded to whole groups of rows.
-void BlockSolver::find_map(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied) {
+/// The same errors in coordinates of the residuals, padded to whole groups of rows; with what rounded numbers of
+/// perfect limbs leave.
+void BlockSolver::find_map(std::span<const double> displacements, std::span<const FrameError<double>> errors,
+                           std::span<const FrameEntry> varied) {
   residual_space_.prepare(first_order_, metric_);
   const std::size_t used = residual_space_.dimensions();
   const std::size_t rows = (used + kMapRows - 1) / kMapRows * kMapRows;
@@ -248,6 +251,10 @@ void BlockSolver::find_map(std::span<const FrameError<double>> errors, std::span
   for_each_constant(errors, varied, [&](const FrameEntry& entry, double error) {
     residual_space_.add(first_order_, entry, error, first_of(map_constant_, 0));
   });
+  if (chain_->rounded) {
+    const std::vector<lie::Screw<double>> motions = nominal_motions(*chain_, displacements);
+    for (std::size_t i = 0; i < motions.size(); ++i) residual_space_.add(i, motions[i], first_of(map_constant_, 0));
+  }
   const auto copy = [&](const Eigen::MatrixXd& from, std::vector<double>& to, std::size_t at) {
     for (Eigen::Index row = 0; row < from.rows(); ++row) {
       for (Eigen::Index y = 0; y < from.cols(); ++y) {

@@ -62,7 +62,8 @@ class BlockSolver {
                      std::span<const FrameEntry> varied);
   void find_spread(const lie::Matrix6<double>& W);
   void find_slopes(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied);
-  void find_map(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied);
+  void find_map(std::span<const double> displacements, std::span<const FrameError<double>> errors,
+                std::span<const FrameEntry> varied);
   void predict_starts(double center, double half_width, int splits_left);
   double fit_starts(double center, double half_width);
   void run(std::span<const double> values, std::size_t count, const KernelOptions& options, double* displacements);

@@ -10,6 +10,7 @@
 #include "engine/base/contract.h"
 #include "engine/linalg/decompositions.h"
 #include "models/chain/deformation_solver.h"
+#include "models/chain/nominal.h"
 
 namespace poesy::chain {
 namespace {
@@ -237,8 +238,10 @@ FrameEntry DeformationModel::entry(const ErrorSlot& slot) const {
 std::optional<PlatformPoints> DeformationModel::platform_points(std::span<const double> displacements) const {
   if (!platform) return std::nullopt;
   const Limb& limb = chain.limbs.front();
-  PlatformPoints reported{forward_kinematics<double>(limb, limb.home, displacements.first(limb.joints.size()),
-                                                     [](std::size_t, const lie::Screw<double>&) {})};
+  PlatformPoints reported{chain.rounded
+                              ? mean_platform(chain, displacements)
+                              : forward_kinematics<double>(limb, limb.home, displacements.first(limb.joints.size()),
+                                                           [](std::size_t, const lie::Screw<double>&) {})};
   if (platform->tool) reported.tool = reported.platform.R * *platform->tool + reported.platform.p;
   return reported;
 }

@@ -7,6 +7,7 @@
 #include "engine/base/contract.h"
 #include "models/chain/deformation_solver.h"
 #include "models/chain/first_order.h"
+#include "models/chain/nominal.h"
 #include "models/chain/passive_condition.h"
 #include "models/chain/platform_motion.h"
 
@@ -108,6 +109,7 @@ SolveTrace first_order_trace(const DeformationModel& model, std::span<const doub
   FirstOrder first_order(model.chain);
   if (!first_order.prepare(displacements, metric ? &metric->W : nullptr)) trace.status = SolveStatus::singular;
   std::vector<double> delta_mu(6 * model.chain.pairs.size(), 0.0);
+  if (model.chain.rounded) delta_mu = nominal_mismatch(model.chain, displacements);
   std::vector<double> effect(delta_mu.size());
   std::vector<double> moved(model.chain.passive_joints());
   lie::Screw<double> xi = lie::Screw<double>::Zero();

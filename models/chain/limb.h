@@ -56,6 +56,8 @@ struct ParallelChain {
   /// Whether errors move the platform and deform nothing: as many passive joints, but for idle freedoms, as the limbs
   /// have ways to disagree.
   bool meets = false;
+  /// Whether perfect limbs keep a mismatch, because their numbers are rounded; see nominal.h.
+  bool rounded = false;
 
   /// Of all limbs together.
   /// @{

@@ -105,4 +105,10 @@ void ResidualSpace::add(const FirstOrder& first_order, const FrameEntry& entry, 
   sum.noalias() += error * of_limb_[first_order.limb_of_frame(entry.frame)].lazyProduct(first_order.motion(entry));
 }
 
+void ResidualSpace::add(std::size_t limb, const lie::Screw<double>& motion, std::span<double> y) const {
+  POESY_EXPECTS(y.size() == dimensions_);
+  Eigen::Map<Eigen::VectorXd> sum(y.data(), static_cast<Eigen::Index>(y.size()));
+  sum.noalias() += of_limb_[limb].lazyProduct(motion);
+}
+
 }  // namespace poesy::chain

@@ -27,6 +27,8 @@ class ResidualSpace {
   std::size_t dimensions() const { return dimensions_; }
   /// Adds to y [D] what this much of a frame's error makes (SI).
   void add(const FirstOrder& first_order, const FrameEntry& entry, double error, std::span<double> y) const;
+  /// Adds to y [D] a small motion of a limb's platform, of which passive joints take away what they can.
+  void add(std::size_t limb, const lie::Screw<double>& motion, std::span<double> y) const;
   /// delta_mu of y, [6 x pairs, D].
   const Eigen::MatrixXd& delta_mu() const { return delta_mu_; }
   /// By a metric: upper triangles R [D, D] so that gap, angular and linear deformation are |R y|.

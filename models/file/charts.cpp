@@ -13,11 +13,14 @@ namespace {
 
 /// Displacements that differ by less are the same, rad or reaches; tracking leaves a millionth of it.
 constexpr double kSame = 1e-6;
+/// The same for rounded numbers, in units of what may stay open: what is held and what gives way share it differently.
+constexpr double kSameOfRounded = 100.0;
 
 /// With the platform's frame elsewhere on the platform.
 Mechanism with_platform_at(Mechanism mechanism, const Transform& platform_T_new) {
   mechanism.platform = mechanism.platform * platform_T_new;
   for (Limb& limb : mechanism.limbs) limb.home.back() = limb.home.back() * platform_T_new;
+  for (Vector3& point : mechanism.points) point = platform_T_new.R.transpose() * (point - platform_T_new.p);
   return mechanism;
 }
 
@@ -69,11 +72,13 @@ Chart::Chart(PoseChart description, const Mechanism& mechanism, const Mechanism&
 
 bool Chart::same_displacements(std::span<const double> a, std::span<const double> b) const {
   const std::vector<const Joint*> joints = moving_joints(mechanism_);
+  const Precision& precision = mechanism_.precision;
+  const double same = precision.rounded() ? kSameOfRounded * precision.closed : kSame;
   for (std::size_t k = 0; k < joints.size(); ++k) {
     double difference = a[k] - b[k];
     if (joints[k]->motion == Motion::revolute) difference = std::remainder(difference, 2.0 * std::numbers::pi);
     if (joints[k]->motion == Motion::prismatic) difference /= mechanism_.reach;
-    if (!(std::abs(difference) <= kSame)) return false;
+    if (!(std::abs(difference) <= same)) return false;
   }
   return true;
 }

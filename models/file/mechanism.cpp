@@ -6,7 +6,6 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/text.h"
-#include "models/chain/limb.h"
 #include "models/chain/metric.h"
 #include "models/file/factors.h"
 
@@ -375,6 +374,12 @@ std::array<int, 3> axes_of(Rotation rotation) {
 
 }  // namespace
 
+chain::Joint Joint::of_chain() const {
+  const bool turns = motion == Motion::revolute || motion == Motion::helical;
+  return {turns ? chain::JointType::revolute : chain::JointType::prismatic, actuated || !moves(),
+          motion == Motion::helical ? pitch : 0.0, !moves()};
+}
+
 std::size_t Limb::moving() const { return static_cast<std::size_t>(std::ranges::count_if(joints, &Joint::moves)); }
 
 std::size_t Mechanism::moving() const {
@@ -502,9 +507,7 @@ Transform limb_transform(const Limb& limb, std::span<const double> displacements
   for (std::size_t j = 0; j < limb.joints.size(); ++j) {
     const Joint& joint = limb.joints[j];
     if (joint.moves()) {
-      const bool turns = joint.motion != Motion::prismatic;
-      const chain::Joint moving{turns ? chain::JointType::revolute : chain::JointType::prismatic, joint.actuated,
-                                turns ? joint.pitch : 0.0};
+      const chain::Joint moving = joint.of_chain();
       if (columns != nullptr) columns->col(static_cast<Eigen::Index>(k)) = chain::spatial_column(moving, g);
       chain::move_joint(moving, displacements[k], g);
       ++k;

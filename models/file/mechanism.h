@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
+#include "models/chain/limb.h"
 #include "models/file/mechanism_file.h"
 #include "models/lie/se3.h"
 
@@ -33,6 +34,8 @@ struct Joint {
 
   /// Whether it has a displacement.
   bool moves() const { return motion != Motion::fixed; }
+  /// As limbs of the solver have it; a fixed frame is a joint that a drive holds where it is.
+  chain::Joint of_chain() const;
 };
 
 /// A limb in local product-of-exponentials form, as chain::Limb has it.
@@ -75,6 +78,23 @@ struct ErrorSlot {
   double scale;           ///< without unit
 };
 
+/// What holds where the numbers of a file are exact.
+/// @{
+inline constexpr double kRankThreshold = 1e-6;  ///< a singular value below this share of the largest counts as zero
+inline constexpr double kClosed = 1e-12;        ///< up to which a loop counts as closed: rad, and shares of the reach
+/// @}
+
+/// How exactly a mechanism's numbers are taken; rounding.h finds it.
+struct Precision {
+  double rank_threshold = kRankThreshold;  ///< a singular value below this share of the largest counts as zero
+  /// Up to which loops count as closed. Of rounded numbers the gap, as a share of the reach: a pose is then the one
+  /// with the smallest mismatch of the limbs by the metric of the mechanism's points, and the mismatch stays in it.
+  double closed = kClosed;
+
+  /// Whether loops that stay open by more than kClosed may count as closed.
+  bool rounded() const { return closed > kClosed; }
+};
+
 /// Immutable. Everything that a model needs; solving is for others.
 struct Mechanism {
   std::string name;                          ///< as the file has it
@@ -90,6 +110,7 @@ struct Mechanism {
   std::vector<ErrorSlot> slots = {};         ///< [F]
   std::vector<FactorSet> sets = {};          ///< "all" first
   double reach;                              ///< m: the largest distance between joints' points, before copies, and P
+  Precision precision = {};                  ///< of its numbers
 
   /// That have a displacement, of all limbs.
   std::size_t moving() const;

@@ -22,15 +22,15 @@ struct Decomposed {
   Matrix V;     ///< [columns x columns]
 };
 
-/// largest: what singular values are compared with; 0: the largest of them.
-Decomposed decomposed(const Matrix& matrix, double largest = 0.0) {
+/// threshold: below which share a singular value counts as zero: of the largest one, or of `largest` where it is not 0.
+Decomposed decomposed(const Matrix& matrix, double threshold, double largest = 0.0) {
   if (matrix.cols() == 0 || matrix.rows() == 0) {
     const Matrix identity = Matrix::Identity(matrix.cols(), matrix.cols());
     return {{}, 0, identity, identity};
   }
   const linalg::SingularValueDecomposition svd = linalg::right_singular_vectors(matrix);
-  const double threshold = kRankThreshold * (largest > 0.0 ? largest : svd.values[0]);
-  const Index rank = (svd.values.array() > threshold).count();
+  const double smallest = threshold * (largest > 0.0 ? largest : svd.values[0]);
+  const Index rank = (svd.values.array() > smallest).count();
   return {svd.values, rank, svd.V.rightCols(matrix.cols() - rank), svd.V};
 }
 
@@ -133,13 +133,14 @@ void describe_loose(const Jacobians& all, const Eigen::VectorXd& motion, const l
                      (turns ? "turns about " + vector_text(direction) : "slides along " + vector_text(direction));
 }
 
-void find_loose(const Jacobians& all, Mobility& found) {
+void find_loose(const Jacobians& all, double threshold, Mobility& found) {
   const Matrix loops = passive(all.loops, all);
-  const Decomposed locked = decomposed(loops, found.singular_values.empty() ? 0.0 : found.singular_values[0]);
+  const double largest = found.singular_values.empty() ? 0.0 : found.singular_values[0];
+  const Decomposed locked = decomposed(loops, threshold, largest);
   found.passive_rank = size(locked.rank);
   found.left_when_locked = size(locked.null.cols());
   const Matrix moved = passive(all.platform, all) * locked.null;
-  const Decomposed platform = decomposed(moved, 1.0);
+  const Decomposed platform = decomposed(moved, threshold, 1.0);
   found.loose = size(platform.rank);
   if (platform.rank == 0) return;
   const Eigen::VectorXd freedom = platform.V.col(0);
@@ -151,7 +152,7 @@ std::string dependent_of(const Mechanism& unit, const Matrix& rates, Index rank)
   for (Index row = 0; row < rates.rows(); ++row) {
     Matrix others = rates;
     others.row(row).setZero();
-    if (decomposed(others, 1.0).rank == rank) return unit.coordinates[size(row)].name;
+    if (decomposed(others, unit.precision.rank_threshold, 1.0).rank == rank) return unit.coordinates[size(row)].name;
   }
   return {};
 }
@@ -164,7 +165,7 @@ void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Mat
   for (std::size_t c = 0; c < unit.coordinates.size(); ++c) {
     chosen.row(static_cast<Index>(c)) = rates.row(static_cast<Index>(unit.coordinates[c].component));
   }
-  const Index rank = decomposed(chosen, 1.0).rank;
+  const Index rank = decomposed(chosen, unit.precision.rank_threshold, 1.0).rank;
   found.coordinates_rank = size(rank);
   if (found.coordinates_rank < unit.coordinates.size()) found.dependent = dependent_of(unit, chosen, rank);
 }
@@ -178,10 +179,11 @@ double largest_of(const Matrix& loops_by_joint, const std::vector<Drive>& drives
 
 /// Lengths in units of the reach.
 Mobility mobility_of(const Mechanism& unit, std::span<const double> q, const PlatformPose& pose) {
+  const double threshold = unit.precision.rank_threshold;
   const Jacobians of_joints = jacobians(unit, q);
   const std::vector<Drive> drives = drives_of(unit);
   const Jacobians all = with_one_column_a_drive(of_joints, drives);
-  const Decomposed loops = decomposed(all.loops, largest_of(of_joints.loops, drives));
+  const Decomposed loops = decomposed(all.loops, threshold, largest_of(of_joints.loops, drives));
   const Matrix twists = all.platform * loops.null;
   Mobility found{.joints = of_joints.joints.size(), .drives = drives.size(), .loop_equations = size(all.loops.rows())};
   for (const Drive& drive : drives) found.actuated += drive.joints.size();
@@ -189,10 +191,10 @@ Mobility mobility_of(const Mechanism& unit, std::span<const double> q, const Pla
   found.rank = size(loops.rank);
   found.freedoms = all.joints.size() - found.rank;
   found.over_constraints = found.loop_equations - found.rank;
-  found.platform_freedoms = size(decomposed(twists, 1.0).rank);
-  found.platform_rotates = size(decomposed(twists.topRows(3), 1.0).rank);
+  found.platform_freedoms = size(decomposed(twists, threshold, 1.0).rank);
+  found.platform_rotates = size(decomposed(twists.topRows(3), threshold, 1.0).rank);
   found.idle = found.freedoms - found.platform_freedoms;
-  find_loose(all, found);
+  find_loose(all, threshold, found);
   find_coordinates(unit, pose, twists, found);
   return found;
 }
@@ -251,16 +253,15 @@ std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::si
   const Tracker tracker(mechanism);
   std::vector<PoseMobility> list;
   for (std::size_t k = 0; k < count; ++k) {
-    PoseMobility found{even_point(k, mechanism.coordinates.size()), {}, {}, 0.0, 0.0};
+    PoseMobility found{even_point(k, mechanism.coordinates.size()), {}};
     for (std::size_t c = 0; c < found.pose.size(); ++c) {
       const Coordinate& coordinate = mechanism.coordinates[c];
       found.pose[c] = coordinate.lower + found.pose[c] * (coordinate.upper - coordinate.lower);
     }
-    const Tracked tracked = tracker.track(found.pose);
-    found.unreachable = tracked.unreachable;
-    if (found.unreachable.empty()) {
-      found.mobility = mobility(mechanism, tracked.displacements, tracked.pose);
-      find_parasitic(mechanism, tracked.pose, found);
+    found.tracked = tracker.track(found.pose);
+    if (found.reached()) {
+      found.mobility = mobility(mechanism, found.tracked.displacements, found.tracked.pose);
+      find_parasitic(mechanism, found.tracked.pose, found);
     }
     list.push_back(std::move(found));
   }
@@ -320,14 +321,13 @@ void check_mobility(const Mechanism& mechanism, const Mobility& home, std::span<
   const auto fail = [&](const std::string& problem, const std::string& remedy) {
     throw InputError(mechanism.coordinates_place, problem, remedy);
   };
-  const auto reached = [](const PoseMobility& pose) { return pose.unreachable.empty(); };
   if (poses.empty()) return;
-  if (std::ranges::none_of(poses, reached)) {
-    fail("no pose that was tried in the workspace is reached from home: " + poses.front().unreachable,
+  if (std::ranges::none_of(poses, &PoseMobility::reached)) {
+    fail("no pose that was tried in the workspace is reached from home: " + poses.front().tracked.unreachable,
          "correct the workspace, or the home pose if the mechanism moves there by an instant only");
   }
   for (const PoseMobility& pose : poses) {
-    if (!reached(pose)) continue;
+    if (!pose.reached()) continue;
     if (pose.mobility.rank != home.rank) {
       fail("home is a singular pose: the mechanism has " + count_text(home.freedoms, "freedom") + " there, and " +
                std::to_string(pose.mobility.freedoms) + " elsewhere",

@@ -6,15 +6,14 @@
 #include <vector>
 
 #include "models/file/mechanism.h"
+#include "models/file/tracking.h"
 
 namespace poesy::file {
 
-/// A singular value below this share of the largest one counts as zero.
-inline constexpr double kRankThreshold = 1e-6;
-
 /// How a mechanism can move at one configuration, by the singular values of its loop Jacobian: 6 (limbs - 1) rows, the
 /// twists of limb k's platform less those of limb 1's at the base's origin, and a column for each motion: of a joint
-/// that moves, or of all joints of one drive together; lengths are in units of the reach.
+/// that moves, or of all joints of one drive together; lengths are in units of the reach. Below which share of the
+/// largest a singular value counts as zero, the mechanism's Precision says.
 struct Mobility {
   std::size_t joints = 0;             ///< that move
   std::size_t actuated = 0;           ///< of them
@@ -50,10 +49,13 @@ Mobility home_mobility(const Mechanism& mechanism);
 /// Mobility at a pose of the workspace.
 struct PoseMobility {
   std::vector<double> pose;  ///< [coordinates], SI
-  std::string unreachable;   ///< why the pose is out of reach; empty: it is not
-  Mobility mobility;         ///< where it is reached
-  double turned;             ///< rad: the largest rotation besides the coordinates; 0 where it is not reached
-  double moved;              ///< m: likewise of P's place
+  Tracked tracked;           ///< the way there from home
+  Mobility mobility = {};    ///< where it is reached
+  double turned = 0.0;       ///< rad: the largest rotation besides the coordinates; 0 where it is not reached
+  double moved = 0.0;        ///< m: likewise of P's place
+
+  /// Whether the mechanism comes there.
+  bool reached() const { return tracked.unreachable.empty(); }
 };
 
 /// At `count` poses that fill the workspace evenly (Roberts' sequence), reached from home.

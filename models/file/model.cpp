@@ -14,27 +14,27 @@
 #include "models/chain/deformation_model.h"
 #include "models/chain/deformation_trace.h"
 #include "models/chain/metric.h"
+#include "models/chain/nominal.h"
 #include "models/chain/passive_condition.h"
 #include "models/chain/separation.h"
 #include "models/chain/sketch.h"
 #include "models/file/charts.h"
 #include "models/file/mobility.h"
+#include "models/file/rounding.h"
 #include "models/file/structure.h"
 #include "models/file/tracking.h"
 
 namespace poesy::file {
 namespace {
 
-/// Joints that move as they are; a fixed frame is a joint that a drive holds where it is. drives: of each joint that
-/// moves, as chain::Joint has it; those of the limb are taken off.
+/// drives: of each joint that moves, as chain::Joint has it; those of the limb are taken off.
 chain::Limb chain_limb(const Limb& limb, std::span<const std::size_t>& drives) {
   chain::Limb of_chain;
   for (const Joint& joint : limb.joints) {
-    const bool turns = joint.motion == Motion::revolute || joint.motion == Motion::helical;
-    of_chain.joints.push_back({turns ? chain::JointType::revolute : chain::JointType::prismatic,
-                               joint.actuated || !joint.moves(), joint.motion == Motion::helical ? joint.pitch : 0.0,
-                               !joint.moves(), joint.moves() ? drives.front() : 0});
-    if (joint.moves()) drives = drives.subspan(1);
+    of_chain.joints.push_back(joint.of_chain());
+    if (!joint.moves()) continue;
+    of_chain.joints.back().drive = drives.front();
+    drives = drives.subspan(1);
   }
   of_chain.home = limb.home;
   return of_chain;
@@ -64,6 +64,21 @@ std::vector<double> with_fixed(const Mechanism& mechanism, std::span<const doubl
   return all;
 }
 
+/// Displacements of joints and fixed frames at a pose.
+std::function<std::vector<double>(std::span<const double>)> displacements_by(const Mechanism& mechanism,
+                                                                             std::shared_ptr<const Tracker> tracker,
+                                                                             const chain::DeformationModel& model) {
+  if (!model.chain.rounded) {
+    return [mechanism, tracker = std::move(tracker)](std::span<const double> pose) {
+      return with_fixed(mechanism, tracker->track(pose).displacements);
+    };
+  }
+  return [mechanism, tracker = std::move(tracker), chain = model.chain,
+          points = model.points](std::span<const double> pose) {
+    return chain::settled(chain, points, with_fixed(mechanism, tracker->track(pose).displacements));
+  };
+}
+
 chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<const Tracker> tracker,
                                     const Mobility& home, std::vector<Vector3> points) {
   chain::DeformationModel model;
@@ -76,10 +91,9 @@ chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<
   for (const ErrorSlot& slot : mechanism.slots) {
     model.slots.push_back({slot.limb, slot.frame, slot.component, slot.scale});
   }
-  model.joint_displacements = [mechanism, tracker = std::move(tracker)](std::span<const double> pose) {
-    return with_fixed(mechanism, tracker->track(pose).displacements);
-  };
   model.points = std::move(points);
+  model.chain.rounded = mechanism.precision.rounded();
+  model.joint_displacements = displacements_by(mechanism, std::move(tracker), model);
   model.platform = chain::PlatformReport{mechanism.tool, model.points.empty() ? mechanism.points : model.points};
   return model;
 }
@@ -127,17 +141,33 @@ ModelDescription describe(const MechanismFile& file, const Mechanism& mechanism,
   return description;
 }
 
+/// What rounded numbers leave of the deformation, at the most, at poses of the workspace.
+double nominal_deformation(const Mechanism& mechanism, const chain::DeformationModel& model, std::size_t response) {
+  const std::vector<double> no_errors(model.slots.size(), 0.0);
+  double largest = 0.0;
+  for (const PoseMobility& pose : workspace_mobility(mechanism)) {
+    if (!pose.reached()) continue;
+    largest = std::max(largest, chain::first_order_trace(model, pose.pose, no_errors).responses[response]);
+  }
+  return largest;
+}
+
 class FileModel final : public Model {
  public:
   /// points: of the platform's metric; none: as published.
-  FileModel(const MechanismFile& file, Mechanism mechanism, const Mobility& home, std::vector<Vector3> points,
-            chain::Fidelity fidelity)
-      : mechanism_(std::move(mechanism)),
+  FileModel(const MechanismFile& file, Checked found, std::vector<Vector3> points, chain::Fidelity fidelity)
+      : mechanism_(std::move(found.mechanism)),
+        mismatch_(found.mismatch),
         tracker_(std::make_shared<const Tracker>(mechanism_)),
         charts_(charts_of(mechanism_)),
-        model_(chain_model(mechanism_, tracker_, home, std::move(points))),
+        model_(chain_model(mechanism_, tracker_, found.home, std::move(points))),
         description_(describe(file, mechanism_, model_, charts_)),
-        fidelity_(fidelity) {}
+        fidelity_(fidelity) {
+    if (!model_.chain.rounded || !description_.deformation) return;
+    DeformationMeasure& measure = *description_.deformation;
+    measure.rounding =
+        std::max(measure.rounding, kNominalShare * nominal_deformation(mechanism_, model_, measure.response));
+  }
 
   const ModelDescription& description() const override { return description_; }
 
@@ -184,6 +214,8 @@ class FileModel final : public Model {
     return mobility_lines(mechanism_, home_mobility(mechanism_), workspace_mobility(mechanism_));
   }
 
+  std::vector<std::string> remarks() const override { return rounding_remarks(mechanism_, mismatch_); }
+
   std::vector<std::string> unusual_geometry() const override { return home_outside(mechanism_); }
 
   std::optional<Sketch> sketch(std::span<const double> pose) const override {
@@ -224,10 +256,13 @@ class FileModel final : public Model {
   }
 
  private:
+  /// Errors change what rounded numbers leave by less than this factor.
+  static constexpr double kNominalShare = 2.0;
   /// Of the reach; joints that are closer are one part.
   static constexpr double kShortestLink = 1e-6;
 
   Mechanism mechanism_;
+  double mismatch_;  ///< m: of perfect limbs, at the most
   std::shared_ptr<const Tracker> tracker_;
   std::vector<Chart> charts_;
   chain::DeformationModel model_;
@@ -235,18 +270,17 @@ class FileModel final : public Model {
   chain::Fidelity fidelity_;
 };
 
-/// A mechanism whose drives hold it, and how it can move at home.
-struct Checked {
-  Mechanism mechanism;
-  Mobility home;
-};
+/// A file, and what was found of its mechanism with the default geometry.
+struct Read {
+  MechanismFile file;
+  std::vector<double> defaults;
+  Checked at_defaults;
 
-Checked checked(const MechanismFile& file, std::span<const double> geometry) {
-  Mechanism of_file = mechanism(file, geometry);
-  Mobility home = home_mobility(of_file);
-  check_mobility(of_file, home);
-  return {std::move(of_file), std::move(home)};
-}
+  Checked with(std::span<const double> geometry) const {
+    if (std::ranges::equal(geometry, defaults)) return at_defaults;
+    return checked(mechanism(file, geometry), Workspace::as_it_is);
+  }
+};
 
 /// The mechanism with these values, by the metric of these points; none: the file's own, or published.
 struct Wanted {
@@ -254,25 +288,25 @@ struct Wanted {
   std::optional<std::vector<Vector3>> points = {};  ///< instead of the file's
 };
 
-std::unique_ptr<Model> built(const MechanismFile& file, std::span<const double> values, std::size_t fidelity,
+std::unique_ptr<Model> built(const Read& read, std::span<const double> values, std::size_t fidelity,
                              const Wanted& wanted) {
-  Checked found = checked(file, values);
+  Checked found = read.with(values);
   std::vector<Vector3> points;
   if (wanted.by_platform) points = wanted.points.value_or(found.mechanism.points);
   if (wanted.points) {
     const std::string why = chain::why_no_metric(points, found.mechanism.reach);
     if (!why.empty()) throw std::invalid_argument(why);
   }
-  return std::make_unique<FileModel>(file, std::move(found.mechanism), found.home, std::move(points),
+  return std::make_unique<FileModel>(read.file, std::move(found), std::move(points),
                                      static_cast<chain::Fidelity>(fidelity));
 }
 
-CatalogEntry entry_by(const std::shared_ptr<const MechanismFile>& file, const std::string& path, bool by_platform) {
+CatalogEntry entry_by(const std::shared_ptr<const Read>& read, const std::string& path, bool by_platform) {
   CatalogEntry entry;
-  entry.build = [file, by_platform](std::span<const double> values, std::size_t fidelity) {
-    return built(*file, values, fidelity, {.by_platform = by_platform});
+  entry.build = [read, by_platform](std::span<const double> values, std::size_t fidelity) {
+    return built(*read, values, fidelity, {.by_platform = by_platform});
   };
-  entry.description = entry.build(default_geometry(*file), 0)->description();
+  entry.description = entry.build(read->defaults, 0)->description();
   entry.file = path;
   return entry;
 }
@@ -294,17 +328,19 @@ std::string reference() {
 }
 
 CatalogEntry catalog_entry(const std::string& text, const std::string& path) {
-  const auto file = std::make_shared<const MechanismFile>(read_mechanism_file(text, path));
-  const Checked at_home = checked(*file, default_geometry(*file));
-  check_mobility(at_home.mechanism, at_home.home, workspace_mobility(at_home.mechanism));
-  CatalogEntry entry = entry_by(file, path, true);
-  if (at_home.home.passive_rank == at_home.home.loop_equations) return entry;
-  entry.other_metric = std::make_shared<const CatalogEntry>(entry_by(file, path, false));
-  entry.build_with_points = [file](std::span<const double> values, std::size_t fidelity,
+  MechanismFile file = read_mechanism_file(text, path);
+  const std::vector<double> defaults = default_geometry(file);
+  Checked found = checked(mechanism(file, defaults), Workspace::in_reach);
+  const bool meets = found.home.passive_rank == found.home.loop_equations;
+  const auto read = std::make_shared<const Read>(std::move(file), defaults, std::move(found));
+  CatalogEntry entry = entry_by(read, path, true);
+  if (meets) return entry;
+  entry.other_metric = std::make_shared<const CatalogEntry>(entry_by(read, path, false));
+  entry.build_with_points = [read](std::span<const double> values, std::size_t fidelity,
                                    std::span<const PlatformPoint> points) {
     std::vector<Vector3> own;
     for (const PlatformPoint& point : points) own.emplace_back(point[0], point[1], point[2]);
-    return built(*file, values, fidelity, {.points = std::move(own)});
+    return built(*read, values, fidelity, {.points = std::move(own)});
   };
   return entry;
 }

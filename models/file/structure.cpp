@@ -16,10 +16,6 @@ constexpr double kMillimetres = 1e3;
 
 std::string number_text(double value) { return fmt::format("{:.6g}", std::abs(value) < kNothing ? 0.0 : value); }
 
-std::string triple_text(const Vector3& value) {
-  return fmt::format("({}, {}, {})", number_text(value.x()), number_text(value.y()), number_text(value.z()));
-}
-
 std::string_view motion_text(const Joint& joint) {
   switch (joint.motion) {
     case Motion::fixed:
@@ -46,7 +42,7 @@ std::string counted(std::size_t count, std::string_view one, std::string_view mo
 
 /// What a pose has that home has not; empty: nothing.
 std::string difference(const Mobility& home, const PoseMobility& at) {
-  if (!at.unreachable.empty()) return "out of reach: " + at.unreachable;
+  if (!at.reached()) return "out of reach: " + at.tracked.unreachable;
   const Mobility& found = at.mobility;
   if (found.rank != home.rank) return fmt::format("rank {}", found.rank);
   if (found.platform_freedoms != home.platform_freedoms) {
@@ -95,6 +91,15 @@ bool has_errors(const Mechanism& mechanism, std::size_t limb, std::size_t first,
 }
 
 }  // namespace
+
+std::string triple_text(const Vector3& value) {
+  return fmt::format("({}, {}, {})", number_text(value.x()), number_text(value.y()), number_text(value.z()));
+}
+
+std::string small_length_text(double metres) {
+  const double millimetres = kMillimetres * metres;
+  return millimetres < 0.01 ? fmt::format("{:.2g} um", 1e3 * millimetres) : fmt::format("{:.2g} mm", millimetres);
+}
 
 std::string coordinate_text(const Coordinate& coordinate) {
   const std::string axis(1, "xyz"[coordinate.component % 3]);
@@ -149,6 +154,14 @@ std::string joints_text(const Mechanism& mechanism, const Drive& drive) {
   return fmt::format("{}", fmt::join(list, " and "));
 }
 
+std::vector<std::string> rounding_remarks(const Mechanism& mechanism, double mismatch) {
+  if (!mechanism.precision.rounded()) return {};
+  return {
+      fmt::format("the file's numbers leave up to {} between the limbs at poses of the workspace; a pose is where "
+                  "they fit each other best, and errors are counted from there",
+                  small_length_text(mismatch))};
+}
+
 std::string structure_text(const Mechanism& mechanism) {
   std::string text =
       fmt::format("  {:<8} {:<10} {:<12} {:<32} {:<32} {}\n", "frame", "joint", "type", "point (mm)", "z", "x");
@@ -181,9 +194,14 @@ std::vector<std::string> mobility_lines(const Mechanism& mechanism, const Mobili
                   counted(home.idle, "idle freedom", "idle freedoms"),
                   home.left_when_locked == 0 ? std::string("none") : fmt::format("{} idle", home.left_when_locked)));
   const std::optional<double> below = home.below_gap();
-  lines.push_back(fmt::format("singular values around the gap, lengths in units of the reach: {} | {}",
-                              home.rank > 0 ? fmt::format("{:.3g}", home.above_gap()) : "none",
-                              below ? fmt::format("{:.1e}", *below) : "none"));
+  std::string gap = fmt::format("singular values around the gap, lengths in units of the reach: {} | {}",
+                                home.rank > 0 ? fmt::format("{:.3g}", home.above_gap()) : "none",
+                                below ? fmt::format("{:.1e}", *below) : "none");
+  if (mechanism.precision.rounded()) {
+    gap += fmt::format("; the file's numbers are rounded, so those below {:.1e} of the largest count as zero",
+                       mechanism.precision.rank_threshold);
+  }
+  lines.push_back(std::move(gap));
   std::size_t different = 0;
   for (const PoseMobility& at : poses) {
     const std::string what = difference(home, at);

@@ -17,6 +17,12 @@ std::string structure_text(const Mechanism& mechanism);
 /// The joints that a drive moves: "joint q of limb 1 and joint q of limb 4".
 std::string joints_text(const Mechanism& mechanism, const Drive& drive);
 
+/// "(0, 0.707107, 0.707107)".
+std::string triple_text(const Vector3& value);
+
+/// A small length: "0.12 um", or in mm where it is no less than a hundredth of that.
+std::string small_length_text(double metres);
+
 /// What a coordinate is.
 std::string coordinate_text(const Coordinate& coordinate);
 
@@ -25,6 +31,9 @@ Sketch sketch_of(const Mechanism& mechanism);
 
 /// Which coordinates of home are outside their workspace, a clause for each.
 std::vector<std::string> home_outside(const Mechanism& mechanism);
+
+/// What rounded numbers leave between perfect limbs, mismatch m at the most; nothing where they are exact.
+std::vector<std::string> rounding_remarks(const Mechanism& mechanism, double mismatch);
 
 /// Joints, ranks and freedoms at home, the singular values around the gap, and what differs in the workspace: at the
 /// first poses where something does.

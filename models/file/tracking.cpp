@@ -7,7 +7,6 @@
 #include "engine/base/contract.h"
 #include "engine/base/units.h"
 #include "engine/linalg/decompositions.h"
-#include "models/file/mobility.h"
 
 namespace poesy::file {
 namespace {
@@ -23,22 +22,13 @@ constexpr double kLargestMove = 0.5;          ///< of a joint in Newton's first 
 constexpr double kContraction = 0.25;         ///< of each later step against the one before
 constexpr double kRest = 1e-12;               ///< a step this small ends the iteration
 constexpr double kRounding = 1e-13;           ///< a residual this small does so too, rad or reaches
+constexpr double kDependent = 1e-12;          ///< of independent columns: of the largest pivot
 constexpr int kMostSteps = 12;
 constexpr int kMostSettlings = 60;
 
 Index index(std::size_t value) { return static_cast<Index>(value); }
 
-std::span<const double> part(const Vector& q, std::size_t begin, std::size_t count) {
-  return {q.data() + begin, count};
-}
-
 }  // namespace
-
-/// Every limb's platform moves to where the pose says: J_i dq_i - C dpose = log(T g_i^-1).
-struct Tracker::System {
-  Matrix matrix;    ///< [6 limbs x free]
-  Vector residual;  ///< [6 limbs]
-};
 
 std::vector<double> scaled_displacements(const Mechanism& mechanism, std::span<const double> displacements,
                                          double factor) {
@@ -82,7 +72,8 @@ Tracker::Tracker(const Mechanism& mechanism, Given given)
     }
     Columns columns(6, index(moving));
     limb_transform(limb, std::vector<double>(moving, 0.0), &columns);
-    limb_ranks_.push_back(linalg::rank(columns(Eigen::all, free), kRankThreshold));
+    limb_ranks_.push_back(linalg::rank(columns(Eigen::all, free), unit_.precision.rank_threshold));
+    idle_ += free.size() - limb_ranks_.back();
     limb_joints_.push_back(std::move(free));
     begin += moving;
   }
@@ -94,35 +85,40 @@ Tracker::Tracker(const Mechanism& mechanism, Given given)
   }
 }
 
-PlatformPose Tracker::pose_of(const State& state) const {
-  PlatformPose pose;
-  std::ranges::copy(state.tail<6>(), pose.begin());
-  return pose;
-}
-
-Tracker::System Tracker::system(const State& state) const {
-  const PlatformPose pose = pose_of(state);
-  Matrix all = Matrix::Zero(6 * index(unit_.limbs.size()), state.size());
-  Vector residual(all.rows());
-  const Transform wanted = platform_transform(unit_, pose);
-  const lie::Matrix6<double> by_pose = platform_columns(unit_, pose);
-  Index row = 0;
-  std::size_t begin = 0;
-  for (const Limb& limb : unit_.limbs) {
-    Columns columns(6, index(limb.moving()));
-    const Transform g = limb_transform(limb, part(state, begin, limb.moving()), &columns);
-    all.block(row, index(begin), 6, columns.cols()) = columns;
-    all.block<6, 6>(row, all.cols() - 6) = -by_pose;
-    residual.segment<6>(row) = lie::log(wanted * g.inverse());
-    begin += limb.moving();
-    row += 6;
-  }
+/// The columns of what is solved for: [6 limbs x free]. Joints of one drive have that of their sum.
+Matrix Tracker::matrix_of(const LoopEquations& equations) const {
+  if (shared_.empty()) return equations.columns(Eigen::all, free_);
+  Matrix all = equations.columns;
   for (const Drive& drive : shared_) {
     for (const std::size_t other : std::span(drive.joints).subspan(1)) {
       all.col(index(drive.joints.front())) += all.col(index(other));
     }
   }
-  return {all(Eigen::all, free_), residual};
+  return all(Eigen::all, free_);
+}
+
+/// Of rounded numbers the least residual is that by the metric, among the steps of the mechanism's rank.
+Vector Tracker::step(const LoopEquations& equations, const State& state) const {
+  const Matrix matrix = matrix_of(equations);
+  if (!unit_.precision.rounded()) return linalg::least_squares(matrix, equations.residual, kRankThreshold);
+  const Matrix ways = linalg::right_singular_vectors(matrix).V.leftCols(matrix.cols() - index(idle_));
+  const lie::Matrix6<double> root = metric_root(unit_, pose_of(state));
+  const Vector wanted = weighed(root, equations.residual);
+  return ways * linalg::least_squares(weighed(root, matrix * ways), wanted, kDependent);
+}
+
+bool Tracker::is_closed(const State& state) const {
+  const LoopEquations equations = loop_equations(unit_, state);
+  if (!unit_.precision.rounded()) return equations.residual.lpNorm<Eigen::Infinity>() <= kClosed;
+  return mismatch(unit_, metric_root(unit_, pose_of(state)), equations.residual) <= unit_.precision.closed &&
+         is_regular(state);
+}
+
+/// Whether all that is solved for, but for idle freedoms, is determined.
+bool Tracker::is_regular(const State& state) const {
+  const Matrix matrix = matrix_of(loop_equations(unit_, state));
+  const Vector values = linalg::singular_values(matrix);
+  return values[matrix.cols() - 1 - index(idle_)] > unit_.precision.rank_threshold * values[0];
 }
 
 /// Gives all joints of a drive the displacement of its first.
@@ -136,15 +132,14 @@ void Tracker::move_together(State& state) const {
 Tracker::Ending Tracker::close(State& state) const {
   double most = kLargestMove;
   for (int n = 0; n < kMostSteps; ++n) {
-    const System equations = system(state);
-    const Vector change = linalg::least_squares(equations.matrix, equations.residual, kRankThreshold);
+    const LoopEquations equations = loop_equations(unit_, state);
+    const Vector change = step(equations, state);
     const double size = change.lpNorm<Eigen::Infinity>();
     if (!(size <= most)) return Ending::slow;
     state(free_) += change;
     move_together(state);
     if (size <= kRest || equations.residual.lpNorm<Eigen::Infinity>() <= kRounding) {
-      const bool closed = system(state).residual.lpNorm<Eigen::Infinity>() <= kClosed;
-      return closed ? Ending::closed : Ending::open;
+      return is_closed(state) ? Ending::closed : Ending::open;
     }
     most = std::max(kContraction * size, kRest);
   }
@@ -191,33 +186,30 @@ bool settle_limb(const Limb& limb, const std::vector<std::size_t>& free, Index r
 }  // namespace
 
 bool Tracker::settle(State& state) const {
-  const Transform platform = platform_transform(unit_, pose_of(state));
+  Transform platform = platform_transform(unit_, pose_of(state));
   std::size_t begin = 0;
   for (std::size_t i = 0; i < unit_.limbs.size(); ++i) {
     const Limb& limb = unit_.limbs[i];
-    if (limb_ranks_[i] < limb_joints_[i].size() && !settle_limb(limb, limb_joints_[i], index(limb_ranks_[i]), platform,
-                                                                state.segment(index(begin), index(limb.moving())))) {
-      return false;
-    }
+    Eigen::Ref<Vector> q = state.segment(index(begin), index(limb.moving()));
     begin += limb.moving();
+    if (limb_ranks_[i] == limb_joints_[i].size()) continue;
+    // Of rounded numbers the limb keeps its own share of the mismatch.
+    if (unit_.precision.rounded()) platform = limb_transform(limb, {q.data(), limb.moving()});
+    if (!settle_limb(limb, limb_joints_[i], index(limb_ranks_[i]), platform, q)) return false;
   }
   return true;
 }
 
 std::string Tracker::why(const State& state, Ending ending, double share) const {
-  std::size_t idle = 0;
-  for (std::size_t i = 0; i < unit_.limbs.size(); ++i) idle += limb_joints_[i].size() - limb_ranks_[i];
   // That are solved for; components of the platform's pose come behind them.
   const auto joints = std::ranges::count_if(free_, [&](std::size_t place) { return place < unit_.moving(); });
   const std::string where =
       "the way there from home ends after " + readable_text({100.0 * share, Dimension::number}, 3) + " %: ";
-  const Matrix matrix = system(state).matrix;
-  const linalg::SingularValueDecomposition svd = linalg::right_singular_vectors(matrix);
-  const Index last = matrix.cols() - 1 - index(idle);
-  if (ending == Ending::open && svd.values[last] > kRankThreshold * svd.values[0]) {
+  if (ending == Ending::open && is_regular(state)) {
     return where + "beyond, the loops stay open by more than rounding, because the limbs do not fit each other there";
   }
-  const Vector weakest = svd.V.col(last);
+  const Matrix matrix = matrix_of(loop_equations(unit_, state));
+  const Vector weakest = linalg::right_singular_vectors(matrix).V.col(matrix.cols() - 1 - index(idle_));
   Index column = 0;
   weakest.head(joints).cwiseAbs().maxCoeff(&column);
   std::size_t place = free_[static_cast<std::size_t>(column)];
@@ -269,6 +261,11 @@ Tracked Tracker::track(std::span<const double> numbers) const {
   }
   Tracked tracked{{}, pose_of(state), {}, share, {}};
   if (share < 1.0) tracked.unreachable = finite ? why(state, ending, share) : "a coordinate is not a finite number";
+  tracked.open = ending == Ending::open && share < 1.0 && is_regular(state);
+  if (unit_.precision.rounded()) {
+    const lie::Matrix6<double> root = metric_root(unit_, tracked.pose);
+    tracked.mismatch = reach_ * mismatch(unit_, root, loop_equations(unit_, state).residual);
+  }
   tracked.platform = platform_transform(unit_, tracked.pose);
   tracked.platform.p *= reach_;
   for (std::size_t k = 0; k < 3; ++k) tracked.pose[k] *= reach_;

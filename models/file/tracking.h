@@ -4,12 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "models/file/loops.h"
 #include "models/file/mechanism.h"
 
 namespace poesy::file {
-
-/// Up to which a loop counts as closed: in rad, and as a share of the reach.
-inline constexpr double kClosed = 1e-12;
 
 /// The displacements [moving] with those of prismatic joints times a factor.
 std::vector<double> scaled_displacements(const Mechanism& mechanism, std::span<const double> displacements,
@@ -22,6 +20,9 @@ struct Tracked {
   Transform platform;                 ///< base_T_platform there
   double share;                       ///< of the way from home; 1: the pose is reached
   std::string unreachable;            ///< why the way ended; empty: the pose is reached
+  /// Whether it ended because the loops stay open beyond, although nothing is singular there.
+  bool open = false;
+  double mismatch = 0.0;  ///< m: the limbs' gap at the end, of rounded numbers; else 0
 };
 
 /// What says where the mechanism is: the coordinates of its platform (inverse kinematics), or the displacements of its
@@ -33,7 +34,8 @@ enum class Given { coordinates, drives };
 /// once: so the limbs stay in the working mode of home. Steps are of least norm in the rank that the mechanism has at
 /// home, so redundant loop equations do no harm. The joints of one drive are one unknown. Of all displacements at a
 /// pose those are taken whose squares (rad, and lengths in units of the reach) have the least sum nearby, so that idle
-/// freedoms do not depend on the way. A result depends on nothing but the mechanism and the pose.
+/// freedoms do not depend on the way. Where the mechanism's numbers are rounded (Precision), a pose is the
+/// least-squares one by its metric. A result depends on nothing but the mechanism and the pose.
 class Tracker {
  public:
   /// The mechanism is copied. Precondition for drives: held, they leave the platform no freedom.
@@ -43,13 +45,12 @@ class Tracker {
   Tracked track(std::span<const double> numbers) const;
 
  private:
-  /// Displacements [moving], then the platform's pose [6], in units of the reach.
-  using State = Eigen::VectorXd;
-  struct System;
   enum class Ending { closed, slow, open, restless };
 
-  PlatformPose pose_of(const State& state) const;
-  System system(const State& state) const;
+  Eigen::MatrixXd matrix_of(const LoopEquations& equations) const;
+  Eigen::VectorXd step(const LoopEquations& equations, const State& state) const;
+  bool is_closed(const State& state) const;
+  bool is_regular(const State& state) const;
   void move_together(State& state) const;
   Ending close(State& state) const;
   bool settle(State& state) const;
@@ -65,6 +66,7 @@ class Tracker {
   /// Places among each limb's moving joints of those that are not given, and have no drive in common with others.
   std::vector<std::vector<std::size_t>> limb_joints_;
   std::vector<std::size_t> limb_ranks_;  ///< of their columns at home
+  std::size_t idle_ = 0;                 ///< joints beyond these ranks
 };
 
 }  // namespace poesy::file

@@ -244,6 +244,37 @@ class MechanismFile(ProgramTest):
         with h5py.File(self.folder / name) as file:
             return file.attrs["content_sha256"]
 
+    def test_rounded_numbers_are_told_and_kept(self):
+        """Joint B of each limb leans by the digits of a drawing, so that the limbs of the planar robot do not quite fit."""
+        self.study("rrr3")
+        exact = (self.folder / "rrr3.toml").read_text()
+        upright = 'at = "elbow", axis = "z"'
+        self.assertIn(upright, exact)
+        self.write("poses.csv", "x,y,phi\n0.03,-0.02,0.2\n0,0.04,-0.3\n")
+        self.write("errors.csv", "l_1 [mm],pin_x_2 [mm]\n0,0\n0.1,0.05\n")
+        told = "the file's numbers leave up to "
+        found = {}
+        for name, axis in (("exact", upright), ("rounded", 'at = "elbow", axis = [0.0000037, 0, 1]')):
+            self.write("rrr3.toml", exact.replace(upright, axis))
+            self.succeeds("run", "study.toml", "--quiet")
+            self.succeeds("evaluate", "study.toml", "--poses", "poses.csv", "--errors", "errors.csv", "-o", "rows.h5")
+            for command in (["models", "rrr3.toml"], ["check", "study.toml"], ["show", "study.h5"], ["show", "rows.h5"]):
+                self.assertEqual(told in " ".join(self.succeeds(*command).split()), name == "rounded", command)
+            shown = self.succeeds("models", "rrr3.toml")
+            self.assertIn("9 joints (3 actuated), rank 6 of 12 loop equations: 3 freedoms, 6 over-constraints", shown)
+            self.assertIn("the same at 20 of 20 poses tried in the workspace", shown)
+            with h5py.File(self.folder / "rows.h5") as file:
+                found[name] = {response: file["evaluate"][response][()] for response in ("gap", "x", "y", "theta_z")}
+        for response in ("x", "y", "theta_z"):
+            numpy.testing.assert_allclose(found["rounded"][response], found["exact"][response], rtol=1e-4, atol=1e-13)
+        self.assertTrue((found["exact"]["gap"] < 1e-15).all())
+        self.assertTrue((found["rounded"]["gap"] > 1e-9).all(), "what the numbers leave is subtracted from nothing")
+        leaning = exact.replace(upright, 'at = "elbow", axis = [0.006, 0, 1]')
+        self.write("rrr3.toml", leaning)
+        done = self.poesy("models", "rrr3.toml")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("look at joint 'B' of limb 1 and its copies: with its axis along (0, 0, 1)", done.stderr.decode())
+
     def test_a_result_is_complete_without_the_file(self):
         self.study("upr2-rpu")
         self.succeeds("run", "study.toml", "--quiet")

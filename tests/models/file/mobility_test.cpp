@@ -30,7 +30,7 @@ TEST_P(Table, AtHomeAndInTheWorkspace) {
   const std::vector<PoseMobility> poses = workspace_mobility(mechanism);
   EXPECT_NO_THROW(check_mobility(mechanism, home, poses));
   for (const PoseMobility& pose : poses) {
-    ASSERT_EQ(pose.unreachable, "");
+    ASSERT_EQ(pose.tracked.unreachable, "");
     EXPECT_EQ(numbers(pose.mobility), GetParam().numbers);
     EXPECT_GT(pose.mobility.above_gap(), 1e-3);
     EXPECT_LT(pose.mobility.below_gap().value_or(0.0), 1e-12);

@@ -69,7 +69,7 @@ TEST_P(Oracle, Mobility) {
   const std::vector<PoseMobility> poses = workspace_mobility(mechanism_);
   EXPECT_NO_THROW(check_mobility(mechanism_, found, poses));
   for (const PoseMobility& pose : poses) {
-    ASSERT_EQ(pose.unreachable, "");
+    ASSERT_EQ(pose.tracked.unreachable, "");
     EXPECT_EQ(pose.mobility.rank, found.rank);
     EXPECT_EQ(pose.mobility.left_when_locked, 0u);
     EXPECT_EQ(pose.mobility.coordinates_rank, found.coordinates_rank);

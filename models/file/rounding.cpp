@@ -1,0 +1,125 @@
+#include "models/file/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "models/file/misfit.h"
+
+namespace poesy::file {
+namespace {
+
+/// Of the singular values' largest: what a rounded number may leave of zero, at the most.
+constexpr double kLargestZero = 1e-2;
+/// Ranks that are tried.
+constexpr std::size_t kMostGaps = 4;
+/// Singular values that are zero but for rounding vary over the workspace by less than this factor.
+constexpr double kMargin = 30.0;
+
+/// What a check finds wrong; nothing where it passes.
+template <class Check>
+std::optional<InputError> problem_of(Check check) {
+  try {
+    check();
+  } catch (const InputError& problem) {
+    return problem;
+  }
+  return std::nullopt;
+}
+
+/// A rank, and the singular values on both sides of it as shares of the largest.
+struct Gap {
+  std::size_t rank;
+  double above;
+  double below;
+
+  double ratio() const { return above / std::max(below, kRankThreshold); }
+  /// Whether the mechanism has that rank at this configuration too; the gap is then no wider than there.
+  bool narrow(const std::vector<double>& values) {
+    above = std::min(above, values[rank - 1] / values[0]);
+    below = std::max(below, values[rank] / values[0]);
+    return above > below;
+  }
+  /// What tells the sides apart; nearer to the lower one, because the upper one falls near singular poses.
+  double threshold() const {
+    return kMargin * below <= kRankThreshold ? kRankThreshold : std::min(kMargin * below, std::sqrt(above * below));
+  }
+};
+
+/// The widest gaps where the rank of rounded numbers may be, the widest first.
+std::vector<Gap> gaps_of(const std::vector<double>& values) {
+  std::vector<Gap> list;
+  for (std::size_t rank = 1; rank < values.size(); ++rank) {
+    const Gap gap{rank, values[rank - 1] / values[0], values[rank] / values[0]};
+    if (gap.above > kRankThreshold && gap.below <= kLargestZero && gap.threshold() < gap.above) list.push_back(gap);
+  }
+  std::ranges::stable_sort(list, std::ranges::greater(), &Gap::ratio);
+  if (list.size() > kMostGaps) list.erase(list.begin() + kMostGaps, list.end());
+  return list;
+}
+
+/// The largest gap of the limbs where they were tried.
+double largest_mismatch(const std::vector<PoseMobility>& poses) {
+  double largest = 0.0;
+  for (const PoseMobility& pose : poses) largest = std::max(largest, pose.tracked.mismatch);
+  return largest;
+}
+
+/// What came of taking numbers as rounded; nothing where that is not how the mechanism moves.
+struct Attempt {
+  std::optional<Checked> checked = {};
+  std::optional<InputError> misfit = {};  ///< loops close only nearly
+};
+
+/// With this rank at home.
+Attempt rounded(Mechanism mechanism, Gap gap) {
+  const auto passes = [&](const Mobility& home, std::span<const PoseMobility> poses) {
+    return !problem_of([&] {
+      check_mobility(mechanism, home);
+      check_mobility(mechanism, home, poses);
+    });
+  };
+  mechanism.precision = {gap.threshold(), kNamedGap};
+  if (!passes(home_mobility(mechanism), {})) return {};
+  std::vector<PoseMobility> poses = workspace_mobility(mechanism);
+  std::erase_if(poses, [](const PoseMobility& pose) { return !pose.reached(); });
+  if (poses.empty()) return {};
+  for (const PoseMobility& pose : poses) {
+    if (!gap.narrow(pose.mobility.singular_values)) return {};
+  }
+  mechanism.precision.rank_threshold = gap.threshold();
+  Mobility home = home_mobility(mechanism);
+  for (PoseMobility& pose : poses) {
+    pose.mobility = mobility(mechanism, pose.tracked.displacements, pose.tracked.pose);
+  }
+  if (!passes(home, poses)) return {};
+  const double mismatch = largest_mismatch(poses);
+  if (mismatch > kRoundedGap * mechanism.reach) return {.misfit = misfit(mechanism, poses)};
+  mechanism.precision.closed = kRoundedGap;
+  return {.checked = Checked{std::move(mechanism), std::move(home), mismatch}};
+}
+
+}  // namespace
+
+Checked checked(Mechanism mechanism, Workspace workspace) {
+  Mobility home = home_mobility(mechanism);
+  bool open = false;
+  std::optional<InputError> problem = problem_of([&] {
+    check_mobility(mechanism, home);
+    if (workspace == Workspace::as_it_is && home.over_constraints == 0) return;
+    const std::vector<PoseMobility> poses = workspace_mobility(mechanism);
+    open = std::ranges::any_of(poses, [](const PoseMobility& pose) { return pose.tracked.open; });
+    if (workspace == Workspace::in_reach) check_mobility(mechanism, home, poses);
+  });
+  if (!problem && !open) return {std::move(mechanism), std::move(home)};
+  std::optional<InputError> nearly;
+  for (const Gap& gap : gaps_of(home.singular_values)) {
+    Attempt attempt = rounded(mechanism, gap);
+    if (attempt.checked) return *std::move(attempt.checked);
+    if (!nearly) nearly = std::move(attempt.misfit);
+  }
+  if (problem) throw nearly.value_or(*problem);
+  return {std::move(mechanism), std::move(home)};
+}
+
+}  // namespace poesy::file
