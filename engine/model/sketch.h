@@ -48,12 +48,15 @@ struct SketchedError {
 
 /// A mechanism as a picture shows it, at one pose.
 struct Sketch {
-  std::vector<std::vector<SketchedJoint>> limbs;        ///< base to platform
-  SketchVector platform;                                ///< its origin, P
-  std::vector<SketchVector> tool;                       ///< the tool's tip; none or one
-  std::vector<std::vector<SketchedFrame>> frames = {};  ///< of each limb: the base, its joints' axes, the platform
-  std::vector<SketchedError> errors = {};               ///< [F], in the order of ModelDescription::factors
-  bool z_is_down = false;                               ///< whether the base's z axis points to the ground
+  std::vector<std::vector<SketchedJoint>> limbs;  ///< base to platform
+  SketchVector platform;                          ///< its origin, P
+  std::vector<SketchVector> tool;                 ///< the tool's tip; none or one
+  /// Of each limb: the base, its joints' axes, the platform; with errors_at_joints the origins of base and platform are
+  /// those of the first and the last joint, about which errors turn.
+  std::vector<std::vector<SketchedFrame>> frames = {};
+  std::vector<SketchedError> errors = {};  ///< [F], in the order of ModelDescription::factors
+  bool errors_at_joints = false;           ///< whether angles of first and last frames turn there
+  bool z_is_down = false;                  ///< whether the base's z axis points to the ground
 };
 
 }  // namespace poesy

@@ -26,8 +26,11 @@ std::string axis_words(const Sketch& sketch, const SketchedError& error, Dimensi
   const std::string frame = error.frame == 0          ? "the base"
                             : error.frame == platform ? "the platform"
                                                       : fmt::format("frame {}", error.frame);
-  return fmt::format("{} {} of {}", dimension == Dimension::angle ? "rotation about" : "displacement along",
-                     "xyz"[error.axis], frame);
+  const bool turns = dimension == Dimension::angle;
+  std::string at;
+  if (turns && sketch.errors_at_joints && error.frame == 0) at = ", at the first joint";
+  if (turns && sketch.errors_at_joints && error.frame == platform) at = ", at the last joint";
+  return fmt::format("{} {} of {}{}", turns ? "rotation about" : "displacement along", "xyz"[error.axis], frame, at);
 }
 
 }  // namespace poesy

@@ -183,15 +183,11 @@ void BlockSolver::add_frame(const Limb& limb, std::size_t j, std::size_t frame, 
     piece.turns = piece.turns || varied[v].component < 3;
     varies = true;
   }
-  if (!varies) {
-    add_piece(frame_with_error(limb, j, error));
-  } else if (piece.inverted) {
-    add_piece(limb.home[j]);
-    pieces_.push_back(piece);
-  } else {
-    pieces_.push_back(piece);
-    add_piece(limb.home[j]);
-  }
+  if (!varies) return add_piece(frame_with_error(limb, j, error));
+  const bool at_joint = limb.errors_at_joints && (j == 0 || piece.inverted);
+  if (at_joint || piece.inverted) add_piece(limb.before_error(j));
+  pieces_.push_back(piece);
+  if (at_joint || !piece.inverted) add_piece(limb.behind_error(j));
 }
 
 void BlockSolver::close_segment() {

@@ -28,13 +28,13 @@ bool FirstOrder::prepare(std::span<const double> displacements, const lie::Matri
   for (const Limb& limb : chain_->limbs) {
     lie::Transform<double> g;
     for (std::size_t j = 0; j < limb.joints.size(); ++j, ++joint) {
-      from_error_[frame++] = lie::adjoint(g);
+      from_error_[frame++] = lie::adjoint(j == 0 ? limb.before_error(j) : g);
       g = g * limb.home[j];
       if (!limb.joints[j].actuated) columns_[column++] = spatial_column(limb.joints[j], g);
       move_joint(limb.joints[j], displacements[joint], g);
     }
-    // The last frame's error is inverted and multiplies from the right.
-    from_error_[frame++] = -lie::adjoint(g * limb.home.back());
+    // The last frame's error is inverted, and behind most of the frame.
+    from_error_[frame++] = -lie::adjoint(g * limb.before_error(limb.joints.size()));
   }
   W_ = W == nullptr ? lie::Matrix6<double>(lie::Matrix6<double>::Identity()) : *W;
   equations_.hold_idle(columns_, W);

@@ -29,6 +29,20 @@ std::size_t Limb::passive_joints() const {
       std::count_if(joints.begin(), joints.end(), [](const Joint& joint) { return !joint.actuated; }));
 }
 
+lie::Transform<double> Limb::before_error(std::size_t j) const {
+  const bool is_last = j + 1 == frames();
+  if (errors_at_joints && is_last) return {home[j].R, lie::Vector3<double>::Zero()};
+  if (errors_at_joints && j == 0) return {lie::Matrix3<double>::Identity(), home[j].p};
+  return is_last ? home[j] : lie::Transform<double>();
+}
+
+lie::Transform<double> Limb::behind_error(std::size_t j) const {
+  const bool is_last = j + 1 == frames();
+  if (errors_at_joints && is_last) return {lie::Matrix3<double>::Identity(), home[j].R.transpose() * home[j].p};
+  if (errors_at_joints && j == 0) return {home[j].R, lie::Vector3<double>::Zero()};
+  return is_last ? lie::Transform<double>() : home[j];
+}
+
 std::size_t ParallelChain::joints() const {
   return sum_over(limbs, [](const Limb& limb) { return limb.joints.size(); });
 }

@@ -30,11 +30,20 @@ struct Joint {
 struct Limb {
   std::vector<Joint> joints;                 ///< [n], base to platform
   std::vector<lie::Transform<double>> home;  ///< [n + 1]
+  /// Where an angle of the first and of the last frame's error turns: about the first and the last joint's point, or,
+  /// as published, about the origins of base and platform. The axes are the base's and the platform's in any case.
+  bool errors_at_joints = false;
 
   /// N + 1.
   std::size_t frames() const { return home.size(); }
   /// Those that are not actuated.
   std::size_t passive_joints() const;
+  /// Fixed frame j as before * Delta g * behind, or before * Delta g^-1 * behind for the last one: what is before the
+  /// error, and what is behind.
+  /// @{
+  lie::Transform<double> before_error(std::size_t j) const;
+  lie::Transform<double> behind_error(std::size_t j) const;
+  /// @}
 };
 
 /// Two limbs whose platform poses are compared: residual log(g_k g_i^-1) (Eq. 30). Positions count from 0.
@@ -92,12 +101,20 @@ lie::Transform<T> error_transform(const FrameError<T>& error) {
 }
 
 /// Fixed frame j of the limb with its error, g_ij^ge of Eqs. 27-28: the error multiplies from the left, but for the
-/// last frame, where its inverse multiplies from the right.
+/// last frame, where its inverse multiplies from the right; with errors_at_joints between the translation to the first
+/// joint and the rest, and between the rotation of the last frame and the rest.
 template <class T>
 lie::Transform<T> frame_with_error(const Limb& limb, std::size_t j, const FrameError<T>& error) {
-  const lie::Transform<T> home{limb.home[j].R.template cast<T>(), limb.home[j].p.template cast<T>()};
+  const auto cast = [](const lie::Transform<double>& g) {
+    return lie::Transform<T>{g.R.template cast<T>(), g.p.template cast<T>()};
+  };
+  const bool is_last = j + 1 == limb.frames();
   const lie::Transform<T> delta = error_transform(error);
-  return j + 1 == limb.frames() ? home * delta.inverse() : delta * home;
+  if (limb.errors_at_joints && (j == 0 || is_last)) {
+    return cast(limb.before_error(j)) * (is_last ? delta.inverse() : delta) * cast(limb.behind_error(j));
+  }
+  const lie::Transform<T> home = cast(limb.home[j]);
+  return is_last ? home * delta.inverse() : delta * home;
 }
 
 /// g * exp(zeta q) for a joint about or along z (Eq. 14): touches two columns of R, or p.

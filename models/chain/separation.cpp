@@ -91,12 +91,14 @@ Matrix6 platform_by_limb(const ParallelChain& chain, FirstOrder& first_order, st
   std::vector<double> moved(chain.passive_joints());
   Matrix6 B;
   for (std::size_t c = 0; c < 6; ++c) {
-    // An error of the first frame, which is seen from the base.
+    // An error of the first frame, which is seen from the base, and with errors at joints turns about the first one.
     const FrameEntry unit{chain.first_frame(limb), c};
     first_order.effect(unit, delta_mu, moved);
     B.col(static_cast<Eigen::Index>(c)) =
         first_order.sum_of_motions(unit, moved) / static_cast<double>(chain.limbs.size());
   }
+  const Limb& one = chain.limbs[limb];
+  if (one.errors_at_joints) B *= lie::adjoint(one.before_error(0).inverse());
   return B;
 }
 

@@ -107,6 +107,10 @@ void place(Sketch& sketch, const DeformationModel& model, std::span<const double
     }
     std::vector<SketchedFrame>& list = sketch.frames.emplace_back();
     for (const Transform& frame : frames.after) list.push_back(sketched(frame));
+    sketch.errors_at_joints = limb.errors_at_joints;
+    if (!limb.errors_at_joints) continue;
+    list.front().origin = sketched(frames.before.front().p);
+    list.back().origin = list[limb.joints.size()].origin;
   }
   sketch.platform = sketched(platform.p);
   sketch.tool.clear();

@@ -22,16 +22,32 @@ std::string joint_text(const std::vector<Joint>& joints, std::size_t j) {
   return "joint " + joints[j].name + part;
 }
 
-std::string description(const Limb& limb, const ErrorSlot& slot) {
+/// What a fixed frame of a limb is between.
+struct Parts {
+  std::string behind;  ///< "joint A"
+  std::string before;  ///< "base"
+
+  std::string text() const { return behind + " against " + before; }
+};
+
+Parts parts_of(const Limb& limb, std::size_t frame) {
+  return {frame == limb.joints.size() ? "platform" : joint_text(limb.joints, frame),
+          frame == 0 ? "base" : joint_text(limb.joints, frame - 1)};
+}
+
+std::string description(const Mechanism& mechanism, const ErrorSlot& slot) {
+  const Limb& limb = mechanism.limbs[slot.limb];
   const std::size_t last = limb.joints.size();
-  const std::string one = slot.frame == last ? "platform" : joint_text(limb.joints, slot.frame);
-  const std::string other = slot.frame == 0 ? "base" : joint_text(limb.joints, slot.frame - 1);
+  const Parts parts = parts_of(limb, slot.frame);
   const std::string axes = slot.frame == 0      ? "the base"
                            : slot.frame == last ? "the platform"
                                                 : "frame " + std::to_string(slot.frame);
   const std::string kind = slot.component < 3 ? "angular error about " : "linear error along ";
-  return "limb " + std::to_string(slot.limb + 1) + ", " + one + " against " + other + ": " + kind +
-         axis_of(slot.component) + " of " + axes;
+  std::string text = "limb " + std::to_string(slot.limb + 1) + ", " + parts.text() + ": " + kind +
+                     axis_of(slot.component) + " of " + axes;
+  const bool at_joint = mechanism.errors_at_joints && (slot.frame == 0 || slot.frame == last);
+  if (slot.component < 3 && at_joint) text += " at " + (slot.frame == 0 ? parts.behind : parts.before);
+  return text;
 }
 
 /// The error of one entry of a fixed frame. axis: empty for a scalar.
@@ -40,7 +56,7 @@ Factor factor(const Mechanism& mechanism, const ErrorSlot& slot, std::string nam
           slot.component < 3 ? Dimension::angle : Dimension::length,
           slot.limb + 1,
           slot.frame,
-          description(mechanism.limbs[slot.limb], slot),
+          description(mechanism, slot),
           std::move(axis)};
 }
 

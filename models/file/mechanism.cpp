@@ -107,6 +107,7 @@ class Builder {
     check_drives(made);
     if (lines.tool) made.tool = point(*lines.tool);
     add_metric_points(made);
+    made.errors_at_joints = file_.about == ErrorsAbout::joint;
     add_factors(file_, values_, made);
     return made;
   }

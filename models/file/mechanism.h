@@ -109,6 +109,7 @@ struct Mechanism {
   std::vector<Factor> factors = {};          ///< [F]
   std::vector<ErrorSlot> slots = {};         ///< [F]
   std::vector<FactorSet> sets = {};          ///< "all" first
+  bool errors_at_joints = true;              ///< see chain::Limb
   double reach;                              ///< m: the largest distance between joints' points, before copies, and P
   Precision precision = {};                  ///< of its numbers
 

@@ -450,8 +450,8 @@ const Keys<ErrorLines, Nothing>& error_keys() {
           needed<E>(
               "frame", {.type = "integer", .bounds = "at least 0"}, "0",
               "The fixed frame: 0 before the first joint, the last one to the platform. An error acts in the axes of "
-              "the joint "
-              "before it; that of the last frame is the last joint's place on the platform, in the platform's axes."),
+              "the joint before it, and its angles turn about that joint's point; in the first frame the axes are the "
+              "base's, in the last one the platform's. About what angles turn there, `about` in [errors] says."),
           needed(
               "component", kept("text or list", components, &E::components), "\"delta_z\"",
               "delta_x, delta_y, delta_z (lengths) or epsilon_x, epsilon_y, epsilon_z (angles) of the frame; several "
@@ -497,9 +497,17 @@ const Keys<MechanismFile, Nothing>& errors_keys() {
   static const Keys<MechanismFile, Nothing> keys{
       .paths = {"errors"},
       .meaning = "Errors of fixed frames: epsilon_i_j_x (an angle) and delta_i_j_x (a length) of frame j of limb i.",
-      .rows = {optional("frames", read_by("\"all\" or list", read_frames),
-                        "`\"all\"`, or none where there is an [[error]]",
-                        "All, or a list of names and patterns: \"delta_*_0_?\".")}};
+      .rows = {
+          optional("frames", read_by("\"all\" or list", read_frames), "`\"all\"`, or none where there is an [[error]]",
+                   "All, or a list of names and patterns: \"delta_*_0_?\"."),
+          optional("about",
+                   word_at<ErrorsAbout>({{ErrorsAbout::joint, "the point of the limb's first or last joint"},
+                                         {ErrorsAbout::frame, "the base's origin, or the platform's"}},
+                                        &MechanismFile::about),
+                   "`\"joint\"`",
+                   "About what angles of a limb's first and of its last frame turn, named errors too; their axes "
+                   "are the base's and the platform's. By \"frame\" they, and their rank, depend on where the "
+                   "base's frame stands.")}};
   return keys;
 }
 
@@ -622,6 +630,8 @@ std::string_view name(Rotation rotation) {
   constexpr std::array<std::string_view, 7> kNames{"vector", "xyz", "xzy", "yxz", "yzx", "zxy", "zyx"};
   return kNames[static_cast<std::size_t>(rotation)];
 }
+
+std::string_view name(ErrorsAbout about) { return about == ErrorsAbout::joint ? "joint" : "frame"; }
 
 const StudyTables& mechanism_file_tables() {
   static const StudyTables tables{

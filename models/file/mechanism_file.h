@@ -98,6 +98,14 @@ struct PlatformLines {
   Place place;                               ///< of [platform] or its points
 };
 
+/// About what an angle of a limb's first and of its last frame turns; the axes are the base's and the platform's.
+enum class ErrorsAbout {
+  joint,  ///< the points of its first and of its last joint
+  frame   ///< the origins of base and platform
+};
+/// "joint" or "frame".
+std::string_view name(ErrorsAbout about);
+
 /// An error that a mechanism file names, `[[error]]`.
 struct ErrorLines {
   Reference name;                            ///< without numbers
@@ -125,6 +133,7 @@ struct MechanismFile {
   std::vector<LimbLines> limbs;                  ///< as written, without copies
   std::optional<std::vector<Reference>> frames;  ///< frame errors: names and patterns; none: see all_frames()
   bool all = false;                              ///< whether `frames = "all"` is written
+  ErrorsAbout about = ErrorsAbout::joint;        ///< of all errors
   std::vector<ErrorLines> errors;                ///< with names of their own
   std::vector<SetLines> sets;                    ///< besides "all"
 

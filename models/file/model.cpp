@@ -28,7 +28,7 @@ namespace poesy::file {
 namespace {
 
 /// drives: of each joint that moves, as chain::Joint has it; those of the limb are taken off.
-chain::Limb chain_limb(const Limb& limb, std::span<const std::size_t>& drives) {
+chain::Limb chain_limb(const Limb& limb, bool errors_at_joints, std::span<const std::size_t>& drives) {
   chain::Limb of_chain;
   for (const Joint& joint : limb.joints) {
     of_chain.joints.push_back(joint.of_chain());
@@ -37,6 +37,7 @@ chain::Limb chain_limb(const Limb& limb, std::span<const std::size_t>& drives) {
     drives = drives.subspan(1);
   }
   of_chain.home = limb.home;
+  of_chain.errors_at_joints = errors_at_joints;
   return of_chain;
 }
 
@@ -84,7 +85,9 @@ chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<
   chain::DeformationModel model;
   const std::vector<std::size_t> drives = shared_drives(mechanism);
   std::span<const std::size_t> left = drives;
-  for (const Limb& limb : mechanism.limbs) model.chain.limbs.push_back(chain_limb(limb, left));
+  for (const Limb& limb : mechanism.limbs) {
+    model.chain.limbs.push_back(chain_limb(limb, mechanism.errors_at_joints, left));
+  }
   model.chain.pairs = chain::pairs_of(mechanism.limbs.size());
   model.chain.idle = home.idle;
   model.chain.meets = home.passive_rank == home.loop_equations;

@@ -172,11 +172,15 @@ std::string structure_text(const Mechanism& mechanism) {
     }
   }
   text += frame_line("platform", "P", "", mechanism.platform);
-  return text + drive_lines(mechanism) +
-         "  Frame i_j is that of joint j of limb i, with z about or along the joint and x towards the next joint's\n"
-         "  point, made perpendicular to z; S is three R, of which the first lies along the line from the joint "
-         "before.\n"
-         "  An error of frame i_j (j = 0 .. n) moves frame i_(j+1), or the platform, against frame i_j.\n";
+  text += drive_lines(mechanism);
+  text +=
+      "  Frame i_j is that of joint j of limb i, with z about or along the joint and x towards the next joint's\n"
+      "  point, made perpendicular to z; S is three R, of which the first lies along the line from the joint "
+      "before.\n"
+      "  An error of frame i_j (j = 0 .. n) moves frame i_(j+1), or the platform, against frame i_j.\n" +
+      fmt::format("  Angles of a limb's first and last frame turn about the {}.\n",
+                  mechanism.errors_at_joints ? "points of its first and last joint" : "origins of base and platform");
+  return text;
 }
 
 std::vector<std::string> mobility_lines(const Mechanism& mechanism, const Mobility& home,

@@ -18,7 +18,8 @@ poesy_test(three_prs_test LABELS unit
 poesy_test(three_prs_coupling_test LABELS property SOURCES models/three_prs/coupling_test.cpp LINKS poesy_kinds poesy_models)
 # Of every mechanism in the registry, whatever it is.
 poesy_test(registry_test LABELS property SOURCES models/registry_test.cpp LINKS poesy_kinds poesy_models)
-poesy_test(file_model_test LABELS unit SOURCES models/file/model_test.cpp models/file/separation_test.cpp
+poesy_test(file_model_test LABELS unit SOURCES models/file/errors_test.cpp models/file/model_test.cpp
+                   models/file/separation_test.cpp
            LINKS poesy_models nlohmann_json::nlohmann_json DATA)
 poesy_test(compiled_test LABELS regression SOURCES models/file/compiled_test.cpp models/file/nategh_agheli_test.cpp
            LINKS poesy_models DATA)

@@ -79,7 +79,11 @@ TEST_P(Sketches, JointsStandAtTheirFrames) {
     ASSERT_TRUE(sketch.has_value());
     ASSERT_EQ(sketch->errors.size(), model_->description().factors.size());
     for (std::size_t i = 0; i < sketch->limbs.size(); ++i) {
-      EXPECT_LT(distance(sketch->frames[i].back().origin, sketch->platform), 1e-9);
+      const std::vector<SketchedFrame>& frames = sketch->frames[i];
+      const SketchVector last = sketch->errors_at_joints ? frames[frames.size() - 2].origin : sketch->platform;
+      EXPECT_LT(distance(frames.back().origin, last), 1e-9);
+      const SketchVector first = sketch->errors_at_joints ? sketch->limbs[i].front().point : SketchVector{};
+      EXPECT_LT(distance(frames.front().origin, first), 1e-12);
       for (const SketchedJoint& joint : sketch->limbs[i]) {
         const SketchedFrame& frame = sketch->frames[i][joint.frame];
         const SketchVector moved{frame.origin[0] - joint.point[0], frame.origin[1] - joint.point[1],

@@ -275,6 +275,31 @@ class MechanismFile(ProgramTest):
         self.assertEqual(done.returncode, 2)
         self.assertIn("look at joint 'B' of limb 1 and its copies: with its axis along (0, 0, 1)", done.stderr.decode())
 
+    def test_no_error_depends_on_where_the_base_stands(self):
+        self.study("rps3")
+        text = (self.folder / "rps3.toml").read_text()
+        for old, new in (('h = {', 'floor = "0 mm"\nh = {'), ('origin      = [0, 0, "h"]', 'origin = [0, 0, "h + floor"]'),
+                         ('at = ["a", 0, 0]', 'at = ["a", 0, "floor"]'), ('at = ["c", 0, "h"]', 'at = ["c", 0, "h + floor"]'),
+                         ('z = ["500 mm", "700 mm"]', 'z = ["500 mm + floor", "700 mm + floor"]')):
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        indices = {}
+        for about in ("joint", "frame"):
+            self.write("rps3.toml", text.replace('about = "frame"', f'about = "{about}"'))
+            for floor, poses in (("0 mm", "0.1,-0.2,0.55"), ("1000 mm", "0.1,-0.2,1.55")):
+                self.write("poses.csv", f"rx,ry,z\n{poses}\n")
+                study = STUDY.format(name="rps3", solver="").replace("count = 4", 'select = "file"\nfile = "poses.csv"')
+                self.write("study.toml", study.replace("[poses]", f'geometry = {{ floor = "{floor}" }}\n[poses]'))
+                self.succeeds("run", "study.toml", "--quiet")
+                with h5py.File(self.folder / "study.h5") as file:
+                    at = list(file["response"].asstr()).index("tip_position")
+                    indices[about, floor] = file["sensitivity/global"][at]
+        scale = indices["joint", "0 mm"].max()
+        for about, moves in (("joint", False), ("frame", True)):
+            apart = numpy.abs(indices[about, "1000 mm"] - indices[about, "0 mm"]).max() / scale
+            self.assertEqual(apart > 0.5, moves, (about, apart))
+            self.assertTrue(moves or apart < 1e-9, apart)
+
     def test_a_result_is_complete_without_the_file(self):
         self.study("upr2-rpu")
         self.succeeds("run", "study.toml", "--quiet")

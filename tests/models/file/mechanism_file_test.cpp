@@ -254,27 +254,27 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
           {"joints = [", "joints = []\nx = [",
            "m.toml:21:1: unknown key 'x' in [limb[0]]; known: copies, points, joints"},
           {"frames = \"all\"", "frames = \"none\"",
-           "m.toml:26:10: errors.frames is 'none'; write \"all\", or a list of names and patterns"},
+           "m.toml:27:10: errors.frames is 'none'; write \"all\", or a list of names and patterns"},
           {"frames = \"all\"", "frames = [\"epsilon_1_0_x\", \"epsilon_1_9_x\"]",
-           "m.toml:26:28: errors.frames[1] 'epsilon_1_9_x' fits no error; did you mean 'epsilon_1_0_x'?"},
+           "m.toml:27:28: errors.frames[1] 'epsilon_1_9_x' fits no error; did you mean 'epsilon_1_0_x'?"},
           {"frames = \"all\"", "frames = [\"epsilon_1_0_*\", \"epsilon_?_0_x\"]",
-           "m.toml:26:28: errors.frames[1] 'epsilon_?_0_x' names epsilon_1_0_x a second time; remove it, or write a "
+           "m.toml:27:28: errors.frames[1] 'epsilon_?_0_x' names epsilon_1_0_x a second time; remove it, or write a "
            "narrower pattern"},
           {"frames = \"all\"", "frame = \"all\"",
-           "m.toml:26:1: unknown key 'frame' in [errors]; did you mean 'frames'?"},
+           "m.toml:27:1: unknown key 'frame' in [errors]; did you mean 'frames'?"},
           {"frames = \"all\"", "frames = \"all\"\n[sets]\nall = [\"*\"]",
-           "m.toml:28:7: sets.all exists in any case; remove it"},
+           "m.toml:29:7: sets.all exists in any case; remove it"},
           {"frames = \"all\"", "frames = \"all\"\n[sets]\nfew = []",
-           "m.toml:28:7: sets.few is empty; name its errors, or remove it"},
+           "m.toml:29:7: sets.few is empty; name its errors, or remove it"},
           {"frames = \"all\"", "frames = \"all\"\n[sets]\nfew = [\"gamma_*\"]",
-           "m.toml:28:8: sets.few[0] 'gamma_*' fits no error; they have names like epsilon_1_0_x"},
+           "m.toml:29:8: sets.few[0] 'gamma_*' fits no error; they have names like epsilon_1_0_x"},
           {"frames = \"all\"", "frames = \"all\"\n[sets]\n\"a b\" = [\"*\"]",
-           "m.toml:28:9: sets.a b 'a b' is no name; write letters, digits, _ and -, and do not begin with -"},
+           "m.toml:29:9: sets.a b 'a b' is no name; write letters, digits, _ and -, and do not begin with -"},
           {"frames = \"all\"", "frames = \"all\"\n[sets]\n" + std::string(49, 's') + " = [\"*\"]",
-           "m.toml:28:53: sets." + std::string(49, 's') + " '" + std::string(49, 's') +
+           "m.toml:29:53: sets." + std::string(49, 's') + " '" + std::string(49, 's') +
                "' is too long; write at most 48 letters"},
           {"frames = \"all\"", "frames = \"all\"\n[sets",
-           "m.toml:27:6: this is not TOML: parsing table header: expected ']', saw '\\n'; correct this "
+           "m.toml:28:6: this is not TOML: parsing table header: expected ']', saw '\\n'; correct this "
            "line; names of parameters and expressions stand in quotes"},
           {"[\"rx\", \"ry\", \"z\"]\nworkspace   = { ",
            "[\"rx\", \"ry\", \"z\", \"x\"]\nworkspace   = { x = [0, \"1 mm\"], ",

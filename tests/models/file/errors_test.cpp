@@ -1,0 +1,233 @@
+// Where the errors of a mechanism file act, and in which limbs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "models/file/model.h"
+#include "tests/models/file/files.h"
+
+namespace poesy::file {
+namespace {
+
+std::unique_ptr<Model> build(const CatalogEntry& entry, std::size_t fidelity = 0) {
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
+  return entry.build(geometry, fidelity);
+}
+
+using Errors = std::map<std::string, double>;
+
+/// Responses by name.
+std::map<std::string, double> outcome(const Model& model, const std::vector<double>& pose, const Errors& named) {
+  const ModelDescription& description = model.description();
+  std::vector<FactorIndex> varied;
+  std::vector<double> errors(description.factors.size(), 0.0);
+  for (std::size_t f = 0; f < errors.size(); ++f) varied.emplace_back(f);
+  for (const auto& [name, value] : named) errors[description.find_factor(name)->value] = value;
+  std::vector<double> responses(description.responses.size());
+  std::array status{SolveStatus::singular};
+  std::array iterations{std::uint32_t{0}};
+  model.evaluator({.tolerance = description.tolerance})
+      ->evaluate({pose, std::vector<double>(errors.size(), 0.0), varied, errors, 1},
+                 {responses, status, iterations, {}});
+  EXPECT_TRUE(solved(status[0]));
+  std::map<std::string, double> found;
+  for (std::size_t r = 0; r < responses.size(); ++r) found[description.responses[r].name] = responses[r];
+  return found;
+}
+
+/// Three translations by a passive limb in the middle (Tricept), or the planar 3-RRR: with the base's frame lower by a
+/// parameter and aside by two others, and the platform's origin elsewhere by three, its tool and its points where they
+/// were.
+const std::string kShifts =
+    "[geometry]\nbx = \"0 mm\"\nby = \"0 mm\"\nbz = \"0 mm\"\npx = \"0 mm\"\npy = \"0 mm\"\npz = \"0 mm\"\n";
+
+std::string platform(const std::string& height, const std::string& coordinates) {
+  return "[platform]\norigin = [\"bx + px\", \"by + py\", \"bz + pz + " + height + "\"]\n" + coordinates +
+         "tool = [\"10 mm - px\", \"20 mm - py\", \"30 mm - pz\"]\n"
+         "points = [[\"80 mm - px\", \"-py\", \"-pz\"], [\"-40 mm - px\", \"70 mm - py\", \"-pz\"], "
+         "[\"-40 mm - px\", \"-70 mm - py\", \"-pz\"]]\n";
+}
+
+std::string at(double x, double y, double z) {
+  return "[\"bx + " + shortest(x) + " mm\", \"by + " + shortest(y) + " mm\", \"bz + " + shortest(z) + " mm\"]";
+}
+
+std::string tricept() {
+  std::string text =
+      "format = \"poesy-mechanism\"\nversion = 1\nname = \"tricept\"\n" + kShifts +
+      platform("800 mm",
+               "coordinates = [\"x\", \"y\", \"z\"]\nworkspace = { x = [\"bx - 300 mm\", \"bx + 300 "
+               "mm\"], y = [\"by - 300 mm\", \"by + 300 mm\"], z = [\"bz + 500 mm\", \"bz + 1500 mm\"] }\n");
+  for (int i = 0; i < 3; ++i) {
+    const double angle = 2.0 * M_PI / 3.0 * i;
+    const std::string base = at(250.0 * std::cos(angle), 250.0 * std::sin(angle), 0.0);
+    const std::string end = at(125.0 * std::cos(angle), 125.0 * std::sin(angle), 800.0);
+    text += "[[limb]]\nname = \"leg_" + std::to_string(i + 1) +
+            "\"\njoints = [ { name = \"A\", type = \"U\", at = " + base +
+            ", axis = \"y\", axis2 = \"x\" },\n"
+            "  { name = \"q\", type = \"P\", from = \"A\", to = \"S\", actuated = true },\n"
+            "  { name = \"S\", type = \"S\", at = " +
+            end + " } ]\n";
+  }
+  return text + "[[limb]]\nname = \"post\"\njoints = [ { name = \"C\", type = \"U\", at = " + at(0, 0, 0) +
+         ", axis = \"x\", axis2 = \"y\" },\n  { name = \"p\", type = \"P\", at = " + at(0, 0, 800) +
+         ", axis = \"z\" } ]\n";
+}
+
+std::string planar() {
+  std::string text =
+      "format = \"poesy-mechanism\"\nversion = 1\nname = \"planar\"\n" + kShifts +
+      platform("0 mm",
+               "coordinates = [\"x\", \"y\", \"rz\"]\nworkspace = { x = [\"bx - 40 mm\", \"bx + 40 mm\"], "
+               "y = [\"by - 40 mm\", \"by + 40 mm\"], rz = [\"-20 deg\", \"20 deg\"] }\n");
+  for (int i = 0; i < 3; ++i) {
+    const double angle = 2.0 * M_PI / 3.0 * i;
+    const auto point = [&](double x, double y) {
+      return at(x * std::cos(angle) - y * std::sin(angle), x * std::sin(angle) + y * std::cos(angle), 0.0);
+    };
+    text += "[[limb]]\njoints = [ { name = \"A\", type = \"R\", at = " + point(300, 0) +
+            ", axis = \"z\", actuated = true },\n  { name = \"B\", type = \"R\", at = " + point(220, 120) +
+            ", axis = \"z\" },\n  { name = \"C\", type = \"R\", at = " + point(80, 0) + ", axis = \"z\" } ]\n";
+  }
+  return text;
+}
+
+struct Shifted {
+  std::string name;
+  std::string text;
+  std::vector<double> pose;  ///< at home's orientation, of the mechanism that is not shifted
+};
+
+class Shifts : public testing::TestWithParam<Shifted> {
+ protected:
+  /// The largest difference of responses that are not about P, as a share of the largest of that response by any error,
+  /// at 1 mm and 1 deg: with the base's frame and the platform's origin elsewhere.
+  double difference(const std::string& about, const std::vector<double>& geometry) const {
+    const CatalogEntry entry = catalog_entry(GetParam().text + "[errors]\n" + about, "m.toml");
+    const std::unique_ptr<Model> model = build(entry);
+    const std::unique_ptr<Model> shifted = entry.build(geometry, 0);
+    std::vector<double> pose = GetParam().pose;
+    for (std::size_t c = 0; c < pose.size(); ++c) {
+      const std::string& name = entry.description.pose_coordinates[c].name;
+      if (name.size() == 1) pose[c] += geometry[static_cast<std::size_t>(name[0] - 'x')] + geometry[3 + name[0] - 'x'];
+    }
+    std::map<std::string, double> largest;
+    std::map<std::string, double> apart;
+    for (const Factor& factor : entry.description.factors) {
+      const double size = factor.dimension == Dimension::length ? 1e-3 : M_PI / 180.0;
+      const auto before = outcome(*model, GetParam().pose, {{factor.name, size}});
+      const auto after = outcome(*shifted, pose, {{factor.name, size}});
+      for (const auto& [name, value] : before) {
+        if (name == "x" || name == "y" || name == "z" || name == "position" || name == "linear_deformation") continue;
+        largest[name] = std::max(largest[name], std::abs(value));
+        apart[name] = std::max(apart[name], std::abs(after.at(name) - value));
+      }
+    }
+    double share = 0.0;
+    for (const auto& [name, value] : apart) {
+      if (largest[name] > 1e-9) share = std::max(share, value / largest[name]);
+    }
+    return share;
+  }
+};
+
+TEST_P(Shifts, OfTheBaseChangeNoErrorAboutJoints) {
+  const std::vector<double> lower{0.3, -0.2, 1.0, 0.0, 0.0, 0.0};
+  EXPECT_LT(difference("", lower), 1e-9);
+  EXPECT_LT(difference("about = \"joint\"", lower), 1e-9);
+  EXPECT_GT(difference("about = \"frame\"", lower), 0.1);
+}
+
+TEST_P(Shifts, OfThePlatformsOriginChangeNoErrorAboutJoints) {
+  const std::vector<double> elsewhere{0.0, 0.0, 0.0, 0.1, -0.2, 0.3};
+  EXPECT_LT(difference("", elsewhere), 1e-9);
+  EXPECT_GT(difference("about = \"frame\"", elsewhere), 0.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Mechanisms, Shifts,
+                         testing::Values(Shifted{"tricept", tricept(), {0.0, 0.0, 0.85}},
+                                         Shifted{"planar", planar(), {0.02, -0.01, 0.0}}),
+                         [](const auto& instance) { return instance.param.name; });
+
+/// The same mechanism with errors about joints and about frames.
+struct Both {
+  CatalogEntry joint;
+  CatalogEntry frame;
+  Mechanism mechanism;
+};
+
+Both both(const std::string& name) {
+  std::string text = text_of(name);
+  text = text.substr(0, text.find("\n[errors]")) + "\n[errors]\nframes = \"all\"\n";
+  const MechanismFile file = read_mechanism_file(text, "m.toml");
+  return {catalog_entry(text, "m.toml"), catalog_entry(text + "about = \"frame\"\n", "m.toml"),
+          mechanism(file, default_geometry(file))};
+}
+
+/// An angle epsilon about a joint's point c is, about the frame's origin, the same angle with a displacement: c - exp
+/// (epsilon) c exactly, c x epsilon to first order.
+TEST(ErrorsAbout, AreTheFramesWithTheDisplacementOfTheJoint) {
+  std::mt19937_64 engine(5);
+  const auto draw = [&](double size) {
+    return Vector3(std::uniform_real_distribution<double>(-size, size)(engine),
+                   std::uniform_real_distribution<double>(-size, size)(engine),
+                   std::uniform_real_distribution<double>(-size, size)(engine));
+  };
+  for (const char* name : {"rps3", "ups6", "upr2-rpu"}) {
+    const Both models = both(name);
+    const ModelDescription& description = models.joint.description;
+    for (const std::size_t fidelity : {0u, 1u}) {
+      const std::unique_ptr<Model> joint = build(models.joint, fidelity);
+      const std::unique_ptr<Model> frame = build(models.frame, fidelity);
+      std::vector<double> pose;
+      for (std::size_t c = 0; c < description.pose_lower.size(); ++c) {
+        pose.push_back(0.3 * description.pose_lower[c] + 0.7 * description.pose_upper[c]);
+      }
+      for (std::size_t i = 0; i < models.mechanism.limbs.size(); ++i) {
+        const Limb& limb = models.mechanism.limbs[i];
+        for (const std::size_t j : {std::size_t{0}, limb.joints.size()}) {
+          const Joint& one = j == 0 ? limb.joints.front() : limb.joints.back();
+          const Transform& platform = models.mechanism.platform;
+          const Vector3 c = j == 0 ? one.at_home.p : Vector3(platform.R.transpose() * (one.at_home.p - platform.p));
+          const Vector3 epsilon = draw(0.02);
+          const Vector3 delta = draw(0.001);
+          const Vector3 moved =
+              delta + (fidelity == 0 ? Vector3(c - lie::exp<double>(epsilon) * c) : Vector3(c.cross(epsilon)));
+          const std::string at = std::to_string(i + 1) + "_" + std::to_string(j) + "_";
+          Errors about_joint;
+          Errors about_frame;
+          for (Eigen::Index k = 0; k < 3; ++k) {
+            about_joint["epsilon_" + at + "xyz"[k]] = about_frame["epsilon_" + at + "xyz"[k]] = epsilon[k];
+            about_joint["delta_" + at + "xyz"[k]] = delta[k];
+            about_frame["delta_" + at + "xyz"[k]] = moved[k];
+          }
+          const auto expected = outcome(*frame, pose, about_frame);
+          const auto found = outcome(*joint, pose, about_joint);
+          for (const auto& [response, value] : expected) EXPECT_NEAR(found.at(response), value, 1e-12) << response;
+        }
+      }
+    }
+  }
+}
+
+TEST(ErrorsAbout, IsSaidOfTheFactors) {
+  const Both models = both("rps3");
+  const auto words = [](const CatalogEntry& entry, const char* name) {
+    return entry.description.factors[entry.description.find_factor(name)->value].description;
+  };
+  EXPECT_EQ(words(models.joint, "epsilon_2_0_x"),
+            "limb 2, joint A against base: angular error about x of the base at joint A");
+  EXPECT_EQ(words(models.joint, "epsilon_2_5_y"),
+            "limb 2, platform against joint S (3 of 3): angular error about y of the platform at joint S (3 of 3)");
+  EXPECT_EQ(words(models.frame, "epsilon_2_0_x"), "limb 2, joint A against base: angular error about x of the base");
+  EXPECT_NE(models.joint.description.structure.find("turn about the points of its first and last joint."),
+            std::string::npos);
+  EXPECT_NE(models.frame.description.structure.find("turn about the origins of base and platform."), std::string::npos);
+}
+
+}  // namespace
+}  // namespace poesy::file
