@@ -31,6 +31,7 @@ class StudyValue {
   const Place& place() const { return place_; }           ///< Where it stands.
   bool is_text() const { return node_->is_string(); }     ///< Whether it is a text in quotes.
   bool is_section() const { return node_->is_table(); }   ///< Whether it is a table.
+  bool is_list() const { return node_->is_array(); }      ///< Whether it is a list.
   /// Whether it is true or false; empty for any other value.
   std::optional<bool> boolean() const { return node_->value_exact<bool>(); }
 

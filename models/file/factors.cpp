@@ -113,14 +113,12 @@ void add_listed(const std::vector<Reference>& patterns, const FrameErrors& all, 
 }
 
 void add_named(const ErrorLines& error, double scale, Mechanism& mechanism) {
-  const std::size_t first = error.limb.value_or(0);
-  const std::size_t last = error.limb.value_or(mechanism.limbs.size() - 1);
   const bool vector = error.components.size() > 1;
-  for (std::size_t i = first; i <= last; ++i) {
+  for (const std::size_t i : error.limbs) {
     for (const std::size_t component : error.components) {
       const std::string axis = vector ? std::string(1, axis_of(component)) : "";
       const std::string name =
-          error.name.name + (vector ? "_" + axis : "") + (error.limb ? "" : "_" + std::to_string(i + 1));
+          error.name.name + (vector ? "_" + axis : "") + (error.numbered ? "_" + std::to_string(i + 1) : "");
       const ErrorSlot slot{i, error.frame, component, scale};
       Factor made = factor(mechanism, slot, name, axis);
       if (!error.description.empty()) made.description = error.description;
@@ -133,6 +131,28 @@ void add_named(const ErrorLines& error, double scale, Mechanism& mechanism) {
       mechanism.slots.push_back(slot);
     }
   }
+}
+
+/// Whether two limbs have the same joints in the same order.
+bool are_alike(const Limb& a, const Limb& b) {
+  return std::ranges::equal(a.joints, b.joints, {}, &Joint::motion, &Joint::motion);
+}
+
+/// In which limbs an error with limb = "each" is, and what is there.
+EachLimb each_limb(const ErrorLines& error, const Mechanism& mechanism) {
+  EachLimb each{"error " + error.name.name + " with limb = \"each\" is", true};
+  for (std::size_t i = 0; i < error.limbs.size();) {
+    const std::string parts = parts_of(mechanism.limbs[i], error.frame).text();
+    const std::size_t first = i;
+    while (i < error.limbs.size() && parts_of(mechanism.limbs[i], error.frame).text() == parts) ++i;
+    each.text += std::string(first == 0 ? "" : ";") + " in limb" + (i - first == 1 ? "" : "s");
+    for (std::size_t k = first; k < i; ++k) {
+      each.text += (k == first ? " " : k + 1 == i ? " and " : ", ") + std::to_string(k + 1);
+      each.alike = each.alike && are_alike(mechanism.limbs[k], mechanism.limbs[0]);
+    }
+    each.text += ", " + parts;
+  }
+  return each;
 }
 
 FactorSet set_of(const SetLines& lines, const std::vector<Factor>& factors) {
@@ -164,6 +184,7 @@ void add_factors(const MechanismFile& file, std::span<const double> geometry, Me
       throw InputError(error.scale.place, error.scale.key + " is zero, so the error has no effect", "write its scale");
     }
     add_named(error, scale, mechanism);
+    if (error.each) mechanism.each.push_back(each_limb(error, mechanism));
   }
   FactorSet every{"all", "all errors", {}};
   for (std::size_t f = 0; f < mechanism.factors.size(); ++f) every.factors.emplace_back(f);

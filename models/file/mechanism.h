@@ -95,6 +95,12 @@ struct Precision {
   bool rounded() const { return closed > kClosed; }
 };
 
+/// An error that is named once for each limb.
+struct EachLimb {
+  std::string text;  ///< its name, and between which parts it is in which limbs
+  bool alike;        ///< whether these are the same parts in all limbs
+};
+
 /// Immutable. Everything that a model needs; solving is for others.
 struct Mechanism {
   std::string name;                          ///< as the file has it
@@ -109,6 +115,7 @@ struct Mechanism {
   std::vector<Factor> factors = {};          ///< [F]
   std::vector<ErrorSlot> slots = {};         ///< [F]
   std::vector<FactorSet> sets = {};          ///< "all" first
+  std::vector<EachLimb> each = {};           ///< errors with limb = "each"
   bool errors_at_joints = true;              ///< see chain::Limb
   double reach;                              ///< m: the largest distance between joints' points, before copies, and P
   Precision precision = {};                  ///< of its numbers

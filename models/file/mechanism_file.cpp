@@ -271,11 +271,21 @@ void read_copies(const StudyValue& value, LimbLines& limb) {
   read_keys(copies_keys(), value.section(), limb, Nothing{});
 }
 
+/// What [[error]] calls all limbs.
+constexpr std::string_view kEach = "each";
+
+std::string read_limb_name(const StudyValue& value) {
+  if (value.text() == kEach) value.fail("is 'each', which means all limbs", "give the limb another name");
+  return read_name(value);
+}
+
 const Keys<LimbLines, Nothing>& limb_keys() {
   static const Keys<LimbLines, Nothing> keys{
       .paths = {"limb"},
       .meaning = "A limb, [[limb]], between base and platform.",
       .rows = {
+          optional("name", kept("text", read_limb_name, &LimbLines::name), "none",
+                   "Its name, by which [[error]] may call it and its copies."),
           optional("copies", read_by("table", read_copies), "one", "Limbs alike, turned about an axis of the base."),
           optional("points", kept("table", points, &LimbLines::points), "none",
                    "Points of this limb alone, as in [points]."),
@@ -326,6 +336,10 @@ std::vector<LimbLines> limbs(const StudyValue& value) {
     read_keys(limb_keys(), element.section(), limb, Nothing{});
     for (const NamedPoint& named : limb.points) {
       check_new({named.name, named.point.key, named.point.place}, limb.joints, "joint of this limb");
+    }
+    if (!limb.name.empty()) {
+      const StudyValue name = element.section().require("name");
+      check_new({limb.name, name.full_name(), name.place()}, list, "limb");
     }
     extent.add(limb);
     check_extent(extent, element);
@@ -445,8 +459,11 @@ const Keys<ErrorLines, Nothing>& error_keys() {
       .meaning = "An error with a name of its own, [[error]].",
       .rows = {
           needed("name", kept("text", reference, &E::name), "\"l\"",
-                 "Its name; components of a vector append _x, _y, _z, and \"each\" limb _1, _2, ... behind that."),
-          needed<E>("limb", {.type = "integer or text"}, "\"each\"", "The limb, counted from 1, or \"each\"."),
+                 "Its name; components of a vector append _x, _y, _z, and an error of several limbs _1, _2, ... behind "
+                 "that, the limb's number."),
+          needed<E>("limb", {.type = "integer, text or list"}, "\"each\"",
+                    "The limb: its number, counted from 1, or its name, which also means its copies; a list of numbers "
+                    "and names; or \"each\", where all limbs have the frame. Each limb has an error of its own."),
           needed<E>(
               "frame", {.type = "integer", .bounds = "at least 0"}, "0",
               "The fixed frame: 0 before the first joint, the last one to the platform. An error acts in the axes of "
@@ -461,26 +478,96 @@ const Keys<ErrorLines, Nothing>& error_keys() {
   return keys;
 }
 
-/// Which limb, and a frame that it has. frames: of each limb.
-void read_slot(const StudySection& section, const std::vector<std::size_t>& frames, ErrorLines& error) {
-  const StudyValue limb = section.require("limb");
-  if (!limb.is_text()) {
-    error.limb = static_cast<std::size_t>(limb.whole_number(1, static_cast<std::int64_t>(frames.size())) - 1);
-  } else if (limb.text() != "each") {
-    limb.fail("is '" + printable(limb.text()) + "'", "write a limb's number, or \"each\"");
+/// A limb, copies included, as an error may name it.
+struct NamedLimb {
+  std::string_view name;  ///< empty: none
+  std::size_t frames;     ///< one more than its elementary joints
+};
+
+std::vector<NamedLimb> named_limbs(const MechanismFile& file) {
+  std::vector<NamedLimb> list;
+  for (const LimbLines& limb : file.limbs) {
+    std::size_t frames = 1;
+    for (const JointLines& joint : limb.joints) frames += elements(joint.kind);
+    list.insert(list.end(), limb.copies, {limb.name, frames});
   }
-  const std::size_t count = error.limb ? frames[*error.limb] : std::ranges::min(frames);
+  return list;
+}
+
+/// "limb 4", "limbs 1, 2 and 3", counted from 1.
+std::string limbs_text(const std::vector<std::size_t>& limbs) {
+  std::string text = limbs.size() == 1 ? "limb " : "limbs ";
+  for (std::size_t k = 0; k < limbs.size(); ++k) {
+    if (k > 0) text += k + 1 == limbs.size() ? " and " : ", ";
+    text += std::to_string(limbs[k] + 1);
+  }
+  return text;
+}
+
+/// Adds the limbs of a number or a name to those of an error.
+void add_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, ErrorLines& error) {
+  const auto add = [&](std::size_t limb) {
+    if (std::ranges::find(error.limbs, limb) != error.limbs.end()) {
+      value.fail("names limb " + std::to_string(limb + 1) + " a second time", "remove it");
+    }
+    error.limbs.push_back(limb);
+  };
+  if (!value.is_text()) {
+    return add(static_cast<std::size_t>(value.whole_number(1, static_cast<std::int64_t>(known.size())) - 1));
+  }
+  const std::string name = value.text();
+  const std::size_t before = error.limbs.size();
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (!name.empty() && known[i].name == name) add(i);
+  }
+  if (error.limbs.size() > before) return;
+  value.fail("is '" + printable(name) + "', which is no limb's name",
+             "write a limb's number, its name, a list of these, or \"each\"");
+}
+
+void read_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, ErrorLines& error) {
+  if (value.is_text() && value.text() == kEach) {
+    for (std::size_t i = 0; i < known.size(); ++i) error.limbs.push_back(i);
+    error.each = error.numbered = true;
+  } else if (value.is_list()) {
+    for (const StudyValue& element : value.list()) add_limbs(element, known, error);
+    if (error.limbs.empty()) value.fail("is empty", "write the limbs' numbers, e.g. [1, 2, 3]");
+    error.numbered = true;
+  } else {
+    add_limbs(value, known, error);
+    error.numbered = error.limbs.size() > 1;
+  }
+}
+
+/// Which limbs, and a frame that they have.
+void read_slot(const StudySection& section, const std::vector<NamedLimb>& known, ErrorLines& error) {
+  read_limbs(section.require("limb"), known, error);
   const StudyValue frame = section.require("frame");
-  error.frame = static_cast<std::size_t>(frame.whole_number(0, static_cast<std::int64_t>(count) - 1));
+  error.frame = static_cast<std::size_t>(frame.whole_number(0));
+  std::vector<std::size_t> with;
+  std::vector<std::size_t> without;
+  for (const std::size_t i : error.limbs) (error.frame < known[i].frames ? with : without).push_back(i);
+  if (without.empty()) return;
+  const std::string last = std::to_string(known[without.front()].frames - 1);
+  if (error.each && !with.empty()) {
+    std::string list;
+    for (const std::size_t i : with) list += (list.empty() ? "" : ", ") + std::to_string(i + 1);
+    frame.fail("is " + std::to_string(error.frame) + ", which " + limbs_text(with) + " have, and " +
+                   limbs_text(without) + " not: the last frame of limb " + std::to_string(without.front() + 1) +
+                   " is " + last,
+               "name the limbs that are meant: limb = [" + list + "]");
+  }
+  frame.fail("is " + std::to_string(error.frame),
+             "the last frame of limb " + std::to_string(without.front() + 1) + " is " + last);
 }
 
 void read_named_errors(const StudyValue& value, MechanismFile& file) {
-  const std::vector<std::size_t> frames = frame_counts(file);
+  const std::vector<NamedLimb> limbs = named_limbs(file);
   for (const StudyValue& element : tables(value)) {
     ErrorLines error;
     read_keys(error_keys(), element.section(), error, Nothing{});
     check_name(error.name);
-    read_slot(element.section(), frames, error);
+    read_slot(element.section(), limbs, error);
     file.errors.push_back(std::move(error));
   }
 }
@@ -650,16 +737,6 @@ const StudyTables& mechanism_file_tables() {
       described(error_keys()),
       of_names({"sets"}, "SET", "list", "A set: names or patterns of errors.")};
   return tables;
-}
-
-std::vector<std::size_t> frame_counts(const MechanismFile& file) {
-  std::vector<std::size_t> counts;
-  for (const LimbLines& limb : file.limbs) {
-    std::size_t frames = 1;
-    for (const JointLines& joint : limb.joints) frames += elements(joint.kind);
-    counts.insert(counts.end(), limb.copies, frames);
-  }
-  return counts;
 }
 
 MechanismFile read_mechanism_file(const std::string& text, const std::string& path) {

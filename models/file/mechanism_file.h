@@ -64,6 +64,7 @@ struct JointLines {
 
 /// A limb as written, and how often.
 struct LimbLines {
+  std::string name;                ///< of it and its copies; empty: none
   std::vector<JointLines> joints;  ///< base to platform
   std::vector<NamedPoint> points;  ///< its own
   std::size_t copies = 1;          ///< at least 1
@@ -109,7 +110,9 @@ std::string_view name(ErrorsAbout about);
 /// An error that a mechanism file names, `[[error]]`.
 struct ErrorLines {
   Reference name;                            ///< without numbers
-  std::optional<std::size_t> limb;           ///< counts from 0; none: each
+  std::vector<std::size_t> limbs;            ///< that have it, counted from 0
+  bool each = false;                         ///< whether they are meant by "each"
+  bool numbered = false;                     ///< whether the limb's number is appended to the name
   std::size_t frame = 0;                     ///< counts from 0
   std::vector<std::size_t> components;       ///< of [epsilon; delta]
   Expression scale{"1", "scale", {}, true};  ///< the entry of the frame's error is the error times this
@@ -143,9 +146,6 @@ struct MechanismFile {
 
 /// The tables of a mechanism file with every key, for the reference.
 const StudyTables& mechanism_file_tables();
-
-/// Of each limb, copies included, the number of its fixed frames: one more than its elementary joints.
-std::vector<std::size_t> frame_counts(const MechanismFile& file);
 
 /// Reads a mechanism file of format version 1. `path` is for messages. Throws InputError "FILE:LINE:COL: ..." for
 /// whatever is wrong in the text or with its default geometry: the file then also makes a Mechanism (mechanism.h).

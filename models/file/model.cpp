@@ -219,7 +219,11 @@ class FileModel final : public Model {
 
   std::vector<std::string> remarks() const override { return rounding_remarks(mechanism_, mismatch_); }
 
-  std::vector<std::string> unusual_geometry() const override { return home_outside(mechanism_); }
+  std::vector<std::string> unusual_geometry() const override {
+    std::vector<std::string> list = home_outside(mechanism_);
+    for (std::string& unlike : unlike_limbs(mechanism_)) list.push_back(std::move(unlike));
+    return list;
+  }
 
   std::optional<Sketch> sketch(std::span<const double> pose) const override {
     Sketch sketch = sketch_of(mechanism_);

@@ -154,6 +154,14 @@ std::string joints_text(const Mechanism& mechanism, const Drive& drive) {
   return fmt::format("{}", fmt::join(list, " and "));
 }
 
+std::vector<std::string> unlike_limbs(const Mechanism& mechanism) {
+  std::vector<std::string> list;
+  for (const EachLimb& each : mechanism.each) {
+    if (!each.alike) list.push_back(each.text + ", and these limbs have other joints than each other");
+  }
+  return list;
+}
+
 std::vector<std::string> rounding_remarks(const Mechanism& mechanism, double mismatch) {
   if (!mechanism.precision.rounded()) return {};
   return {
@@ -180,6 +188,7 @@ std::string structure_text(const Mechanism& mechanism) {
       "  An error of frame i_j (j = 0 .. n) moves frame i_(j+1), or the platform, against frame i_j.\n" +
       fmt::format("  Angles of a limb's first and last frame turn about the {}.\n",
                   mechanism.errors_at_joints ? "points of its first and last joint" : "origins of base and platform");
+  for (const EachLimb& each : mechanism.each) text += "  " + each.text + ".\n";
   return text;
 }
 

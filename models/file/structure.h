@@ -32,6 +32,9 @@ Sketch sketch_of(const Mechanism& mechanism);
 /// Which coordinates of home are outside their workspace, a clause for each.
 std::vector<std::string> home_outside(const Mechanism& mechanism);
 
+/// Errors with limb = "each" of limbs that are not alike, a clause for each.
+std::vector<std::string> unlike_limbs(const Mechanism& mechanism);
+
 /// What rounded numbers leave between perfect limbs, mismatch m at the most; nothing where they are exact.
 std::vector<std::string> rounding_remarks(const Mechanism& mechanism, double mismatch);
 

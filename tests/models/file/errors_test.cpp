@@ -229,5 +229,82 @@ TEST(ErrorsAbout, IsSaidOfTheFactors) {
   EXPECT_NE(models.frame.description.structure.find("turn about the origins of base and platform."), std::string::npos);
 }
 
+// ---- limbs of named errors
+
+std::vector<std::string> factors_with(const std::string& error) {
+  std::vector<std::string> list;
+  for (const Factor& factor : catalog_entry(tricept() + "[[error]]\n" + error, "m.toml").description.factors) {
+    list.push_back(factor.name + " in " + std::to_string(factor.limb));
+  }
+  return list;
+}
+
+std::string problem_with(const std::string& error) {
+  try {
+    static_cast<void>(factors_with(error));
+  } catch (const InputError& problem) {
+    const std::string text = problem.what();
+    return text.substr(text.find(": ") + 2);
+  }
+  return "read";
+}
+
+using Names = std::vector<std::string>;
+
+TEST(LimbsOfErrors, AreNumbersNamesListsOrEach) {
+  const std::string foot = "name = \"foot\"\nframe = 6\ncomponent = \"delta_x\"\n";
+  EXPECT_EQ(factors_with(foot + "limb = 2\n"), Names{"foot in 2"});
+  EXPECT_EQ(factors_with(foot + "limb = \"leg_3\"\n"), Names{"foot in 3"});
+  EXPECT_EQ(factors_with(foot + "limb = [3, 1]\n"), (Names{"foot_3 in 3", "foot_1 in 1"}));
+  EXPECT_EQ(factors_with(foot + "limb = [\"leg_2\"]\n"), Names{"foot_2 in 2"});
+  EXPECT_EQ(factors_with("name = \"foot\"\nframe = 0\ncomponent = [\"delta_x\", \"delta_z\"]\nlimb = [1, \"post\"]\n"),
+            (Names{"foot_x_1 in 1", "foot_z_1 in 1", "foot_x_4 in 4", "foot_z_4 in 4"}));
+}
+
+TEST(LimbsOfErrors, ANameMeansAllCopies) {
+  std::string text = text_of("rps3");
+  text = text.substr(0, text.find("\n[errors]"));
+  text.replace(text.find("[[limb]]"), 8, "[[limb]]\nname = \"leg\"");
+  const CatalogEntry entry =
+      catalog_entry(text + "\n[[error]]\nname = \"l\"\nlimb = \"leg\"\nframe = 2\ncomponent = \"delta_z\"\n", "m.toml");
+  ASSERT_EQ(entry.description.factors.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(entry.description.factors[i].name, "l_" + std::to_string(i + 1));
+    EXPECT_EQ(entry.description.factors[i].limb, i + 1);
+  }
+}
+
+/// Six joints in a leg, three in the post in the middle.
+TEST(LimbsOfErrors, EachNeedsTheFrameInAllOfThem) {
+  const std::string each = "limb = \"each\"\nname = \"foot\"\ncomponent = \"delta_x\"\n";
+  EXPECT_EQ(problem_with(each + "frame = 6\n"),
+            "error[0].frame is 6, which limbs 1, 2 and 3 have, and limb 4 not: the last frame of limb 4 is 3; name the "
+            "limbs that are meant: limb = [1, 2, 3]");
+  EXPECT_EQ(problem_with(each + "frame = 7\n"), "error[0].frame is 7; the last frame of limb 1 is 6");
+  EXPECT_EQ(problem_with("limb = [2, 4]\nname = \"foot\"\ncomponent = \"delta_x\"\nframe = 5\n"),
+            "error[0].frame is 5; the last frame of limb 4 is 3");
+  EXPECT_EQ(problem_with("limb = \"leg\"\nname = \"foot\"\ncomponent = \"delta_x\"\nframe = 5\n"),
+            "error[0].limb is 'leg', which is no limb's name; write a limb's number, its name, a list of these, or "
+            "\"each\"");
+}
+
+TEST(LimbsOfErrors, EachSaysWhich) {
+  const std::string each = "[[error]]\nlimb = \"each\"\nname = \"foot\"\nframe = 1\ncomponent = \"delta_x\"\n";
+  const std::string said =
+      "error foot with limb = \"each\" is in limbs 1, 2 and 3, joint A (2 of 2) against joint A (1 of 2); in limb 4, "
+      "joint C (2 of 2) against joint C (1 of 2)";
+  const CatalogEntry unlike = catalog_entry(tricept() + each, "m.toml");
+  EXPECT_NE(unlike.description.structure.find("  " + said + ".\n"), std::string::npos) << unlike.description.structure;
+  const std::vector<std::string> hints = build(unlike)->unusual_geometry();
+  ASSERT_EQ(hints.size(), 1u);
+  EXPECT_EQ(hints.front(), said + ", and these limbs have other joints than each other");
+  const CatalogEntry alike = catalog_entry(text_of("rrr3"), "m.toml");
+  EXPECT_NE(alike.description.structure.find(
+                "  error l with limb = \"each\" is in limbs 1, 2 and 3, joint B against joint A.\n"),
+            std::string::npos)
+      << alike.description.structure;
+  EXPECT_TRUE(build(alike)->unusual_geometry().empty());
+}
+
 }  // namespace
 }  // namespace poesy::file

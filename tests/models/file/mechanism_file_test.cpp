@@ -252,7 +252,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:11:1: the metric has no meaning: the points are on one line, about which the platform may turn "
            "unseen; write points = [...] in [platform], three or more that are on no line"},
           {"joints = [", "joints = []\nx = [",
-           "m.toml:21:1: unknown key 'x' in [limb[0]]; known: copies, points, joints"},
+           "m.toml:21:1: unknown key 'x' in [limb[0]]; known: name, copies, points, joints"},
           {"frames = \"all\"", "frames = \"none\"",
            "m.toml:27:10: errors.frames is 'none'; write \"all\", or a list of names and patterns"},
           {"frames = \"all\"", "frames = [\"epsilon_1_0_x\", \"epsilon_1_9_x\"]",
@@ -311,10 +311,25 @@ TEST(MechanismFile, RefusesWhatIsWrongInOthers) {
            "m.toml:27:8: error[0].name '-l' is no name; write letters, digits, _ and -, and do not begin with -"},
           {"name = \"l\"", "nmae = \"l\"", "m.toml:27:1: unknown key 'nmae' in [error[0]]; did you mean 'name'?"},
           {"limb = \"each\"", "limb = \"all\"",
-           "m.toml:28:8: error[0].limb is 'all'; write a limb's number, or \"each\""},
+           "m.toml:28:8: error[0].limb is 'all', which is no limb's name; write a limb's number, its name, a list of "
+           "these, "
+           "or \"each\""},
+          {"limb = \"each\"", "limb = []",
+           "m.toml:28:8: error[0].limb is empty; write the limbs' numbers, e.g. [1, 2, 3]"},
+          {"limb = \"each\"", "limb = [1, 4]", "m.toml:28:12: error[0].limb[1] is 4; it must be at most 3"},
+          {"limb = \"each\"", "limb = [2, 1, 2]",
+           "m.toml:28:15: error[0].limb[2] names limb 2 a second time; remove it"},
+          {"limb = \"each\"", "limb = [2, \"each\"]",
+           "m.toml:28:12: error[0].limb[1] is 'each', which is no limb's name; write a limb's number, its name, a list "
+           "of "
+           "these, or \"each\""},
+          {"[[limb]]", "[[limb]]\nname = \"each\"",
+           "m.toml:20:8: limb[0].name is 'each', which means all limbs; give the limb another name"},
+          {"[[limb]]", "[[limb]]\nname = \"a b\"",
+           "m.toml:20:8: limb[0].name 'a b' is no name; write letters, digits, _ and -, and do not begin with -"},
           {"limb = \"each\"", "limb = 4", "m.toml:28:8: error[0].limb is 4; it must be at most 3"},
           {"limb = \"each\"", "limb = 0", "m.toml:28:8: error[0].limb is 0; it must be at least 1"},
-          {"frame = 1", "frame = 4", "m.toml:29:9: error[0].frame is 4; it must be at most 3"},
+          {"frame = 1", "frame = 4", "m.toml:29:9: error[0].frame is 4; the last frame of limb 1 is 3"},
           {"frame = 1", "frame = -1", "m.toml:29:9: error[0].frame is -1; it must be at least 0"},
           {"frame = 1", "", "m.toml:26:1: key 'frame' is missing in [error[0]]; write frame = 0"},
           {"component = \"delta_x\"", "component = \"delta_w\"",
