@@ -247,12 +247,12 @@ class FileModel final : public Model {
     return points;
   }
 
-  /// The shortest link of the error's limb, or half a turn.
+  /// The shortest link of the error's limb, the mechanism's reach where it has none, or half a turn.
   ErrorBound error_bound(FactorIndex factor) const override {
     const Factor& error = description_.factors[factor.value];
     if (error.dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
     const Limb& limb = mechanism_.limbs[error.limb - 1];
-    ErrorBound bound;
+    ErrorBound bound{mechanism_.reach, "the mechanism's reach"};
     for (std::size_t j = 1; j < limb.home.size(); ++j) {
       const double length = limb.home[j].p.norm();
       if (length < kShortestLink * mechanism_.reach || length >= bound.size) continue;
@@ -265,8 +265,8 @@ class FileModel final : public Model {
  private:
   /// Errors change what rounded numbers leave by less than this factor.
   static constexpr double kNominalShare = 2.0;
-  /// Of the reach; joints that are closer are one part.
-  static constexpr double kShortestLink = 1e-6;
+  /// Of the reach; joints that are closer are one part, whose errors may well be as large as that.
+  static constexpr double kShortestLink = 0.02;
 
   Mechanism mechanism_;
   double mismatch_;  ///< m: of perfect limbs, at the most

@@ -306,5 +306,48 @@ TEST(LimbsOfErrors, EachSaysWhich) {
   EXPECT_TRUE(build(alike)->unusual_geometry().empty());
 }
 
+// ---- sizes
+
+/// A universal joint of which the second axis is 1.2 mm beside the first, in a leg of 600 mm.
+TEST(SizesOfErrors, AreComparedWithLinksAndNotWithFramesThatNearlyCoincide) {
+  std::string text = text_of("rps3");
+  const std::string joint = "{ name = \"q\", type = \"P\", from = \"A\"";
+  text.replace(text.find(joint), joint.size(),
+               "{ name = \"offset\", type = \"fixed\", at = [\"a + 1.2 mm\", 0, 0], axis = \"y\" },\n  " + joint);
+  const std::unique_ptr<Model> model = build(catalog_entry(text, "m.toml"));
+  const auto bound = [&](const char* name) { return model->error_bound(*model->description().find_factor(name)); };
+  EXPECT_GT(bound("delta_1_1_x").size, 0.1);
+  EXPECT_LT(bound("delta_1_1_x").size, 0.7);
+  EXPECT_EQ(bound("delta_1_1_x").part, "the distance from S to the platform's origin");
+}
+
+/// Links that are a real part of the mechanism count as before.
+TEST(SizesOfErrors, ShortLinksCount) {
+  const std::unique_ptr<Model> model = build(catalog_entry(text_of("rrr3"), "m.toml"));
+  const ErrorBound bound = model->error_bound(FactorIndex(0));
+  EXPECT_EQ(bound.part, "the distance from C to the platform's origin");
+  EXPECT_NEAR(bound.size, 0.08, 1e-12);
+}
+
+/// A ball in the platform's origin, of three hinges: what is left is the size of the whole.
+TEST(SizesOfErrors, WithoutALinkTheReachIsTheBound) {
+  const std::string text =
+      "format = \"poesy-mechanism\"\nversion = 1\nname = \"wrist\"\n[platform]\norigin = [0, 0, 0]\n"
+      "coordinates = [\"rx\", \"ry\", \"rz\"]\nworkspace = { rx = [\"-9 deg\", \"9 deg\"], ry = [\"-9 deg\", \"9 "
+      "deg\"], "
+      "rz = [\"-9 deg\", \"9 deg\"] }\npoints = [[\"1 m\", 0, 0], [0, \"1 m\", 0], [0, 0, \"1 m\"]]\n"
+      "[[limb]]\ncopies = { count = 3, about = \"z\" }\njoints = [\n"
+      "  { name = \"A\", type = \"U\", at = [\"400 mm\", 0, \"-800 mm\"], axis = \"y\", axis2 = \"x\" },\n"
+      "  { name = \"q\", type = \"P\", from = \"A\", to = \"S\", actuated = true },\n"
+      "  { name = \"S\", type = \"S\", at = [\"150 mm\", \"150 mm\", 0] } ]\n"
+      "[[limb]]\njoints = [ { name = \"X\", type = \"R\", at = [0, 0, 0], axis = \"x\" },\n"
+      "  { name = \"Y\", type = \"R\", at = [0, 0, 0], axis = \"y\" },\n"
+      "  { name = \"Z\", type = \"R\", at = [0, 0, 0], axis = \"z\" } ]\n";
+  const CatalogEntry entry = catalog_entry(text, "m.toml");
+  const ErrorBound bound = build(entry)->error_bound(*entry.description.find_factor("delta_4_1_x"));
+  EXPECT_EQ(bound.part, "the mechanism's reach");
+  EXPECT_NEAR(bound.size, std::hypot(0.4, 0.8), 1e-12);
+}
+
 }  // namespace
 }  // namespace poesy::file
