@@ -101,7 +101,8 @@ TEST(BareNumbers, OfATrajectory) {
   const Study study = read_study(folder.write("study.toml", text), kCatalog, StudyUse::run);
   const std::vector<std::string> doubts = doubts_of(study, select_poses(study.poses, kModel));
   ASSERT_EQ(doubts.size(), 1u);
-  EXPECT_EQ(doubts[0].find("c.csv: z has no unit, so its numbers are in m: pose 2 has z = -125.125 m"), 0u) << doubts[0];
+  EXPECT_EQ(doubts[0].find("c.csv: z has no unit, so its numbers are in m: pose 2 has z = -125.125 m"), 0u)
+      << doubts[0];
 }
 
 TEST(DrawingText, IsTakenForHalfWidthsAndShares) {
