@@ -40,6 +40,25 @@ STUDIES = {
     "machines": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=1000, kind="monte-carlo")
     + 'draws = "per machine"\nfactors = "all"\nsamples = 8000\nlimits.position = "0.1 mm"\n',
 }
+SMALL_ALLOCATION = HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=5, kind="allocation") + """\
+factors = {factors}
+samples = 2000
+limits = {{ position = "1 mm" }}
+yield = 0.95
+sigmas = 3
+[[analysis.parts]]
+factors = "linear"
+each = true
+cost = {{ law = "reciprocal", b = 1, unit = "mm" }}
+"""
+SMALL = {
+    "allocation of two parts": SMALL_ALLOCATION.format(factors='["a_x_1", "q_1"]'),
+    "allocation of more parts": SMALL_ALLOCATION.format(factors='"rod-length"'),
+    "monte-carlo": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=100, kind="monte-carlo")
+    + 'factors = ["a_x_1"]\nsamples = 100\n',
+    "sensitivity": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=5, kind="sensitivity")
+    + 'factors = ["a_x_1"]\nsamples = 100\n',
+}
 # A smaller last unit is kept apart from whole ones, with numbers of its own, and the file has the sum of both.
 MOST_TIMES_THE_FILE = {"sensitivity": 1.5, "a smaller last unit": 3.0, "two fidelities": 2.2, "cases": 1.5, "coupling": 1.5,
                         "worst cases": 1.5}
@@ -97,6 +116,17 @@ class Memory(ProgramTest):
                 times = (peak - program) / (self.folder / "m.h5").stat().st_size
                 print(f"{kind}, merged: was {peak / 1e6:.0f} MB, {times:.2f} files", file=sys.stderr)
                 self.assertLess(times, most)
+
+    def test_size_of_small_files(self):
+        """What a file has whatever its size counts, too."""
+        for kind, study in SMALL.items():
+            with self.subTest(kind):
+                self.write("study.toml", study)
+                said = 1e6 * float(re.search(r"the result file of about ([\d.e+-]+) MB", self.succeeds("check", "study.toml"))[1])
+                self.poesy("run", "study.toml", "-o", "r.h5", "--quiet")
+                written = (self.folder / "r.h5").stat().st_size
+                print(f"{kind}: said {said / 1e3:.0f} kB, was {written / 1e3:.0f} kB", file=sys.stderr)
+                self.assertAlmostEqual(said / written, 1.0, delta=0.3)
 
     def test_peak_of_exporting(self):
         """A column of a table takes no memory of its own, however many poses there are."""

@@ -218,7 +218,10 @@ Outlook allocation_outlook(const Study& study, const Model& model, const PoseSet
   // Use and multiplier of each limit; the pose with its condition number.
   const std::size_t of_pose = 2 * study.model().responses.size() + study.model().pose_coordinates.size() + 1;
   const std::size_t numbers = poses.size() * of_pose * sizeof(double);
-  const std::size_t file = numbers + poses.size() * kSolverColumns;
+  // Numbers and names of each part, and what the certificate's study says of it.
+  constexpr std::size_t kPart = 400;
+  const std::size_t parts = kPart * asked_of<AllocationOptions>(study.analysis).parts.size();
+  const std::size_t file = numbers + poses.size() * kSolverColumns + parts;
   return {.solves = fmt::format("about {:.0f} x {} x {} machines and {:.2g} for the effects of {}: {:.2g} solves",
                                 kTrials, counted_things(poses.size(), "poses"), plan->samples(), effects,
                                 counted_things(errors, "errors"), machines + effects),
