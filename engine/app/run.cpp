@@ -240,7 +240,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   resumable.start(identity, options.quiet);
   if (team != nullptr && !team->agree(text_of(identity), threads, &stop))
     return leave_before_the_start(*team, resumable);
-  for (const std::string& doubt : doubts_of(study, poses)) say(Message::warning, doubt);
+  for (const std::string& doubt : doubts_of(study, *poses)) say(Message::warning, doubt);
   for (const std::string& note : {calibration_text(study), held_errors_text(study)}) {
     if (!note.empty() && !options.quiet) say(Message::note, note);
   }

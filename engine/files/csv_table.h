@@ -29,7 +29,7 @@ struct CsvColumn {
 struct CsvPoseColumns {
   std::size_t poses = 0;                                             ///< columns
   std::string unit = "1";                                            ///< in their headings, see with_unit()
-  std::function<double(std::size_t line, std::size_t pose)> number;  ///< SI, or in that unit
+  std::function<Number(std::size_t line, std::size_t pose)> number;  ///< SI, or in that unit
 };
 
 /// A CSV file: in the first line the names of the columns, then one line for each thing.

@@ -42,7 +42,7 @@ void write_effects(const std::optional<MainEffectSums>& effects, ByteWriter& to)
   if (effects) effects->write(to);
 }
 
-std::optional<MainEffectSums> read_effects(ByteReader& from, std::size_t responses, std::size_t errors) {
+std::optional<MainEffectSums> read_effect_sums(ByteReader& from, std::size_t responses, std::size_t errors) {
   if (from.number_up_to(1) == 0) return std::nullopt;
   return MainEffectSums::read(from, errors, responses);
 }
@@ -84,7 +84,7 @@ PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses, std::size
   }
   samples.solves = SolveCounts::read(from);
   samples.failed = FailedSamples::read(from, samples.solves.not_converged(), 0, samples.solves.total());
-  samples.effects = read_effects(from, responses, errors);
+  samples.effects = read_effect_sums(from, responses, errors);
   return samples;
 }
 
@@ -226,7 +226,7 @@ void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std:
   if (columns_.result().solves[pose].total() != samples) throw BytesError("has a finished pose with other samples");
   failed_[pose] = FailedSamples::read(from, columns_.result().solves[pose].not_converged(), 0,
                                       columns_.result().solves[pose].total());
-  effects_[pose] = read_effects(from, responses_, plan_->factors().size());
+  effects_[pose] = read_effect_sums(from, responses_, plan_->factors().size());
 }
 
 void MonteCarloCollector::write_state(ByteWriter& to) const {

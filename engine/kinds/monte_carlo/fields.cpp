@@ -39,8 +39,7 @@ const Group<MonteCarlo> kMonteCarlo{
      {"count", &MonteCarlo::count, kByResponsePose, "1", "Samples behind these: solved, or as not_converged has it"},
      {"quantiles", &MonteCarlo::quantiles, kQuantileAtPose, kResponseUnit,
       "Order statistic of rank ceil(q n) of n samples, off by quantile_error and by its part quantile_relative_error "
-      "at "
-      "most",
+      "at most",
       kSketch},
      {"rms", &MonteCarlo::rms, kByResponsePose, kResponseUnit,
       "Root mean square of the samples; NaN where none counts"},
@@ -79,8 +78,7 @@ const Group<MonteCarlo> kMonteCarlo{
       Presence::where_computed},
      {"quantile_error", &MonteCarlo::quantile_error, kByResponsePose, kResponseUnit,
       "What none of the quantiles at the pose is off by more than from its order statistic; 0 of up to 256 samples, "
-      "some "
-      "thousandths of std of more; NaN where none counts",
+      "some thousandths of std of more; NaN where none counts",
       Presence::where_computed},
      {"overall_quantile_error", &MonteCarlo::overall_quantile_error, kByResponse, kResponseUnit,
       "The same of overall_quantiles", Presence::where_computed},

@@ -8,6 +8,7 @@
 #include "engine/kinds/monte_carlo/machine_unit.h"
 #include "engine/kinds/monte_carlo/outlook.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/monte_carlo/yield.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
 #include "engine/run/response_rounding.h"

@@ -153,7 +153,7 @@ void append_solver_tables(CsvTables& tables, const StoredResult& result) {
   for (const SolveNumber& number : solve_numbers()) {
     CsvTable table = lines_of_factors(result, number.name);
     table.at_poses = {poses, "1", [&result, poses, get = number.get](std::size_t p, std::size_t m) {
-                        return static_cast<double>(std::invoke(get, sensitivity_of(result).solves[p * poses + m]));
+                        return get(sensitivity_of(result).solves[p * poses + m]);
                       }};
     tables.push_back(std::move(table));
   }
