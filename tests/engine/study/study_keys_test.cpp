@@ -118,7 +118,7 @@ std::vector<std::string> studies() {
       by_platform + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
       both + "[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n[analysis]\nlinearity = 0.02\n",
       head + "[poses]\nselect = \"grid\"\ncount = { z = 2, beta = 3, gamma = 2 }\n" + box +
-          "[analysis]\nkind = \"monte-carlo\"\nfactors = \"all\"\ndraws = \"per machine\"\ncalibrated = "
+          "[analysis]\nkind = \"monte-carlo\"\nfactors = \"deforming\"\ndraws = \"per machine\"\ncalibrated = "
           "true\nconf_level = "
           "0.95\nquantiles = [0.1, 0.2]\n" +
           background + "samples = { min = 500, max = 5000, relative_error = 0.1, conf_level = 0.95 }\n",
@@ -132,7 +132,7 @@ std::vector<std::string> studies() {
           "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per machine\"\n"
           "judge = \"yield\"\nyield = 0.99\nlimits = { angular_deformation = \"1 deg\" }\n",
       head +
-          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nfactors = \"all\"\nsamples = "
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nfactors = \"deforming\"\nsamples = "
           "160\n"
           "conf_level = 0.9\ngroups = { a = [\"delta_1\"], b = \"epsilon_1\" }\nsecond_order = true\n"
           "design = \"lhs\"\nreplicates = 10\n" +
@@ -153,27 +153,30 @@ std::vector<std::string> studies() {
           "[poses]\nselect = \"trajectory\"\n"
           "trajectory = { file = \"curve.csv\", points = 5, time = [\"0 s\", \"1 s\"] }\n"
           "[analysis]\nkind = \"coupling\"\nlinear = [\"1 mm\"]\nangular = [\"1 deg\"]\nlimbs = \"independent\"\n"
-          "components = \"independent\"\nsources = [{ name = \"A\", factors = \"deforming\" }, { name = \"B\", "
+          "components = \"independent\"\nworst_case = \"sum\"\nsources = [{ name = \"A\", factors = \"deforming\" }, { "
+          "name = \"B\", "
           "factors = "
           "[\"delta_2\"] }]\n",
       measured +
           "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nshapley = true\n"
           "second_order = false\nfactors = \"all\"\nsamples = 80\nconf_level = 0.9\ndesign = \"lhs\"\n"
-          "groups = { one = [\"delta_1\"], other = \"delta_2\" }\nreplicates = 8\n" +
-          background,
+          "groups = { one = [\"delta_1\"], other = \"delta_2\" }\nreplicates = 8\n",
       head +
           "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\ndesign = \"lhs\"\n"
           "samples = 80\ngroups = \"limb\"\nshapley = false\n",
       head +
           "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"allocation\"\nfactors = \"all\"\n"
           "samples = 5000\nlimits = { angular_deformation = \"1 deg\" }\nyield = 0.99\nconfidence = 0.9\n"
-          "aim = \"least-cost\"\nsigmas = 4\n" +
-          background +
+          "aim = \"least-cost\"\nsigmas = 4\n"
           "parts = [{ name = \"pins\", factors = [\"delta_1\"], each = false, sigmas = 2, shift = 0.1, processes = [{ "
           "name = \"turning\", cost = { law = \"reciprocal\", a = 1, b = 2, unit = \"mm\" }, bounds = [\"1 mm\", "
           "\"2 mm\"] }] }, { factors = [\"epsilon_1\"], cpk = 1, cost = { law = \"exponential\", a = 1, b = 2, tau = "
           "\"1 deg\" }, bounds = [\"1 deg\", \"2 deg\"] }, { factors = [\"delta_2\"], sigmas = 3, cost = { law = "
           "\"reciprocal-power\", a = 1, b = 2, k = 2, unit = \"mm\" }, values = [\"1 mm\"] }]\n",
+      head +
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"allocation\"\nfactors = [\"delta_1\"]\n"
+          "sigmas = 3\nlimits = { angular_deformation = \"1 deg\" }\n" +
+          background + "parts = [{ factors = [\"delta_1\"], cost = { law = \"reciprocal\", b = 1, unit = \"mm\" } }]\n",
       head +
           "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"allocation\"\ncpk = 1\ncalibrated = true\n"
           "limits = { angular_deformation = \"1 deg\" }\nparts = [{ factors = \"linear\", each = true, identical_limbs "
