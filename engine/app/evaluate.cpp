@@ -149,7 +149,7 @@ int solve(const EvaluateOptions& options, const Evaluated& all, const std::strin
   found.pairing = pairing;
   found.labels = errors.labels;
   shown.found = std::move(found);
-  print(fmt::format("{} solves, {} not converged\n\n{}", total.total(), total.not_converged(),
+  print(fmt::format("{} solves, {}\n\n{}", total.total(), unsolved_in_short(total),
                     text_of(evaluation_table(shown), output_width())));
   if (path.empty()) {
     return judge(study, total, shown, options.study,

@@ -48,33 +48,46 @@ std::string cpu_name() {
 }
 
 /// What may solve more samples than these options did.
-std::string advice(const SolverOptions& solver) {
+std::string advice(const SolverOptions& solver, const SolveCounts& solves) {
+  if (mostly_impossible(solves)) return std::string(kAssemblyAdvice);
   if (solver.method == SolverOptions::Method::gauss_newton) {
     return "take method = \"newton\", or raise solver.max_iterations";
   }
   return fmt::format("study smaller errors, or raise solver.max_iterations above {}", solver.max_iterations);
 }
 
-std::string warning_text(const Study& study, double share) {
+std::string warning_text(const Study& study, const SolveCounts& solves) {
+  const double share = share_not_converged(solves);
   const bool many = share > kManyNotConverged;
-  return fmt::format("{:.3g} % of the samples did not converge and are left out; {}{}", 100.0 * share,
-                     many ? "these are mostly large errors, so what is left may say far too little: " : "",
-                     advice(study.solver));
+  const std::string advised = advice(study.solver, solves);
+  const std::uint64_t impossible = solves.not_assembled();
+  if (impossible == 0) {
+    return fmt::format("{:.3g} % of the samples did not converge and are left out; {}{}", 100.0 * share,
+                       many ? "these are mostly large errors, so what is left may say far too little: " : "", advised);
+  }
+  const std::uint64_t others = solves.not_converged() - impossible;
+  return fmt::format(
+      "{:.3g} % of the machines cannot be assembled{}: a yield counts them as rejects, all else leaves "
+      "them out; {}",
+      100.0 * share_of(impossible, solves.total()),
+      others == 0 ? std::string()
+                  : fmt::format(", and the solves of another {:.3g} % did not converge",
+                                100.0 * share_of(others, solves.total())),
+      advised);
 }
 
 ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std::string& study_path,
                         const std::string& remedy) {
   const std::uint64_t failed = solves.not_converged();
   if (failed == 0) return kDone;
-  const double share = static_cast<double>(failed) / static_cast<double>(solves.total());
+  const double share = share_not_converged(solves);
   if (share > unremarkable_failure_share(study.max_not_converged) && study.not_converged == NotConverged::exclude) {
-    say(Message::warning, warning_text(study, share));
+    say(Message::warning, warning_text(study, solves));
   }
   if (share <= study.max_not_converged) return kDone;
   say(Message::error,
-      fmt::format("{}: {} of {} samples did not converge, a share of {:.3g}, and solver.max_not_converged "
-                  "is {}{}; {}",
-                  study_path, failed, solves.total(), share, shortest(study.max_not_converged),
+      fmt::format("{}: {} of {} samples {}, a share of {:.3g}, and solver.max_not_converged is {}{}; {}", study_path,
+                  failed, solves.total(), why_unsolved(solves), share, shortest(study.max_not_converged),
                   study.max_not_converged == 0.0 ? " (not_converged = \"fail\" is the same)" : "", remedy));
   return kTooManyNotConverged;
 }
@@ -268,9 +281,9 @@ std::optional<RunOutcome> run_to_file(const Job& job) {
 
 int report_outcome(const Job& job, const std::string& study_path, const RunOutcome& outcome) {
   const std::string ranks = outcome.facts.ranks > 1 ? fmt::format(" of {} ranks", outcome.facts.ranks) : std::string();
-  print(fmt::format("{}: {} solves in {:.2f} s on {} {}{}, {} not converged\n", printable_line(job.path),
-                    outcome.facts.solves, outcome.facts.wall_seconds, outcome.facts.threads,
-                    outcome.facts.threads == 1 ? "thread" : "threads", ranks, outcome.solves.not_converged()));
+  print(fmt::format("{}: {} solves in {:.2f} s on {} {}{}, {}\n", printable_line(job.path), outcome.facts.solves,
+                    outcome.facts.wall_seconds, outcome.facts.threads,
+                    outcome.facts.threads == 1 ? "thread" : "threads", ranks, unsolved_in_short(outcome.solves)));
   if (!outcome.confirming.empty()) {
     print(fmt::format("{}: the study that repeats the certificate\n", printable_line(outcome.confirming)));
   }

@@ -231,6 +231,19 @@ std::vector<std::size_t> constant_responses(const std::vector<std::uint8_t>& var
   return list;
 }
 
+std::vector<std::string> listed_statuses(std::uint64_t not_assembled) {
+  const std::size_t count = not_assembled > 0 ? kStatusNames.size() : kStatusNames.size() - 1;
+  return texts(std::span(kStatusNames).first(count), std::identity());
+}
+
+std::size_t listed_statuses(const h5::File& file) {
+  const auto names = file.read<std::string>("/status");
+  if (names != listed_statuses(names.size() == kStatusNames.size() ? 1 : 0)) {
+    throw h5::Error("/status lists other endings of solves");
+  }
+  return names.size();
+}
+
 void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves) {
   SolverColumns columns;
   for (const SolveCounts& cell : solves) {
@@ -238,10 +251,11 @@ void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<Solve
     columns.iterations_mean.push_back(mean_iterations(cell));
     columns.iterations_max.push_back(cell.most_iterations);
   }
-  for (std::size_t status = 0; status < kStatusNames.size(); ++status) {
+  const std::vector<std::string> statuses = listed_statuses(total_of(solves).not_assembled());
+  for (std::size_t status = 0; status < statuses.size(); ++status) {
     for (const SolveCounts& cell : solves) columns.by_status.push_back(cell.by_status[status]);
   }
-  result.add_axis("status", texts(kStatusNames, std::identity()), {"1", "How a solve ended"});
+  result.add_axis("status", statuses, {"1", "How a solve ended"});
   result.file().make_group("/solver");
   const Fields<SolverColumns> fields = solver_fields(axes);
   write_fields(result, "/solver", fields, columns);
@@ -249,14 +263,14 @@ void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<Solve
 }
 
 std::vector<SolveCounts> read_solver(const h5::File& file, const Axes& axes) {
-  if (axis_length(file, "status") != kStatusNames.size()) throw h5::Error("/status lists other endings of solves");
+  const std::size_t statuses = listed_statuses(file);
   SolverColumns columns;
   read_fields(file, "/solver", solver_fields(axes), columns);
   const std::size_t cells = columns.iterations_mean.size();
   std::vector<SolveCounts> solves(cells);
   for (std::size_t cell = 0; cell < cells; ++cell) {
     SolveCounts& counts = solves[cell];
-    for (std::size_t status = 0; status < kStatusNames.size(); ++status) {
+    for (std::size_t status = 0; status < statuses; ++status) {
       counts.by_status[status] = columns.by_status[status * cells + cell];
     }
     // The mean is the sum over the total, so this gives back the sum exactly; without samples it is NaN.
@@ -268,23 +282,21 @@ std::vector<SolveCounts> read_solver(const h5::File& file, const Axes& axes) {
   return solves;
 }
 
-const std::vector<SolveNumber>& solve_numbers() {
-  static const std::vector<SolveNumber> kNumbers = [] {
-    std::vector<SolveNumber> list{
-        {"not_converged", [](const SolveCounts& cell) { return to_number(cell.not_converged()); }},
-        {"iterations_mean", mean_iterations},
-        {"iterations_max", [](const SolveCounts& cell) { return to_number(cell.most_iterations); }}};
-    for (std::size_t status = 0; status < kStatusNames.size(); ++status) {
-      list.push_back({"solves_" + std::string(kStatusNames[status]),
-                      [status](const SolveCounts& cell) { return to_number(cell.by_status[status]); }});
-    }
-    return list;
-  }();
-  return kNumbers;
+std::vector<SolveNumber> solve_numbers(const std::vector<SolveCounts>& solves) {
+  std::vector<SolveNumber> list{
+      {"not_converged", [](const SolveCounts& cell) { return to_number(cell.not_converged()); }},
+      {"iterations_mean", mean_iterations},
+      {"iterations_max", [](const SolveCounts& cell) { return to_number(cell.most_iterations); }}};
+  const std::vector<std::string> statuses = listed_statuses(total_of(solves).not_assembled());
+  for (std::size_t status = 0; status < statuses.size(); ++status) {
+    list.push_back({"solves_" + statuses[status],
+                    [status](const SolveCounts& cell) { return to_number(cell.by_status[status]); }});
+  }
+  return list;
 }
 
 void append_solve_columns(CsvTable& table, const std::vector<SolveCounts>& solves) {
-  for (const SolveNumber& number : solve_numbers()) {
+  for (const SolveNumber& number : solve_numbers(solves)) {
     table.columns.push_back(list_column(number.name, solves, 0, 1, number.get));
   }
 }
@@ -299,7 +311,7 @@ void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, c
   result.show_axes("/solver", kByFailure);
   write_columns(result, "/solver", kFailureFields, rows);
   h5::File& file = result.file();
-  const auto status_names = texts(kStatusNames, std::identity());
+  const auto status_names = file.read<std::string>("/status");
   file.set_attribute("/solver/failed_status", "status_names", std::span(status_names));
   file.set_attribute("/solver", "failures", static_cast<std::int64_t>(total));
   file.set_attribute("/solver", "most_failures_listed", static_cast<std::int64_t>(kMostFailuresListed));

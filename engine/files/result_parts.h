@@ -76,6 +76,12 @@ void append_sigma_tables(CsvTables& tables, const StoredResult& result);
 /// Positions of the responses that do not vary. varies: [R] 0 or 1, or empty where all do.
 std::vector<std::size_t> constant_responses(const std::vector<std::uint8_t>& varies);
 
+/// How solves end, as a result lists it: kStatusNames, the last of which, not_assembled, only where a solve ended so.
+/// Hence results without it keep their bits.
+std::vector<std::string> listed_statuses(std::uint64_t not_assembled);
+/// How many a result lists at its axis /status. Throws h5::Error where they are others.
+std::size_t listed_statuses(const h5::File& file);
+
 /// How the solves ended, with the counts of each cell along these axes: /solver.
 void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves);
 /// /solver: how the solves of each cell ended.
@@ -85,7 +91,8 @@ struct SolveNumber {
   std::string name;                               ///< "not_converged", "iterations_mean", ..., "solves_STATUS"
   std::function<Number(const SolveCounts&)> get;  ///< of a cell
 };
-const std::vector<SolveNumber>& solve_numbers();  ///< All of them.
+/// All of them; solves_not_assembled only where a solve ended so.
+std::vector<SolveNumber> solve_numbers(const std::vector<SolveCounts>& solves);
 /// Appends a column for each of them; line n is of the n-th cell.
 void append_solve_columns(CsvTable& table, const std::vector<SolveCounts>& solves);
 

@@ -28,6 +28,10 @@ constexpr std::string_view kDoubt =
     "are many. Left out, they make numbers too small, because they are mostly the large errors; included, they fill "
     "them with unfinished iterates.";
 
+/// The same where most of them have no solution.
+constexpr std::string_view kMissing =
+    " That is more than 1 %: means, spreads and quantiles are those of the machines that can be assembled.";
+
 /// " The largest shares: ..." of the rows and of the poses; empty where there is nothing to tell apart.
 std::string largest_shares_text(const StoredResult& result, const SolveTally& tally) {
   std::vector<std::string> places;
@@ -40,17 +44,29 @@ std::string largest_shares_text(const StoredResult& result, const SolveTally& ta
   return places.empty() ? std::string() : fmt::format(" The largest shares: {}.", fmt::join(places, "; "));
 }
 
-std::string count_line(std::uint64_t failed, std::uint64_t solves) {
+std::string count_line(std::uint64_t failed, std::uint64_t solves, const std::string& why) {
   const double share = solves == 0 ? 0.0 : share_of(failed, solves);
-  return fmt::format("{} of {} ({}) did not converge", count_text(failed), counted(solves, "solve", "solves"),
-                     percent_text(share));
+  return fmt::format("{} of {} ({}) {}", count_text(failed), counted(solves, "solve", "solves"), percent_text(share),
+                     why);
+}
+
+/// What follows from more than kManyNotConverged, and what to do where machines cannot be assembled.
+std::string consequences_text(const SolveCounts& solves) {
+  const bool many = share_not_converged(solves) > kManyNotConverged;
+  if (solves.not_assembled() == 0) return std::string(many ? kDoubt : "");
+  return fmt::format("{} A machine that cannot be assembled is a reject, and {}.",
+                     !many                       ? ""
+                     : mostly_impossible(solves) ? kMissing
+                                                 : kDoubt,
+                     kAssemblyAdvice);
 }
 
 /// What is known one by one are the failures of the first fidelity.
 std::string line_of_both(const SolveCounts& first, const SecondFidelity& second) {
-  return fmt::format("{}: {} at fidelity \"{}\", {} at \"{}\"",
-                     count_line(first.not_converged() + second.not_converged, first.total() + second.total),
-                     count_text(first.not_converged()), second.first, count_text(second.not_converged), second.second);
+  return fmt::format(
+      "{}: {} at fidelity \"{}\", {} at \"{}\"",
+      count_line(first.not_converged() + second.not_converged, first.total() + second.total, why_unsolved(first)),
+      count_text(first.not_converged()), second.first, count_text(second.not_converged), second.second);
 }
 
 /// Which of the failures the result lists.
@@ -75,6 +91,22 @@ std::vector<double> shares_of(const std::vector<SolveCounts>& sums) {
 bool many_not_converged(const StoredResult& result, std::uint64_t failed, std::uint64_t solves) {
   return static_cast<double>(failed) >
          unremarkable_failure_share(max_not_converged(result)) * static_cast<double>(solves);
+}
+
+bool mostly_impossible(const SolveCounts& solves) { return 2 * solves.not_assembled() > solves.not_converged(); }
+
+std::string why_unsolved(const SolveCounts& solves) {
+  const std::uint64_t impossible = solves.not_assembled();
+  if (impossible == 0) return "did not converge";
+  const std::string some = impossible == solves.not_converged() ? std::string() : count_text(impossible) + " of them ";
+  return fmt::format("found no solution, {}because the machine cannot be assembled", some);
+}
+
+std::string unsolved_in_short(const SolveCounts& solves) {
+  const std::uint64_t impossible = solves.not_assembled();
+  std::string text = fmt::format("{} not converged", solves.not_converged() - impossible);
+  if (impossible > 0) text += fmt::format(", {} cannot be assembled", impossible);
+  return text;
 }
 
 SolveCounts SolveTally::total() const {
@@ -103,17 +135,17 @@ std::string at_first_fidelity(const SolveTally& tally) {
 
 std::string unsolved_text(const StoredResult& result, const SolveTally& tally) {
   const SolveCounts total = tally.total();
-  const double share = share_not_converged(total);
-  return fmt::format("{} of {} solves{} ({}) did not converge.{}{}", count_text(total.not_converged()),
-                     count_text(total.total()), at_first_fidelity(tally), percent_text(share),
-                     share > kManyNotConverged ? kDoubt : "", largest_shares_text(result, tally));
+  return fmt::format("{} of {} solves{} ({}) {}.{}{}", count_text(total.not_converged()), count_text(total.total()),
+                     at_first_fidelity(tally), percent_text(share_not_converged(total)), why_unsolved(total),
+                     consequences_text(total), largest_shares_text(result, tally));
 }
 
 std::string failures_text(const StoredResult& result, const SolveTally& tally, const std::string& path,
                           std::size_t width) {
   const SolveCounts solves = tally.total();
-  std::string text = prose_of(
-      tally.second ? line_of_both(solves, *tally.second) : count_line(solves.not_converged(), solves.total()), width);
+  std::string text = prose_of(tally.second ? line_of_both(solves, *tally.second)
+                                           : count_line(solves.not_converged(), solves.total(), why_unsolved(solves)),
+                              width);
   if (result.failures.empty()) return text;
   const Failure& first = result.failures.front();
   const std::string name = printable_line(result.varied[first.slot]);

@@ -29,6 +29,20 @@ constexpr double share_of(std::uint64_t part, std::uint64_t all) {
 /// Whether so many solves of a result did not converge that a reader is warned: more than unremarkable_failure_share.
 bool many_not_converged(const StoredResult& result, std::uint64_t failed, std::uint64_t solves);
 
+/// What a designer can do about machines that cannot be assembled: a clause.
+inline constexpr std::string_view kAssemblyAdvice =
+    "more iterations do not help: keep a larger clearance to singular poses, or tighten the errors";
+
+/// Whether most of the samples that are not solved have no solution.
+bool mostly_impossible(const SolveCounts& solves);
+
+/// Why samples are not solved, after their number: "did not converge", or "found no solution, 3 of them because the
+/// machine cannot be assembled", without a number where it is all of them.
+std::string why_unsolved(const SolveCounts& solves);
+
+/// "12 not converged, 3 cannot be assembled"; the second only where there are any.
+std::string unsolved_in_short(const SolveCounts& solves);
+
 /// What the second of two fidelities made of the same draws as the first.
 struct SecondFidelity {
   std::string first;                ///< the name of the first

@@ -120,6 +120,21 @@ Cell needed_cell(const ConvergenceResult& found, std::size_t at) {
   return count_cell(static_cast<std::uint64_t>(std::ceil(needed / digit) * digit));
 }
 
+/// What is known of rejects that no solved pose rejects.
+std::string unsolved_note(const YieldVerdict& yield) {
+  const bool one = yield.unsolved == 1;
+  const std::string begin = fmt::format("{} of the rejects {} within all limits where {} solved",
+                                        count_text(yield.unsolved), one ? "is" : "are", one ? "it is" : "they are");
+  const std::uint64_t impossible = yield.solves.not_assembled();
+  if (impossible == 0) {
+    return begin + fmt::format("; if that made {} good, the yield would be {}", one ? "it" : "them",
+                               percent_text(share_of(yield.machines - yield.rejects + yield.unsolved, yield.machines)));
+  }
+  return begin + (impossible == yield.solves.not_converged()
+                      ? ", and cannot be assembled elsewhere"
+                      : ", and cannot be assembled elsewhere, or the solve did not converge there");
+}
+
 }  // namespace
 
 std::string summary_text(const StoredResult& result, const SolveTally& tally, std::size_t width) {
@@ -217,13 +232,7 @@ Table yield_table(const StoredResult& result, const LimitVerdicts& verdicts) {
     row.push_back(text_cell(unit.name));
     table.rows.push_back(std::move(row));
   }
-  if (yield.unsolved > 0) {
-    table.notes.push_back(fmt::format(
-        "{} of the rejects {} within all limits where {} solved; if that made {} good, the yield would be {}",
-        count_text(yield.unsolved), yield.unsolved == 1 ? "is" : "are", yield.unsolved == 1 ? "it is" : "they are",
-        yield.unsolved == 1 ? "it" : "them",
-        percent_text(share_of(yield.machines - yield.rejects + yield.unsolved, yield.machines))));
-  }
+  if (yield.unsolved > 0) table.notes.push_back(unsolved_note(yield));
   if (yield.with_parts) table.notes.push_back(with_parts_text(yield));
   if (!result.measured.names.empty()) table.notes.push_back(few_parts_text(result, yield.conf_level, yield.asked));
   return table;
@@ -362,9 +371,8 @@ std::string ranked_text(char letter, const RankedResult& ranked) {
   std::string text = result.title.empty() ? fmt::format("{}: {}", letter, ranked.path)
                                           : fmt::format("{}: {} ({})", letter, result.title, ranked.path);
   if (!result.metric.empty()) text += "; metric: " + metric_text(result);
-  return text + fmt::format("; ranked by {}; {} of {} did not converge", ranked.response,
-                            count_text(ranked.solves.not_converged()),
-                            counted(ranked.solves.total(), "solve", "solves"));
+  return text + fmt::format("; ranked by {}; {} of {} {}", ranked.response, count_text(ranked.solves.not_converged()),
+                            counted(ranked.solves.total(), "solve", "solves"), why_unsolved(ranked.solves));
 }
 
 }  // namespace poesy

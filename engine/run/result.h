@@ -17,7 +17,8 @@
 
 namespace poesy {
 
-/// Whether a sample that ended so enters statistics. A singular or non-finite one never does.
+/// Whether a sample that ended so enters statistics. A singular or non-finite one never does, nor one that cannot be
+/// assembled.
 constexpr bool counts(SolveStatus status, NotConverged policy) {
   return solved(status) || (policy == NotConverged::include && usable(status));
 }
@@ -31,8 +32,10 @@ struct SolveCounts {
 
   /// Samples.
   std::uint64_t total() const;
-  /// Samples that did not reach their fixed point.
+  /// Samples that did not reach their fixed point, for whatever reason.
   std::uint64_t not_converged() const;
+  /// Of these, samples that have none: the machine cannot be assembled.
+  std::uint64_t not_assembled() const { return by_status[static_cast<std::size_t>(SolveStatus::not_assembled)]; }
   /// One sample.
   void add(SolveStatus status, std::uint32_t sample_iterations);
   /// The order changes nothing.
@@ -159,6 +162,7 @@ struct YieldVerdict {
   std::uint64_t unsolved = 0;               ///< of the rejects, those that no solved pose rejects
   /// Where errors are measured: the interval that counts how few parts there are as well; NaN where it is not known.
   std::optional<Interval> with_parts = {};
+  SolveCounts solves = {};  ///< of the machines at all poses
 };
 
 /// All limits of a study.

@@ -89,6 +89,11 @@ struct AnyShape {
 /// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
 /// is carried along it to first order instead of being evaluated again.
 ///
+/// A root is doubted where N - 2 C is not positive definite for the residual delta_mu, C = M - N; as published, where
+/// residuals are large, only if N - 4 C is not either for the part of it that joints could take away at nominal
+/// displacements. It may be that of a machine that cannot be assembled: it has the status not_assembled for the time
+/// being, and Assembly decides.
+///
 /// By a metric (Weighted) the equation is J^T W delta_mu = 0, f = J^T W delta_mu and N = J^T W J. The length s of a
 /// step is the largest distance by which one joint's part of it moves the platform's points, over the reach. The first
 /// pass solves nearly every sample:
@@ -116,6 +121,7 @@ class BlockKernel {
 
  private:
   static constexpr std::size_t kLanes = T::kLanes;
+  static constexpr unsigned kAllLanes = (1u << kLanes) - 1u;
   static constexpr double kSafePivot = 1e-5;
   static constexpr double kFollowStep = 1e-3;
   static constexpr double kNearStep = 2e-3;
@@ -165,6 +171,7 @@ class BlockKernel {
     unsigned singular = 0;
     unsigned non_finite = 0;
     unsigned refused = 0;
+    unsigned doubted = 0;  ///< of those that have converged
 
     bool solved(std::size_t lane) const { return ((converged | stagnated) >> lane & 1u) != 0; }
     bool ended(std::size_t lane) const {
@@ -173,7 +180,7 @@ class BlockKernel {
     SolveStatus status(std::size_t lane) const {
       const auto says = [lane](unsigned lanes) { return (lanes >> lane & 1u) != 0; };
       if (says(non_finite)) return SolveStatus::non_finite;
-      if (says(converged)) return SolveStatus::converged;
+      if (says(converged)) return says(doubted) ? SolveStatus::not_assembled : SolveStatus::converged;
       if (says(stagnated)) return SolveStatus::stagnated;
       return says(singular) ? SolveStatus::singular : SolveStatus::iteration_cap;
     }
@@ -272,7 +279,11 @@ class BlockKernel {
   void newton_matrix();
   template <class Entry>
   T factor(Entry entry, double ratio);
+  typename T::MaskType is_positive(double of_n, double of_m);
   typename T::MaskType contracts();
+  void part_of_joints();
+  typename T::MaskType closes();
+  unsigned doubted(unsigned converged);
   typename T::MaskType gauss_newton_step(T* x);
   typename T::MaskType newton_step(T* x);
   void newton_step_again(T* x) const;
@@ -302,6 +313,7 @@ class BlockKernel {
   Screw* row_;   ///< W times each column, which as published is the column itself; of limbs that meet: measured()
   Screw* rows_;  ///< of limbs that meet: L^-1 C^T
   Screw* mu_;
+  Screw* kept_;  ///< the residual, while mu_ is a part of it
   Screw* pull_;
   T* joint_;
   T* f_;
@@ -313,6 +325,7 @@ class BlockKernel {
   T* pivot_;  ///< 1 / pivot of Newton's matrix
   std::size_t in_place_ = 0;
   std::uint32_t spent_ = 0;  ///< iterations of earlier passes
+  unsigned clear_ = 0;       ///< lanes where N - 2 C was positive definite when contracts() was asked last
 };
 
 }  // namespace poesy::chain

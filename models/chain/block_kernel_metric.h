@@ -32,6 +32,7 @@ unsigned BlockKernel<T, Shape, Measure>::iterate(std::size_t at, unsigned open, 
   constexpr bool newton = pass != KernelPass::published;
   constexpr bool last_pass = !newton || pass == KernelPass::rescue;
   start<pass>(at);
+  clear_ = kAllLanes;
   if (pass == KernelPass::direct && start_.fits > 0 && start_.inverse != nullptr) open = finish_fitted(at, open);
   // Gauss-Newton looks at the residual after the last step, too.
   const std::uint32_t evaluations = newton ? rounds : rounds + 1;
@@ -161,6 +162,7 @@ auto BlockKernel<T, Shape, Measure>::newton_by_metric(std::size_t at, std::uint3
   verdict.converged = bits(converged);
   verdict.refused = bits(!(safe & finite_residual()));
   if (any(converged)) carry_residual(step_, converged);
+  verdict.doubted = doubted(verdict.converged);
   advance(at);
   return verdict;
 }
@@ -178,7 +180,8 @@ auto BlockKernel<T, Shape, Measure>::careful_by_metric(std::size_t at) -> Verdic
   const auto regular = gauss_newton_step(gauss_newton_);
   newton_matrix();
   auto safe = finite;
-  if constexpr (follows) safe = safe & contracts();
+  const auto contracting = contracts();
+  if constexpr (follows) safe = safe & contracting;
   safe = safe & newton_step(step_);
   const T newton_length = step_length(step_, diagonal);
   if constexpr (follows) {
@@ -202,6 +205,7 @@ auto BlockKernel<T, Shape, Measure>::careful_by_metric(std::size_t at) -> Verdic
   const T damping(follows ? 1.0 : 0.5);
   for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(safe, step_[j], damping * gauss_newton_[j]);
   if (any(converged)) carry_residual(step_, converged);
+  verdict.doubted = doubted(verdict.converged);
   advance(at);
   return verdict;
 }

@@ -91,11 +91,12 @@ struct KernelStart {
   const KernelFit* fit;  ///< [fits], with ranges that do not overlap
   std::size_t fits;      ///< how many
   const double* slopes;  ///< [varied x joints] by how much joints give way to an error, to first order; or null
-  /// Of N at nominal displacements without errors, for the first step from a fit by a metric; null as published.
+  /// Of N at nominal displacements without errors, for the first step from a fit by a metric; null if singular.
   /// @{
   const double* inverse;   ///< [joints x joints]
   const double* diagonal;  ///< [joints], of N itself
   /// @}
+  const double* columns;  ///< [joints x 6] of J there, for what joints could take away of a residual; null if singular
 };
 
 /// Rows of a map are a multiple of this, the last ones zero.
@@ -147,7 +148,7 @@ struct KernelOutcome {
   double* delta_mu;           ///< [6 pairs x stride]
   double* responses;          ///< [3 x stride]: angular, linear, max; by a metric gap, angular, linear
   double* displacements;      ///< [joints x stride], of passive joints; or null
-  SolveStatus* status;        ///< [stride]
+  SolveStatus* status;        ///< [stride]; not_assembled: solved, but doubted, see BlockKernel
   std::uint32_t* iterations;  ///< [stride]
   std::size_t stride;         ///< distance between rows, in numbers
 };
@@ -167,7 +168,7 @@ static constexpr std::size_t kernel_memory(const KernelChain& chain) {
 static constexpr std::size_t kernel_scratch(const KernelChain& chain, const KernelSamples& samples) {
   const std::size_t rows = samples.varied + chain.joints + kernel_memory(chain) + 2 + 1;
   const std::size_t motions = 12 * (chain.segments + chain.limbs);
-  const std::size_t screws = 6 * (3 * chain.joints + chain.pairs + chain.limbs);
+  const std::size_t screws = 6 * (3 * chain.joints + 2 * chain.pairs + chain.limbs);
   const std::size_t equations = 3 * chain.joints * chain.joints + 6 * chain.joints;
   return rows * kernel_capacity(samples.count) + (motions + screws + equations) * kMostLanes;
 }

@@ -64,7 +64,9 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
                static_cast<std::uint32_t>(options.max_iterations)},
       kernels_(simd::for_selected_isa([]<simd::Isa isa> { return kernels<isa>(); })),
       first_order_(chain),
-      residual_space_(chain) {
+      residual_space_(chain),
+      assembly_(chain),
+      frames_(chain.frames()) {
   std::size_t joint = 0;
   for (const Limb& limb : chain.limbs) {
     limbs_.push_back({joint, limb.passive_joints(), 0.0});
@@ -87,15 +89,13 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
 
 void BlockSolver::prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                           std::span<const FrameEntry> varied, double range, const Metric* metric,
-                          const PlatformPoints* platform) {
+                          const PlatformPoints* platform, const Metric* held) {
   POESY_EXPECTS(displacements.size() == chain_->joints() && errors.size() == chain_->frames());
   varied_ = varied.size();
   metric_ = metric;
   platform_ = platform;
   const bool is_linear = fidelity_ == Fidelity::first_order;
-  if (metric != nullptr || is_linear || chain_->idle > 0 || chain_->meets) {
-    is_singular_ = !first_order_.prepare(displacements, metric == nullptr ? nullptr : &metric->W);
-  }
+  is_singular_ = !first_order_.prepare(displacements, metric == nullptr ? nullptr : &metric->W);
   if (is_linear) {
     if (is_singular_) return;
     find_map(displacements, errors, varied);
@@ -103,12 +103,16 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
     return;
   }
   find_segments(displacements, errors, varied);
+  assembly_.prepare(displacements, held == nullptr ? metric : held);
+  errors_.assign(errors.begin(), errors.end());
+  entries_.assign(varied.begin(), varied.end());
   if (metric != nullptr) find_spread(metric->W);
   options_.rounding_level = metric == nullptr ? rounding_level(*chain_) : kRelativeRounding;
   // The error that a Newton step leaves is about its square; rounding alone makes steps of about 1e-14. By a metric the
   // bound is lower, because near a singular pose a step may leave a thousand times its square.
   const double last = metric == nullptr ? std::sqrt(options_.tolerance / 10.0) : std::sqrt(options_.tolerance) / 100.0;
   options_.last_step = std::max(last, 1e-10);
+  if (!is_singular_) find_nominal();
   if ((metric != nullptr || chain_->meets) && !is_singular_) find_slopes(errors, varied);
   fits_.clear();
   fits_made_ = 0;
@@ -209,15 +213,23 @@ void for_each_constant(std::span<const FrameError<double>> errors, std::span<con
   }
 }
 
+/// The matrix and the columns at nominal displacements.
+void BlockSolver::find_nominal() {
+  inverse_.resize(joints_.size() * joints_.size());
+  diagonal_.resize(joints_.size());
+  first_order_.matrix(inverse_, diagonal_);
+  columns_.resize(6 * joints_.size());
+  for (std::size_t a = 0; a < joints_.size(); ++a) {
+    std::copy_n(first_order_.column(a).data(), 6, columns_.begin() + static_cast<std::ptrdiff_t>(6 * a));
+  }
+}
+
 /// By how much joints give way to each varied entry to first order, where solves by a metric start; constant errors
 /// move their nominal displacements.
 void BlockSolver::find_slopes(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied) {
   effect_.resize(6 * pairs_.size());
   slope_.resize(joints_.size());
   slopes_.assign(varied.size() * joints_.size(), 0.0);
-  inverse_.resize(joints_.size() * joints_.size());
-  diagonal_.resize(joints_.size());
-  first_order_.matrix(inverse_, diagonal_);
   for (std::size_t v = 0; v < varied.size(); ++v) {
     first_order_.effect(varied[v], effect_, std::span(slopes_).subspan(v * joints_.size(), joints_.size()));
   }
@@ -331,12 +343,41 @@ double BlockSolver::fit_starts(double center, double half_width) {
 
 void BlockSolver::solve(std::span<const double> values, std::size_t count, bool wants_residuals) {
   if (fidelity_ == Fidelity::first_order) return map(values, count, wants_residuals);
-  if (platform_ == nullptr) return run(values, count, options_, nullptr);
-  platform_displacements_.resize(joints_.size() * kernel_capacity(count));
-  run(values, count, options_, platform_displacements_.data());
+  if (platform_ != nullptr) platform_displacements_.resize(joints_.size() * kernel_capacity(count));
+  run(values, count, options_, platform_ == nullptr ? nullptr : platform_displacements_.data());
+  review(values);
+  if (platform_ == nullptr) return;
   const KernelChain chain = kernel_chain();
   const KernelSamples samples{values.data(), varied_, count, count};
   move_platform(chain, samples, nullptr, make_room(chain, samples));
+}
+
+/// Of samples that are not solved, doubted, or solved slowly by Gauss-Newton, those that cannot be assembled.
+void BlockSolver::review(std::span<const double> values) {
+  const bool may_be_slow = options_.method == KernelMethod::gauss_newton && metric_ != nullptr && !chain_->meets;
+  for (std::size_t b = 0; b < count_; ++b) {
+    using enum SolveStatus;
+    SolveStatus& status = status_[b];
+    const bool is_slow = may_be_slow && iterations_[b] > kSlowIterations;
+    if (status == non_finite || (solved(status) && !is_slow)) continue;
+    set_frames(values, b);
+    if (assembly_.is_impossible(frames_)) {
+      status = not_assembled;
+    } else if (status == not_assembled) {
+      status = converged;
+    }
+  }
+}
+
+/// The fixed frames of a sample, with its errors.
+void BlockSolver::set_frames(std::span<const double> values, std::size_t sample) {
+  for (std::size_t v = 0; v < entries_.size(); ++v) {
+    errors_[entries_[v].frame][static_cast<Eigen::Index>(entries_[v].component)] = values[v * count_ + sample];
+  }
+  std::size_t frame = 0;
+  for (const Limb& limb : chain_->limbs) {
+    for (std::size_t j = 0; j < limb.frames(); ++j, ++frame) frames_[frame] = frame_with_error(limb, j, errors_[frame]);
+  }
 }
 
 void BlockSolver::move_platform(const KernelChain& chain, const KernelSamples& samples, const KernelMap* map,
@@ -377,11 +418,12 @@ void BlockSolver::run(std::span<const double> values, std::size_t count, const K
   const KernelChain chain = kernel_chain();
   const KernelSamples samples{values.data(), varied_, count, count};
   double* scratch = make_room(chain, samples);
-  KernelStart start{fits_.data(), fits_.size(), nullptr, nullptr, nullptr};
-  if ((metric_ != nullptr || chain_->meets) && !is_singular_) {
-    start.slopes = slopes_.data();
+  KernelStart start{fits_.data(), fits_.size(), nullptr, nullptr, nullptr, nullptr};
+  if (!is_singular_) {
+    if (metric_ != nullptr || chain_->meets) start.slopes = slopes_.data();
     start.inverse = inverse_.data();
     start.diagonal = diagonal_.data();
+    start.columns = columns_.data();
   }
   kernels_.solve(chain, samples, start, options, outcome(displacements), scratch);
   if ((metric_ == nullptr && !chain_->meets) || !is_singular_) return;

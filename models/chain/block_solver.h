@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
+#include "models/chain/assembly.h"
 #include "models/chain/block_kernels.h"
 #include "models/chain/first_order.h"
 #include "models/chain/limb.h"
@@ -21,7 +22,8 @@ enum class Fidelity : std::size_t {
 
 /// Solves blocks of samples with the fastest kernel this machine has. Owns the scratch of one thread.
 /// The methods and their guarantees are those of BlockKernel; gauss_newton is Scheme I as DeformationSolver states it,
-/// as published from nominal displacements, by a metric from those to which constant errors push the joints.
+/// as published from nominal displacements, by a metric from those to which constant errors push the joints. Of samples
+/// that a kernel does not solve, or doubts, Assembly decides which are not_assembled.
 class BlockSolver {
  public:
   /// The chain must outlive the solver.
@@ -30,10 +32,11 @@ class BlockSolver {
   /// Fixes what the samples of the next calls have in common: nominal displacements of all joints (rad, m), constant
   /// errors [frames], the entries that vary, by which metric (null: as published; it must outlive the solves), and what
   /// is reported of the platform's motion (null: nothing; likewise).
-  /// Newton's starts are predicted with one varied entry and a range, and by a metric always.
+  /// Newton's starts are predicted with one varied entry and a range, and by a metric always. held: by which metric
+  /// machines that cannot be assembled are told (null: that of the solves); it must outlive them.
   void prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                std::span<const FrameEntry> varied, double range, const Metric* metric = nullptr,
-               const PlatformPoints* platform = nullptr);
+               const PlatformPoints* platform = nullptr, const Metric* held = nullptr);
 
   /// values: [varied x count], row-major. To first order a singular pose makes every sample singular, and by a metric
   /// there are residuals only where they are wanted.
@@ -61,12 +64,15 @@ class BlockSolver {
   void find_segments(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                      std::span<const FrameEntry> varied);
   void find_spread(const lie::Matrix6<double>& W);
+  void find_nominal();
   void find_slopes(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied);
   void find_map(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                 std::span<const FrameEntry> varied);
   void predict_starts(double center, double half_width, int splits_left);
   double fit_starts(double center, double half_width);
   void run(std::span<const double> values, std::size_t count, const KernelOptions& options, double* displacements);
+  void review(std::span<const double> values);
+  void set_frames(std::span<const double> values, std::size_t sample);
   void map(std::span<const double> values, std::size_t count, bool wants_residuals);
   void add_platform_motion(const FrameEntry& entry, double error, std::span<double> xi);
   void find_platform_map(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied);
@@ -81,6 +87,10 @@ class BlockSolver {
   Kernels kernels_;
   FirstOrder first_order_;
   ResidualSpace residual_space_;
+  Assembly assembly_;
+  std::vector<FrameError<double>> errors_;      ///< [frames] constant, then of one sample
+  std::vector<FrameEntry> entries_;             ///< that vary
+  std::vector<lie::Transform<double>> frames_;  ///< [frames] of one sample
   const Metric* metric_ = nullptr;
   std::array<double, 3> middle_{};  ///< of the metric's points; see KernelChain
   std::array<double, 6> spread_{};  ///< about it
@@ -88,6 +98,7 @@ class BlockSolver {
   std::vector<double> slopes_;      ///< [varied x joints]
   std::vector<double> inverse_;     ///< [joints x joints] of J^T W J at nominal displacements
   std::vector<double> diagonal_;    ///< [joints], of J^T W J itself
+  std::vector<double> columns_;     ///< [joints x 6] of J there
   std::vector<double> effect_;      ///< [6 pairs], of one error
   std::vector<double> slope_;       ///< [joints], of one error
   const PlatformPoints* platform_ = nullptr;

@@ -21,6 +21,7 @@ constexpr std::size_t kResponses = 3;
 struct Nominal {
   std::vector<double> displacements;       ///< [all joints]
   std::optional<Metric> metric;            ///< there
+  std::optional<Metric> held;              ///< there
   std::optional<PlatformPoints> platform;  ///< there
 };
 
@@ -71,7 +72,8 @@ class DeformationEvaluator final : public Evaluator {
     const auto [place, is_new] = nominal_.try_emplace(std::vector<double>(pose.begin(), pose.end()));
     if (!is_new) return place->second;
     const std::vector<double> displacements = model_->joint_displacements(pose);
-    place->second = {displacements, model_->metric(displacements), model_->platform_points(displacements)};
+    place->second = {displacements, model_->metric(displacements), model_->held(displacements),
+                     model_->platform_points(displacements)};
     return place->second;
   }
 
@@ -101,7 +103,7 @@ class DeformationEvaluator final : public Evaluator {
     Prepared wanted{&nominal, errors_, varied_, samples.range * std::abs(scale)};
     if (wanted == prepared_) return values;
     solver_.prepare(nominal.displacements, errors_, varied_, wanted.range, nominal.metric ? &*nominal.metric : nullptr,
-                    nominal.platform ? &*nominal.platform : nullptr);
+                    nominal.platform ? &*nominal.platform : nullptr, nominal.held ? &*nominal.held : nullptr);
     prepared_ = std::move(wanted);
     return values;
   }
@@ -249,6 +251,11 @@ std::optional<PlatformPoints> DeformationModel::platform_points(std::span<const 
 std::optional<Metric> DeformationModel::metric(std::span<const double> displacements) const {
   if (points.empty()) return std::nullopt;
   return platform_metric(chain, points, displacements);
+}
+
+std::optional<Metric> DeformationModel::held(std::span<const double> displacements) const {
+  if (held_at.empty()) return std::nullopt;
+  return platform_metric(chain, held_at, displacements);
 }
 
 DeformationMeasure deformation_measure(const DeformationModel& model) {

@@ -39,6 +39,9 @@ struct DeformationModel {
   /// Points of the platform, in its frame (m), by whose displacement mismatch is judged; none: as published.
   std::vector<lie::Vector3<double>> points = {};
   std::optional<PlatformReport> platform = {};  ///< none: only its deformation is a response
+  /// Points of the platform, in its frame (m), by whose displacement machines that cannot be assembled are told,
+  /// however the solves weigh; none: as the solves weigh.
+  std::vector<lie::Vector3<double>> held_at = {};
 
   /// Where a factor's error is among all frames.
   FrameEntry entry(const ErrorSlot& slot) const;
@@ -46,6 +49,8 @@ struct DeformationModel {
   std::optional<PlatformPoints> platform_points(std::span<const double> displacements) const;
   /// At nominal displacements [all joints]; none: as published.
   std::optional<Metric> metric(std::span<const double> displacements) const;
+  /// Of held_at, likewise.
+  std::optional<Metric> held(std::span<const double> displacements) const;
 };
 
 /// The responses of every deformation model as published, in the order in which they are evaluated:

@@ -11,18 +11,6 @@ namespace {
 
 constexpr int kFlatIterations = 3;
 
-std::vector<std::size_t> passive_positions(const ParallelChain& chain) {
-  std::vector<std::size_t> positions;
-  std::size_t joint = 0;
-  for (const Limb& limb : chain.limbs) {
-    for (const Joint& each : limb.joints) {
-      if (!each.actuated) positions.push_back(joint);
-      ++joint;
-    }
-  }
-  return positions;
-}
-
 bool all_finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
@@ -47,29 +35,41 @@ DeformationSolver::DeformationSolver(const ParallelChain& chain, const SolverOpt
       options_(options),
       rounding_level_(rounding_level(chain)),
       passive_(passive_positions(chain)),
-      poses_(chain.limbs.size()),
-      columns_(passive_.size()),
+      loops_(chain),
       previous_(6 * chain.pairs.size()),
-      equations_(chain) {}
+      equations_(chain),
+      assembly_(chain) {}
 
 Deformation DeformationSolver::solve(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
                                      std::span<double> delta_mu, const Metric* metric,
-                                     const DeformationObserver& observe) {
+                                     const DeformationObserver& observe, const Metric* held) {
   POESY_EXPECTS(frames.size() == chain_->frames());
   POESY_EXPECTS(displacements.size() == chain_->joints());
   POESY_EXPECTS(delta_mu.size() == previous_.size());
-  evaluate(frames, displacements, delta_mu);
-  equations_.hold_idle(columns_, metric == nullptr ? nullptr : &metric->W);
+  const std::vector<double> nominal(displacements.begin(), displacements.end());
+  Deformation end = iterate(frames, displacements, delta_mu, metric, observe);
+  const bool is_slow = metric != nullptr && end.iterations > kSlowIterations;
+  if (end.status == SolveStatus::non_finite || (solved(end.status) && !is_slow)) return end;
+  assembly_.prepare(nominal, held == nullptr ? metric : held);
+  if (assembly_.is_impossible(frames)) end.status = SolveStatus::not_assembled;
+  return end;
+}
+
+Deformation DeformationSolver::iterate(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
+                                       std::span<double> delta_mu, const Metric* metric,
+                                       const DeformationObserver& observe) {
+  loops_.evaluate(frames, displacements, delta_mu);
+  equations_.hold_idle(loops_.columns(), metric == nullptr ? nullptr : &metric->W);
   double smallest = std::numeric_limits<double>::infinity();
   int flat = 0;
   for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
     const auto done = static_cast<std::uint32_t>(iteration);
     if (!all_finite(delta_mu)) return {SolveStatus::non_finite, done - 1};
-    if (!equations_.solve(columns_, delta_mu, metric == nullptr ? nullptr : &metric->W))
+    if (!equations_.solve(loops_.columns(), delta_mu, metric == nullptr ? nullptr : &metric->W))
       return {SolveStatus::singular, done - 1};
     for (std::size_t k = 0; k < passive_.size(); ++k) displacements[passive_[k]] += equations_.solution()[k];
     std::copy(delta_mu.begin(), delta_mu.end(), previous_.begin());
-    evaluate(frames, displacements, delta_mu);
+    loops_.evaluate(frames, displacements, delta_mu);
     const double change = metric == nullptr ? largest_change(delta_mu) : relative_change(*metric, delta_mu);
     if (observe) observe({equations_.solution(), delta_mu, change});
     if (change < options_.tolerance) return {SolveStatus::converged, done};
@@ -83,27 +83,6 @@ Deformation DeformationSolver::solve(std::span<const lie::Transform<double>> fra
   }
   const auto cap = static_cast<std::uint32_t>(options_.max_iterations);
   return {all_finite(delta_mu) ? SolveStatus::iteration_cap : SolveStatus::non_finite, cap};
-}
-
-void DeformationSolver::evaluate(std::span<const lie::Transform<double>> frames, std::span<const double> displacements,
-                                 std::span<double> delta_mu) {
-  std::size_t frame = 0;
-  std::size_t joint = 0;
-  std::size_t column = 0;
-  for (std::size_t i = 0; i < chain_->limbs.size(); ++i) {
-    const Limb& limb = chain_->limbs[i];
-    const std::size_t joints = limb.joints.size();
-    poses_[i] = forward_kinematics<double>(
-        limb, frames.subspan(frame, joints + 1), displacements.subspan(joint, joints),
-        [&](std::size_t k, const lie::Screw<double>& screw) { columns_[column + k] = screw; });
-    frame += joints + 1;
-    joint += joints;
-    column += limb.passive_joints();
-  }
-  for (std::size_t n = 0; n < chain_->pairs.size(); ++n) {
-    const LimbPair& pair = chain_->pairs[n];
-    Eigen::Map<lie::Screw<double>>(delta_mu.data() + 6 * n) = lie::log(poses_[pair.k] * poses_[pair.i].inverse());
-  }
 }
 
 double DeformationSolver::largest_change(std::span<const double> delta_mu) const {

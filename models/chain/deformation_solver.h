@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "engine/model/model.h"
+#include "models/chain/assembly.h"
 #include "models/chain/limb.h"
+#include "models/chain/loops.h"
 #include "models/chain/metric.h"
 #include "models/chain/normal_equations.h"
 
@@ -48,8 +50,10 @@ double gap(const Metric& metric, std::span<const double> delta_mu);
 ///   iteration_cap  when j is the allowed number of iterations;
 ///   singular       when a pivot of J^T J falls to rounding relative to its diagonal entry;
 ///   non_finite     when delta_mu^j is not finite.
-/// By a metric the equation is J^T W delta_mu = 0, c_j is the gap() of delta_mu^j - delta_mu^(j-1) over the reach, and
-/// a c_j up to kRelativeRounding ends the solve as stagnated where it is not below the tolerance.
+/// A solve that ends at the cap or as singular, or by a metric after more than kSlowIterations, is not_assembled
+/// instead where no solution exists (Assembly). By a metric the equation is J^T W delta_mu = 0, c_j is the gap() of
+/// delta_mu^j - delta_mu^(j-1) over the reach, and a c_j up to kRelativeRounding ends the solve as stagnated where it
+/// is not below the tolerance.
 ///
 /// Plain double arithmetic, one sample at a time: the reference for BlockSolver. Owns the scratch of one thread.
 class DeformationSolver {
@@ -58,16 +62,16 @@ class DeformationSolver {
   DeformationSolver(const ParallelChain& chain, const SolverOptions& options);
 
   /// frames [chain.frames()]: fixed frames with errors, limb by limb. displacements [chain.joints()] (rad, m): the
-  /// start on entry, the last iterate on return; actuated entries stay. delta_mu [6 x pairs]: the residual at the last
-  /// iterate, [omega; v] in the base frame (rad, m), Eq. 41. metric: null for the published equation, W = 1 in rad and
-  /// m. observe: may be empty.
+  /// nominal ones on entry, from which a solve starts, the last iterate on return; actuated entries stay. delta_mu [6 x
+  /// pairs]: the residual at the last iterate, [omega; v] in the base frame (rad, m), Eq. 41. metric: null for the
+  /// published equation, W = 1 in rad and m. observe: may be empty. held: as for BlockSolver::prepare().
   Deformation solve(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
-                    std::span<double> delta_mu, const Metric* metric = nullptr,
-                    const DeformationObserver& observe = {});
+                    std::span<double> delta_mu, const Metric* metric = nullptr, const DeformationObserver& observe = {},
+                    const Metric* held = nullptr);
 
  private:
-  void evaluate(std::span<const lie::Transform<double>> frames, std::span<const double> displacements,
-                std::span<double> delta_mu);
+  Deformation iterate(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
+                      std::span<double> delta_mu, const Metric* metric, const DeformationObserver& observe);
   double largest_change(std::span<const double> delta_mu) const;
   double relative_change(const Metric& metric, std::span<const double> delta_mu);
 
@@ -75,10 +79,10 @@ class DeformationSolver {
   SolverOptions options_;
   double rounding_level_;
   std::vector<std::size_t> passive_;  ///< position of each passive joint among all joints
-  std::vector<lie::Transform<double>> poses_;
-  std::vector<lie::Screw<double>> columns_;  ///< spatial Jacobian column of each passive joint
+  Loops loops_;
   std::vector<double> previous_;
   NormalEquations equations_;
+  Assembly assembly_;
 };
 
 }  // namespace poesy::chain

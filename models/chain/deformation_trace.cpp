@@ -151,7 +151,8 @@ SolveTrace deformation_trace(const DeformationModel& model, std::span<const doub
   DeformationSolver solver(model.chain, options);
   const std::optional<PlatformPoints> points = model.platform_points(displacements);
   const std::vector<lie::Transform<double>> frames = frames_with(model, errors);
-  const Deformation end = solver.solve(frames, displacements, delta_mu, metric, observe);
+  const std::optional<Metric> held = model.held(displacements);
+  const Deformation end = solver.solve(frames, displacements, delta_mu, metric, observe, held ? &*held : nullptr);
   trace.status = end.status;
   trace.iterations = end.iterations;
   trace.responses = deformations(model, metric, delta_mu);

@@ -52,6 +52,15 @@ void FirstOrder::effect(const FrameEntry& entry, std::span<double> delta_mu, std
   }
 }
 
+void FirstOrder::taken_away(std::span<const double> delta_mu, std::span<double> part) {
+  POESY_EXPECTS(delta_mu.size() == 6 * chain_->pairs.size() && part.size() == delta_mu.size());
+  equations_.solve_again(delta_mu);
+  std::ranges::fill(part, 0.0);
+  for (std::size_t a = 0; a < columns_.size(); ++a) {
+    add_motion(limb_of_joint_[a], -equations_.solution()[a] * columns_[a], part);
+  }
+}
+
 lie::Screw<double> FirstOrder::sum_of_motions(const FrameEntry& entry, std::span<const double> displacements) const {
   POESY_EXPECTS(displacements.size() == columns_.size());
   lie::Screw<double> sum = motion(entry);

@@ -39,6 +39,10 @@ class FirstOrder {
   /// [passive joints], as effect() gives them. Precondition: as above.
   lie::Screw<double> sum_of_motions(const FrameEntry& entry, std::span<const double> displacements) const;
 
+  /// The part of a mismatch delta_mu [6 x pairs] that passive joints could take away:
+  /// J (J^T W J)^-1 J^T W delta_mu. Precondition: as above.
+  void taken_away(std::span<const double> delta_mu, std::span<double> part);
+
   /// See NormalEquations::idle().
   std::span<const double> idle() const { return equations_.idle(); }
 

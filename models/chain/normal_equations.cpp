@@ -29,13 +29,27 @@ NormalEquations::NormalEquations(const ParallelChain& chain)
 }
 
 bool NormalEquations::solve(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu,
-                            const lie::Matrix6<double>* W) {
+                            const lie::Matrix6<double>* W, double damping) {
   weigh(columns, W);
   assemble_matrix(columns);
+  for (std::size_t row = 0; row < size_; ++row) matrix_[row * size_ + row] *= 1.0 + damping;
   assemble_right_side(delta_mu);
   if (!factor()) return false;
   substitute();
   return true;
+}
+
+Eigen::MatrixXd NormalEquations::matrix(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W) {
+  weigh(columns, W);
+  assemble_matrix(columns);
+  const auto size = static_cast<Eigen::Index>(size_);
+  Eigen::MatrixXd all(size, size);
+  for (Eigen::Index row = 0; row < size; ++row) {
+    for (Eigen::Index column = 0; column <= row; ++column) {
+      all(row, column) = all(column, row) = matrix_[static_cast<std::size_t>(row * size + column)];
+    }
+  }
+  return all;
 }
 
 void NormalEquations::solve_again(std::span<const double> delta_mu) {

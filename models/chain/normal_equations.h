@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -16,10 +17,13 @@ class NormalEquations {
   explicit NormalEquations(const ParallelChain& chain);
 
   /// Solves for the motion deviations of the passive joints. columns: [passive joints]; delta_mu: [6 x pairs]; W: null
-  /// for W = 1. Returns false when a pivot falls to rounding relative to its diagonal entry; the solution is then
-  /// undefined.
+  /// for W = 1. damping: the diagonal of J^T W J is taken times 1 + damping. Returns false when a pivot falls to
+  /// rounding relative to its diagonal entry; the solution is then undefined.
   bool solve(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu,
-             const lie::Matrix6<double>* W = nullptr);
+             const lie::Matrix6<double>* W = nullptr, double damping = 0.0);
+
+  /// J^T W J [passive joints x passive joints], with what holds idle freedoms. Arguments as of solve().
+  Eigen::MatrixXd matrix(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W);
 
   /// Keeps idle freedoms where they are from now on: those directions of these columns [passive joints] that move no
   /// platform, as many as the chain has, are added to J^T W J.

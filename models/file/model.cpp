@@ -95,6 +95,7 @@ chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<
     model.slots.push_back({slot.limb, slot.frame, slot.component, slot.scale});
   }
   model.points = std::move(points);
+  model.held_at = mechanism.points;
   model.chain.rounded = mechanism.precision.rounded();
   model.joint_displacements = displacements_by(mechanism, std::move(tracker), model);
   model.platform = chain::PlatformReport{mechanism.tool, model.points.empty() ? mechanism.points : model.points};

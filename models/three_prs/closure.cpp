@@ -6,7 +6,9 @@
 #include <limits>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 #include "engine/linalg/decompositions.h"
+#include "engine/linalg/downhill.h"
 
 namespace poesy::three_prs {
 namespace {
@@ -47,6 +49,86 @@ void evaluate(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r,
 bool is_singular(const linalg::LuFactors6& factors) {
   const lie::Screw<double> pivots = factors.pivots().cwiseAbs();
   return pivots.minCoeff() <= 64.0 * kEpsilon * pivots.maxCoeff();
+}
+
+PlatformMotion moved(const PlatformMotion& motion, const Step& step) {
+  return {lie::exp(Vector3(step.head<3>())) * motion.E, motion.dr + step.tail<3>()};
+}
+
+/// Whether a status may be that of limbs that cannot be assembled.
+bool may_be_impossible(SolveStatus status) {
+  return status == SolveStatus::iteration_cap || status == SolveStatus::singular;
+}
+
+/// The way of the platform to where the mismatch of its limbs is least; see linalg::comes_to_rest(). The equations of
+/// rods are divided by their lengths, so that all are lengths (m).
+class Descent {
+ public:
+  Descent(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, const PlatformMotion& start)
+      : limbs_(&limbs), r_(r), motion_(start), here_(equations_at(start)) {}
+
+  double sum_of_squares() const { return here_.residual.squaredNorm(); }
+  double tried_sum_of_squares() const { return there_.residual.squaredNorm(); }
+
+  double try_step(double damping) {
+    Matrix6 normal = here_.jacobian.transpose() * here_.jacobian;
+    normal.diagonal() *= 1.0 + damping;
+    const Step step = -linalg::LuFactors6(normal).solve(here_.jacobian.transpose() * here_.residual);
+    if (!step.allFinite()) return kNaN;
+    tried_ = moved(motion_, step);
+    there_ = equations_at(tried_);
+    return step.cwiseAbs().maxCoeff();
+  }
+
+  void take_step() {
+    motion_ = tried_;
+    here_ = there_;
+  }
+
+ private:
+  Equations equations_at(const PlatformMotion& motion) const {
+    Equations equations;
+    evaluate(*limbs_, r_, motion, equations);
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(kLimbs); ++i) {
+      const double length = (*limbs_)[static_cast<std::size_t>(i)].rod.norm();
+      equations.residual[i] /= length;
+      equations.jacobian.row(i) /= length;
+    }
+    return equations;
+  }
+
+  const std::array<LimbWithErrors, kLimbs>* limbs_;
+  Vector3 r_;
+  PlatformMotion motion_;
+  PlatformMotion tried_;
+  Equations here_;
+  Equations there_;
+};
+
+/// Newton's iteration of close_limbs().
+Closing iterate(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, double orientation,
+                const SolverOptions& options, PlatformMotion& motion, const ClosureObserver& observe) {
+  const double rounding = rounding_level(r);
+  Equations equations;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {
+    const auto done = static_cast<std::uint32_t>(iteration);
+    evaluate(limbs, r, motion, equations);
+    if (!equations.residual.allFinite()) return {SolveStatus::non_finite, done - 1};
+    const linalg::LuFactors6 factors(equations.jacobian);
+    if (is_singular(factors)) return {SolveStatus::singular, done - 1};
+    const Step step = -factors.solve(equations.residual);
+    motion = moved(motion, step);
+    if (observe) observe({equations.residual, step});
+    const double change = step.cwiseAbs().maxCoeff();
+    const bool converged = change < options.tolerance;
+    if (converged || (change <= rounding && change >= smallest)) {
+      if (factors.determinant() * orientation < 0.0) return {SolveStatus::singular, done};
+      return {converged ? SolveStatus::converged : SolveStatus::stagnated, done};
+    }
+    smallest = std::min(smallest, change);
+  }
+  return {SolveStatus::iteration_cap, static_cast<std::uint32_t>(options.max_iterations)};
 }
 
 double* aligned(std::vector<double>& memory) {
@@ -129,28 +211,18 @@ double rounding_level(const Vector3& r) { return 64.0 * kEpsilon * std::max(1.0,
 
 Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, double orientation,
                     const SolverOptions& options, PlatformMotion& motion, const ClosureObserver& observe) {
-  const double rounding = rounding_level(r);
-  Equations equations;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {
-    const auto done = static_cast<std::uint32_t>(iteration);
-    evaluate(limbs, r, motion, equations);
-    if (!equations.residual.allFinite()) return {SolveStatus::non_finite, done - 1};
-    const linalg::LuFactors6 factors(equations.jacobian);
-    if (is_singular(factors)) return {SolveStatus::singular, done - 1};
-    const Step step = -factors.solve(equations.residual);
-    motion.E = lie::exp(Vector3(step.head<3>())) * motion.E;
-    motion.dr += step.tail<3>();
-    if (observe) observe({equations.residual, step});
-    const double change = step.cwiseAbs().maxCoeff();
-    const bool converged = change < options.tolerance;
-    if (converged || (change <= rounding && change >= smallest)) {
-      if (factors.determinant() * orientation < 0.0) return {SolveStatus::singular, done};
-      return {converged ? SolveStatus::converged : SolveStatus::stagnated, done};
-    }
-    smallest = std::min(smallest, change);
-  }
-  return {SolveStatus::iteration_cap, static_cast<std::uint32_t>(options.max_iterations)};
+  const PlatformMotion start = motion;
+  Closing end = iterate(limbs, r, orientation, options, motion, observe);
+  const bool is_asked = orientation != 0.0 && may_be_impossible(end.status);
+  if (is_asked && is_impossible(limbs, r, start)) end.status = SolveStatus::not_assembled;
+  return end;
+}
+
+bool is_impossible(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, const PlatformMotion& start) {
+  constexpr double kRest = 1e-9;
+  constexpr double kMet = 1e-9;
+  Descent descent(limbs, r, start);
+  return linalg::comes_to_rest(descent, kRest) && std::sqrt(descent.sum_of_squares()) > kMet * r.norm();
 }
 
 double swing(const LimbWithErrors& limb, const Vector3& r, const PlatformMotion& motion) {
@@ -202,9 +274,21 @@ void ClosureSolver::solve(const Configuration& nominal, const SampleBlock& sampl
   tiles_.for_each(samples, outcomes, [&](const Tile& tile) {
     given_up += kernels_.close_tile(pose_, kernel_options_, tile, aligned(scratch_));
   });
+  review(nominal, samples, start, outcomes);
   if (given_up == 0) return;
   for (std::size_t b = 0; b < samples.count; ++b) {
     if (outcomes.iterations[b] == 0) close_sample(geometry_, nominal, samples, b, start, options_, outcomes);
+  }
+}
+
+/// Of samples that the kernel did not solve, those that cannot be assembled.
+void ClosureSolver::review(const Configuration& nominal, const SampleBlock& samples, const ClosureStart& start,
+                           const OutcomeBlock& outcomes) const {
+  if (start.orientation() == 0.0) return;
+  for (std::size_t b = 0; b < samples.count; ++b) {
+    if (outcomes.iterations[b] == 0 || !may_be_impossible(outcomes.status[b])) continue;
+    const auto limbs = limbs_of_sample(geometry_, nominal, samples, b);
+    if (is_impossible(limbs, nominal.platform.p, start(limbs))) outcomes.status[b] = SolveStatus::not_assembled;
   }
 }
 

@@ -92,10 +92,18 @@ using ClosureObserver = std::function<void(const ClosureIteration&)>;
 ///                  determinant of the Jacobian has the other sign: no way leads there from the nominal pose, as errors
 ///                  grow from zero, but through a singular one (THEORY.md, "Which root");
 ///   non_finite     when an equation's value is not finite.
+/// A solve that ends at the cap or as singular is not_assembled instead where is_impossible() says so and orientation is
+/// not 0.
 /// `motion` is the start on entry, the last iterate on return. orientation: ClosureStart::orientation(); 0 where any
 /// root will do. observe: may be empty.
 Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r, double orientation,
                     const SolverOptions& options, PlatformMotion& motion, const ClosureObserver& observe = {});
+
+/// Whether the limbs cannot be assembled: whether they are apart, by more than 1e-9 of |r|, where their mismatch comes
+/// to rest on the way downhill from this motion (linalg::comes_to_rest()). Three limbs of the 3-PRS are no
+/// over-constraint, so what is left there is what no joint can take away. False where it does not come to rest.
+bool is_impossible(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r,
+                   const PlatformMotion& start);
 
 /// Swing of a limb's rod from th = 0 in the revolute's frame at this motion, th_i + dphi_i (rad).
 double swing(const LimbWithErrors& limb, const lie::Vector3<double>& r, const PlatformMotion& motion);
@@ -112,6 +120,8 @@ class ClosureSolver {
 
  private:
   void prepare(const Configuration& nominal, const SampleBlock& samples, const ClosureStart& start);
+  void review(const Configuration& nominal, const SampleBlock& samples, const ClosureStart& start,
+              const OutcomeBlock& outcomes) const;
 
   Geometry geometry_;
   SolverOptions options_;

@@ -32,7 +32,12 @@ chain::DeformationModel deformation_model(const Geometry& geometry, std::vector<
     const auto q = two_upr_rpu::joint_displacements(geometry, pose_from(pose));
     return std::vector<double>(q.begin(), q.end());
   };
-  return {parallel_chain(geometry), error_slots(), displacements, std::move(points)};
+  return {.chain = parallel_chain(geometry),
+          .slots = error_slots(),
+          .joint_displacements = displacements,
+          .points = std::move(points),
+          .platform = {},
+          .held_at = platform_joints(geometry)};
 }
 
 ModelDescription describe(const chain::DeformationModel& deformation) {

@@ -21,6 +21,7 @@ poesy_test(simd_test LABELS property SOURCES models/simd/isa_test.cpp models/sim
 # Contraction would fuse what the plain batch must round twice.
 set_source_files_properties(models/simd/math_test.cpp PROPERTIES COMPILE_OPTIONS -ffp-contract=off)
 
+poesy_test(assembly_test LABELS property SOURCES models/assembly_test.cpp LINKS poesy_models DATA)
 poesy_test(kernel_test LABELS property SOURCES models/chain/block_lanes_test.cpp models/chain/block_solver_test.cpp
            models/chain/metric_test.cpp models/chain/platform_motion_test.cpp
            LINKS poesy_models)

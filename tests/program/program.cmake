@@ -26,7 +26,8 @@ set_property(TEST program.metric APPEND PROPERTY ENVIRONMENT
              POESY_METRIC_ORACLE=${CMAKE_CURRENT_SOURCE_DIR}/data/metric_2upr_rpu.json)
 program_test(mechanism_file regression)
 program_test(shared_drive statistical)
-set_property(TEST program.mechanism_file program.shared_drive APPEND PROPERTY ENVIRONMENT
+program_test(assembly regression)
+set_property(TEST program.mechanism_file program.shared_drive program.assembly APPEND PROPERTY ENVIRONMENT
              POESY_DATA=${CMAKE_CURRENT_SOURCE_DIR}/data)
 program_test(determinism determinism)
 program_test(adaptive determinism)

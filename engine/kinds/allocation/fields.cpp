@@ -262,6 +262,7 @@ void read(const h5::File& file, StoredResult& result) {
   found.certificate_study = read_shaped<std::string>(file, kCertificateStudy, {}).at(0);
   check(found);
   found.solves = read_solver(file, kByPose);
+  found.certificate.solves = found.total();
   // The certificate's samples have other addresses than the study's: the study that repeats it can replay them.
   result.varied = {std::string(kAllFactors)};
   found.failures = read_failures(file, result);

@@ -44,7 +44,8 @@ YieldVerdict verdict_of(const Trial& trial, double yield, double confidence) {
                        .ci_high = share.interval.high,
                        .machines = machines,
                        .rejects = machines - good,
-                       .unsolved = trial.unsolved};
+                       .unsolved = trial.unsolved,
+                       .solves = total_of(trial.solves)};
   if (proportion_at_least(good, machines, confidence) >= yield) verdict.decision = YieldVerdict::Decision::kept;
   if (proportion_at_most(good, machines, confidence) < yield) verdict.decision = YieldVerdict::Decision::not_kept;
   return verdict;

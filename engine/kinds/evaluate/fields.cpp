@@ -155,7 +155,7 @@ void add_solves(ResultBuilder& result, const ModelDescription& model, const Eval
     result.add_computed<double>("/evaluate/" + response.name, axes, value, {unit_of(response), response.description});
   }
   add_details(result, model.details, found, axes, order);
-  const auto status_names = texts(kStatusNames, std::identity());
+  const auto status_names = listed_statuses(found.total().not_assembled());
   result.add_computed<std::uint8_t>("/evaluate/status", axes, [&](std::size_t at) { return found.status[order(at)]; },
                                     {"1", "How the solve ended: a position in status_names, from 0"});
   result.file().set_attribute("/evaluate/status", "status_names", std::span(status_names));

@@ -85,14 +85,16 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   POESY_EXPECTS(found.factors == study.analysis.factors.size());
   add_names(result, study, study.analysis.factors);
   const std::vector<ErrorSize>& groups = asked_of<IdentificationOptions>(study.analysis).groups;
-  result.add_axis("status", texts(kStatusNames, std::identity()), {"1", "How a solve ended"});
+  const std::vector<std::string> statuses = listed_statuses(found.solves.not_assembled());
+  result.add_axis("status", statuses, {"1", "How a solve ended"});
   result.add_axis("group", texts(groups, &ErrorSize::name), {"1", "Name of the group of sizes"});
   result.add_axis("coupling", axis_numbers(found.couplings.size()), {"1", "Number of the coupling, from 0"});
   write_group(result, kIdentification, found);
   result.file().set_attribute("/identification", "required_poses", static_cast<std::int64_t>(found.required_poses));
   write_columns(result, "/identification", kSizeFields, groups);
   write_columns(result, "/identification", kCouplingFields, found.couplings);
-  const std::vector<std::uint64_t> by_status(found.solves.by_status.begin(), found.solves.by_status.end());
+  const auto by_all = std::span(found.solves.by_status).first(statuses.size());
+  const std::vector<std::uint64_t> by_status(by_all.begin(), by_all.end());
   result.add("/identification/solves_by_status", {"status"}, by_status, {"1", "Solves of both stages that ended so"});
   result.show_axes("/identification", {"coupling", "status"});
 }
@@ -112,7 +114,7 @@ void read(const h5::File& file, StoredResult& result) {
     }
   }
   const auto by_status = read_along<std::uint64_t>(file, "/identification/solves_by_status", {"status"});
-  if (by_status.size() != found.solves.by_status.size()) throw h5::Error("/status lists other endings of solves");
+  if (by_status.size() != listed_statuses(file)) throw h5::Error("/status lists other endings of solves");
   std::ranges::copy(by_status, found.solves.by_status.begin());
   result.found = std::move(found);
 }

@@ -197,14 +197,15 @@ void read(const h5::File& file, StoredResult& result) {
     throw h5::Error("/edge does not have one position more than /bin, or there is no bin");
   }
   result.verdicts = read_limits(file, result);
+  found.solves = read_solver(file, kByPose);
   found.effects = read_effects(file);
   found.machines = read_machines(file);
   if (result.verdicts && result.verdicts->judge == Judge::yield) {
     if (!found.machines || !found.machines->yield) throw h5::Error("/limits judges a yield that is not there");
-    result.verdicts->yield = judge_yield(*found.machines->yield, file.attribute<double>("/limits", "yield").at(0));
+    result.verdicts->yield =
+        judge_yield(*found.machines->yield, found.total(), file.attribute<double>("/limits", "yield").at(0));
   }
   result.convergence = read_convergence(file, kConvergence);
-  found.solves = read_solver(file, kByPose);
   result.varied = {std::string(kAllFactors)};
   result.failures = read_failures(file, result);
   result.found = std::move(found);

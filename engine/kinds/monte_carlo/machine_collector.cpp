@@ -173,8 +173,8 @@ MonteCarloResult MachineCollector::result() && {
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(*analysis_);
   if (analysis_->limits.empty()) return std::move(found);
   if (asked.judge == Judge::yield) {
-    found.verdicts =
-        judge_machines(analysis_->limits, asked.yield, *found.machines->yield, counts_.machines, counts_.largest);
+    found.verdicts = judge_machines(analysis_->limits, asked.yield, *found.machines->yield, total(), counts_.machines,
+                                    counts_.largest);
     return std::move(found);
   }
   std::vector<QuantileSketch> overall(table_->responses());

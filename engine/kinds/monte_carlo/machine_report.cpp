@@ -185,7 +185,9 @@ std::vector<Table> machine_tables(const StoredResult& result) {
     // Where limits are judged by other numbers.
     if (result.verdicts && !result.verdicts->yield) {
       tables.insert(tables.begin(),
-                    yield_table(result, {.judge = Judge::yield, .limits = {}, .yield = judge_yield(*yield, 0.0)}));
+                    yield_table(result, {.judge = Judge::yield,
+                                         .limits = {},
+                                         .yield = judge_yield(*yield, monte_carlo_of(result).total(), 0.0)}));
     }
     tables.push_back(rejects_table(result));
   }

@@ -166,7 +166,7 @@ EffectResult effect_result(std::span<const PoseIndex> poses, std::span<const Bin
   return found;
 }
 
-YieldVerdict judge_yield(const YieldResult& found, double asked) {
+YieldVerdict judge_yield(const YieldResult& found, const SolveCounts& solves, double asked) {
   using enum YieldVerdict::Decision;
   YieldVerdict verdict{.decision = not_asked,
                        .asked = asked,
@@ -176,7 +176,8 @@ YieldVerdict judge_yield(const YieldResult& found, double asked) {
                        .ci_high = found.ci_high,
                        .machines = found.machines,
                        .rejects = found.rejects,
-                       .unsolved = found.rejects - found.unsolved_pass_rejects};
+                       .unsolved = found.rejects - found.unsolved_pass_rejects,
+                       .solves = solves};
   if (found.parts) verdict.with_parts = Interval{found.parts->ci_low, found.parts->ci_high};
   if (asked == 0.0) return verdict;
   const std::uint64_t good = found.machines - found.rejects;
@@ -187,8 +188,9 @@ YieldVerdict judge_yield(const YieldResult& found, double asked) {
 }
 
 LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked, const YieldResult& found,
-                             const MachineCounts& counts, std::span<const QuantileSketch> largest) {
-  LimitVerdicts verdicts{.judge = Judge::yield, .limits = {}, .yield = judge_yield(found, asked)};
+                             const SolveCounts& solves, const MachineCounts& counts,
+                             std::span<const QuantileSketch> largest) {
+  LimitVerdicts verdicts{.judge = Judge::yield, .limits = {}, .yield = judge_yield(found, solves, asked)};
   const std::uint64_t n = counts.machines;
   for (const ResponseLimit& limit : limits) {
     LimitVerdict verdict{.response = limit.response, .limit = limit.most, .value = kNaN, .tried = n};

@@ -48,12 +48,14 @@ std::vector<BinSpread> bin_spreads(const Plan& plan);
 EffectResult effect_result(std::span<const PoseIndex> poses, std::span<const BinSpread> errors, double conf_level);
 
 /// What is shown of the yield that is asked for, 0 for none: kept if the one-sided lower limit at the result's level is
-/// at least that, not kept if the upper limit is below it.
-YieldVerdict judge_yield(const YieldResult& found, double asked);
+/// at least that, not kept if the upper limit is below it. solves: of the
+/// machines at all poses.
+YieldVerdict judge_yield(const YieldResult& found, const SolveCounts& solves, double asked);
 
 /// Judges the limits of a study of machines: all together, and each alone. largest: [R] of the machines that are solved
-/// at each pose. counts: as for yield_of.
+/// at each pose. counts: as for yield_of; solves: as for judge_yield.
 LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked, const YieldResult& found,
-                             const MachineCounts& counts, std::span<const QuantileSketch> largest);
+                             const SolveCounts& solves, const MachineCounts& counts,
+                             std::span<const QuantileSketch> largest);
 
 }  // namespace poesy

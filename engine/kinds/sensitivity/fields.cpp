@@ -150,7 +150,7 @@ void append_local_tables(CsvTables& tables, const StoredResult& result) {
 
 void append_solver_tables(CsvTables& tables, const StoredResult& result) {
   const std::size_t poses = result.poses.size();
-  for (const SolveNumber& number : solve_numbers()) {
+  for (const SolveNumber& number : solve_numbers(sensitivity_of(result).solves)) {
     CsvTable table = lines_of_factors(result, number.name);
     table.at_poses = {poses, "1", [&result, poses, get = number.get](std::size_t p, std::size_t m) {
                         return get(sensitivity_of(result).solves[p * poses + m]);

@@ -152,9 +152,10 @@ void check_reference(const TolerancesOptions& options, const StoredResult& resul
 
 void check_prediction(const StoredResult& result, const MeanSquare& response, const std::string& name) {
   if (std::isnan(response.background)) {
-    throw InputError({},
-                     fmt::format("--limit: {} with the background alone is not known, for a pose was not solved", name),
-                     "raise [solver] max_iterations and run the study again, or leave out --limit");
+    throw InputError(
+        {}, fmt::format("--limit: {} with the background alone is not known, for a pose was not solved", name),
+        "where the background cannot be assembled, lower it; else raise [solver] max_iterations; or leave out "
+        "--limit");
   }
   for (std::size_t p = 0; p < response.effects.size(); ++p) {
     if (!std::isnan(response.effects[p])) continue;

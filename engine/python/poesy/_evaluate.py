@@ -26,8 +26,9 @@ class Evaluation(dict[str, Floats]):
     Attributes
     ----------
     status : ndarray of uint8 [M x N] or [M]
-        How each solve ended, a position in `status_names`. 0: converged.
+        How each solve ended, a position in `status_names`. 0: converged; 5: a machine that cannot be assembled.
     status_names : tuple of str
+        not_assembled, the last one, only where a solve ended so.
     converged : ndarray of bool
         Where `status` is 0. Elsewhere a response says little; the program leaves it out of its statistics.
     units : dict of str

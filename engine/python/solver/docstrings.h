@@ -21,8 +21,8 @@ inline constexpr char kFileErrorText[] = "A file cannot be read: the program's o
 
 inline constexpr char kStatusText[] = R"(How one solve ended: the numbers of status arrays, names as in result files.
 
-converged and stagnated (as exact as the arithmetic allows) are solutions. iteration_cap, singular and non_finite are
-none: their responses are NaN.)";
+converged and stagnated (as exact as the arithmetic allows) are solutions. iteration_cap, singular, non_finite and
+not_assembled (the loops of this machine cannot be closed) are none: their responses are NaN.)";
 
 inline constexpr char kEvaluatorText[] = R"(A mechanism and the errors that are given of it.
 

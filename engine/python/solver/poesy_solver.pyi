@@ -19,6 +19,7 @@ class Status(enum.IntEnum):
     iteration_cap = 2
     singular = 3
     non_finite = 4
+    not_assembled = 5
 
 class InputError(ValueError): ...
 class FileError(OSError): ...

@@ -117,7 +117,7 @@ Answer answer(const ReportKind& kind, const StoredResult& result) {
   const std::string all = counted(solves.total(), "solve", "solves");
   sure->second += solves.not_converged() == 0
                       ? fmt::format(" All {} converged.", all)
-                      : fmt::format(" {} of {} did not converge ({}).", count_text(solves.not_converged()), all,
+                      : fmt::format(" {} of {} {} ({}).", count_text(solves.not_converged()), all, why_unsolved(solves),
                                     percent_text(share_not_converged(solves)));
   return lines;
 }

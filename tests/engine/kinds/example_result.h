@@ -344,7 +344,7 @@ class Example {
     result.details = 8;
     for (std::size_t k = 0; k < 2 * rows; ++k) result.response.push_back(static_cast<double>(k) / 8.0);
     for (std::size_t k = 0; k < 8 * rows; ++k) result.detail.push_back(static_cast<double>(k));
-    for (std::size_t k = 0; k < rows; ++k) result.status.push_back(static_cast<SolveStatus>(k % kStatusNames.size()));
+    for (std::size_t k = 0; k < rows; ++k) result.status.push_back(static_cast<SolveStatus>(k % 5));
     for (std::size_t k = 0; k < rows; ++k) result.iterations.push_back(static_cast<std::uint32_t>(10 + k));
     for (std::size_t k = 0; k < 2 * kPoses; ++k) result.joint_displacement.push_back(static_cast<double>(k) / 4.0);
     return result;

@@ -86,7 +86,28 @@ TEST_F(MonteCarloFile, HasNamedAxesAndStatesItsError) {
   EXPECT_EQ(file.attribute<double>("/monte_carlo/quantiles", "quantile_relative_error").at(0), 1.0 / 512.0);
   EXPECT_EQ(file.attribute<double>("/monte_carlo/mean_ci_low", "conf_level").at(0), 0.9);
   EXPECT_EQ(file.read<std::uint64_t>("/solver/not_converged"), (std::vector<std::uint64_t>{3, 4, 5, 6}));
-  EXPECT_EQ(file.shape("/solver/solves_by_status"), (h5::Shape{kStatusNames.size(), kPoses}));
+  EXPECT_EQ(file.shape("/solver/solves_by_status"), (h5::Shape{5, kPoses}));
+}
+
+TEST_F(MonteCarloFile, ListsMachinesThatCannotBeAssembledWhereThereAreAny) {
+  MonteCarloResult written = example_.monte_carlo();
+  written.solves[1].by_status[static_cast<std::size_t>(SolveStatus::not_assembled)] = 4;
+  written.failures = {{0, PoseIndex{1}, {SampleIndex{7}, SolveStatus::not_assembled}}};
+  const std::string path = folder_.file("impossible.h5");
+  write_result(path, example_.study, example_.poses, written, example_.facts);
+  const h5::File file = h5::File::open(path);
+  EXPECT_EQ(file.read<std::string>("/status").at(5), "not_assembled");
+  EXPECT_EQ(file.shape("/solver/solves_by_status"), (h5::Shape{6, kPoses}));
+  EXPECT_EQ(file.attribute<std::string>("/solver/failed_status", "status_names"), file.read<std::string>("/status"));
+  const StoredResult stored = read_result(path);
+  EXPECT_EQ(monte_carlo_of(stored).solves[1].by_status, written.solves[1].by_status);
+  EXPECT_EQ(stored.failures, written.failures);
+  EXPECT_EQ(h5::File::open(path_).read<std::string>("/status").size(), 5u)
+      << "as a result without such machines ever was";
+  const std::string tables = folder_.file("tables");
+  export_tables(path, tables);
+  EXPECT_NE(test::read_bytes(tables + "/not_converged.csv").find("solves_non_finite,solves_not_assembled\n"),
+            std::string::npos);
 }
 
 /// Files of version 0.2 have no quantile_error.

@@ -353,5 +353,22 @@ TEST(NoIndices, HaveTheirTrueReason) {
   EXPECT_NE(notes_of_indices(result).find("linear_deformation does not vary"), std::string::npos);
 }
 
+TEST(FailuresText, TellsWhatCannotBeAssembledFromWhatDidNotConverge) {
+  StoredResult result = example();
+  SolveCounts& solves = monte_carlo_in(result).solves[2];
+  const auto text = [&] { return failures_text(result, tally_of(result), "r.h5", kUnlimitedWidth); };
+  solves.by_status[5] = 360;
+  EXPECT_EQ(text(), "360 of 36 360 solves (0.99 %) found no solution, because the machine cannot be assembled\n");
+  EXPECT_EQ(unsolved_in_short(solves), "0 not converged, 360 cannot be assembled");
+  solves.by_status[5] = 300;
+  solves.by_status[2] = 60;
+  EXPECT_EQ(text(),
+            "360 of 36 360 solves (0.99 %) found no solution, 300 of them because the machine cannot be assembled\n");
+  EXPECT_EQ(unsolved_in_short(solves), "60 not converged, 300 cannot be assembled");
+  const std::string told = unsolved_text(result, tally_of(result));
+  EXPECT_NE(told.find(kAssemblyAdvice), std::string::npos) << told;
+  EXPECT_EQ(told.find("unfinished iterates"), std::string::npos) << told;
+}
+
 }  // namespace
 }  // namespace poesy
