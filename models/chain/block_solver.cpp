@@ -188,10 +188,10 @@ void BlockSolver::add_frame(const Limb& limb, std::size_t j, std::size_t frame, 
     varies = true;
   }
   if (!varies) return add_piece(frame_with_error(limb, j, error));
-  const bool at_joint = limb.errors_at_joints && (j == 0 || piece.inverted);
-  if (at_joint || piece.inverted) add_piece(limb.before_error(j));
+  const bool at_joint = limb.errors_at_joints && piece.turns && (j == 0 || piece.inverted);
+  if (at_joint || piece.inverted) add_piece(at_joint ? limb.before_error(j) : limb.home[j]);
   pieces_.push_back(piece);
-  if (at_joint || !piece.inverted) add_piece(limb.behind_error(j));
+  if (at_joint || !piece.inverted) add_piece(at_joint ? limb.behind_error(j) : limb.home[j]);
 }
 
 void BlockSolver::close_segment() {

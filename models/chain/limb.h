@@ -102,7 +102,8 @@ lie::Transform<T> error_transform(const FrameError<T>& error) {
 
 /// Fixed frame j of the limb with its error, g_ij^ge of Eqs. 27-28: the error multiplies from the left, but for the
 /// last frame, where its inverse multiplies from the right; with errors_at_joints between the translation to the first
-/// joint and the rest, and between the rotation of the last frame and the rest.
+/// joint and the rest, and between the rotation of the last frame and the rest. Where it stands is all one for an error
+/// without an angle, which then has the same bits.
 template <class T>
 lie::Transform<T> frame_with_error(const Limb& limb, std::size_t j, const FrameError<T>& error) {
   const auto cast = [](const lie::Transform<double>& g) {
@@ -110,7 +111,8 @@ lie::Transform<T> frame_with_error(const Limb& limb, std::size_t j, const FrameE
   };
   const bool is_last = j + 1 == limb.frames();
   const lie::Transform<T> delta = error_transform(error);
-  if (limb.errors_at_joints && (j == 0 || is_last)) {
+  const bool turns = !(error.template head<3>().array() == T(0)).all();
+  if (limb.errors_at_joints && turns && (j == 0 || is_last)) {
     return cast(limb.before_error(j)) * (is_last ? delta.inverse() : delta) * cast(limb.behind_error(j));
   }
   const lie::Transform<T> home = cast(limb.home[j]);

@@ -5,8 +5,8 @@
 
 #include "models/chain/limb.h"
 
-/// Perfect limbs whose numbers are rounded (ParallelChain::rounded): they do not quite fit each other, and hold the
-/// platform as well as they can.
+// Perfect limbs whose numbers are rounded (ParallelChain::rounded): they do not quite fit each other, and hold the
+// platform as well as they can.
 namespace poesy::chain {
 
 /// Displacements [all joints] (rad, m) near these with J^T W delta_mu = 0, drives as they are: where a solve without

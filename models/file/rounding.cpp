@@ -14,7 +14,7 @@ constexpr double kLargestZero = 1e-2;
 /// Ranks that are tried.
 constexpr std::size_t kMostGaps = 4;
 /// Singular values that are zero but for rounding vary over the workspace by less than this factor.
-constexpr double kMargin = 30.0;
+constexpr double kMargin = 5.0;
 
 /// What a check finds wrong; nothing where it passes.
 template <class Check>
