@@ -67,7 +67,8 @@ std::string warning_text(const Study& study, const SolveCounts& solves) {
   }
   const std::uint64_t others = solves.not_converged() - impossible;
   return fmt::format(
-      "{:.3g} % of the machines cannot be assembled{}: a yield counts them as rejects, all else leaves "
+      "{:.3g} % of the samples are machines that cannot be assembled{}: a yield counts them as rejects, all else "
+      "leaves "
       "them out; {}",
       100.0 * share_of(impossible, solves.total()),
       others == 0 ? std::string()

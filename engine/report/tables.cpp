@@ -123,16 +123,16 @@ Cell needed_cell(const ConvergenceResult& found, std::size_t at) {
 /// What is known of rejects that no solved pose rejects.
 std::string unsolved_note(const YieldVerdict& yield) {
   const bool one = yield.unsolved == 1;
-  const std::string begin = fmt::format("{} of the rejects {} within all limits where {} solved",
-                                        count_text(yield.unsolved), one ? "is" : "are", one ? "it is" : "they are");
+  const std::string rejects = count_text(yield.unsolved) + " of the rejects ";
   const std::uint64_t impossible = yield.solves.not_assembled();
-  if (impossible == 0) {
-    return begin + fmt::format("; if that made {} good, the yield would be {}", one ? "it" : "them",
-                               percent_text(share_of(yield.machines - yield.rejects + yield.unsolved, yield.machines)));
+  if (impossible > 0) {
+    return fmt::format("{}cannot be assembled{} at some pose; elsewhere {} within all limits", rejects,
+                       impossible == yield.solves.not_converged() ? "" : ", or not solved,",
+                       one ? "it is" : "they are");
   }
-  return begin + (impossible == yield.solves.not_converged()
-                      ? ", and cannot be assembled elsewhere"
-                      : ", and cannot be assembled elsewhere, or the solve did not converge there");
+  return rejects + fmt::format("{} within all limits where {} solved; if that made {} good, the yield would be {}",
+                               one ? "is" : "are", one ? "it is" : "they are", one ? "it" : "them",
+                               percent_text(share_of(yield.machines - yield.rejects + yield.unsolved, yield.machines)));
 }
 
 }  // namespace

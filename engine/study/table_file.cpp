@@ -372,6 +372,8 @@ ErrorTable read_errors(const std::string& path, const Model& model) {
   ErrorTable table;
   for (const std::string_view name : names_of_numbers(columns)) table.factors.push_back(*description.find_factor(name));
   if (table.factors.empty()) {
+    const auto other = std::ranges::find(columns, TableColumn::Role::text, &TableColumn::role);
+    if (other != columns.end()) refuse_unknown(other->place, other->name, known);
     throw InputError({path, 1, 1}, "the table has no column of errors", "name at least one factor of the model");
   }
   const auto check = [&](const Place& place, std::size_t n, const TableColumn& column, double value) {

@@ -89,10 +89,11 @@ struct AnyShape {
 /// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
 /// is carried along it to first order instead of being evaluated again.
 ///
-/// A root is doubted where N - 2 C is not positive definite for the residual delta_mu, C = M - N; as published, where
-/// residuals are large, only if N - 4 C is not either for the part of it that joints could take away at nominal
-/// displacements. It may be that of a machine that cannot be assembled: it has the status not_assembled for the time
-/// being, and Assembly decides.
+/// A root may be that of a machine that cannot be assembled. It is doubted where N - 2 C is not positive definite for
+/// the residual delta_mu, C = M - N; as published, where residuals are large, only if N - 4 C is not either for the
+/// part of it that joints could take away at nominal displacements; by a metric also where N - 2 C was not on the way,
+/// and wherever the first pass did not find it. It has the status not_assembled for the time being, and Assembly
+/// decides.
 ///
 /// By a metric (Weighted) the equation is J^T W delta_mu = 0, f = J^T W delta_mu and N = J^T W J. The length s of a
 /// step is the largest distance by which one joint's part of it moves the platform's points, over the reach. The first
@@ -235,6 +236,11 @@ class BlockKernel {
   template <class Diagonal>
   T step_length(const T* x, Diagonal diagonal) const;
 
+  // block_kernel_doubt.h: which roots are doubted.
+  void part_of_joints();
+  typename T::MaskType closes();
+  unsigned doubted(unsigned converged);
+
   // block_kernel_meeting.h: solves of limbs that can meet.
   struct Meeting {
     T matrix[6][6];  ///< lower triangle of the sum of P_i, then its factor
@@ -281,9 +287,6 @@ class BlockKernel {
   T factor(Entry entry, double ratio);
   typename T::MaskType is_positive(double of_n, double of_m);
   typename T::MaskType contracts();
-  void part_of_joints();
-  typename T::MaskType closes();
-  unsigned doubted(unsigned converged);
   typename T::MaskType gauss_newton_step(T* x);
   typename T::MaskType newton_step(T* x);
   void newton_step_again(T* x) const;
@@ -325,7 +328,7 @@ class BlockKernel {
   T* pivot_;  ///< 1 / pivot of Newton's matrix
   std::size_t in_place_ = 0;
   std::uint32_t spent_ = 0;  ///< iterations of earlier passes
-  unsigned clear_ = 0;       ///< lanes where N - 2 C was positive definite when contracts() was asked last
+  unsigned clear_ = 0;       ///< lanes where N - 2 C has been positive definite whenever contracts() was asked
 };
 
 }  // namespace poesy::chain

@@ -32,7 +32,7 @@ unsigned BlockKernel<T, Shape, Measure>::iterate(std::size_t at, unsigned open, 
   constexpr bool newton = pass != KernelPass::published;
   constexpr bool last_pass = !newton || pass == KernelPass::rescue;
   start<pass>(at);
-  clear_ = kAllLanes;
+  clear_ = pass == KernelPass::direct ? kAllLanes : 0;
   if (pass == KernelPass::direct && start_.fits > 0 && start_.inverse != nullptr) open = finish_fitted(at, open);
   // Gauss-Newton looks at the residual after the last step, too.
   const std::uint32_t evaluations = newton ? rounds : rounds + 1;

@@ -382,7 +382,7 @@ std::vector<double> norms_of(const Model& model, std::size_t response, std::span
   return norms;
 }
 
-TEST_P(EveryMechanism, NamesTheVectorBehindEachNorm) {
+TEST_P(EveryMechanism, NamesTheVectorOfEachNorm) {
   constexpr std::size_t kSamples = 5;
   constexpr double kSize = 1e-4;
   const ModelDescription& model = description();

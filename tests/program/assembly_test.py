@@ -142,7 +142,7 @@ class Assembly(ProgramTest):
                 self.assertEqual(file["solver/not_converged"][:].sum(), impossible)
             # Five standard errors of 8000 machines: a right program fails once in two million.
             self.assertLess(abs(found - truth), 5.0 * np.sqrt(truth * (1.0 - truth) / 8000), mechanism.file)
-            self.assertIn("% of the machines cannot be assembled", said)
+            self.assertIn("% of the samples are machines that cannot be assembled", said)
             self.assertIn("more iterations do not help", said)
             self.assertIn(f"0 not converged, {impossible} cannot be assembled", said)
             for wrong in ("max_iterations", "if that made"):
@@ -160,7 +160,8 @@ class Assembly(ProgramTest):
     def test_what_is_said(self):
         self.run_study(FiveBar())
         shown = self.succeeds("show", "mc.h5")
-        self.assertIn("cannot be assembled elsewhere", " ".join(shown.split()))
+        self.assertIn("of the rejects cannot be assembled at some pose; elsewhere they are within all limits",
+                      " ".join(shown.split()))
         self.assertIn("because the machine cannot be assembled", " ".join(shown.split()))
         self.assertNotIn("would be", shown)
         found = json.loads(self.succeeds("show", "mc.h5", "--json"))

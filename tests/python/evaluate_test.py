@@ -107,7 +107,7 @@ class Evaluate(FolderTest):
 
     def test_what_does_not_converge_is_data(self):
         with self.assertWarnsRegex(poesy.PoesyWarning, "100 % of the samples did not converge"):
-            found = poesy.evaluate("2upr-rpu", self.poses, self.errors * 100, solver=HOPELESS)
+            found = poesy.evaluate("2upr-rpu", self.poses, self.errors * 10, solver=HOPELESS)
         self.assertFalse(found.converged.any())
         self.assertEqual({found.status_names[code] for code in found.status.ravel()}, {"iteration_cap"})
 

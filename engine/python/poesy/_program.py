@@ -35,7 +35,8 @@ class Progress:
     stage
         Counts from 1; only studies that solve in several stages get beyond it.
     text
-        The program's line: poses found while it looks for them, then share done, solves a second, samples that did not converge, time left.
+        The program's line: poses found while it looks for them, then share done, solves a second, samples that did
+        not converge, time left.
     """
 
     share: float

@@ -111,9 +111,9 @@ TEST(ErrorRange, HoldsTheSharesBelow) {
   EXPECT_NEAR(triangular.length(), 4.0, 1e-6);
   quantiles = ErrorRange::grid();
   Distribution::measured({0, 0, 0, 0, 1, 1, 1, 1, 2}).transform(quantiles);
-  const ErrorRange equal(quantiles, 0.75);  // half of the values are in one place
+  const ErrorRange equal(quantiles, 6.0 / 9.0);  // four of the nine values are in one place
   EXPECT_NEAR(equal.below(-1e-9), 0.0, 1e-12);
-  EXPECT_NEAR(equal.below(1e-9), 0.375, 0.002);
+  EXPECT_NEAR(equal.below(1e-9), 4.0 / 9.0, 0.002);
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ TEST_P(SketchOf, AgreesWithASortAsStated) {
   }
 }
 
-TEST_P(SketchOf, SameBitsHoweverItIsMerged) {
+TEST_P(SketchOf, SameBitsWhenMerged) {
   Engine engine(12);
   std::vector<double> values = drawn(shapes()[GetParam()], 3000, engine);
   const QuantileSketch whole = of(values);

@@ -78,7 +78,7 @@ TEST(BackgroundOfAnErrorThatVaries, IsRefusedAtItsName) {
   refused("factors = \"deforming\"\nbackground = { factors = ^\"deforming\" }\n", {"all vary", "leave it out"});
 }
 
-TEST(BackgroundOfAnErrorThatVaries, IsNoMistakeWhereASetHoldsOthersOrACaseSetsIt) {
+TEST(BackgroundOfAnErrorThatVaries, IsNoMistakeWhereASetHoldsOthers) {
   EXPECT_NO_THROW(held("{ factors = \"all\" }", "", "[\"delta_2\"]"));
   EXPECT_NO_THROW(
       study_with("[analysis]\nkind = \"evaluate\"\nbackground = { factors = [\"delta_1\"], linear = \"7 mm\" }\n"

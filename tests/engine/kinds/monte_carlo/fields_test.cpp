@@ -89,7 +89,7 @@ TEST_F(MonteCarloFile, HasNamedAxesAndStatesItsError) {
   EXPECT_EQ(file.shape("/solver/solves_by_status"), (h5::Shape{5, kPoses}));
 }
 
-TEST_F(MonteCarloFile, ListsMachinesThatCannotBeAssembledWhereThereAreAny) {
+TEST_F(MonteCarloFile, ListsMachinesThatCannotBeAssembled) {
   MonteCarloResult written = example_.monte_carlo();
   written.solves[1].by_status[static_cast<std::size_t>(SolveStatus::not_assembled)] = 4;
   written.failures = {{0, PoseIndex{1}, {SampleIndex{7}, SolveStatus::not_assembled}}};
