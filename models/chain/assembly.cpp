@@ -38,15 +38,17 @@ bool is_positive(Eigen::MatrixXd matrix, const Eigen::VectorXd& diagonal) {
 /// The way of the passive joints to where the mismatch of a machine is least; see linalg::comes_to_rest().
 class Assembly::Descent {
  public:
-  Descent(Assembly& assembly, std::span<const lie::Transform<double>> frames)
-      : assembly_(&assembly),
-        frames_(frames),
-        q_(assembly.nominal_),
-        delta_mu_(assembly.delta_mu_.size()),
-        tried_delta_mu_(delta_mu_.size()) {
-    assembly.loops_.evaluate(frames, q_, delta_mu_);
-    columns_.assign(assembly.loops_.columns().begin(), assembly.loops_.columns().end());
-    assembly.equations_.hold_idle(columns_, &assembly.W_);
+  explicit Descent(Assembly& assembly)
+      : assembly_(&assembly), delta_mu_(assembly.delta_mu_.size()), tried_delta_mu_(delta_mu_.size()) {}
+
+  /// From nominal displacements, for these fixed frames.
+  void begin(std::span<const lie::Transform<double>> frames) {
+    Assembly& of = *assembly_;
+    frames_ = frames;
+    q_.assign(of.nominal_.begin(), of.nominal_.end());
+    of.loops_.evaluate(frames, q_, delta_mu_);
+    columns_.assign(of.loops_.columns().begin(), of.loops_.columns().end());
+    of.equations_.hold_idle(columns_, &of.W_);
   }
 
   double sum_of_squares() const { return chain::sum_of_squares(delta_mu_, assembly_->W_); }
@@ -55,7 +57,7 @@ class Assembly::Descent {
   double try_step(double damping) {
     Assembly& of = *assembly_;
     if (!of.equations_.solve(columns_, delta_mu_, &of.W_, damping)) return kNaN;
-    tried_ = q_;
+    tried_.assign(q_.begin(), q_.end());
     double length2 = 0.0;
     for (std::size_t a = 0; a < of.passive_.size(); ++a) {
       const double step = of.equations_.solution()[a];
@@ -91,7 +93,11 @@ Assembly::Assembly(const ParallelChain& chain)
       loops_(chain),
       passive_(passive_positions(chain)),
       delta_mu_(6 * chain.pairs.size()),
-      part_(delta_mu_.size()) {}
+      part_(delta_mu_.size()),
+      pull_(chain.limbs.size()),
+      descent_(std::make_unique<Descent>(*this)) {}
+
+Assembly::~Assembly() = default;
 
 void Assembly::prepare(std::span<const double> displacements, const Metric* metric) {
   POESY_EXPECTS(displacements.size() == chain_->joints());
@@ -105,8 +111,8 @@ bool Assembly::is_impossible(std::span<const lie::Transform<double>> frames) {
   if (!is_asked_) is_singular_ = !first_order_.prepare(nominal_, &W_);
   is_asked_ = true;
   if (is_singular_) return false;
-  Descent descent(*this, frames);
-  return linalg::comes_to_rest(descent, kRest) && is_open(frames, descent.displacements());
+  descent_->begin(frames);
+  return linalg::comes_to_rest(*descent_, kRest) && is_open(frames, descent_->displacements());
 }
 
 /// Whether the loops are open where the joints rest.
@@ -119,18 +125,18 @@ bool Assembly::is_open(std::span<const lie::Transform<double>> frames, std::span
 }
 
 /// The symmetric part of C.
-Eigen::MatrixXd Assembly::bend(std::span<const double> delta_mu) const {
+Eigen::MatrixXd Assembly::bend(std::span<const double> delta_mu) {
   using Screw = lie::Screw<double>;
   const std::span<const Screw> columns = loops_.columns();
   const auto limb = [&](std::size_t joint) { return first_order_.limb_of_joint(joint); };
-  std::vector<Screw> pull(chain_->limbs.size(), Screw::Zero());
+  std::ranges::fill(pull_, Screw::Zero());
   const auto size = static_cast<Eigen::Index>(columns.size());
   Eigen::MatrixXd C = Eigen::MatrixXd::Zero(size, size);
   for (std::size_t n = 0; n < chain_->pairs.size(); ++n) {
     const auto [k, i] = chain_->pairs[n];
     const Screw mu = Eigen::Map<const Screw>(delta_mu.data() + 6 * n);
-    pull[i] += W_ * mu;
-    pull[k] -= W_ * mu;
+    pull_[i] += W_ * mu;
+    pull_[k] -= W_ * mu;
     for (std::size_t b = 0; b < columns.size(); ++b) {
       if (limb(b) != i && limb(b) != k) continue;
       const double half = limb(b) == i ? 0.5 : -0.5;
@@ -148,7 +154,7 @@ Eigen::MatrixXd Assembly::bend(std::span<const double> delta_mu) const {
     for (std::size_t b = 0; b < a; ++b) {
       if (limb(a) != limb(b)) continue;
       C(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) -=
-          lie::bracket(columns[b], columns[a]).dot(pull[limb(a)]);
+          lie::bracket(columns[b], columns[a]).dot(pull_[limb(a)]);
     }
   }
   return 0.5 * (C + C.transpose());

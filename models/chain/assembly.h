@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,9 @@ class Assembly {
  public:
   /// The chain must outlive it.
   explicit Assembly(const ParallelChain& chain);
+  ~Assembly();
+  Assembly(const Assembly&) = delete;
+  Assembly& operator=(const Assembly&) = delete;
 
   /// At these nominal displacements [all joints] (rad, m), by this metric (null: W = 1), best that of the points where
   /// the limbs hold the platform, however the solver weighs: whether parts fit together depends on no unit.
@@ -51,7 +55,7 @@ class Assembly {
   class Descent;
 
   bool is_open(std::span<const lie::Transform<double>> frames, std::span<const double> displacements);
-  Eigen::MatrixXd bend(std::span<const double> delta_mu) const;
+  Eigen::MatrixXd bend(std::span<const double> delta_mu);
 
   const ParallelChain* chain_;
   std::vector<double> nominal_;  ///< [all joints]
@@ -62,9 +66,11 @@ class Assembly {
   FirstOrder first_order_;
   NormalEquations equations_;
   Loops loops_;
-  std::vector<std::size_t> passive_;  ///< position of each passive joint among all joints
-  std::vector<double> delta_mu_;      ///< [6 x pairs] where the joints rest
-  std::vector<double> part_;          ///< [6 x pairs] r
+  std::vector<std::size_t> passive_;      ///< position of each passive joint among all joints
+  std::vector<double> delta_mu_;          ///< [6 x pairs] where the joints rest
+  std::vector<double> part_;              ///< [6 x pairs] r
+  std::vector<lie::Screw<double>> pull_;  ///< [limbs] scratch
+  std::unique_ptr<Descent> descent_;
 };
 
 }  // namespace poesy::chain

@@ -127,6 +127,9 @@ class GroupSolver {
 };
 
 void judge(const Case& pair, Counts& counts, Findings& findings) {
+  // No method solves what cannot be assembled.
+  constexpr SolveStatus kImpossible = SolveStatus::not_assembled;
+  if (pair.gauss_newton.status == kImpossible && pair.newton.status == kImpossible) return;
   const bool published_solved = solved(pair.gauss_newton.status);
   const bool newton_solved = solved(pair.newton.status);
   ++counts.pairs;
