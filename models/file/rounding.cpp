@@ -1,6 +1,7 @@
 #include "models/file/rounding.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -13,8 +14,9 @@ namespace {
 constexpr double kLargestZero = 1e-2;
 /// Ranks that are tried.
 constexpr std::size_t kMostGaps = 4;
-/// Singular values that are zero but for rounding vary over the workspace by less than this factor.
-constexpr double kMargin = 5.0;
+/// By how much singular values that are zero but for rounding may be larger elsewhere; the second where numbers are off
+/// by so much that the first leaves nothing to move.
+constexpr std::array kMargins{5.0, 1.5};
 
 /// What a check finds wrong; nothing where it passes.
 template <class Check>
@@ -32,6 +34,7 @@ struct Gap {
   std::size_t rank;
   double above;
   double below;
+  double margin;  ///< of kMargins
 
   double ratio() const { return above / std::max(below, kRankThreshold); }
   /// Whether the mechanism has that rank at this configuration too; the gap is then no wider than there.
@@ -42,7 +45,7 @@ struct Gap {
   }
   /// What tells the sides apart; nearer to the lower one, because the upper one falls near singular poses.
   double threshold() const {
-    return kMargin * below <= kRankThreshold ? kRankThreshold : std::min(kMargin * below, std::sqrt(above * below));
+    return margin * below <= kRankThreshold ? kRankThreshold : std::min(margin * below, std::sqrt(above * below));
   }
 };
 
@@ -50,7 +53,7 @@ struct Gap {
 std::vector<Gap> gaps_of(const std::vector<double>& values) {
   std::vector<Gap> list;
   for (std::size_t rank = 1; rank < values.size(); ++rank) {
-    const Gap gap{rank, values[rank - 1] / values[0], values[rank] / values[0]};
+    const Gap gap{rank, values[rank - 1] / values[0], values[rank] / values[0], kMargins.front()};
     if (gap.above > kRankThreshold && gap.below <= kLargestZero && gap.threshold() < gap.above) list.push_back(gap);
   }
   std::ranges::stable_sort(list, std::ranges::greater(), &Gap::ratio);
@@ -113,10 +116,13 @@ Checked checked(Mechanism mechanism, Workspace workspace) {
   });
   if (!problem && !open) return {std::move(mechanism), std::move(home)};
   std::optional<InputError> nearly;
-  for (const Gap& gap : gaps_of(home.singular_values)) {
-    Attempt attempt = rounded(mechanism, gap);
-    if (attempt.checked) return *std::move(attempt.checked);
-    if (!nearly) nearly = std::move(attempt.misfit);
+  for (Gap gap : gaps_of(home.singular_values)) {
+    for (const double margin : kMargins) {
+      gap.margin = margin;
+      Attempt attempt = rounded(mechanism, gap);
+      if (attempt.checked) return *std::move(attempt.checked);
+      if (!nearly) nearly = std::move(attempt.misfit);
+    }
   }
   if (problem) throw nearly.value_or(*problem);
   return {std::move(mechanism), std::move(home)};

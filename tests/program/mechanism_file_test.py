@@ -269,7 +269,7 @@ class MechanismFile(ProgramTest):
             numpy.testing.assert_allclose(found["rounded"][response], found["exact"][response], rtol=1e-4, atol=1e-13)
         self.assertTrue((found["exact"]["gap"] < 1e-15).all())
         self.assertTrue((found["rounded"]["gap"] > 1e-9).all(), "what the numbers leave is subtracted from nothing")
-        leaning = exact.replace(upright, 'at = "elbow", axis = [0.006, 0, 1]')
+        leaning = exact.replace(upright, 'at = "elbow", axis = [0.008, 0, 1]')
         self.write("rrr3.toml", leaning)
         done = self.poesy("models", "rrr3.toml")
         self.assertEqual(done.returncode, 2)

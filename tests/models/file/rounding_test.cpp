@@ -332,6 +332,8 @@ TEST(Rounding, NamesTheJointWhoseNumbersWouldDo) {
       << axis;
   EXPECT_NE(axis.find("look at joint 'B' of limb 2: with its axis along ("), std::string::npos) << axis;
   EXPECT_NE(axis.find(") instead of (0.00499994, 0, 0.999988), "), std::string::npos) << axis;
+  EXPECT_NE(problem_of(rrr3(0.02)).find("look at joint 'B' of limb 2: with its axis along ("), std::string::npos)
+      << problem_of(rrr3(0.02));
   EXPECT_EQ(problem_of(spherical("")), "read");
   EXPECT_EQ(problem_of(spherical("0.001")), "read");
   const std::string point = problem_of(spherical("0.5"));
