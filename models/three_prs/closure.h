@@ -92,10 +92,9 @@ using ClosureObserver = std::function<void(const ClosureIteration&)>;
 ///                  determinant of the Jacobian has the other sign: no way leads there from the nominal pose, as errors
 ///                  grow from zero, but through a singular one (THEORY.md, "Which root");
 ///   non_finite     when an equation's value is not finite.
-/// A solve that ends at the cap or as singular is not_assembled instead where is_impossible() says so and orientation is
-/// not 0.
-/// `motion` is the start on entry, the last iterate on return. orientation: ClosureStart::orientation(); 0 where any
-/// root will do. observe: may be empty.
+/// A solve that ends at the cap or as singular is not_assembled instead where is_impossible() says so and orientation
+/// is not 0. `motion` is the start on entry, the last iterate on return. orientation: ClosureStart::orientation(); 0
+/// where any root will do. observe: may be empty.
 Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r, double orientation,
                     const SolverOptions& options, PlatformMotion& motion, const ClosureObserver& observe = {});
 
