@@ -15,7 +15,7 @@
 namespace poesy::chain {
 
 /// Gauss-Newton by a metric that takes more iterations contracts too slowly for its end not to be doubted.
-inline constexpr std::uint32_t kSlowIterations = 30;
+inline constexpr std::uint32_t kSlowIterations = 16;
 
 /// Whether the loops of a machine with errors can be closed at all. Where limbs are over-constrained the equation
 /// J^T W delta_mu = 0 has a solution also for a machine that nobody can put together: the passive joints come to rest

@@ -94,7 +94,7 @@ Outcomes solve(Evaluator& evaluator, const ModelDescription& model, std::span<co
                  {}};
   std::size_t components = 0;
   for (const Detail& detail : model.details) components += detail.components.size();
-  found.details.resize(components * count);
+  found.details = std::vector<double>(components * count);
   evaluator.evaluate({pose, none, varied, values, count},
                      {found.responses, found.status, found.iterations, found.details});
   return found;

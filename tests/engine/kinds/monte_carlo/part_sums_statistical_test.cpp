@@ -141,12 +141,12 @@ TEST_P(PartsInterval, HoldsTheYield) {
   EXPECT_LT(machines.share(), 0.5) << one.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Cases, PartsInterval,
-    ::testing::Values(PartsCase{"six_errors_8_parts", 6, 8}, PartsCase{"six_errors_20_parts", 6, 20},
-                      PartsCase{"six_errors_40_parts", 6, 40}, PartsCase{"six_errors_40_parts_99", 6, 40, 0.0, 0.99},
-                      PartsCase{"one_error_40_parts", 1, 40}, PartsCase{"three_correlated_40_parts", 3, 40, 0.6}),
-    [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(Cases, PartsInterval,
+                         ::testing::Values(PartsCase{"six_of_8", 6, 8}, PartsCase{"six_of_20", 6, 20},
+                                           PartsCase{"six_of_40", 6, 40},
+                                           PartsCase{"six_of_40_at_99", 6, 40, 0.0, 0.99},
+                                           PartsCase{"one_of_40", 1, 40}, PartsCase{"correlated_of_40", 3, 40, 0.6}),
+                         [](const auto& one) { return one.param.name; });
 
 }  // namespace
 }  // namespace poesy::test
