@@ -33,7 +33,7 @@ struct KnownColumns {
   std::vector<KnownColumn> numbers;  ///< what is read
   Names facts = {};                  ///< other columns that `poesy export` writes: passed over
   Names labels = {};                 ///< of which one may name the rows
-  bool has_texts = false;            ///< whether it may have columns of text besides, which are passed over
+  bool has_texts = false;            ///< whether it may also have columns of text, which are passed over
   std::string_view what;             ///< a column of numbers, for messages: "pose coordinate"
 };
 

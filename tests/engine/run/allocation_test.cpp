@@ -63,7 +63,7 @@ TEST(Allocation, IsCounted) {
   EXPECT_EQ(allocations_of([&] { kept = std::make_unique<double>(1.0); }), 1u);
 }
 
-/// Small errors, because whoever decides whether a machine can be assembled allocates (chain::Assembly).
+/// Small errors, because chain::Assembly allocates when it decides whether a machine can be assembled.
 std::vector<chain::BlockSamples> blocks(std::size_t count) {
   std::mt19937_64 engine(61);
   std::vector<chain::BlockSamples> all;
