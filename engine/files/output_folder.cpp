@@ -85,7 +85,7 @@ void OutputFolder::read_line(const std::string& line, std::string& result) {
   }
   const bool is_name = !name.empty() && fs::path(name).filename() == name;
   if (!is_name || (!listed.hash.empty() && !is_hash(listed.hash))) {
-    throw InputError({.file = file(kListOfFiles)}, "exists and is no list of poesy, and it would be lost", kRemedy);
+    throw InputError({.file = file(kListOfFiles)}, "exists, was not written by poesy, and would be lost", kRemedy);
   }
   listed_[name] = listed;
 }

@@ -187,7 +187,7 @@ void read_actuated(const StudyValue& value, JointLines& joint) {
     joint.actuated = {*all, *all && axes == 2};
     return;
   }
-  if (axes == 1) value.fail("is no truth value", "write true, false, or the name of its drive");
+  if (axes == 1) value.fail("must be true, false or a name", "write true, false, or the name of its drive");
   joint.actuated[static_cast<std::size_t>(value.whole_number(1, 2) - 1)] = true;
 }
 
@@ -521,7 +521,7 @@ void add_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, Err
     if (!name.empty() && known[i].name == name) add(i);
   }
   if (error.limbs.size() > before) return;
-  value.fail("is '" + printable(name) + "', which is no limb's name",
+  value.fail("is '" + printable(name) + "', which no limb is named",
              "write a limb's number, its name, a list of these, or \"each\"");
 }
 

@@ -197,7 +197,7 @@ TEST_F(OutputFolders, AListThatIsNotOursIsRefused) {
                                   hash + "  ../a.csv\n", hash + "  /a.csv\n", std::string("# being written: ../a\n")}) {
     folder_.write(kListOfFiles, text);
     expect_input_error([&] { OutputFolder(folder_.path(), kResult); }, {folder_ / kListOfFiles, 0, 0},
-                       {"no list of poesy"});
+                       {"was not written by poesy"});
   }
 }
 

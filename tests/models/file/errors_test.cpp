@@ -12,12 +12,6 @@
 namespace poesy::file {
 namespace {
 
-std::unique_ptr<Model> build(const CatalogEntry& entry, std::size_t fidelity = 0) {
-  std::vector<double> geometry;
-  for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
-  return entry.build(geometry, fidelity);
-}
-
 using Errors = std::map<std::string, double>;
 
 /// Responses by name, where these errors alone vary.
@@ -290,7 +284,7 @@ TEST(LimbsOfErrors, EachNeedsTheFrameInAllOfThem) {
   EXPECT_EQ(problem_with("limb = [2, 4]\nname = \"foot\"\ncomponent = \"delta_x\"\nframe = 5\n"),
             "error[0].frame is 5; the last frame of limb 4 is 3");
   EXPECT_EQ(problem_with("limb = \"leg\"\nname = \"foot\"\ncomponent = \"delta_x\"\nframe = 5\n"),
-            "error[0].limb is 'leg', which is no limb's name; write a limb's number, its name, a list of these, or "
+            "error[0].limb is 'leg', which no limb is named; write a limb's number, its name, a list of these, or "
             "\"each\"");
 }
 

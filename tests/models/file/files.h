@@ -1,9 +1,12 @@
 #pragma once
 
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <string>
+#include <vector>
 
+#include "engine/model/model.h"
 #include "models/file/mechanism.h"
 
 namespace poesy::file {
@@ -21,6 +24,13 @@ inline std::string text_of(const std::string& name) {
 inline Mechanism from_file(const std::string& name) {
   const MechanismFile file = read_mechanism_file(text_of(name), name + ".toml");
   return mechanism(file, default_geometry(file));
+}
+
+/// The model of this catalog entry, with its default geometry.
+inline std::unique_ptr<Model> build(const CatalogEntry& entry, std::size_t fidelity = 0) {
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
+  return entry.build(geometry, fidelity);
 }
 
 }  // namespace poesy::file

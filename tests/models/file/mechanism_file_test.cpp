@@ -183,7 +183,8 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
           {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"R\", x = \"-y\"",
            "m.toml:21:33: limb[0].joints[0].x is parallel to the joint's axis; give another direction"},
           {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"R\", actuated = 2",
-           "m.toml:21:40: limb[0].joints[0].actuated is no truth value; write true, false, or the name of its drive"},
+           "m.toml:21:40: limb[0].joints[0].actuated must be true, false or a name; write true, false, or the name of "
+           "its drive"},
           {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"C\", actuated = \"motor\"",
            "m.toml:21:40: limb[0].joints[0].actuated is a text, but a joint of type C has two axes; write two joints "
            "of "
@@ -311,7 +312,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInOthers) {
            "m.toml:27:8: error[0].name '-l' is no name; write letters, digits, _ and -, and do not begin with -"},
           {"name = \"l\"", "nmae = \"l\"", "m.toml:27:1: unknown key 'nmae' in [error[0]]; did you mean 'name'?"},
           {"limb = \"each\"", "limb = \"all\"",
-           "m.toml:28:8: error[0].limb is 'all', which is no limb's name; write a limb's number, its name, a list of "
+           "m.toml:28:8: error[0].limb is 'all', which no limb is named; write a limb's number, its name, a list of "
            "these, "
            "or \"each\""},
           {"limb = \"each\"", "limb = []",
@@ -320,7 +321,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInOthers) {
           {"limb = \"each\"", "limb = [2, 1, 2]",
            "m.toml:28:15: error[0].limb[2] names limb 2 a second time; remove it"},
           {"limb = \"each\"", "limb = [2, \"each\"]",
-           "m.toml:28:12: error[0].limb[1] is 'each', which is no limb's name; write a limb's number, its name, a list "
+           "m.toml:28:12: error[0].limb[1] is 'each', which no limb is named; write a limb's number, its name, a list "
            "of "
            "these, or \"each\""},
           {"[[limb]]", "[[limb]]\nname = \"each\"",

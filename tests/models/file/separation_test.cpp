@@ -16,12 +16,6 @@
 namespace poesy::file {
 namespace {
 
-std::unique_ptr<Model> build(const CatalogEntry& entry, std::size_t fidelity = 0) {
-  std::vector<double> geometry;
-  for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
-  return entry.build(geometry, fidelity);
-}
-
 /// Of one sample, by name.
 std::map<std::string, double> responses_of(const Model& model, const std::vector<double>& pose,
                                            const std::vector<double>& errors) {
