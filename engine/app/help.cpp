@@ -10,8 +10,8 @@
 #include "engine/app/command_line.h"
 #include "engine/app/terminal.h"
 #include "engine/base/text.h"
-#include "engine/files/version.h"
 #include "engine/report/table.h"
+#include "engine/storage/version.h"
 
 namespace poesy::app {
 namespace {

@@ -12,7 +12,7 @@
 #include "engine/app/terminal.h"
 #include "engine/base/address_space.h"
 #include "engine/base/error.h"
-#include "engine/files/version.h"
+#include "engine/storage/version.h"
 
 namespace poesy::app {
 namespace {

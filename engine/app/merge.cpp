@@ -8,12 +8,12 @@
 #include "engine/app/command_line.h"
 #include "engine/app/results.h"
 #include "engine/base/error.h"
-#include "engine/files/checkpoint.h"
-#include "engine/files/result_file.h"
-#include "engine/files/shard_file.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
+#include "engine/result/result_file.h"
+#include "engine/result/shard_file.h"
 #include "engine/run/outlook.h"
+#include "engine/storage/checkpoint.h"
 #include "models/registry.h"
 
 namespace poesy::app {

@@ -9,11 +9,11 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/files/file_writer.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
 #include "engine/report/mechanism_picture.h"
 #include "engine/report/tables.h"
+#include "engine/storage/file_writer.h"
 #include "engine/study/text_file.h"
 #include "models/registry.h"
 

@@ -24,7 +24,7 @@
 #include "engine/base/error.h"
 #include "engine/base/plain_file.h"
 #include "engine/base/text.h"
-#include "engine/files/file_writer.h"
+#include "engine/storage/file_writer.h"
 
 namespace poesy::app {
 namespace {

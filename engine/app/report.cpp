@@ -8,10 +8,10 @@
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/base/text.h"
-#include "engine/files/file_writer.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
 #include "engine/report/report_kind.h"
+#include "engine/storage/file_writer.h"
 #include "models/registry.h"
 
 namespace poesy::app {

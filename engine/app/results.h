@@ -9,10 +9,10 @@
 
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
-#include "engine/files/checkpoint.h"
-#include "engine/files/result_file.h"
+#include "engine/result/result_file.h"
 #include "engine/run/result.h"
 #include "engine/run/run_options.h"
+#include "engine/storage/checkpoint.h"
 #include "engine/study/study.h"
 
 namespace poesy::app {

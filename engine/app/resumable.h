@@ -12,8 +12,8 @@
 #include "engine/app/progress.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
-#include "engine/files/checkpoint.h"
 #include "engine/run/checkpoints.h"
+#include "engine/storage/checkpoint.h"
 
 namespace poesy::app {
 

@@ -13,12 +13,12 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/files/result_file.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
 #include "engine/report/display.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
+#include "engine/result/result_file.h"
 #include "engine/study/study.h"
 #include "models/registry.h"
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "engine/base/text.h"
-#include "engine/files/csv_table.h"
-#include "engine/files/file_writer.h"
 #include "engine/kinds/registry.h"
+#include "engine/result/csv_table.h"
+#include "engine/storage/file_writer.h"
 #include "engine/study/study_file.h"
 
 namespace poesy {

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/model/model.h"
 #include "engine/report/report_kind.h"
+#include "engine/result/result_file.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/outlook.h"
 #include "engine/run/result.h"

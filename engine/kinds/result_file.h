@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/kinds/kind.h"
+#include "engine/result/result_file.h"
 
 /// What is done with the results of every kind of study.
 namespace poesy {
@@ -21,7 +21,7 @@ void write_result(const std::string& path, const Study& study, const SelectedPos
 /// was written is read as it is, and says so.
 StoredResult read_result(const std::string& path);
 
-/// Writes every table of a result as CSV into a folder; see engine/files/result_file.h.
+/// Writes every table of a result as CSV into a folder; see engine/result/result_file.h.
 std::vector<std::string> export_tables(const StoredResult& result, const std::string& folder);
 /// The same for a result that is still to be read.
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder);

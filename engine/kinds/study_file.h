@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
-#include "engine/files/result_file.h"
-#include "engine/files/shard_file.h"
 #include "engine/model/model.h"
+#include "engine/result/result_file.h"
+#include "engine/result/shard_file.h"
 #include "engine/study/study.h"
 #include "engine/study/study_file.h"
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/report/table.h"
+#include "engine/result/result_file.h"
 
 /// How values are shown: every table makes its columns and cells here. What a result says of its study: the resolved
 /// text (study/study_file.h), read setting by setting.

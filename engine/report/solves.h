@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/files/result_file.h"
+#include "engine/result/result_file.h"
 
 /// How the solves of a result of any kind ended, and when a reader is warned of those that did not converge.
 namespace poesy {

@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/model/model.h"
 #include "engine/report/solves.h"
 #include "engine/report/table.h"
+#include "engine/result/result_file.h"
 
 namespace poesy {
 

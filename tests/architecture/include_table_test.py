@@ -30,7 +30,7 @@ CLEAN = {
     "engine/run/result.h": '#include "engine/base/index.h"\n',
     "engine/run/runner.h": '#include "engine/run/result.h"\n',
     "engine/run/runner.cpp": '#include <tbb/task_arena.h>\n#include "engine/run/runner.h"\n',
-    "engine/files/h5.cpp": '#include <hdf5.h>\n#include <fstream>\n#include "engine/run/result.h"\n',
+    "engine/storage/h5.cpp": '#include <hdf5.h>\n#include <fstream>\n#include "engine/run/result.h"\n',
     "engine/app/main.cpp": '#include <CLI/CLI.hpp>\n#include "models/registry.h"\n',
     "models/registry.h": "",
     "models/registry.cpp": '#include "models/two_legs/model.h"\n',

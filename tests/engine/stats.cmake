@@ -18,10 +18,10 @@ poesy_test(stats_statistical_test LABELS statistical
                    engine/stats/squared_differences_statistical_test.cpp
            LINKS poesy_stats poesy_random Boost::headers)
 poesy_test(least_cost_test LABELS unit
-           SOURCES engine/stats/allocation/cost_law_test.cpp engine/stats/allocation/it_grade_test.cpp
-                   engine/stats/allocation/least_cost_test.cpp engine/stats/allocation/loosest_test.cpp
-                   engine/stats/allocation/process_search_test.cpp engine/stats/allocation/tolerance_limits_test.cpp
-           LINKS poesy_stats)
+           SOURCES engine/optimise/cost_law_test.cpp engine/optimise/it_grade_test.cpp
+                   engine/optimise/least_cost_test.cpp engine/optimise/loosest_test.cpp
+                   engine/optimise/process_search_test.cpp engine/optimise/tolerance_limits_test.cpp
+           LINKS poesy_optimise)
 poesy_test(least_cost_property_test LABELS property DATA
-           SOURCES engine/stats/allocation/least_cost_property_test.cpp
-           LINKS poesy_stats)
+           SOURCES engine/optimise/least_cost_property_test.cpp
+           LINKS poesy_optimise)

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/files/checkpoint.h"
-#include "engine/files/content_hash.h"
 #include "engine/kinds/study_run.h"
 #include "engine/run/checkpoints.h"
 #include "engine/run/run_options.h"
+#include "engine/storage/checkpoint.h"
+#include "engine/storage/content_hash.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/small_studies.h"
 #include "tests/support/states.h"

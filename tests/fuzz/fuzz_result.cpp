@@ -1,6 +1,6 @@
 // A result file, or a shard of one. What reads is printed, reported and exported, and nothing but itself is read. A
-// crash or a hang of HDF5 in the child that reads first (engine/files/poesy_file.h) is no finding; one in this process
-// is.
+// crash or a hang of HDF5 in the child that reads first (engine/storage/poesy_file.h) is no finding; one in this
+// process is.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/files/output_folder.h"
-#include "engine/files/shard_file.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/result_file.h"
 #include "engine/report/report_kind.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
+#include "engine/result/shard_file.h"
+#include "engine/storage/output_folder.h"
 #include "tests/fuzz/h5_checksums.h"
 #include "tests/fuzz/other_file.h"
 #include "tests/fuzz/shared_coverage.h"

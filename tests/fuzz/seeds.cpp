@@ -7,11 +7,11 @@
 #include <limits>
 #include <string>
 
-#include "engine/files/checkpoint.h"
-#include "engine/files/shard_file.h"
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/identification/identification.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/result/shard_file.h"
+#include "engine/storage/checkpoint.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/kinds.h"
 #include "tests/support/small_studies.h"

@@ -57,7 +57,7 @@ def check_xarray(path, file):
 
 
 class Hash:
-    """The definition in engine/files/content_hash.h, once more."""
+    """The definition in engine/storage/content_hash.h, once more."""
 
     def __init__(self, file):
         self.sha = hashlib.sha256()

@@ -50,6 +50,6 @@ set_tests_properties(interop.reading_guide PROPERTIES LABELS interop TIMEOUT 300
 poesy_interop_test(python_values ${POESY_PYTHON} ${scripts}/check_values.py ${examples}/sensitivity.h5
                    ${examples}/evaluate.h5 ${examples}/paired.h5)
 # The tests of allocation compare with costs that scipy found. Where there is a scipy it finds some of them again.
-add_test(NAME interop.allocation_costs COMMAND ${POESY_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/engine/stats/allocation/reference_costs.py
+add_test(NAME interop.allocation_costs COMMAND ${POESY_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/engine/optimise/reference_costs.py
                                                check ${CMAKE_CURRENT_SOURCE_DIR}/data/allocation_costs.csv)
 set_tests_properties(interop.allocation_costs PROPERTIES LABELS interop SKIP_RETURN_CODE 77 TIMEOUT 300)

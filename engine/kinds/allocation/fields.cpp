@@ -4,10 +4,10 @@
 
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
-#include "engine/files/result_parts.h"
 #include "engine/kinds/allocation/kind.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/summary.h"
+#include "engine/result/result_parts.h"
 #include "engine/stats/proportion.h"
 
 namespace poesy {

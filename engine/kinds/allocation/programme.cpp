@@ -8,8 +8,8 @@
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "engine/kinds/allocation/parts.h"
-#include "engine/stats/allocation/it_grade.h"
-#include "engine/stats/allocation/loosest.h"
+#include "engine/optimise/it_grade.h"
+#include "engine/optimise/loosest.h"
 
 namespace poesy {
 namespace {

@@ -11,8 +11,8 @@
 #include "engine/kinds/allocation/mean_squares.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/model/model.h"
-#include "engine/stats/allocation/least_cost.h"
-#include "engine/stats/allocation/tolerance_limits.h"
+#include "engine/optimise/least_cost.h"
+#include "engine/optimise/tolerance_limits.h"
 #include "engine/study/study.h"
 
 namespace poesy {

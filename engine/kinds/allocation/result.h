@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "engine/base/index.h"
-#include "engine/files/result_file.h"
+#include "engine/optimise/cost_law.h"
+#include "engine/optimise/it_grade.h"
+#include "engine/optimise/least_cost.h"
 #include "engine/report/tables.h"
+#include "engine/result/result_file.h"
 #include "engine/run/result.h"
-#include "engine/stats/allocation/cost_law.h"
-#include "engine/stats/allocation/it_grade.h"
-#include "engine/stats/allocation/least_cost.h"
 #include "engine/study/study.h"
 
 namespace poesy {

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/model/model.h"
 #include "engine/report/tables.h"
+#include "engine/result/result_file.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/result.h"
 #include "engine/study/study.h"

@@ -4,9 +4,9 @@
 
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
-#include "engine/files/result_parts.h"
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/coupling/kind.h"
+#include "engine/result/result_parts.h"
 #include "engine/stats/indices.h"
 
 namespace poesy {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "engine/base/nan.h"
-#include "engine/files/result_file.h"
 #include "engine/kinds/kind.h"
 #include "engine/model/model.h"
 #include "engine/report/table.h"
+#include "engine/result/result_file.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/result.h"
 #include "engine/study/study.h"

@@ -3,9 +3,9 @@
 #include <map>
 #include <utility>
 
-#include "engine/files/result_parts.h"
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/evaluate/kind.h"
+#include "engine/result/result_parts.h"
 #include "engine/run/evaluation.h"
 #include "engine/study/table_file.h"
 

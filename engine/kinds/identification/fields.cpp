@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "engine/files/result_parts.h"
 #include "engine/kinds/identification/identification.h"
 #include "engine/kinds/identification/kind.h"
+#include "engine/result/result_parts.h"
 
 namespace poesy {
 namespace {

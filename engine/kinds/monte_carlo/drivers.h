@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/report/html/parts.h"
 #include "engine/report/tables.h"
+#include "engine/result/result_file.h"
 
 /// How tables and reports show on which errors a yield depends.
 namespace poesy {

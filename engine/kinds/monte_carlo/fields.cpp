@@ -1,11 +1,11 @@
 #include <algorithm>
 
 #include "engine/base/units.h"
-#include "engine/files/result_parts.h"
 #include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/machine_fields.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/monte_carlo/yield.h"
+#include "engine/result/result_parts.h"
 
 namespace poesy {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/base/units.h"
-#include "engine/files/result_parts.h"
+#include "engine/result/result_parts.h"
 #include "engine/stats/main_effects.h"
 
 namespace poesy {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "engine/files/csv_table.h"
-#include "engine/files/fields.h"
-#include "engine/files/result_file.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/result/csv_table.h"
+#include "engine/result/fields.h"
+#include "engine/result/result_file.h"
 
 /// How files keep what the bins of errors say, and what a Monte Carlo study of machines found in addition.
 namespace poesy {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/report/html/parts.h"
 #include "engine/report/tables.h"
+#include "engine/result/result_file.h"
 
 /// How tables and reports show what the bins of errors say, and what a Monte Carlo study of machines found in addition.
 /// Precondition of what follows but for effects: monte_carlo_of(result).machines is there.

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/report/tables.h"
+#include "engine/result/result_file.h"
 #include "engine/run/result.h"
 #include "engine/study/study.h"
 

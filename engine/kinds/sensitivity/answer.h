@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "engine/files/result_file.h"
 #include "engine/report/html/page.h"
+#include "engine/result/result_file.h"
 
 namespace poesy {
 

@@ -3,10 +3,10 @@
 #include <span>
 
 #include "engine/base/units.h"
-#include "engine/files/result_parts.h"
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/html/page.h"
+#include "engine/result/result_parts.h"
 
 namespace poesy {
 

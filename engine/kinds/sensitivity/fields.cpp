@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "engine/files/result_parts.h"
 #include "engine/kinds/sensitivity/fidelity.h"
 #include "engine/kinds/sensitivity/kind.h"
 #include "engine/kinds/sensitivity/points_radius.h"
@@ -8,6 +7,7 @@
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/sensitivity/separation.h"
 #include "engine/kinds/sensitivity/tolerances.h"
+#include "engine/result/result_parts.h"
 
 namespace poesy {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/model/model.h"
 #include "engine/report/table.h"
+#include "engine/result/result_file.h"
 #include "engine/run/run_options.h"
 #include "engine/study/plan.h"
 

@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
+#include "engine/result/result_file.h"
 
 namespace poesy {
 

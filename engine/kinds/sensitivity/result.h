@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/files/result_file.h"
+#include "engine/result/result_file.h"
 #include "engine/run/result.h"
 #include "engine/stats/tolerance.h"
 #include "engine/study/study.h"

@@ -2,11 +2,11 @@
 
 #include <span>
 
-#include "engine/files/result_parts.h"
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/model/model.h"
 #include "engine/report/html/page.h"
+#include "engine/result/result_parts.h"
 #include "engine/run/result.h"
 #include "engine/study/poses/pose_selection.h"
 

@@ -12,14 +12,14 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/base/units.h"
-#include "engine/files/csv_table.h"
-#include "engine/files/file_writer.h"
 #include "engine/kinds/confirming_study.h"
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/linearity.h"
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/study_file.h"
 #include "engine/report/table.h"
+#include "engine/result/csv_table.h"
+#include "engine/storage/file_writer.h"
 #include "engine/study/study.h"
 
 namespace poesy {

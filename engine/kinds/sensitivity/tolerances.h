@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "engine/files/output_folder.h"
-#include "engine/files/result_parts.h"
 #include "engine/kinds/kind.h"
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/model/model.h"
 #include "engine/report/display.h"
 #include "engine/report/table.h"
+#include "engine/result/result_parts.h"
 #include "engine/stats/tolerance.h"
+#include "engine/storage/output_folder.h"
 
 namespace poesy {
 

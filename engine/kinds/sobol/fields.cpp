@@ -1,7 +1,7 @@
-#include "engine/files/result_parts.h"
 #include "engine/kinds/sobol/kind.h"
 #include "engine/kinds/sobol/result.h"
 #include "engine/report/display.h"
+#include "engine/result/result_parts.h"
 
 namespace poesy {
 namespace {

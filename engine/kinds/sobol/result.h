@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/report/tables.h"
+#include "engine/result/result_file.h"
 #include "engine/run/result.h"
 #include "engine/study/study.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "engine/base/text.h"
-#include "engine/files/version.h"
 #include "engine/report/html/printed_number.h"
+#include "engine/storage/version.h"
 
 namespace poesy {
 namespace {

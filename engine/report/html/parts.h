@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/model/model.h"
 #include "engine/report/html/figures.h"
 #include "engine/report/html/page.h"
+#include "engine/result/result_file.h"
 
 /// What the sections of all kinds of results share.
 namespace poesy {

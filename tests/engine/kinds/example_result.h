@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "engine/files/result_file.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/evaluate/cases.h"
@@ -14,6 +13,7 @@
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/sobol/result.h"
+#include "engine/result/result_file.h"
 #include "engine/run/evaluation.h"
 #include "engine/stats/main_effects.h"
 #include "tests/support/fake_model.h"

@@ -2,10 +2,10 @@
 
 #include <sstream>
 
-#include "engine/files/h5.h"
-#include "engine/files/result_file.h"
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/identification/identification.h"
+#include "engine/result/result_file.h"
+#include "engine/storage/h5.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 

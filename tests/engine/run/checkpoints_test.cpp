@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
-#include "engine/files/checkpoint.h"
 #include "engine/run/run_options.h"
+#include "engine/storage/checkpoint.h"
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/kinds.h"
 #include "tests/support/states.h"

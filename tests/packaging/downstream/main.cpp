@@ -5,11 +5,11 @@
 #include <fstream>
 
 #include "engine/base/error.h"
-#include "engine/files/result_file.h"
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
+#include "engine/result/result_file.h"
 #include "engine/study/study_file.h"
 #include "models/registry.h"
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/files/h5.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/stats/proportion.h"
+#include "engine/storage/h5.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 

@@ -13,7 +13,7 @@
 #include "engine/kinds/allocation/search.h"
 #include "engine/kinds/study_run.h"
 #include "engine/stats/proportion.h"
-#include "tests/engine/stats/allocation/overrunning_clutch.h"
+#include "tests/engine/optimise/overrunning_clutch.h"
 #include "tests/support/function_model.h"
 
 namespace poesy::test {

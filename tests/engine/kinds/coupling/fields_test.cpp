@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/files/h5.h"
-#include "engine/files/result_file.h"
 #include "engine/kinds/coupling/coupling.h"
+#include "engine/result/result_file.h"
+#include "engine/storage/h5.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/files/h5.h"
-#include "engine/files/result_file.h"
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/kinds/study_file.h"
+#include "engine/result/result_file.h"
+#include "engine/storage/h5.h"
 #include "engine/study/study_file.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/kinds.h"

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "engine/files/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/result/result_file.h"
 #include "tests/engine/kinds/stored.h"
 
 namespace poesy {

@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include "engine/files/h5.h"
-#include "engine/files/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/result/result_file.h"
+#include "engine/storage/h5.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 

@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "engine/base/error.h"
-#include "engine/files/h5.h"
 #include "engine/kinds/study_file.h"
+#include "engine/storage/h5.h"
 #include "engine/study/study.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/engine/kinds/stored.h"

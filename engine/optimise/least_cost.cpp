@@ -1,0 +1,55 @@
+#include "engine/optimise/least_cost.h"
+
+#include <algorithm>
+
+#include "engine/base/contract.h"
+#include "engine/optimise/chosen_processes.h"
+#include "engine/optimise/process_search.h"
+#include "engine/optimise/sized_problem.h"
+
+namespace poesy {
+namespace {
+
+AtBound bound_of(const Process& process, double tolerance) {
+  if (process.lo == process.hi) return AtBound::single;
+  if (tolerance == process.lo) return AtBound::lower;
+  return tolerance == process.hi ? AtBound::upper : AtBound::none;
+}
+
+/// What follows from the tolerances alone.
+void complete(const AllocationProblem& problem, LeastCost& found) {
+  for (std::size_t i = 0; i < problem.parts.size(); ++i) {
+    found.bound.push_back(bound_of(problem.parts[i][found.best.process[i]], found.best.tolerance[i]));
+  }
+  if (problem.limits.count() > 0) found.use = worst_use(problem.limits, found.best.tolerance);
+}
+
+LeastCost without_choice(const AllocationProblem& problem, const SizedProblem& sized) {
+  // The lowest bounds keep the limits: what was found so.
+  const ChosenAllocation chosen = allocate_chosen(problem, sized, {}).value();
+  return {chosen.allocation, chosen.lower_bound, {}, chosen.multiplier, chosen.multiplier, {0, 0.0}, {}};
+}
+
+}  // namespace
+
+Process fixed_process(double tolerance, double cost) { return {CostLaw::constant(cost), tolerance, tolerance}; }
+
+std::vector<Process> available_values(const CostLaw& cost, std::span<const double> tolerances) {
+  std::vector<Process> processes;
+  for (const double tolerance : tolerances) processes.push_back(fixed_process(tolerance, cost.at(tolerance)));
+  return processes;
+}
+
+AllocationOutcome least_cost(const AllocationProblem& problem, const SearchOptions& options) {
+  const std::vector<double> effects = effects_by_room(problem.limits);
+  const auto sized = sized_problem(problem, effects);
+  if (const auto* broken = std::get_if<CannotBeMet>(&sized)) return *broken;
+  if (const auto* endless = std::get_if<WithoutEnd>(&sized)) return *endless;
+  const SizedProblem& ready = std::get<SizedProblem>(sized);
+  const bool choice = std::ranges::any_of(ready.menus, [](const auto& menu) { return menu.size() > 1; });
+  LeastCost found = choice ? search_processes(problem, ready, options) : without_choice(problem, ready);
+  complete(problem, found);
+  return found;
+}
+
+}  // namespace poesy

@@ -1,0 +1,181 @@
+#include "engine/optimise/sized_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <tuple>
+
+#include "engine/base/contract.h"
+#include "engine/base/eight_sums.h"
+
+namespace poesy {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+std::vector<std::vector<SizedProcess>> menus_of(const AllocationProblem& problem) {
+  const Stacking stacking = problem.limits.stacking;
+  std::vector<std::vector<SizedProcess>> menus(problem.parts.size());
+  for (std::size_t i = 0; i < menus.size(); ++i) {
+    for (std::size_t p = 0; p < problem.parts[i].size(); ++p) {
+      const Process& process = problem.parts[i][p];
+      POESY_EXPECTS(process.lo >= 0.0 && process.hi >= process.lo);
+      menus[i].push_back({process.cost, size_of(process.lo, stacking), size_of(process.hi, stacking), p});
+    }
+    POESY_EXPECTS(!menus[i].empty());
+    std::ranges::sort(menus[i], {}, [](const SizedProcess& a) { return std::tuple(a.lo, a.hi, a.process); });
+  }
+  return menus;
+}
+
+std::vector<double> lowest_tolerances(const SizedProblem& problem) {
+  std::vector<double> tolerance = lowest(problem);
+  for (double& t : tolerance) t = tolerance_of(t, problem.stacking);
+  return tolerance;
+}
+
+/// The worst limit that the lowest bounds break.
+std::optional<CannotBeMet> broken(const ToleranceLimits& limits, const SizedProblem& problem) {
+  if (limits.count() == 0) return std::nullopt;
+  const std::vector<double> tolerance = lowest_tolerances(problem);
+  const LimitUse worst = worst_use(limits, tolerance);
+  if (worst.share <= 1.0) return std::nullopt;
+  return CannotBeMet{worst.limit, limits.need(worst.limit, tolerance), limits.room[worst.limit]};
+}
+
+std::vector<double> largest_effects(std::span<const double> effects, std::size_t parts) {
+  std::vector<double> largest(parts, 0.0);
+  for (std::size_t k = 0; k < effects.size(); k += parts) {
+    for (std::size_t i = 0; i < parts; ++i) largest[i] = effects[k + i] > largest[i] ? effects[k + i] : largest[i];
+  }
+  return largest;
+}
+
+/// Gives parts without effect their largest sizes, and processes whose cost does not depend on the tolerance their
+/// lowest ones.
+std::vector<std::size_t> settle_what_is_free(SizedProblem& problem) {
+  std::vector<std::size_t> endless;
+  for (std::size_t i = 0; i < problem.parts(); ++i) {
+    const bool effect = problem.largest_effect[i] > 0.0;
+    bool ends = true;
+    for (SizedProcess& process : problem.menus[i]) {
+      if (effect && process.cost.is_constant()) process.hi = process.lo;
+      if (effect) continue;
+      ends = ends && process.hi < kInfinity;
+      process.lo = process.hi;
+    }
+    if (!ends) endless.push_back(i);
+  }
+  return endless;
+}
+
+/// No size is larger than what a limit leaves when all other parts are at their lowest. A little more is allowed, so
+/// that rounding makes no bound that the problem has not.
+void bound_by_limits(SizedProblem& problem) {
+  const std::vector<double> lo = lowest(problem);
+  std::vector<double> largest(problem.parts(), kInfinity);
+  for (std::size_t l = 0; l < problem.limits; ++l) {
+    const auto row = problem.row(l);
+    const double left = std::fmax(0.0, 1.0 - dot(row, lo));
+    for (std::size_t i = 0; i < largest.size(); ++i) {
+      if (row[i] > 0.0) largest[i] = std::fmin(largest[i], lo[i] + left / row[i] * (1.0 + 1e-9));
+    }
+  }
+  for (std::size_t i = 0; i < largest.size(); ++i) {
+    auto& menu = problem.menus[i];
+    const double most = largest[i] * (1.0 + 4.0 * kEpsilon);  // lo and what is left are rounded
+    if (most == kInfinity) continue;
+    std::erase_if(menu, [&](const SizedProcess& process) { return process.lo > most; });
+    for (SizedProcess& process : menu) process.hi = std::fmin(process.hi, most);
+  }
+}
+
+/// Fixes the parts of limits that their lowest bounds fill up to rounding. The first limit where that costs an infinite
+/// amount.
+std::optional<std::size_t> fill(SizedProblem& problem) {
+  const std::vector<double> lo = lowest(problem);
+  for (std::size_t l = 0; l < problem.limits; ++l) {
+    const auto row = problem.row(l);
+    if (dot(row, lo) <= 1.0 - 4.0 * rounding_margin(problem.parts())) continue;
+    problem.full[l] = 1;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (row[i] == 0.0) continue;
+      auto& menu = problem.menus[i];
+      std::erase_if(menu, [&](const SizedProcess& process) { return process.lo > lo[i]; });
+      for (SizedProcess& process : menu) process.hi = process.lo;
+      const auto finite = [&](const SizedProcess& process) {
+        return std::isfinite(process.cost.at(tolerance_of(process.lo, problem.stacking)));
+      };
+      if (std::ranges::none_of(menu, finite)) return l;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+double SizedProcess::size_at(double price, Stacking stacking) const {
+  if (lo == hi) return lo;
+  return std::fmax(lo, std::fmin(hi, cost.cheapest_size(price, stacking)));
+}
+
+std::vector<double> effects_by_room(const ToleranceLimits& limits) {
+  POESY_EXPECTS(limits.effects.size() == limits.count() * limits.parts);
+  std::vector<double> effects = limits.effects;
+  for (std::size_t l = 0; l < limits.count(); ++l) {
+    for (std::size_t i = 0; i < limits.parts; ++i) {
+      POESY_EXPECTS(effects[l * limits.parts + i] >= 0.0 && effects[l * limits.parts + i] < kInfinity);
+      effects[l * limits.parts + i] /= limits.room[l];
+    }
+  }
+  return effects;
+}
+
+double rounding_margin(std::size_t parts) { return (static_cast<double>(parts) + 16.0) * kEpsilon; }
+
+double dot(std::span<const double> a, std::span<const double> b) {
+  Sums sums{};
+  const std::size_t whole = a.size() - a.size() % kSums;
+  for (std::size_t k = 0; k < whole; k += kSums) {
+    for (std::size_t s = 0; s < kSums; ++s) sums[s] += a[k + s] * b[k + s];
+  }
+  for (std::size_t k = whole; k < a.size(); ++k) sums[k - whole] += a[k] * b[k];
+  return total(sums);
+}
+
+std::vector<double> lowest(const SizedProblem& problem) {
+  std::vector<double> lo;
+  for (const auto& menu : problem.menus) lo.push_back(menu.front().lo);
+  return lo;
+}
+
+std::variant<SizedProblem, CannotBeMet, WithoutEnd> sized_problem(const AllocationProblem& problem,
+                                                                  std::span<const double> effects) {
+  const ToleranceLimits& limits = problem.limits;
+  POESY_EXPECTS(limits.parts == problem.parts.size());
+  SizedProblem sized{limits.stacking,   limits.count(),
+                     effects,           largest_effects(effects, limits.parts),
+                     menus_of(problem), std::vector<char>(limits.count(), 0)};
+  if (const auto worst = broken(limits, sized)) return *worst;
+  WithoutEnd endless{settle_what_is_free(sized)};
+  if (!endless.parts.empty()) return endless;
+  bound_by_limits(sized);
+  if (const auto l = fill(sized)) return CannotBeMet{*l, limits.need(*l, lowest_tolerances(sized)), limits.room[*l]};
+  return sized;
+}
+
+std::optional<SizedProblem> with_chosen(const SizedProblem& problem, std::span<const std::size_t> places) {
+  SizedProblem chosen{problem.stacking, problem.limits, problem.effects, problem.largest_effect, {}, problem.full};
+  for (std::size_t i = 0; i < problem.parts(); ++i) chosen.menus.push_back({problem.menus[i][places[i]]});
+  const std::vector<double> lo = lowest(chosen);
+  const double margin = rounding_margin(chosen.parts());
+  for (std::size_t l = 0; l < chosen.limits; ++l) {
+    if (dot(chosen.row(l), lo) > 1.0 + margin) return std::nullopt;
+  }
+  if (fill(chosen)) return std::nullopt;
+  return chosen;
+}
+
+}  // namespace poesy

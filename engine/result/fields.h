@@ -1,0 +1,408 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "engine/base/contract.h"
+#include "engine/base/number.h"
+#include "engine/storage/h5.h"
+
+/// One row for each dataset of a result file. From a row come the dataset with its unit, description and axes, its way
+/// back with a check of its shape, and the columns of CSV tables that follow it (csv_table.h).
+namespace poesy {
+
+/// Names of the axes of a dataset, slowest first.
+using Axes = std::vector<std::string>;
+
+/// Axes that many datasets have.
+/// @{
+inline const Axes kByResponse{"response"};
+inline const Axes kByFactor{"factor"};
+inline const Axes kByPose{"pose"};
+inline const Axes kByFactorPose{"factor", "pose"};
+inline const Axes kByResponseFactor{"response", "factor"};
+inline const Axes kByResponsePose{"response", "pose"};
+inline const Axes kByResponseFactorPose{"response", "factor", "pose"};
+/// @}
+
+/// Units of datasets whose numbers have the unit of a response, of an error, or of both.
+/// @{
+inline constexpr const char* kResponseUnit = "SI: response unit, see /responses/unit";
+inline constexpr const char* kFactorUnit = "SI: factor unit, see /factors/unit";
+inline constexpr const char* kIndexUnit = "SI: response unit / factor unit";
+inline constexpr const char* kLengthPerFactorUnit = "SI: m / factor unit";
+/// @}
+
+/// What a dataset says about itself.
+struct Label {
+  std::string unit;         ///< "m", "rad,rad,rad,m,m,m" where components differ, or "1"
+  std::string description;  ///< a sentence for people
+};
+
+/// Composes an HDF5 file in which every dataset has a unit, a description and named axes.
+class ResultBuilder {
+ public:
+  explicit ResultBuilder(h5::File file) : file_(std::move(file)) {}  ///< file: an empty one.
+
+  h5::File& file() { return file_; }  ///< For groups and attributes.
+
+  /// Adds the axis `name`: the dimension scale /name, one value for each position.
+  template <h5::Element T>
+  void add_axis(const std::string& name, const std::vector<T>& values, const Label& label) {
+    axis_length_[name] = values.size();
+    write<T>("/" + name, {values.size()}, values, label);
+    file_.make_scale("/" + name);
+  }
+  /// The lengths of these axes. Precondition: they were added.
+  h5::Shape shape(const Axes& axes) const {
+    h5::Shape shape;
+    for (const std::string& axis : axes) shape.push_back(axis_length_.at(axis));
+    return shape;
+  }
+  /// Adds the dataset at path along these axes, which were added before. Its shape is their lengths: none for a scalar.
+  template <h5::Element T>
+  void add(const std::string& path, const Axes& axes, std::span<const T> values, const Label& label) {
+    write(path, shape(axes), values, label);
+    attach(path, axes);
+  }
+  /// The same of numbers that are not in memory as the file has them. element(at): the one at this position, row-major.
+  template <h5::Number T, class ElementAt>
+  void add_computed(const std::string& path, const Axes& axes, const ElementAt& element, const Label& label) {
+    file_.write_slices<T>(path, shape(axes), [&](std::size_t first, std::span<T> to) {
+      for (std::size_t k = 0; k < to.size(); ++k) to[k] = static_cast<T>(element(first + k));
+    });
+    describe(path, label);
+    attach(path, axes);
+  }
+  /// The same from a list.
+  template <h5::Element T>
+  void add(const std::string& path, const Axes& axes, const std::vector<T>& values, const Label& label) {
+    add(path, axes, std::span<const T>(values), label);
+  }
+  /// A single value.
+  template <h5::Element T>
+  void add_scalar(const std::string& path, const T& value, const Label& label) {
+    write(path, {}, std::span<const T>(&value, 1), label);
+  }
+  /// Lets the group's readers find these axes in the group itself: xarray opens one group at a time.
+  void show_axes(const std::string& group, const Axes& axes) {
+    for (const std::string& axis : axes) {
+      const std::string shown = group + "/" + axis;
+      if (!file_.exists(shown)) file_.link("/" + axis, shown);
+    }
+  }
+
+ private:
+  template <h5::Element T>
+  void write(const std::string& path, const h5::Shape& shape, std::span<const T> values, const Label& label) {
+    file_.write<T>(path, shape, values);
+    describe(path, label);
+  }
+  void describe(const std::string& path, const Label& label) {
+    file_.set_attribute(path, "unit", label.unit);
+    file_.set_attribute(path, "description", label.description);
+  }
+  void attach(const std::string& path, const Axes& axes) {
+    for (std::size_t k = 0; k < axes.size(); ++k) file_.attach_scale(path, k, "/" + axes[k]);
+  }
+
+  h5::File file_;
+  std::map<std::string, std::size_t> axis_length_;
+};
+
+/// The number of positions on an axis at the root.
+inline std::size_t axis_length(const h5::File& file, const std::string& name) {
+  return h5::size(file.shape("/" + name));
+}
+
+/// Throws h5::Error where a dataset has another shape.
+inline void check_shape(const h5::File& file, const std::string& path, const h5::Shape& shape) {
+  if (file.shape(path) != shape) throw h5::Error(path + " does not have the shape it should have");
+}
+
+/// All elements of a dataset. Throws h5::Error where it has another shape.
+template <h5::Element T>
+std::vector<T> read_shaped(const h5::File& file, const std::string& path, const h5::Shape& shape) {
+  check_shape(file, path, shape);
+  return file.read<T>(path);
+}
+
+/// The same where its shape is that of its axes.
+template <h5::Element T>
+std::vector<T> read_along(const h5::File& file, const std::string& path, const Axes& axes) {
+  h5::Shape shape;
+  for (const std::string& axis : axes) shape.push_back(axis_length(file, axis));
+  return read_shaped<T>(file, path, shape);
+}
+
+/// The member that holds the elements of a dataset. A list has all of them. Other members have one: the only one of a
+/// scalar, or that of one thing in a list of things. A position that may be missing is stored as -1 then.
+template <class Found>
+using Member =
+    std::variant<std::vector<double> Found::*, std::vector<std::int64_t> Found::*, std::vector<std::uint64_t> Found::*,
+                 std::vector<std::uint32_t> Found::*, std::vector<std::uint8_t> Found::*,
+                 std::vector<std::string> Found::*, double Found::*, std::uint64_t Found::*, std::uint8_t Found::*,
+                 bool Found::*, std::string Found::*, std::optional<std::size_t> Found::*>;
+
+/// A number of a result that is an attribute of a group or of a dataset.
+template <class Found>
+struct Attribute {
+  std::string name;       ///< as the file has it
+  double Found::*member;  ///< the number
+};
+
+/// How a list of numbers is stored.
+enum class Stored {
+  as_it_is,
+  as_whole_numbers,  ///< doubles as 64-bit unsigned integers
+};
+
+/// Whether each file of its kind has a dataset.
+enum class Presence {
+  always,
+  where_computed,  ///< a list, which is empty and not written where the study did not compute it
+};
+
+/// A dataset of a group of a result file.
+template <class Found>
+struct FieldRow {
+  /// A row of a table: the members below, in their order. (As an aggregate with defaults it breaks GCC 12.)
+  FieldRow(std::string dataset, Member<Found> elements, Axes along, std::string in, std::string meaning,
+           std::vector<Attribute<Found>> beside = {}, Stored as = Stored::as_it_is)
+      : name(std::move(dataset)),
+        member(elements),
+        axes(std::move(along)),
+        unit(std::move(in)),
+        description(std::move(meaning)),
+        attributes(std::move(beside)),
+        stored(as) {}
+  /// The same of a list that may be missing.
+  FieldRow(std::string dataset, Member<Found> elements, Axes along, std::string in, std::string meaning, Presence when)
+      : FieldRow(std::move(dataset), elements, std::move(along), std::move(in), std::move(meaning)) {
+    presence = when;
+  }
+
+  std::string name;                          ///< in its group
+  Member<Found> member;                      ///< its elements
+  Axes axes;                                 ///< at the root; none for a scalar
+  std::string unit;                          ///< "m", "1", or one of the texts above
+  std::string description;                   ///< a sentence for people
+  std::vector<Attribute<Found>> attributes;  ///< written beside it, not read
+  Stored stored;                             ///< in which form
+  Presence presence = Presence::always;      ///< in which files
+};
+
+/// Rows of a group, in the order in which they are written.
+template <class Found>
+using Fields = std::vector<FieldRow<Found>>;
+
+/// A group of a result file.
+template <class Found>
+struct Group {
+  std::string path;                                                        ///< "/sensitivity"
+  std::string description;                                                 ///< a sentence for people
+  std::vector<Attribute<Found>> attributes = {};                           ///< numbers of the group as a whole
+  std::vector<std::pair<std::string, std::size_t Found::*>> lengths = {};  ///< Members that are the lengths of axes.
+  Fields<Found> fields;                                                    ///< its datasets
+};
+
+namespace detail {
+
+template <class Value>
+inline constexpr bool kIsList = false;
+template <class T>
+inline constexpr bool kIsList<std::vector<T>> = true;
+
+/// An element as HDF5 has it: a flag as a byte, a missing position as -1, anything else as it is.
+template <class Value>
+auto stored(const Value& value) {
+  if constexpr (std::is_same_v<Value, bool>) {
+    return static_cast<std::uint8_t>(value);
+  } else if constexpr (std::is_same_v<Value, std::optional<std::size_t>>) {
+    return value ? static_cast<std::int64_t>(*value) : -1;
+  } else {
+    return value;
+  }
+}
+
+template <class Value>
+using StoredAs = decltype(stored(std::declval<Value>()));
+
+template <class Value>
+void restore(StoredAs<Value> from, Value& to) {
+  if constexpr (std::is_same_v<Value, std::optional<std::size_t>>) {
+    to = from < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(from));
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    to = from != 0;
+  } else {
+    to = std::move(from);
+  }
+}
+
+/// An element as a number. Precondition: it is not a text.
+template <class Value>
+Number number(const Value& value) {
+  if constexpr (std::is_same_v<Value, std::string>) {
+    POESY_EXPECTS(false);
+    return 0.0;
+  } else {
+    return to_number(stored(value));
+  }
+}
+
+}  // namespace detail
+
+/// Adds the dataset of a row to the group at path: of a single thing, or with one element for each of several things.
+/// Gives whether there are such elements. Precondition: only a single thing has members that are lists.
+template <class Found>
+bool write_field(ResultBuilder& result, const std::string& group, const FieldRow<Found>& field,
+                 std::span<const Found> things) {
+  const std::string path = group + "/" + field.name;
+  const Label label{field.unit, field.description};
+  const auto write = [&](auto member) {
+    using Value = std::remove_cvref_t<decltype(std::declval<Found>().*member)>;
+    if constexpr (detail::kIsList<Value>) {
+      const Value& list = things.front().*member;
+      const bool computed = !list.empty() || h5::size(result.shape(field.axes)) == 0;
+      if (field.presence == Presence::where_computed && !computed) return false;
+      if constexpr (std::is_same_v<Value, std::vector<double>>) {
+        if (field.stored == Stored::as_whole_numbers) {
+          result.add_computed<std::uint64_t>(
+              path, field.axes, [&](std::size_t at) { return list[at]; }, label);
+          return true;
+        }
+      }
+      result.add(path, field.axes, list, label);
+    } else {
+      std::vector<detail::StoredAs<Value>> column;
+      for (const Found& thing : things) column.push_back(detail::stored(thing.*member));
+      result.add(path, field.axes, column, label);
+    }
+    return true;
+  };
+  if (!std::visit(write, field.member)) return false;
+  for (const Attribute<Found>& each : field.attributes) {
+    result.file().set_attribute(path, each.name, things.front().*each.member);
+  }
+  return true;
+}
+
+/// The same for several rows of a single thing.
+template <class Found>
+void write_fields(ResultBuilder& result, const std::string& group, const Fields<Found>& fields, const Found& found) {
+  for (const FieldRow<Found>& field : fields) write_field(result, group, field, std::span(&found, 1));
+}
+
+/// The same for several rows of a list of things.
+template <class Thing>
+void write_columns(ResultBuilder& result, const std::string& group, const Fields<Thing>& fields,
+                   const std::vector<Thing>& things) {
+  for (const FieldRow<Thing>& field : fields) write_field(result, group, field, std::span(things));
+}
+
+/// Makes the group with all its rows, and shows their axes in it. after_field(field): called when one is written.
+template <class Found, class AfterField>
+void write_group(ResultBuilder& result, const Group<Found>& group, const Found& found, const AfterField& after_field) {
+  h5::File& file = result.file();
+  file.make_group(group.path);
+  file.set_attribute(group.path, "description", group.description);
+  for (const Attribute<Found>& each : group.attributes) {
+    file.set_attribute(group.path, each.name, found.*each.member);
+  }
+  for (const FieldRow<Found>& field : group.fields) {
+    if (write_field(result, group.path, field, std::span(&found, 1))) result.show_axes(group.path, field.axes);
+    after_field(field);
+  }
+}
+
+/// The same, keeping what is found.
+template <class Found>
+void write_group(ResultBuilder& result, const Group<Found>& group, const Found& found) {
+  write_group(result, group, found, [](const FieldRow<Found>&) {});
+}
+
+/// The same, emptying every list that was written: the system wants memory for what is not yet on the disk. Members
+/// that are no rows stay.
+template <class Found>
+void write_group(ResultBuilder& result, const Group<Found>& group, Found&& found) {
+  write_group(result, group, std::as_const(found), [&](const FieldRow<Found>& field) {
+    const auto empty = [&](auto member) {
+      using Value = std::remove_cvref_t<decltype(found.*member)>;
+      if constexpr (detail::kIsList<Value>) found.*member = Value();
+    };
+    std::visit(empty, field.member);
+  });
+}
+
+/// Fills in the members of these rows in as many things as were written. Throws h5::Error where a dataset is missing or
+/// has a wrong shape.
+template <class Found>
+void read_fields(const h5::File& file, const std::string& group, const Fields<Found>& fields, std::span<Found> things) {
+  for (const FieldRow<Found>& field : fields) {
+    const std::string path = group + "/" + field.name;
+    if (field.presence == Presence::where_computed && !file.exists(path)) continue;
+    const auto read = [&](auto member) {
+      using Value = std::remove_cvref_t<decltype(std::declval<Found>().*member)>;
+      if constexpr (detail::kIsList<Value>) {
+        things.front().*member = read_along<typename Value::value_type>(file, path, field.axes);
+      } else {
+        auto column = read_along<detail::StoredAs<Value>>(file, path, field.axes);
+        for (std::size_t k = 0; k < things.size(); ++k) detail::restore(std::move(column[k]), things[k].*member);
+      }
+    };
+    std::visit(read, field.member);
+  }
+}
+
+/// The same in a single thing.
+template <class Found>
+void read_fields(const h5::File& file, const std::string& group, const Fields<Found>& fields, Found& found) {
+  read_fields(file, group, fields, std::span(&found, 1));
+}
+
+/// The same in a list: as many things as the rows' axis has positions.
+template <class Thing>
+std::vector<Thing> read_columns(const h5::File& file, const std::string& group, const Fields<Thing>& fields) {
+  const std::size_t length = axis_length(file, fields.front().axes.front());
+  for (const FieldRow<Thing>& field : fields) check_shape(file, group + "/" + field.name, {length});
+  std::vector<Thing> things(length);
+  read_fields(file, group, fields, std::span(things));
+  return things;
+}
+
+/// Fills in the lengths, attributes and rows of a group.
+template <class Found>
+void read_group(const h5::File& file, const Group<Found>& group, Found& found) {
+  for (const auto& [axis, length] : group.lengths) found.*length = axis_length(file, axis);
+  for (const Attribute<Found>& each : group.attributes) {
+    found.*each.member = file.attribute<double>(group.path, each.name).at(0);
+  }
+  read_fields(file, group.path, group.fields, found);
+}
+
+/// The element of a row at this position, as the file has it. Precondition: it is a number, and there.
+template <class Found>
+Number number_at(const FieldRow<Found>& field, const Found& found, std::size_t at) {
+  const auto get = [&](auto member) -> Number {
+    const auto& value = found.*member;
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, std::vector<double>>) {
+      if (field.stored == Stored::as_whole_numbers) return static_cast<std::uint64_t>(value[at]);
+    }
+    if constexpr (detail::kIsList<Value>) {
+      return detail::number(value[at]);
+    } else {
+      return detail::number(value);
+    }
+  };
+  return std::visit(get, field.member);
+}
+
+}  // namespace poesy

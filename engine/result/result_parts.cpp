@@ -1,0 +1,480 @@
+#include "engine/result/result_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/study/study_kind.h"
+
+namespace poesy {
+namespace {
+
+/// How solves ended, column by column: C cells.
+struct SolverColumns {
+  std::vector<std::uint64_t> not_converged;   ///< [C]
+  std::vector<double> iterations_mean;        ///< [C]
+  std::vector<std::uint32_t> iterations_max;  ///< [C]
+  std::vector<std::uint64_t> by_status;       ///< [statuses x C]
+};
+
+double mean_iterations(const SolveCounts& cell) {
+  return static_cast<double>(cell.iterations) / static_cast<double>(cell.total());
+}
+
+Fields<SolverColumns> solver_fields(const Axes& cells) {
+  Axes by_status{"status"};
+  by_status.insert(by_status.end(), cells.begin(), cells.end());
+  return {{"not_converged", &SolverColumns::not_converged, cells, "1", "Samples that did not reach their fixed point"},
+          {"iterations_mean", &SolverColumns::iterations_mean, cells, "1", "Mean number of iterations of a sample"},
+          {"iterations_max", &SolverColumns::iterations_max, cells, "1", "Most iterations of a sample"},
+          {"solves_by_status", &SolverColumns::by_status, by_status, "1", "Samples that ended so"}};
+}
+
+/// A listed failure, as it is stored.
+struct FailureRow {
+  std::string factor;
+  std::uint64_t pose;
+  std::uint64_t sample;
+  std::uint8_t status;
+};
+
+const Axes kByFailure{"failure"};
+
+const Fields<FailureRow> kFailureFields{
+    {"failed_factor", &FailureRow::factor, kByFailure, "1",
+     "Samples that failed, by the error that varied; \"all\": all together"},
+    {"failed_pose", &FailureRow::pose, kByFailure, "1", "Their poses, by number from 0"},
+    {"failed_sample", &FailureRow::sample, kByFailure, "1", "Their numbers at that error and pose, from 0"},
+    {"failed_status", &FailureRow::status, kByFailure, "1",
+     "How these solves ended: a position in status_names, from 0"}};
+
+constexpr std::string_view kByRow = "row";  ///< `judge` of an evaluation
+
+const Axes kLimited{"limited_response"};
+
+/// In the order of the columns of limits.csv.
+const Fields<LimitVerdict> kLimitFields{
+    {"value", &LimitVerdict::value, kLimited, kResponseUnit,
+     "What is compared with it, a magnitude; infinite or NaN where too few samples were solved, NaN where nothing is "
+     "compared"},
+    {"limit", &LimitVerdict::limit, kLimited, kResponseUnit, "The limit"},
+    {"passed", &LimitVerdict::passed, kLimited, "1", "1: the limit is kept; 0: it is not"},
+    {"tried", &LimitVerdict::tried, kLimited, "1",
+     "Draws at all poses together; by yield machines; of an evaluation its rows of errors"},
+    {"within", &LimitVerdict::within, kLimited, "1",
+     "Of these, those within the limit, a machine or a row at each of its poses; what was not solved is not"},
+    {"pose", &LimitVerdict::pose, kLimited, "1", "Pose of the value, from 0; -1 where it is of all poses"},
+    {"row", &LimitVerdict::row, kLimited, "1",
+     "Row of errors, or case, of the value, from 0; -1 where there are none"}};
+
+constexpr std::string_view kLimitsMeaning =
+    "How each limit of [analysis.limits] was kept. judge: what is compared with it: rms, the root mean square over the "
+    "samples of all poses; share, what a share of the draws stays within at the worst pose; yield, what the share of "
+    "machines that the study asks for stays within at all poses, each limit taken alone (where it asks for none, a "
+    "limit "
+    "is kept if every machine is within it), while /yield judges all limits together; row, the largest magnitude of "
+    "any "
+    "row of errors";
+
+/// What a convergence says in addition to its course: one number for each quantity, or for each slot.
+Fields<ConvergenceResult> end_fields(const CourseWords& words) {
+  const Axes& all = words.group.fields.front().axes;  // of the quantities, and the milestones
+  const Axes quantities(all.begin(), all.end() - 1);
+  const Axes slots(all.begin() + 1, all.end() - 1);
+  return {{"reached", &ConvergenceResult::reached, quantities, "1",
+           "1: the half-width at the end is small enough; 0: it is not"},
+          {"relative_half_width", &ConvergenceResult::relative_half_width, quantities, "1",
+           "Half-width at the end over the magnitude of what it is for; NaN for zero over zero"},
+          {"samples", &ConvergenceResult::samples, slots, "1", "Samples at each pose at the end"}};
+}
+
+CsvTable end_table(const StoredResult& result, const CourseWords& words, const ConvergenceResult& found) {
+  const std::size_t slots = found.samples.size();
+  CsvTable table{"convergence", {words.csv_slot, [&](std::size_t slot) { return result.varied[slot]; }}, slots};
+  table.columns.push_back(list_column("samples", found.samples));
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    const std::string& response = result.responses[r].name;
+    table.columns.push_back(list_column(response + "_reached", found.reached, r * slots));
+    table.columns.push_back(list_column(response + "_relative_half_width", found.relative_half_width, r * slots));
+  }
+  return table;
+}
+
+constexpr std::string_view kUncorrelated = "-";
+
+const Axes kMeasured{"measured_error"};
+
+const Group<MeasuredErrors> kMeasuredErrors{
+    "/measured_errors",
+    "Errors that are drawn as parts were measured: each value is as likely as any other, and is spread over a range "
+    "around it so that mean and standard deviation are those of the parts",
+    {},
+    {},
+    {{"parts", &MeasuredErrors::parts, kMeasured, "1", "Parts that were measured"},
+     {"mean", &MeasuredErrors::mean, kMeasured, kFactorUnit, "Mean of the parts, and of the draws"},
+     {"sigma_of_parts", &MeasuredErrors::sigma_of_parts, kMeasured, kFactorUnit,
+      "Standard deviation of the parts, with n - 1"},
+     {"sigma", &MeasuredErrors::sigma, kMeasured, kFactorUnit, "Standard deviation of the draws, as /factors/sigma"},
+     {"least_part", &MeasuredErrors::least_part, kMeasured, kFactorUnit, "The smallest part"},
+     {"greatest_part", &MeasuredErrors::greatest_part, kMeasured, kFactorUnit, "The largest part"},
+     {"least", &MeasuredErrors::least, kMeasured, kFactorUnit, "No draw is below"},
+     {"greatest", &MeasuredErrors::greatest, kMeasured, kFactorUnit, "No draw is above"},
+     {"most_correlated", &MeasuredErrors::most_correlated, kMeasured, "1",
+      "The error with which it is correlated most; \"-\" for none"},
+     {"correlation", &MeasuredErrors::correlation, kMeasured, "1",
+      "With that one, of their normal scores; 0 for none"}}};
+
+/// The error with which one is correlated most.
+void append_correlation(const Study& study, FactorIndex factor, MeasuredErrors& found) {
+  std::string name(kUncorrelated);
+  double largest = 0.0;
+  for (const CorrelatedErrors& block : study.errors.correlated) {
+    const auto place = std::ranges::find(block.factors, factor);
+    if (place == block.factors.end()) continue;
+    const std::size_t size = block.factors.size();
+    const auto row = static_cast<std::size_t>(place - block.factors.begin()) * size;
+    for (std::size_t j = 0; j < size; ++j) {
+      const double own = block.correlation[row + j];
+      if (block.factors[j] == factor || !(std::abs(own) > std::abs(largest))) continue;
+      largest = own;
+      name = study.model().factors[block.factors[j].value].name;
+    }
+  }
+  found.most_correlated.push_back(std::move(name));
+  found.correlation.push_back(largest);
+}
+
+double sample_deviation(std::span<const double> values, double mean) {
+  double sum = 0.0;
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  return std::sqrt(sum / static_cast<double>(values.size() - 1));
+}
+
+/// Its unit is that of the error, which stands at the end of the row.
+CsvTable measured_table(const StoredResult& result) {
+  const MeasuredErrors& found = result.measured;
+  CsvTable table{"measured_errors",
+                 {"factor", [&](std::size_t e) { return found.names[e]; }},
+                 found.names.size(),
+                 {},
+                 {"unit", [&](std::size_t e) { return result.factors[found.factors[e]].unit; }}};
+  for (const FieldRow<MeasuredErrors>& field : kMeasuredErrors.fields) {
+    if (field.name != "most_correlated") table.columns.push_back(field_column(field.name, field, found, 0));
+  }
+  return table;
+}
+
+}  // namespace
+
+MeasuredErrors measured_errors(const Study& study) {
+  MeasuredErrors found;
+  for (std::size_t p = 0; p < study.analysis.factors.size(); ++p) {
+    const FactorIndex factor = study.analysis.factors[p];
+    const auto& parts = study.errors.by_factor[factor.value].parts();
+    if (!parts) continue;
+    const auto [least, greatest] = std::ranges::minmax(parts->values());
+    found.names.push_back(study.model().factors[factor.value].name);
+    found.factors.push_back(p);
+    found.parts.push_back(parts->values().size());
+    found.mean.push_back(parts->mean());
+    found.sigma_of_parts.push_back(sample_deviation(parts->values(), parts->mean()));
+    found.sigma.push_back(parts->standard_deviation());
+    found.least_part.push_back(least);
+    found.greatest_part.push_back(greatest);
+    found.least.push_back(parts->least());
+    found.greatest.push_back(parts->greatest());
+    append_correlation(study, factor, found);
+  }
+  return found;
+}
+
+void add_sigma(ResultBuilder& result, const Study& study) {
+  result.add("/factors/sigma", {"factor"}, standard_deviations(study),
+             {kFactorUnit, "Standard deviation of the error, as set in the study"});
+  const auto shapes = texts(study.analysis.factors,
+                            [&](FactorIndex factor) { return name(study.errors.by_factor[factor.value].shape()); });
+  result.add("/factors/distribution", {"factor"}, shapes, {"1", "Distribution of the error, as set in the study"});
+  const MeasuredErrors measured = measured_errors(study);
+  if (measured.names.empty()) return;
+  result.add_axis("measured_error", measured.names, {"1", "Errors that are drawn as parts were measured"});
+  write_group(result, kMeasuredErrors, measured);
+}
+
+void read_sigma(const h5::File& file, StoredResult& result) {
+  result.factor_sigma = read_along<double>(file, "/factors/sigma", {"factor"});
+  result.factor_distribution = read_along<std::string>(file, "/factors/distribution", {"factor"});
+  check_names(result.factor_distribution, "/factors/distribution");
+  if (!file.exists("/measured_errors")) return;
+  result.measured.names = file.read<std::string>("/measured_error");
+  check_names(result.measured.names, "/measured_error");
+  for (const std::string& name : result.measured.names) {
+    result.measured.factors.push_back(
+        position_in(result.factors, name, "/measured_error has '" + name + "', which is no error", &NamedUnit::name));
+  }
+  read_group(file, kMeasuredErrors, result.measured);
+  check_names(result.measured.most_correlated, "/measured_errors/most_correlated");
+}
+
+void append_sigma_tables(CsvTables& tables, const StoredResult& result) {
+  CsvTable table = lines_of_factors(result, "factors");
+  table.columns = {list_column(with_unit("sigma", si_units(result.factors)), result.factor_sigma),
+                   {with_unit("sigma", display_units(result.factors)),
+                    [&](std::size_t p) { return result.factor_sigma[p] / display(result.factors[p]).si; }}};
+  tables.push_back(std::move(table));
+  if (!result.measured.names.empty()) tables.push_back(measured_table(result));
+}
+
+std::vector<std::size_t> constant_responses(const std::vector<std::uint8_t>& varies) {
+  std::vector<std::size_t> list;
+  for (std::size_t r = 0; r < varies.size(); ++r) {
+    if (varies[r] == 0) list.push_back(r);
+  }
+  return list;
+}
+
+std::vector<std::string> listed_statuses(std::uint64_t not_assembled) {
+  const std::size_t count = not_assembled > 0 ? kStatusNames.size() : kStatusNames.size() - 1;
+  return texts(std::span(kStatusNames).first(count), std::identity());
+}
+
+std::size_t listed_statuses(const h5::File& file) {
+  const auto names = file.read<std::string>("/status");
+  if (names != listed_statuses(names.size() == kStatusNames.size() ? 1 : 0)) {
+    throw h5::Error("/status lists other endings of solves");
+  }
+  return names.size();
+}
+
+void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves) {
+  SolverColumns columns;
+  for (const SolveCounts& cell : solves) {
+    columns.not_converged.push_back(cell.not_converged());
+    columns.iterations_mean.push_back(mean_iterations(cell));
+    columns.iterations_max.push_back(cell.most_iterations);
+  }
+  const std::vector<std::string> statuses = listed_statuses(total_of(solves).not_assembled());
+  for (std::size_t status = 0; status < statuses.size(); ++status) {
+    for (const SolveCounts& cell : solves) columns.by_status.push_back(cell.by_status[status]);
+  }
+  result.add_axis("status", statuses, {"1", "How a solve ended"});
+  result.file().make_group("/solver");
+  const Fields<SolverColumns> fields = solver_fields(axes);
+  write_fields(result, "/solver", fields, columns);
+  result.show_axes("/solver", fields.back().axes);
+}
+
+std::vector<SolveCounts> read_solver(const h5::File& file, const Axes& axes) {
+  const std::size_t statuses = listed_statuses(file);
+  SolverColumns columns;
+  read_fields(file, "/solver", solver_fields(axes), columns);
+  const std::size_t cells = columns.iterations_mean.size();
+  std::vector<SolveCounts> solves(cells);
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    SolveCounts& counts = solves[cell];
+    for (std::size_t status = 0; status < statuses; ++status) {
+      counts.by_status[status] = columns.by_status[status * cells + cell];
+    }
+    // The mean is the sum over the total, so this gives back the sum exactly; without samples it is NaN.
+    const auto total = static_cast<double>(counts.total());
+    const double sum = columns.iterations_mean[cell] * total;
+    if (total > 0.0) counts.iterations = static_cast<std::uint64_t>(std::llround(sum));
+    counts.most_iterations = columns.iterations_max[cell];
+  }
+  return solves;
+}
+
+std::vector<SolveNumber> solve_numbers(const std::vector<SolveCounts>& solves) {
+  std::vector<SolveNumber> list{
+      {"not_converged", [](const SolveCounts& cell) { return to_number(cell.not_converged()); }},
+      {"iterations_mean", mean_iterations},
+      {"iterations_max", [](const SolveCounts& cell) { return to_number(cell.most_iterations); }}};
+  const std::vector<std::string> statuses = listed_statuses(total_of(solves).not_assembled());
+  for (std::size_t status = 0; status < statuses.size(); ++status) {
+    list.push_back({"solves_" + statuses[status],
+                    [status](const SolveCounts& cell) { return to_number(cell.by_status[status]); }});
+  }
+  return list;
+}
+
+void append_solve_columns(CsvTable& table, const std::vector<SolveCounts>& solves) {
+  for (const SolveNumber& number : solve_numbers(solves)) {
+    table.columns.push_back(list_column(number.name, solves, 0, 1, number.get));
+  }
+}
+
+void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, const std::vector<std::string>& slots,
+                  std::uint64_t total) {
+  std::vector<FailureRow> rows;
+  for (const auto& [slot, pose, failed] : failures) {
+    rows.push_back({slots[slot], pose.value, failed.sample.value, static_cast<std::uint8_t>(failed.status)});
+  }
+  result.add_axis("failure", axis_numbers(rows.size()), {"1", "Number of the listed failure, from 0"});
+  result.show_axes("/solver", kByFailure);
+  write_columns(result, "/solver", kFailureFields, rows);
+  h5::File& file = result.file();
+  const auto status_names = file.read<std::string>("/status");
+  file.set_attribute("/solver/failed_status", "status_names", std::span(status_names));
+  file.set_attribute("/solver", "failures", static_cast<std::int64_t>(total));
+  file.set_attribute("/solver", "most_failures_listed", static_cast<std::int64_t>(kMostFailuresListed));
+  file.set_attribute("/solver", "most_failures_of_a_cell", static_cast<std::int64_t>(FailedSamples::kMost));
+}
+
+std::vector<Failure> read_failures(const h5::File& file, const StoredResult& result) {
+  std::vector<Failure> failures;
+  for (const FailureRow& row : read_columns(file, "/solver", kFailureFields)) {
+    if (row.pose >= result.poses.size()) throw h5::Error("/solver/failed_pose names an unknown pose");
+    if (row.status >= kStatusNames.size()) throw h5::Error("/solver/failed_status holds an unknown status");
+    const std::size_t slot = position_in(result.varied, row.factor, "/solver/failed_factor names an unknown error");
+    failures.push_back({slot, PoseIndex(row.pose), {SampleIndex(row.sample), static_cast<SolveStatus>(row.status)}});
+  }
+  return failures;
+}
+
+CsvTable failure_table(const StoredResult& result) {
+  const std::vector<Failure>& list = result.failures;
+  return {"failures",
+          {"factor", [&](std::size_t line) { return result.varied[list[line].slot]; }},
+          list.size(),
+          {list_column("pose", list, 0, 1, [](const Failure& failure) { return failure.pose.value; }),
+           list_column("sample", list, 0, 1, [](const Failure& failure) { return failure.failed.sample.value; }),
+           list_column("status", list, 0, 1, [](const Failure& failure) { return failure.failed.status; })}};
+}
+
+void add_limits(ResultBuilder& result, const ModelDescription& model, const std::optional<LimitVerdicts>& verdicts) {
+  if (!verdicts) return;
+  const auto names =
+      texts(verdicts->limits, [&](const LimitVerdict& one) { return model.responses[one.response].name; });
+  const Label label{"1", "Name of the response that has a limit"};
+  result.add_axis("limited_response", names, label);
+  h5::File& file = result.file();
+  file.make_group("/limits");
+  result.show_axes("/limits", kLimited);
+  file.set_attribute("/limits", "description", std::string(kLimitsMeaning));
+  file.set_attribute("/limits", "judge", std::string(verdicts->judge ? name(*verdicts->judge) : kByRow));
+  if (verdicts->judge == Judge::share) file.set_attribute("/limits", "share", verdicts->share);
+  result.add("/limits/response", kLimited, names, label);
+  write_columns(result, "/limits", kLimitFields, verdicts->limits);
+}
+
+std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResult& result) {
+  if (!file.exists("/limits")) return std::nullopt;
+  LimitVerdicts verdicts;
+  const auto judge = file.attribute<std::string>("/limits", "judge").at(0);
+  const auto word = std::ranges::find(kJudges, judge, [](Judge one) { return name(one); });
+  if (word != kJudges.end()) verdicts.judge = *word;
+  if (word == kJudges.end() && judge != kByRow) throw h5::Error("/limits has the unknown judge '" + judge + "'");
+  if (verdicts.judge == Judge::share) verdicts.share = file.attribute<double>("/limits", "share").at(0);
+  const auto names = read_along<std::string>(file, "/limits/response", kLimited);
+  verdicts.limits = read_columns(file, "/limits", kLimitFields);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    LimitVerdict& one = verdicts.limits[k];
+    one.response = position_in(result.responses, names[k], "/limits names an unknown response", &NamedUnit::name);
+    if ((one.pose && *one.pose >= result.poses.size()) || (one.row && *one.row >= one.tried)) {
+      throw h5::Error("/limits names a place that does not exist");
+    }
+  }
+  return verdicts;
+}
+
+void append_limit_table(CsvTables& tables, const StoredResult& result) {
+  if (!result.verdicts) return;
+  const std::vector<LimitVerdict>& limits = result.verdicts->limits;
+  const auto response = [&](std::size_t line) -> const NamedUnit& { return result.responses[limits[line].response]; };
+  CsvTable table{"limits",
+                 {"response", [response](std::size_t line) { return response(line).name; }},
+                 limits.size(),
+                 {},
+                 {"unit", [response](std::size_t line) { return response(line).unit; }}};
+  for (const FieldRow<LimitVerdict>& field : kLimitFields) {
+    table.columns.push_back(
+        list_column(field.name, limits, 0, 1, [&](const LimitVerdict& one) { return number_at(field, one, 0); }));
+  }
+  tables.push_back(std::move(table));
+}
+
+CourseWords convergence_words(Axes axes, const std::string& name, const std::string& unit, const std::string& quantity,
+                              const std::string& rule, const std::string& csv_slot) {
+  axes.emplace_back("milestone");
+  return {{"/convergence",
+           rule + ". The half-width is the larger distance from the value to an end of its interval",
+           kCourseLevel,
+           {},
+           {{name, &EstimateCourse::value, axes, unit, quantity + " at each milestone; NaN after its samples ended"},
+            {"half_width", &EstimateCourse::half_width, axes, unit,
+             "Half-width of its interval at each milestone; NaN after its samples ended"}}},
+          "milestone",
+          "Samples at each pose when the intervals were looked at",
+          "convergence_",
+          csv_slot,
+          {name, "half_width"}};
+}
+
+void add_course(ResultBuilder& result, const CourseWords& words, const EstimateCourse& found) {
+  result.add_axis(words.samples_axis, found.samples, {"1", words.samples_description});
+  write_group(result, words.group, found);
+}
+
+EstimateCourse read_course(const h5::File& file, const CourseWords& words) {
+  EstimateCourse found;
+  found.samples = file.read<std::uint64_t>("/" + words.samples_axis);
+  read_group(file, words.group, found);
+  return found;
+}
+
+void append_course_tables(CsvTables& tables, const StoredResult& result, const CourseWords& words,
+                          const EstimateCourse& found, std::span<const std::uint64_t> ends) {
+  const std::size_t numbers = found.samples.size();
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    const NamedUnit& response = result.responses[r];
+    const std::size_t lines = found.value.size() / result.responses.size();
+    CsvTable table{words.csv + response.name,
+                   {words.csv_slot, [&, numbers](std::size_t line) { return result.varied[line / numbers]; }},
+                   lines};
+    table.columns.push_back(
+        {"samples", [&, numbers](std::size_t line) { return to_number(found.samples[line % numbers]); }});
+    for (std::size_t k = 0; k < words.group.fields.size(); ++k) {
+      const FieldRow<EstimateCourse>& field = words.group.fields[k];
+      const std::string unit = csv_unit(field.unit, result, &response);
+      table.columns.push_back(field_column(with_unit(words.csv_columns[k], unit), field, found, r * lines));
+    }
+    if (!ends.empty()) {
+      table.has = [&found, ends, numbers](std::size_t line) {
+        return found.samples[line % numbers] <= ends[line / numbers];
+      };
+    }
+    tables.push_back(std::move(table));
+  }
+}
+
+void add_convergence(ResultBuilder& result, const CourseWords& words, const std::optional<ConvergenceResult>& found) {
+  if (!found) return;
+  add_course(result, words, found->course);
+  write_fields(result, "/convergence", end_fields(words), *found);
+  h5::File& file = result.file();
+  file.set_attribute("/convergence", "relative_error", found->relative_error);
+  const std::vector<std::uint64_t> limits{found->min, found->max};
+  file.set_attribute("/convergence", "min", std::span(limits).first(1));
+  file.set_attribute("/convergence", "max", std::span(limits).last(1));
+}
+
+std::optional<ConvergenceResult> read_convergence(const h5::File& file, const CourseWords& words) {
+  if (!file.exists("/convergence")) return std::nullopt;
+  ConvergenceResult found;
+  found.course = read_course(file, words);
+  const auto number = [&](const char* name) {
+    return static_cast<std::size_t>(file.attribute<std::uint64_t>("/convergence", name).at(0));
+  };
+  found.min = number("min");
+  found.max = number("max");
+  found.relative_error = file.attribute<double>("/convergence", "relative_error").at(0);
+  read_fields(file, "/convergence", end_fields(words), found);
+  return found;
+}
+
+void append_convergence_tables(CsvTables& tables, const StoredResult& result, const CourseWords& words) {
+  const std::optional<ConvergenceResult>& found = result.convergence;
+  if (!found) return;
+  tables.push_back(end_table(result, words, *found));
+  append_course_tables(tables, result, words, found->course, found->samples);
+}
+
+}  // namespace poesy

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "engine/storage/h5.h"
+
+// OpenSSL's state of a digest.
+struct evp_md_ctx_st;
+
+namespace poesy {
+
+/// SHA-256 of bytes that come piece by piece.
+class Sha256 {
+ public:
+  using Digest = std::array<std::byte, 32>;  ///< SHA-256 of some bytes.
+
+  Sha256();
+  void bytes(std::span<const std::byte> data);  ///< Appends.
+  Digest digest();                              ///< Nothing may be added afterwards.
+
+ private:
+  struct Free {
+    void operator()(evp_md_ctx_st* context) const;
+  };
+  std::unique_ptr<evp_md_ctx_st, Free> context_;
+};
+
+Sha256::Digest sha256(std::span<const std::byte> bytes);  ///< Of bytes that are all there.
+
+std::string hex(std::span<const std::byte> bytes);  ///< Lower-case hexadecimal.
+
+/// SHA-256 (lower-case hexadecimal) of everything a result file says, but for `/run` and its own attribute
+/// `content_sha256`. It depends on names, shapes, types and values, not on how HDF5 lays them out.
+///
+/// What is hashed, in this order, so that any program can recompute it:
+///
+///     object(path)  = text(path) kind [value, for a dataset] number(attributes) { text(name) value }
+///                     then, for a group, object(child) for each link
+///     kind          = text("group") or text("dataset")
+///     value         = text(type) number(width) number(rank) number(length of each axis) elements
+///     type, width   = "float", "int" or "uint" with the bytes per number; "text" with 0
+///     elements      = row-major; numbers as little-endian bytes of their width, every NaN of a 64-bit float as
+///                     0x7ff8000000000000; each text as text()
+///     text(s)       = number(bytes of s), the bytes (UTF-8)
+///     number(n)     = 64 bits, unsigned, little-endian
+///
+/// beginning with object("/"). Links and attributes are taken in the order of the bytes of their names; an object
+/// with several links counts under each. Left out: the link `/run`, the root's attribute `content_sha256`, and the
+/// bookkeeping of dimension scales in any object: attributes CLASS, NAME, DIMENSION_LIST, REFERENCE_LIST and
+/// those that begin with _Netcdf4 or _nc3.
+///
+/// Throws h5::Error for content that a result file never has (neither numbers nor text).
+std::string content_sha256(const h5::File& file);
+
+}  // namespace poesy

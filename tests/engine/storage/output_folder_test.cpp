@@ -1,0 +1,241 @@
+#include "engine/storage/output_folder.h"
+#include "engine/run/evaluation.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "engine/base/error.h"
+#include "engine/result/result_file.h"
+#include "tests/engine/kinds/example_result.h"
+#include "tests/support/input_error.h"
+#include "tests/support/temp_folder.h"
+
+namespace poesy::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// content_sha256 of some results.
+const std::string kResult(64, '1');
+const std::string kOther(64, '2');
+
+/// A command that is killed.
+struct Killed {};
+
+class OutputFolders : public testing::Test {
+ protected:
+  /// A command that writes these files, each with this text.
+  void write_all(const std::vector<std::string>& names, const std::string& text, const std::string& result = kResult) {
+    OutputFolder output(folder_.path(), result);
+    for (const std::string& name : names) output.claim(name);
+    output.fill([&] {
+      for (const std::string& name : names) folder_.write(name, text);
+    });
+  }
+
+  /// A command that writes these bytes as a.csv.
+  void write(const std::string& bytes) { write_all({"a.csv"}, bytes); }
+
+  /// A command of these files that is killed when the first of them is there.
+  void kill(const std::vector<std::string>& names, const std::string& result) {
+    OutputFolder killed(folder_.path(), result);
+    for (const std::string& name : names) killed.claim(name);
+    EXPECT_THROW(killed.fill([&] {
+      folder_.write(names.front(), "of the command that was killed\n");
+      throw Killed();
+    }),
+                 Killed);
+  }
+
+  void expect_refused(const std::string& name, const std::string& words) {
+    OutputFolder output(folder_.path(), kResult);
+    expect_input_error([&] { output.claim(name); }, {folder_ / name, 0, 0}, {words, "-d"});
+  }
+
+  std::string list() const { return read_bytes(folder_ / kListOfFiles); }
+  bool has(const std::string& name) const { return fs::exists(folder_ / name); }
+
+  TempFolder folder_;
+};
+
+TEST_F(OutputFolders, WhatWasWrittenMayBeReplaced) {
+  write("one\n");
+  write("two\n");
+  write("three\n");
+  EXPECT_EQ(read_bytes(folder_ / "a.csv"), "three\n");
+}
+
+TEST_F(OutputFolders, AFileOfTheUsersIsRefused) {
+  folder_.write("a.csv", "z\n0.1\n");
+  expect_refused("a.csv", "does not list it");
+}
+
+TEST_F(OutputFolders, AnEmptyFileOfTheUsersIsRefused) {
+  folder_.write("a.csv", "");
+  expect_refused("a.csv", "does not list it");
+}
+
+TEST_F(OutputFolders, AFileThatWasChangedIsRefused) {
+  write("z\n0.1\n");
+  folder_.write("a.csv", "z\n0.2\n");
+  expect_refused("a.csv", "was changed since poesy wrote it");
+  folder_.write("a.csv", "z\n0.1\n");
+  write("z\n0.3\n");
+}
+
+TEST_F(OutputFolders, FilesThatAnInterruptedCommandLeftMayBeReplaced) {
+  write("whole\n");
+  kill({"a.csv", "b.csv"}, kResult);
+  write_all({"a.csv", "b.csv"}, "new\n");
+  folder_.write("b.csv", "changed afterwards\n");
+  expect_refused("b.csv", "was changed");
+}
+
+TEST_F(OutputFolders, LinksAndFoldersAreRefused) {
+  write("mine\n");
+  fs::rename(folder_ / "a.csv", folder_ / "b.csv");
+  fs::create_symlink("b.csv", folder_ / "a.csv");
+  expect_refused("a.csv", "is not a plain file");
+  fs::remove(folder_ / "a.csv");
+  fs::create_symlink("nowhere", folder_ / "a.csv");
+  expect_refused("a.csv", "is not a plain file");
+  fs::create_directory(folder_ / "c.csv");
+  expect_refused("c.csv", "is not a plain file");
+}
+
+TEST_F(OutputFolders, TwoCommandsOfAResultShareAFolder) {
+  write("of one\n");
+  write_all({"b.csv"}, "of the other\n");
+  write("again\n");
+  EXPECT_NE(list().find("  a.csv\n"), std::string::npos);
+  EXPECT_NE(list().find("  b.csv\n"), std::string::npos);
+}
+
+TEST_F(OutputFolders, FilesOfAnotherResultGoAsAWhole) {
+  folder_.write("mine.csv", "z\n0.1\n");
+  write_all({"a.csv", "b.csv"}, "old\n");
+  write_all({"b.csv", "c.csv"}, "new\n", kOther);
+  EXPECT_FALSE(has("a.csv"));
+  EXPECT_EQ(read_bytes(folder_ / "b.csv"), "new\n");
+  EXPECT_EQ(read_bytes(folder_ / "mine.csv"), "z\n0.1\n");
+  EXPECT_EQ(list().find(kResult), std::string::npos);
+  EXPECT_NE(list().find("# content_sha256 " + kOther + "\n"), std::string::npos);
+  EXPECT_EQ(list().find("a.csv"), std::string::npos);
+  EXPECT_EQ(files_in(folder_.path()), 4U);
+}
+
+TEST_F(OutputFolders, AChangedFileOfAnotherResultIsKept) {
+  write_all({"a.csv", "b.csv"}, "old\n");
+  folder_.write("a.csv", "of the user\n");
+  const std::string before = list();
+  OutputFolder output(folder_.path(), kOther);
+  output.claim("b.csv");
+  expect_input_error([&] { output.fill([] { FAIL() << "nothing may be written"; }); }, {folder_ / "a.csv", 0, 0},
+                     {"was changed since poesy wrote it", "-d"});
+  EXPECT_EQ(read_bytes(folder_ / "a.csv"), "of the user\n");
+  EXPECT_EQ(read_bytes(folder_ / "b.csv"), "old\n");
+  EXPECT_EQ(list(), before);
+}
+
+TEST_F(OutputFolders, AfterAKillTheNextResultHasTheFolderForItself) {
+  for (const std::string& next : {kResult, kOther, std::string(64, '3')}) {
+    write_all({"a.csv", "b.csv"}, "old\n");
+    kill({"b.csv", "c.csv"}, kOther);
+    EXPECT_NE(list().find(kResult), std::string::npos) << "a.csv is still of that";
+    write_all({"b.csv"}, "new\n", next);
+    EXPECT_EQ(has("a.csv"), next == kResult);
+    EXPECT_EQ(has("c.csv"), false);
+    EXPECT_EQ(read_bytes(folder_ / "b.csv"), "new\n");
+  }
+}
+
+TEST_F(OutputFolders, FilesOfAnUnknownResultStayWithNoOthers) {
+  write_all({"a.csv"}, "old\n", "");
+  write_all({"b.csv"}, "new\n", "");
+  EXPECT_FALSE(has("a.csv"));
+  write_all({"c.csv"}, "new\n", kResult);
+  EXPECT_FALSE(has("b.csv"));
+}
+
+// A list of the time before it named results.
+TEST_F(OutputFolders, FilesOfAListWithoutAResultAreOfAnotherOne) {
+  write("old\n");
+  std::string text = list();
+  text.erase(text.find("# content_sha256"), std::string("# content_sha256 \n").size() + kResult.size());
+  folder_.write(kListOfFiles, text);
+  write_all({"b.csv"}, "new\n");
+  EXPECT_FALSE(has("a.csv"));
+}
+
+TEST_F(OutputFolders, AFailureSaysHowManyFilesAreNew) {
+  const auto failure = [&](const std::function<void()>& write) {
+    OutputFolder output(folder_.path(), kResult);
+    for (const char* name : {"a.csv", "b.csv", "c.csv"}) output.claim(name);
+    try {
+      output.fill([&] {
+        write();
+        throw FileError("b.csv", "cannot be written", "make room");
+      });
+    } catch (const FileError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  write_all({"a.csv", "b.csv"}, "old\n");
+  EXPECT_EQ(failure([] {}),
+            "b.csv: cannot be written; make room; the files in " + folder_.path() + " are as they were before");
+  EXPECT_EQ(failure([&] { folder_.write("a.csv", "new\n"); }),
+            "b.csv: cannot be written; make room; 1 of the 3 files in " + folder_.path() +
+                " are new, any others are those of before: do not use them together");
+}
+
+TEST_F(OutputFolders, AListThatIsNotOursIsRefused) {
+  const std::string hash(64, 'a');
+  for (const std::string& text : {std::string("notes\n"), std::string("0123  a.csv\n"), std::string("../a.csv  0123\n"),
+                                  hash + "  ../a.csv\n", hash + "  /a.csv\n", std::string("# being written: ../a\n")}) {
+    folder_.write(kListOfFiles, text);
+    expect_input_error([&] { OutputFolder(folder_.path(), kResult); }, {folder_ / kListOfFiles, 0, 0},
+                       {"was not written by poesy"});
+  }
+}
+
+// The list is the one of sha256sum, of which this is the hash of "abc".
+TEST_F(OutputFolders, ListIsThatOfSha256sum) {
+  write("abc");
+  EXPECT_NE(list().find("\nba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad  a.csv\n"),
+            std::string::npos)
+      << list();
+}
+
+TEST_F(OutputFolders, AnExportWritesNothingWhereOneTableIsTheUsers) {
+  Example example;
+  const std::string result = folder_ / "s.h5";
+  example.write_sensitivity(result);
+  for (const char* name : {"poses.csv", "factors.csv", "tolerances_linear_deformation.csv"}) {
+    const TempFolder home;
+    home.write(name, "z,beta,gamma\n-0.2,0,0\n");
+    expect_input_error([&] { export_tables(result, home.path()); }, {home / name, 0, 0}, {"does not list it", "-d"});
+    EXPECT_EQ(files_in(home.path()), 1U);
+    EXPECT_EQ(read_bytes(home / name), "z,beta,gamma\n-0.2,0,0\n");
+  }
+}
+
+TEST_F(OutputFolders, ExportsOfDifferentKindsReplaceEachOther) {
+  Example example;
+  example.write_sensitivity(folder_ / "s.h5");
+  example.write_evaluation(folder_ / "e.h5", Pairing::every_pose_with_every_row);
+  const std::string tables = folder_ / "tables";
+  const std::size_t files = export_tables(folder_ / "s.h5", tables).size();
+  EXPECT_EQ(files_in(tables), 1 + files);
+  EXPECT_EQ(files_in(tables), 1 + export_tables(folder_ / "e.h5", tables).size());
+  EXPECT_EQ(files_in(tables), 1 + export_tables(folder_ / "s.h5", tables).size());
+  EXPECT_NE(read_bytes(tables + "/" + kListOfFiles).find(read_result(folder_ / "s.h5").content_sha256),
+            std::string::npos);
+  folder_.write("tables/poses.csv", "pose,z [m],beta [rad],gamma [rad],condition\n0,-0.2,0,0,1\n");
+  EXPECT_THROW(export_tables(folder_ / "s.h5", tables), InputError);
+}
+
+}  // namespace
+}  // namespace poesy::test
