@@ -1,15 +1,17 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "engine/base/array.h"
 #include "engine/base/contract.h"
 #include "engine/base/number.h"
 #include "engine/storage/h5.h"
@@ -142,22 +144,6 @@ std::vector<T> read_along(const h5::File& file, const std::string& path, const A
   return read_shaped<T>(file, path, shape);
 }
 
-/// The member that holds the elements of a dataset. A list has all of them. Other members have one: the only one of a
-/// scalar, or that of one thing in a list of things. A position that may be missing is stored as -1 then.
-template <class Found>
-using Member =
-    std::variant<std::vector<double> Found::*, std::vector<std::int64_t> Found::*, std::vector<std::uint64_t> Found::*,
-                 std::vector<std::uint32_t> Found::*, std::vector<std::uint8_t> Found::*,
-                 std::vector<std::string> Found::*, double Found::*, std::uint64_t Found::*, std::uint8_t Found::*,
-                 bool Found::*, std::string Found::*, std::optional<std::size_t> Found::*>;
-
-/// A number of a result that is an attribute of a group or of a dataset.
-template <class Found>
-struct Attribute {
-  std::string name;       ///< as the file has it
-  double Found::*member;  ///< the number
-};
-
 /// How a list of numbers is stored.
 enum class Stored {
   as_it_is,
@@ -167,51 +153,11 @@ enum class Stored {
 /// Whether each file of its kind has a dataset.
 enum class Presence {
   always,
-  where_computed,  ///< a list, which is empty and not written where the study did not compute it
+  where_computed,  ///< an array without elements, which is not written, where the study did not compute it
 };
 
-/// A dataset of a group of a result file.
-template <class Found>
-struct FieldRow {
-  /// A row of a table: the members below, in their order. (As an aggregate with defaults it breaks GCC 12.)
-  FieldRow(std::string dataset, Member<Found> elements, Axes along, std::string in, std::string meaning,
-           std::vector<Attribute<Found>> beside = {}, Stored as = Stored::as_it_is)
-      : name(std::move(dataset)),
-        member(elements),
-        axes(std::move(along)),
-        unit(std::move(in)),
-        description(std::move(meaning)),
-        attributes(std::move(beside)),
-        stored(as) {}
-  /// The same of a list that may be missing.
-  FieldRow(std::string dataset, Member<Found> elements, Axes along, std::string in, std::string meaning, Presence when)
-      : FieldRow(std::move(dataset), elements, std::move(along), std::move(in), std::move(meaning)) {
-    presence = when;
-  }
-
-  std::string name;                          ///< in its group
-  Member<Found> member;                      ///< its elements
-  Axes axes;                                 ///< at the root; none for a scalar
-  std::string unit;                          ///< "m", "1", or one of the texts above
-  std::string description;                   ///< a sentence for people
-  std::vector<Attribute<Found>> attributes;  ///< written beside it, not read
-  Stored stored;                             ///< in which form
-  Presence presence = Presence::always;      ///< in which files
-};
-
-/// Rows of a group, in the order in which they are written.
-template <class Found>
-using Fields = std::vector<FieldRow<Found>>;
-
-/// A group of a result file.
-template <class Found>
-struct Group {
-  std::string path;                                                        ///< "/sensitivity"
-  std::string description;                                                 ///< a sentence for people
-  std::vector<Attribute<Found>> attributes = {};                           ///< numbers of the group as a whole
-  std::vector<std::pair<std::string, std::size_t Found::*>> lengths = {};  ///< Members that are the lengths of axes.
-  Fields<Found> fields;                                                    ///< its datasets
-};
+/// Lengths of axes by name.
+using AxisLengths = std::map<std::string, std::size_t, std::less<>>;
 
 namespace detail {
 
@@ -219,6 +165,21 @@ template <class Value>
 inline constexpr bool kIsList = false;
 template <class T>
 inline constexpr bool kIsList<std::vector<T>> = true;
+template <class Value>
+inline constexpr bool kIsArray = false;
+template <class T, class... A>
+inline constexpr bool kIsArray<Array<T, A...>> = true;
+
+/// The axes that the type of a member says.
+template <class Value>
+Axes axes_of() {
+  static_assert(!kIsList<Value>, "the type of a list does not say its axes");
+  if constexpr (kIsArray<Value>) {
+    return Value::axis_names();
+  } else {
+    return {};
+  }
+}
 
 /// An element as HDF5 has it: a flag as a byte, a missing position as -1, anything else as it is.
 template <class Value>
@@ -257,7 +218,171 @@ Number number(const Value& value) {
   }
 }
 
+/// Where a dataset is, and what it says about itself.
+struct Place {
+  const std::string& path;
+  const Axes& axes;
+  const Label& label;
+  Stored stored;
+  Presence presence;
+};
+
+/// A member of `Found`, whatever its type.
+template <class Found>
+class Member {
+ public:
+  virtual ~Member() = default;
+  /// Adds the dataset: of one thing, or with an element for each of several. Gives whether there are elements.
+  virtual bool write(ResultBuilder& result, const Place& place, std::span<const Found> things) const = 0;
+  /// Fills the member in. Throws h5::Error where the dataset is missing or has another shape.
+  virtual void read(const h5::File& file, const std::string& path, const Axes& axes, std::span<Found> things) const = 0;
+  virtual void clear(Found& found) const = 0;  ///< Frees the memory of its elements.
+  virtual Number number(const Found& found, std::size_t at, Stored as) const = 0;  ///< Its element at this position.
+  /// Its element `within` the row of elements at a position on the first axis.
+  virtual Number number_in_row(const Found& found, std::size_t row, std::size_t within) const = 0;
+  virtual std::size_t element_bytes() const = 0;  ///< Of an element, in memory and in a file alike.
+};
+
+template <class Found, class Value>
+class MemberOf final : public Member<Found> {
+ public:
+  explicit MemberOf(Value Found::*member) : member_(member) {}
+
+  bool write(ResultBuilder& result, const Place& place, std::span<const Found> things) const override {
+    if constexpr (kIsList<Value> || kIsArray<Value>) {
+      const Value& list = things.front().*member_;
+      const bool computed = !list.empty() || h5::size(result.shape(place.axes)) == 0;
+      if (place.presence == Presence::where_computed && !computed) return false;
+      write_elements(result, place, std::span(list.begin(), list.end()));
+    } else {
+      std::vector<StoredAs<Value>> column;
+      for (const Found& thing : things) column.push_back(stored(thing.*member_));
+      result.add(place.path, place.axes, column, place.label);
+    }
+    return true;
+  }
+  void read(const h5::File& file, const std::string& path, const Axes& axes, std::span<Found> things) const override {
+    if constexpr (kIsArray<Value>) {
+      typename Value::Lengths lengths;
+      std::ranges::transform(axes, lengths.begin(), [&](const std::string& axis) { return axis_length(file, axis); });
+      things.front().*member_ = Value(lengths, read_along<typename Value::Element>(file, path, axes));
+    } else if constexpr (kIsList<Value>) {
+      things.front().*member_ = read_along<typename Value::value_type>(file, path, axes);
+    } else {
+      auto column = read_along<StoredAs<Value>>(file, path, axes);
+      for (std::size_t k = 0; k < things.size(); ++k) restore(std::move(column[k]), things[k].*member_);
+    }
+  }
+  void clear(Found& found) const override {
+    if constexpr (kIsList<Value> || kIsArray<Value>) found.*member_ = Value();
+  }
+  Number number(const Found& found, std::size_t at, Stored as) const override {
+    const Value& value = found.*member_;
+    if constexpr (kIsList<Value> || kIsArray<Value>) {
+      const auto& element = *(value.begin() + static_cast<std::ptrdiff_t>(at));
+      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(element)>, double>) {
+        if (as == Stored::as_whole_numbers) return static_cast<std::uint64_t>(element);
+      }
+      return detail::number(element);
+    } else {
+      return detail::number(value);
+    }
+  }
+  Number number_in_row(const Found& found, std::size_t row, std::size_t within) const override {
+    if constexpr (kIsArray<Value>) {
+      if constexpr (Value::kAxes > 1) return detail::number((found.*member_).row(row)[within]);
+    }
+    POESY_EXPECTS(within == 0);
+    return number(found, row, Stored::as_it_is);
+  }
+  std::size_t element_bytes() const override {
+    if constexpr (kIsArray<Value>) {
+      return sizeof(typename Value::Element);
+    } else if constexpr (kIsList<Value>) {
+      return sizeof(typename Value::value_type);
+    } else {
+      return sizeof(StoredAs<Value>);
+    }
+  }
+
+ private:
+  template <class T>
+  static void write_elements(ResultBuilder& result, const Place& place, std::span<const T> elements) {
+    if constexpr (std::is_same_v<T, double>) {
+      if (place.stored == Stored::as_whole_numbers) {
+        result.add_computed<std::uint64_t>(
+            place.path, place.axes, [&](std::size_t at) { return elements[at]; }, place.label);
+        return;
+      }
+    }
+    result.add(place.path, place.axes, elements, place.label);
+  }
+
+  Value Found::*member_;
+};
+
 }  // namespace detail
+
+/// A number of a result that is an attribute of a group or of a dataset.
+template <class Found>
+struct Attribute {
+  std::string name;       ///< as the file has it
+  double Found::*member;  ///< the number
+};
+
+/// A dataset of a group of a result file. Its axes are those of its member, an Array; a member that is a single value
+/// makes a scalar, or one element for each of a list of things, whose axis is named then.
+template <class Found>
+struct FieldRow {
+  /// Of an array, or of a single value.
+  template <class Value>
+  FieldRow(std::string dataset, Value Found::*elements, std::string in, std::string meaning,
+           Presence when = Presence::always, std::vector<Attribute<Found>> beside = {})
+      : FieldRow(std::move(dataset), elements, detail::axes_of<Value>(), std::move(in), std::move(meaning), when) {
+    attributes = std::move(beside);
+  }
+  /// Of a member whose type does not say its axes.
+  template <class Value>
+  FieldRow(std::string dataset, Value Found::*elements, Axes along, std::string in, std::string meaning,
+           Presence when = Presence::always)
+      : name(std::move(dataset)),
+        member(std::make_shared<detail::MemberOf<Found, Value>>(elements)),
+        axes(std::move(along)),
+        unit(std::move(in)),
+        description(std::move(meaning)),
+        presence(when) {}
+  /// The same with attributes beside it, or in another form.
+  template <class Value>
+  FieldRow(std::string dataset, Value Found::*elements, Axes along, std::string in, std::string meaning,
+           std::vector<Attribute<Found>> beside, Stored as = Stored::as_it_is)
+      : FieldRow(std::move(dataset), elements, std::move(along), std::move(in), std::move(meaning)) {
+    attributes = std::move(beside);
+    stored = as;
+  }
+
+  std::string name;                                     ///< in its group
+  std::shared_ptr<const detail::Member<Found>> member;  ///< its elements
+  Axes axes;                                            ///< at the root; none for a scalar
+  std::string unit;                                     ///< "m", "1", or one of the texts above
+  std::string description;                              ///< a sentence for people
+  std::vector<Attribute<Found>> attributes;             ///< written beside it, not read
+  Stored stored = Stored::as_it_is;                     ///< in which form
+  Presence presence = Presence::always;                 ///< in which files
+};
+
+/// Rows of a group, in the order in which they are written.
+template <class Found>
+using Fields = std::vector<FieldRow<Found>>;
+
+/// A group of a result file.
+template <class Found>
+struct Group {
+  std::string path;                                                        ///< "/sensitivity"
+  std::string description;                                                 ///< a sentence for people
+  std::vector<Attribute<Found>> attributes = {};                           ///< numbers of the group as a whole
+  std::vector<std::pair<std::string, std::size_t Found::*>> lengths = {};  ///< Members that are the lengths of axes.
+  Fields<Found> fields;                                                    ///< its datasets
+};
 
 /// Adds the dataset of a row to the group at path: of a single thing, or with one element for each of several things.
 /// Gives whether there are such elements. Precondition: only a single thing has members that are lists.
@@ -266,28 +391,7 @@ bool write_field(ResultBuilder& result, const std::string& group, const FieldRow
                  std::span<const Found> things) {
   const std::string path = group + "/" + field.name;
   const Label label{field.unit, field.description};
-  const auto write = [&](auto member) {
-    using Value = std::remove_cvref_t<decltype(std::declval<Found>().*member)>;
-    if constexpr (detail::kIsList<Value>) {
-      const Value& list = things.front().*member;
-      const bool computed = !list.empty() || h5::size(result.shape(field.axes)) == 0;
-      if (field.presence == Presence::where_computed && !computed) return false;
-      if constexpr (std::is_same_v<Value, std::vector<double>>) {
-        if (field.stored == Stored::as_whole_numbers) {
-          result.add_computed<std::uint64_t>(
-              path, field.axes, [&](std::size_t at) { return list[at]; }, label);
-          return true;
-        }
-      }
-      result.add(path, field.axes, list, label);
-    } else {
-      std::vector<detail::StoredAs<Value>> column;
-      for (const Found& thing : things) column.push_back(detail::stored(thing.*member));
-      result.add(path, field.axes, column, label);
-    }
-    return true;
-  };
-  if (!std::visit(write, field.member)) return false;
+  if (!field.member->write(result, {path, field.axes, label, field.stored, field.presence}, things)) return false;
   for (const Attribute<Found>& each : field.attributes) {
     result.file().set_attribute(path, each.name, things.front().*each.member);
   }
@@ -332,13 +436,7 @@ void write_group(ResultBuilder& result, const Group<Found>& group, const Found& 
 /// that are no rows stay.
 template <class Found>
 void write_group(ResultBuilder& result, const Group<Found>& group, Found&& found) {
-  write_group(result, group, std::as_const(found), [&](const FieldRow<Found>& field) {
-    const auto empty = [&](auto member) {
-      using Value = std::remove_cvref_t<decltype(found.*member)>;
-      if constexpr (detail::kIsList<Value>) found.*member = Value();
-    };
-    std::visit(empty, field.member);
-  });
+  write_group(result, group, std::as_const(found), [&](const FieldRow<Found>& field) { field.member->clear(found); });
 }
 
 /// Fills in the members of these rows in as many things as were written. Throws h5::Error where a dataset is missing or
@@ -348,16 +446,7 @@ void read_fields(const h5::File& file, const std::string& group, const Fields<Fo
   for (const FieldRow<Found>& field : fields) {
     const std::string path = group + "/" + field.name;
     if (field.presence == Presence::where_computed && !file.exists(path)) continue;
-    const auto read = [&](auto member) {
-      using Value = std::remove_cvref_t<decltype(std::declval<Found>().*member)>;
-      if constexpr (detail::kIsList<Value>) {
-        things.front().*member = read_along<typename Value::value_type>(file, path, field.axes);
-      } else {
-        auto column = read_along<detail::StoredAs<Value>>(file, path, field.axes);
-        for (std::size_t k = 0; k < things.size(); ++k) detail::restore(std::move(column[k]), things[k].*member);
-      }
-    };
-    std::visit(read, field.member);
+    field.member->read(file, path, field.axes, things);
   }
 }
 
@@ -387,22 +476,22 @@ void read_group(const h5::File& file, const Group<Found>& group, Found& found) {
   read_fields(file, group.path, group.fields, found);
 }
 
+/// Bytes of the elements of these rows, in memory and in a file alike. lengths: of all their axes.
+template <class Found>
+std::size_t bytes_of(const Fields<Found>& fields, const AxisLengths& lengths) {
+  std::size_t bytes = 0;
+  for (const FieldRow<Found>& field : fields) {
+    std::size_t elements = 1;
+    for (const std::string& axis : field.axes) elements *= lengths.at(axis);
+    bytes += elements * field.member->element_bytes();
+  }
+  return bytes;
+}
+
 /// The element of a row at this position, as the file has it. Precondition: it is a number, and there.
 template <class Found>
 Number number_at(const FieldRow<Found>& field, const Found& found, std::size_t at) {
-  const auto get = [&](auto member) -> Number {
-    const auto& value = found.*member;
-    using Value = std::remove_cvref_t<decltype(value)>;
-    if constexpr (std::is_same_v<Value, std::vector<double>>) {
-      if (field.stored == Stored::as_whole_numbers) return static_cast<std::uint64_t>(value[at]);
-    }
-    if constexpr (detail::kIsList<Value>) {
-      return detail::number(value[at]);
-    } else {
-      return detail::number(value);
-    }
-  };
-  return std::visit(get, field.member);
+  return field.member->number(found, at, field.stored);
 }
 
 }  // namespace poesy

@@ -1,4 +1,4 @@
-poesy_test(base_test LABELS unit SOURCES engine/base/bytes_test.cpp engine/base/name_pattern_test.cpp engine/base/plain_file_test.cpp
+poesy_test(base_test LABELS unit SOURCES engine/base/array_test.cpp engine/base/bytes_test.cpp engine/base/name_pattern_test.cpp engine/base/plain_file_test.cpp
            engine/base/text_test.cpp engine/base/units_test.cpp
            LINKS poesy_base)
 poesy_test(linalg_test LABELS property SOURCES engine/linalg/decompositions_test.cpp LINKS poesy_linalg)
