@@ -139,15 +139,13 @@ int solve(const EvaluateOptions& options, const Evaluated& all, const std::strin
   if (const auto& limits = study.analysis.limits; !limits.empty()) {
     result->verdicts = judge_rows(limits, *result, pairing, study.not_converged);
   }
-  StoredResult shown = with_verdicts(study, poses, result->verdicts, row_names(errors.labels, pairing, errors.rows));
+  Evaluation found = evaluation(*std::move(result), errors, pairing, model.description());
+  StoredResult shown =
+      with_verdicts(study, poses, found.solves.verdicts, row_names(errors.labels, pairing, errors.rows));
   for (std::size_t r = 0; r < shown.responses.size(); ++r) shown.headline.push_back(r);
   if (!path.empty()) {
-    write_evaluation(path, study, poses, errors, pairing, *result, run_facts(seconds, threads, total.total()));
+    write_evaluation(path, study, poses, errors.factors, found, run_facts(seconds, threads, total.total()));
   }
-  StoredEvaluation found;
-  found.evaluation = std::move(*result);
-  found.pairing = pairing;
-  found.labels = errors.labels;
   shown.found = std::move(found);
   print(fmt::format("{} solves, {}\n\n{}", total.total(), unsolved_in_short(total),
                     text_of(evaluation_table(shown), output_width())));

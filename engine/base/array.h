@@ -31,6 +31,12 @@ struct Pose {
 struct Sample {
   static constexpr std::string_view kName = "sample";
 };
+struct Component {
+  static constexpr std::string_view kName = "component";
+};
+struct Joint {
+  static constexpr std::string_view kName = "joint";
+};
 /// @}
 }  // namespace axis
 
@@ -55,6 +61,14 @@ class AxisLayout {
   static std::vector<std::string> axis_names() { return {std::string(Axes::kName)...}; }
 
   const Lengths& lengths() const { return lengths_; }  ///< Of all axes.
+  /// Number of elements.
+  std::size_t elements() const { return product(lengths_); }
+  /// Positions of the element at this place, on each axis.
+  Lengths positions(std::size_t place) const {
+    Lengths at{};
+    for (std::size_t k = kAxes; k-- > 0; place /= lengths_[k]) at[k] = place % lengths_[k];
+    return at;
+  }
   /// Positions along this axis, the first of that name.
   template <class Axis>
   std::size_t length() const {

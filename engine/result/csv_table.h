@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -70,12 +71,12 @@ std::string csv_unit(const std::string& unit, const StoredResult& result, const 
 CsvTable lines_of_factors(const StoredResult& result, std::string name);
 CsvTable lines_of_poses(const StoredResult& result, std::string name);  ///< A table with a line for each pose.
 
-/// A column of the elements first, first + step, ... of a list, or of get(element).
-template <class Thing, class Get = std::identity>
-CsvColumn list_column(std::string heading, const std::vector<Thing>& list, std::size_t first = 0, std::size_t step = 1,
+/// A column of the elements first, first + step, ... of a list, or of get(element). Refers to the elements.
+template <class List, class Get = std::identity>
+CsvColumn list_column(std::string heading, const List& list, std::size_t first = 0, std::size_t step = 1,
                       Get get = {}) {
-  return {std::move(heading), [&list, first, step, get](std::size_t line) {
-            return to_number(std::invoke(get, list[first + line * step]));
+  return {std::move(heading), [elements = std::span(list), first, step, get](std::size_t line) {
+            return to_number(std::invoke(get, elements[first + line * step]));
           }};
 }
 
@@ -85,6 +86,13 @@ CsvColumn field_column(std::string heading, const FieldRow<Found>& field, const 
                        std::size_t step = 1) {
   return {std::move(heading),
           [&field, &found, first, step](std::size_t line) { return number_at(field, found, first + line * step); }};
+}
+
+/// The same of a row along several axes: its elements at this position on the first one.
+template <class Found>
+CsvColumn field_row_column(std::string heading, const FieldRow<Found>& field, const Found& found, std::size_t at) {
+  return {std::move(heading),
+          [&field, &found, at](std::size_t line) { return field.member->number_in_row(found, at, line); }};
 }
 
 /// A column for each pose of a row along [factor x pose], the last axes of the row. first: its first element.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -88,6 +89,20 @@ class ResultBuilder {
   void add(const std::string& path, const Axes& axes, const std::vector<T>& values, const Label& label) {
     add(path, axes, std::span<const T>(values), label);
   }
+  /// The same of an array, along its axes.
+  template <class T, class... A>
+  void add(const std::string& path, const Array<T, A...>& array, const Label& label) {
+    add(path, array.axis_names(), array.all(), label);
+  }
+  /// The same of numbers that are not in memory as the file has them. element(positions...): the one at these
+  /// positions.
+  template <h5::Number T, class... A, class ElementAt>
+  void add_computed(const std::string& path, const AxisLayout<A...>& layout, const ElementAt& element,
+                    const Label& label) {
+    add_computed<T>(
+        path, layout.axis_names(), [&](std::size_t place) { return std::apply(element, layout.positions(place)); },
+        label);
+  }
   /// A single value.
   template <h5::Element T>
   void add_scalar(const std::string& path, const T& value, const Label& label) {
@@ -142,6 +157,21 @@ std::vector<T> read_along(const h5::File& file, const std::string& path, const A
   h5::Shape shape;
   for (const std::string& axis : axes) shape.push_back(axis_length(file, axis));
   return read_shaped<T>(file, path, shape);
+}
+
+/// The lengths that the axes of an array have in a file.
+template <class AnArray>
+typename AnArray::Lengths lengths_in(const h5::File& file) {
+  const std::vector<std::string> axes = AnArray::axis_names();
+  typename AnArray::Lengths lengths;
+  std::ranges::transform(axes, lengths.begin(), [&](const std::string& axis) { return axis_length(file, axis); });
+  return lengths;
+}
+
+/// A dataset along the axes of this array. Throws h5::Error where it has another shape.
+template <class AnArray>
+AnArray read_array(const h5::File& file, const std::string& path) {
+  return {lengths_in<AnArray>(file), read_along<typename AnArray::Element>(file, path, AnArray::axis_names())};
 }
 
 /// How a list of numbers is stored.
@@ -263,9 +293,7 @@ class MemberOf final : public Member<Found> {
   }
   void read(const h5::File& file, const std::string& path, const Axes& axes, std::span<Found> things) const override {
     if constexpr (kIsArray<Value>) {
-      typename Value::Lengths lengths;
-      std::ranges::transform(axes, lengths.begin(), [&](const std::string& axis) { return axis_length(file, axis); });
-      things.front().*member_ = Value(lengths, read_along<typename Value::Element>(file, path, axes));
+      things.front().*member_ = read_array<Value>(file, path);
     } else if constexpr (kIsList<Value>) {
       things.front().*member_ = read_along<typename Value::value_type>(file, path, axes);
     } else {

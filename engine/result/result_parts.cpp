@@ -244,7 +244,7 @@ std::size_t listed_statuses(const h5::File& file) {
   return names.size();
 }
 
-void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves) {
+void add_solver(ResultBuilder& result, const Axes& axes, std::span<const SolveCounts> solves) {
   SolverColumns columns;
   for (const SolveCounts& cell : solves) {
     columns.not_converged.push_back(cell.not_converged());
@@ -282,7 +282,7 @@ std::vector<SolveCounts> read_solver(const h5::File& file, const Axes& axes) {
   return solves;
 }
 
-std::vector<SolveNumber> solve_numbers(const std::vector<SolveCounts>& solves) {
+std::vector<SolveNumber> solve_numbers(std::span<const SolveCounts> solves) {
   std::vector<SolveNumber> list{
       {"not_converged", [](const SolveCounts& cell) { return to_number(cell.not_converged()); }},
       {"iterations_mean", mean_iterations},
@@ -295,7 +295,7 @@ std::vector<SolveNumber> solve_numbers(const std::vector<SolveCounts>& solves) {
   return list;
 }
 
-void append_solve_columns(CsvTable& table, const std::vector<SolveCounts>& solves) {
+void append_solve_columns(CsvTable& table, std::span<const SolveCounts> solves) {
   for (const SolveNumber& number : solve_numbers(solves)) {
     table.columns.push_back(list_column(number.name, solves, 0, 1, number.get));
   }

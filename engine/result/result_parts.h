@@ -83,18 +83,28 @@ std::vector<std::string> listed_statuses(std::uint64_t not_assembled);
 std::size_t listed_statuses(const h5::File& file);
 
 /// How the solves ended, with the counts of each cell along these axes: /solver.
-void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves);
+void add_solver(ResultBuilder& result, const Axes& axes, std::span<const SolveCounts> solves);
+/// The same of an array.
+template <class... A>
+void add_solver(ResultBuilder& result, const Array<SolveCounts, A...>& solves) {
+  add_solver(result, solves.axis_names(), solves.all());
+}
 /// /solver: how the solves of each cell ended.
 std::vector<SolveCounts> read_solver(const h5::File& file, const Axes& axes);
+/// The same as an array.
+template <class Solves>
+Solves read_solver(const h5::File& file) {
+  return {lengths_in<Solves>(file), read_solver(file, Solves::axis_names())};
+}
 /// A number that CSV says about how solves ended.
 struct SolveNumber {
   std::string name;                               ///< "not_converged", "iterations_mean", ..., "solves_STATUS"
   std::function<Number(const SolveCounts&)> get;  ///< of a cell
 };
 /// All of them; solves_not_assembled only where a solve ended so.
-std::vector<SolveNumber> solve_numbers(const std::vector<SolveCounts>& solves);
-/// Appends a column for each of them; line n is of the n-th cell.
-void append_solve_columns(CsvTable& table, const std::vector<SolveCounts>& solves);
+std::vector<SolveNumber> solve_numbers(std::span<const SolveCounts> solves);
+/// Appends a column for each of them; line n is of the n-th cell. Refers to them.
+void append_solve_columns(CsvTable& table, std::span<const SolveCounts> solves);
 
 /// The first failures, as addresses, `total` in all; slots: the name of each. Follows add_solver.
 void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, const std::vector<std::string>& slots,

@@ -18,30 +18,27 @@ constexpr std::size_t kBlockRows = 256;
 /// No other state begins with this number.
 constexpr std::uint64_t kKind = 3;
 
-/// How the solves first .. end - 1 of [M x S] ended.
+/// How the solves first .. end - 1 ended, counted pose by pose.
 SolveCounts solves_of(const EvaluationResult& result, std::size_t first, std::size_t end) {
   SolveCounts solves;
-  for (std::size_t n = first; n < end; ++n) solves.add(result.status[n], result.iterations[n]);
+  for (std::size_t n = first; n < end; ++n) solves.add(result.status.all()[n], result.iterations.all()[n]);
   return solves;
 }
 
 EvaluationResult empty_evaluation(const Model& model, const PoseSet& poses, std::size_t samples, Outcomes outcomes) {
   const ModelDescription& description = model.description();
-  EvaluationResult result;
-  result.poses = poses.size();
-  result.samples = samples;
-  result.responses = description.responses.size();
+  std::size_t components = 0;
   if (outcomes == Outcomes::with_details) {
-    for (const Detail& detail : description.details) result.details += detail.components.size();
+    for (const Detail& detail : description.details) components += detail.components.size();
   }
-  const std::size_t all = result.poses * samples;
-  result.response.resize(result.responses * all);
-  result.detail.resize(all * result.details);
-  result.status.resize(all);
-  result.iterations.resize(all);
+  EvaluationResult result;
+  result.response = decltype(result.response)({description.responses.size(), poses.size(), samples});
+  result.detail = decltype(result.detail)({poses.size(), samples, components});
+  result.status = decltype(result.status)({poses.size(), samples});
+  result.iterations = decltype(result.iterations)({poses.size(), samples});
+  result.joint_displacement = decltype(result.joint_displacement)({poses.size(), description.joints.size()});
   for (std::size_t m = 0; m < poses.size(); ++m) {
-    const std::vector<double> q = model.joint_displacements(poses[PoseIndex(m)]);
-    result.joint_displacement.insert(result.joint_displacement.end(), q.begin(), q.end());
+    std::ranges::copy(model.joint_displacements(poses[PoseIndex(m)]), result.joint_displacement.row(m).begin());
   }
   return result;
 }
@@ -75,19 +72,21 @@ class TableWork {
   }
   Worker worker() const { return {model_.evaluator(solver_), {}, {}, {}}; }
   SolveCounts solve(Worker& worker, std::size_t n) {
-    const std::size_t blocks = (result_.samples + kBlockRows - 1) / kBlockRows;
+    const std::size_t blocks = (result_.samples() + kBlockRows - 1) / kBlockRows;
     const std::size_t pose = (pending_.first + n) / blocks;
     const std::size_t first = (pending_.first + n) % blocks * kBlockRows;
-    const std::size_t count = std::min(kBlockRows, result_.samples - first);
+    const std::size_t count = std::min(kBlockRows, result_.samples() - first);
     take_rows(paired_ ? pose : first, count, worker.values);
-    worker.responses.resize(result_.responses * count);
-    worker.details.resize(result_.details * count);
-    const std::size_t start = pose * result_.samples + first;
+    worker.responses.resize(result_.responses() * count);
+    worker.details.resize(result_.detail.length<axis::Component>() * count);
+    const std::span<SolveStatus> status = result_.status.row(pose).subspan(first, count);
+    const std::span<std::uint32_t> iterations = result_.iterations.row(pose).subspan(first, count);
     worker.evaluator->evaluate({poses_[PoseIndex(pose)], zeros_, errors_.factors, worker.values, count},
-                               {worker.responses, std::span(result_.status).subspan(start, count),
-                                std::span(result_.iterations).subspan(start, count), worker.details});
-    scatter(worker, start, count);
-    return solves_of(result_, start, start + count);
+                               {worker.responses, status, iterations, worker.details});
+    scatter(worker, pose, first, count);
+    SolveCounts solves;
+    for (std::size_t b = 0; b < count; ++b) solves.add(status[b], iterations[b]);
+    return solves;
   }
   const SolveCounts& merge(std::size_t, const SolveCounts& solves) {
     done_.add_block();
@@ -107,24 +106,26 @@ class TableWork {
   EvaluationResult result() && { return std::move(result_); }
 
  private:
-  /// Rows of the table as [V x B].
+  /// Rows of the table, error by error.
   void take_rows(std::size_t first, std::size_t count, std::vector<double>& values) const {
     const std::size_t varied = errors_.factors.size();
     values.resize(varied * count);
+    const ArrayView<double, axis::Factor, axis::Sample> by_error(values, {varied, count});
+    const ArrayView<const double, axis::Sample, axis::Factor> table(errors_.values, {errors_.rows, varied});
     for (std::size_t v = 0; v < varied; ++v) {
-      for (std::size_t b = 0; b < count; ++b) values[v * count + b] = errors_.values[(first + b) * varied + v];
+      for (std::size_t b = 0; b < count; ++b) by_error(v, b) = table(first + b, v);
     }
   }
 
-  void scatter(const Worker& from, std::size_t start, std::size_t count) {
-    const std::size_t all = result_.poses * result_.samples;
-    for (std::size_t r = 0; r < result_.responses; ++r) {
-      std::copy_n(&from.responses[r * count], count, &result_.response[r * all + start]);
+  void scatter(Worker& from, std::size_t pose, std::size_t first, std::size_t count) {
+    const ArrayView<double, axis::Response, axis::Sample> responses(from.responses, {result_.responses(), count});
+    for (std::size_t r = 0; r < result_.responses(); ++r) {
+      std::ranges::copy(responses.row(r), result_.response.row(r, pose).subspan(first).begin());
     }
-    for (std::size_t d = 0; d < result_.details; ++d) {
-      for (std::size_t b = 0; b < count; ++b) {
-        result_.detail[(start + b) * result_.details + d] = from.details[d * count + b];
-      }
+    const std::size_t components = result_.detail.length<axis::Component>();
+    const ArrayView<double, axis::Component, axis::Sample> details(from.details, {components, count});
+    for (std::size_t d = 0; d < components; ++d) {
+      for (std::size_t b = 0; b < count; ++b) result_.detail(pose, first + b, d) = details(d, b);
     }
   }
 
@@ -155,16 +156,16 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
 LimitVerdicts judge_rows(std::span<const ResponseLimit> limits, const EvaluationResult& found, Pairing pairing,
                          NotConverged policy) {
   const bool paired = pairing == Pairing::row_by_row;
-  const std::size_t rows = paired ? found.poses : found.samples;
+  const std::size_t rows = paired ? found.poses() : found.samples();
   LimitVerdicts verdicts;
   for (const ResponseLimit& limit : limits) {
     LimitVerdict verdict{.response = limit.response, .limit = limit.most, .value = kNaN, .tried = rows};
     for (std::size_t row = 0; row < rows; ++row) {
-      bool within = found.poses > 0;
-      for (std::size_t m = paired ? row : 0; m < (paired ? row + 1 : found.poses); ++m) {
-        const std::size_t at = paired ? m : m * found.samples + row;
-        const double magnitude = std::abs(found.response[limit.response * found.status.size() + at]);
-        const bool counted = counts(found.status[at], policy);
+      bool within = found.poses() > 0;
+      for (std::size_t m = paired ? row : 0; m < (paired ? row + 1 : found.poses()); ++m) {
+        const std::size_t sample = paired ? 0 : row;
+        const double magnitude = std::abs(found.response(limit.response, m, sample));
+        const bool counted = counts(found.status(m, sample), policy);
         within = within && counted && magnitude <= limit.most;
         if (!counted || std::isnan(magnitude) || magnitude <= verdict.value) continue;
         verdict.value = magnitude;
@@ -182,22 +183,24 @@ LimitVerdicts judge_rows(std::span<const ResponseLimit> limits, const Evaluation
 EvaluationProgress::EvaluationProgress(EvaluationResult& result, std::size_t block_rows, const Shard& shard)
     : result_(&result),
       block_rows_(block_rows),
-      blocks_per_pose_((result.samples + block_rows - 1) / block_rows),
-      blocks_(shard.of(result.poses * blocks_per_pose_)),
+      blocks_per_pose_((result.samples() + block_rows - 1) / block_rows),
+      blocks_(shard.of(result.poses() * blocks_per_pose_)),
       next_(blocks_.first) {
   POESY_EXPECTS(block_rows > 0);
 }
 
 std::size_t EvaluationProgress::outcomes(std::size_t block) const {
   if (blocks_per_pose_ == 0) return 0;
-  return block / blocks_per_pose_ * result_->samples +
-         std::min(block % blocks_per_pose_ * block_rows_, result_->samples);
+  return block / blocks_per_pose_ * result_->samples() +
+         std::min(block % blocks_per_pose_ * block_rows_, result_->samples());
 }
 
 SolveCounts EvaluationProgress::total() const { return solves_of(*result_, outcomes(blocks_.first), outcomes(next_)); }
 
 std::array<std::uint64_t, 6> EvaluationProgress::sizes() const {
-  return {kKind, result_->poses, result_->samples, result_->responses, result_->details, block_rows_};
+  return {
+      kKind,      result_->poses(), result_->samples(), result_->responses(), result_->detail.length<axis::Component>(),
+      block_rows_};
 }
 
 void EvaluationProgress::write_state(ByteWriter& to) const {
@@ -226,26 +229,27 @@ void EvaluationProgress::restore_one(ByteReader& from) {
 }
 
 void EvaluationProgress::write_outcomes(std::size_t first, std::size_t end, ByteWriter& to) const {
-  const std::size_t all = result_->poses * result_->samples;
-  for (std::size_t r = 0; r < result_->responses; ++r) {
-    to.reals(std::span(result_->response).subspan(r * all + first, end - first));
+  for (std::size_t r = 0; r < result_->responses(); ++r) {
+    to.reals(result_->response.row(r).subspan(first, end - first));
   }
-  to.reals(std::span(result_->detail).subspan(first * result_->details, (end - first) * result_->details));
+  const std::size_t components = result_->detail.length<axis::Component>();
+  to.reals(result_->detail.all().subspan(first * components, (end - first) * components));
   for (std::size_t n = first; n < end; ++n) {
-    to.number(static_cast<std::uint64_t>(result_->status[n]));
-    to.number(result_->iterations[n]);
+    to.number(static_cast<std::uint64_t>(result_->status.all()[n]));
+    to.number(result_->iterations.all()[n]);
   }
 }
 
 void EvaluationProgress::read_outcomes(std::size_t first, std::size_t end, ByteReader& from) {
-  const std::size_t all = result_->poses * result_->samples;
-  for (std::size_t r = 0; r < result_->responses; ++r) {
-    from.reals(std::span(result_->response).subspan(r * all + first, end - first));
+  for (std::size_t r = 0; r < result_->responses(); ++r) {
+    from.reals(result_->response.row(r).subspan(first, end - first));
   }
-  from.reals(std::span(result_->detail).subspan(first * result_->details, (end - first) * result_->details));
+  const std::size_t components = result_->detail.length<axis::Component>();
+  from.reals(result_->detail.all().subspan(first * components, (end - first) * components));
   for (std::size_t n = first; n < end; ++n) {
-    result_->status[n] = static_cast<SolveStatus>(from.number_up_to(kStatusNames.size() - 1));
-    result_->iterations[n] = static_cast<std::uint32_t>(from.number_up_to(std::numeric_limits<std::uint32_t>::max()));
+    result_->status.all()[n] = static_cast<SolveStatus>(from.number_up_to(kStatusNames.size() - 1));
+    result_->iterations.all()[n] =
+        static_cast<std::uint32_t>(from.number_up_to(std::numeric_limits<std::uint32_t>::max()));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/array.h"
 #include "engine/base/bytes.h"
 #include "engine/model/model.h"
 #include "engine/run/result.h"
@@ -28,20 +29,18 @@ enum class Outcomes {
   responses      ///< without details, which take most of the memory
 };
 
-/// What a table of errors does at M poses, S samples each (S = 1 when paired): SI.
+/// What a table of errors does at each pose, in SI units. When paired, a pose has one sample.
 struct EvaluationResult {
-  std::size_t poses = 0;      ///< M
-  std::size_t samples = 0;    ///< S
-  std::size_t responses = 0;  ///< R
-  std::size_t details = 0;    ///< D, components of all details
+  Array<double, axis::Response, axis::Pose, axis::Sample> response;
+  Array<double, axis::Pose, axis::Sample, axis::Component> detail;  ///< components of all details
+  Array<SolveStatus, axis::Pose, axis::Sample> status;
+  Array<std::uint32_t, axis::Pose, axis::Sample> iterations;
+  Array<double, axis::Pose, axis::Joint> joint_displacement;  ///< of the perfect mechanism
+  std::optional<LimitVerdicts> verdicts;                      ///< where the study states limits
 
-  std::vector<double> response;            ///< [R x M x S]
-  std::vector<double> detail;              ///< [M x S x D]
-  std::vector<SolveStatus> status;         ///< [M x S]
-  std::vector<std::uint32_t> iterations;   ///< [M x S]
-  std::vector<double> joint_displacement;  ///< [M x joints], nominal
-  std::optional<LimitVerdicts> verdicts;   ///< where the study states limits
-
+  std::size_t poses() const { return status.length<axis::Pose>(); }            ///< Of the table.
+  std::size_t samples() const { return status.length<axis::Sample>(); }        ///< At each pose.
+  std::size_t responses() const { return response.length<axis::Response>(); }  ///< Of the model.
   /// Over all poses and samples.
   SolveCounts total() const;
 };
@@ -87,10 +86,10 @@ class EvaluationProgress {
   void restore_one(ByteReader& from);
   /// What a state begins with, before the blocks.
   std::array<std::uint64_t, 6> sizes() const;
-  /// Outcomes first .. end - 1 of [M x S].
+  /// Outcomes first .. end - 1, counted pose by pose.
   void write_outcomes(std::size_t first, std::size_t end, ByteWriter& to) const;
   void read_outcomes(std::size_t first, std::size_t end, ByteReader& from);
-  /// Outcomes in the blocks before this one: the first of [M x S].
+  /// Outcomes in the blocks before this one.
   std::size_t outcomes(std::size_t block) const;
 
   EvaluationResult* result_;

@@ -39,7 +39,7 @@ ReplayedSample replay_sample(const Study& study, const Model& model, const PoseS
 ReplayedSample replay_row(const SolverOptions& solver, const Model& model, const PoseSet& pose, const ErrorTable& row) {
   POESY_EXPECTS(pose.size() == 1 && row.rows == 1);
   const auto found = run_evaluation(model, solver, pose, row, Pairing::row_by_row, {1, {}, {}}, Outcomes::responses);
-  return sample_of({row.values, found->response, found->status, found->iterations}, row.factors,
+  return sample_of({row.values, found->response.all(), found->status.all(), found->iterations.all()}, row.factors,
                    std::vector<double>(model.description().factors.size(), 0.0));
 }
 

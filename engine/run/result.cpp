@@ -8,7 +8,7 @@
 
 namespace poesy {
 
-SolveCounts total_of(const std::vector<SolveCounts>& cells) {
+SolveCounts total_of(std::span<const SolveCounts> cells) {
   SolveCounts sum;
   for (const SolveCounts& cell : cells) sum.merge(cell);
   return sum;

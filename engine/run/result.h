@@ -48,7 +48,7 @@ struct SolveCounts {
 };
 
 /// Of all cells.
-SolveCounts total_of(const std::vector<SolveCounts>& cells);
+SolveCounts total_of(std::span<const SolveCounts> cells);
 
 /// A sample that was not solved.
 struct FailedSample {

@@ -86,9 +86,10 @@ void write_shard_seed(const std::string& path) {
 void write_cases_seed(const std::string& path) {
   test::Example example;
   example.study.analysis.kind = &kEvaluateStudy;
-  asked_of<CaseOptions>(example.study.analysis).cases = {
-      {"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}, {"none", {0.0, 0.0, 0.0}}};
-  const CaseResult result = case_result(example.evaluation(Pairing::every_pose_with_every_row), NotConverged::include);
+  std::vector<ErrorCase>& cases = asked_of<CaseOptions>(example.study.analysis).cases;
+  cases = {{"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}, {"none", {0.0, 0.0, 0.0}}};
+  const Evaluation result =
+      evaluation_of_cases(example.solves(cases.size()), cases, example.study.model(), NotConverged::include);
   write_result(path, example.study, example.poses, result, example.facts);
 }
 

@@ -60,20 +60,20 @@ std::vector<double> CornerTable::signs_of_errors(std::size_t subset, const Signs
   return list;
 }
 
-std::size_t CornerSearch::Tried::worst(std::size_t response, std::size_t responses, double rounding) const {
+std::size_t CornerSearch::Tried::worst(std::size_t response, double rounding) const {
   std::size_t worst = 0;
-  const auto at = [&](std::size_t corner) { return magnitude[corner * responses + response]; };
-  for (std::size_t corner = 1; corner < magnitude.size() / responses; ++corner) {
+  const auto at = [&](std::size_t corner) { return magnitude[corner][response]; };
+  for (std::size_t corner = 1; corner < magnitude.size(); ++corner) {
     if (at(corner) > at(worst) + rounding || (std::isnan(at(worst)) && !std::isnan(at(corner)))) worst = corner;
   }
   return worst;
 }
 
 CornerSearch::CornerSearch(const Model& model, const SolverOptions& solver, const PoseSet& poses,
-                           const CornerTable& table, std::span<const double> rounding)
+                           const CornerTable& table, const Array<double, axis::Response, axis::Size>& rounding)
     : poses_(&poses),
       table_(&table),
-      rounding_(rounding),
+      rounding_(&rounding),
       responses_(model.description().responses.size()),
       directions_(directions(model.description())),
       evaluator_(model.evaluator(solver)),
@@ -82,15 +82,12 @@ CornerSearch::CornerSearch(const Model& model, const SolverOptions& solver, cons
       values_(table.factors.size() * kBlock),
       outcomes_(responses_ * kBlock),
       status_(kBlock),
-      counts_(kBlock) {
-  POESY_EXPECTS(rounding.size() == responses_ * table.size_of_error.size());
-}
+      counts_(kBlock) {}
 
 CornersAtPose CornerSearch::operator()(std::size_t pose, std::size_t size) {
-  const std::size_t sizes = table_->size_of_error.size();
-  for (std::size_t r = 0; r < responses_; ++r) at_size_[r] = rounding_[r * sizes + size];
+  for (std::size_t r = 0; r < responses_; ++r) at_size_[r] = (*rounding_)(r, size);
   tried_.assign(table_->subsets.size(), {});
-  const std::vector<double> alone = blocks_alone(pose, size);
+  const BlocksAlone alone = blocks_alone(pose, size);
   for (std::size_t k = 0; k < tried_.size(); ++k) want_first(k, alone);
   CornersAtPose corners;
   while (!wanted_.empty()) {
@@ -123,30 +120,34 @@ std::vector<CornerSearch::Direction> CornerSearch::directions(const ModelDescrip
   return list;
 }
 
-void CornerSearch::solve(std::size_t pose, std::size_t count) {
+ArrayView<double, axis::Factor, axis::Sample> CornerSearch::next_samples(std::size_t count) {
+  std::ranges::fill(values_, 0.0);
+  return {std::span(values_).first(table_->factors.size() * count), {table_->factors.size(), count}};
+}
+
+ArrayView<const double, axis::Response, axis::Sample> CornerSearch::solve(std::size_t pose, std::size_t count) {
   evaluator_->evaluate({(*poses_)[PoseIndex(pose)], zeros_, table_->factors,
                         std::span(values_).first(table_->factors.size() * count), count},
                        {std::span(outcomes_).first(responses_ * count),
                         std::span(status_).first(count),
                         std::span(counts_).first(count),
                         {}});
+  return {std::span(outcomes_).first(responses_ * count), {responses_, count}};
 }
 
-std::vector<double> CornerSearch::blocks_alone(std::size_t pose, std::size_t size) {
+CornerSearch::BlocksAlone CornerSearch::blocks_alone(std::size_t pose, std::size_t size) {
   const std::size_t blocks = table_->blocks.size();
-  std::vector<double> alone(blocks * responses_, kNaN);
+  BlocksAlone alone({blocks, responses_}, kNaN);
   for (std::size_t first = 0; first < blocks; first += kBlock) {
     const std::size_t count = std::min(kBlock, blocks - first);
-    std::ranges::fill(values_, 0.0);
+    const auto values = next_samples(count);
     for (std::size_t b = 0; b < count; ++b) {
-      for (const std::size_t error : table_->blocks[first + b]) {
-        values_[error * count + b] = table_->size_of_error[size][error];
-      }
+      for (const std::size_t error : table_->blocks[first + b]) values(error, b) = table_->size_of_error[size][error];
     }
-    solve(pose, count);
+    const auto outcomes = solve(pose, count);
     for (std::size_t b = 0; b < count; ++b) {
       if (!solved(status_[b])) continue;
-      for (std::size_t r = 0; r < responses_; ++r) alone[(first + b) * responses_ + r] = outcomes_[r * count + b];
+      for (std::size_t r = 0; r < responses_; ++r) alone(first + b, r) = outcomes(r, b);
     }
   }
   return alone;
@@ -159,14 +160,14 @@ void CornerSearch::want(std::size_t subset, Signs signs) {
   tried.signs.push_back(std::move(signs));
 }
 
-void CornerSearch::want_first(std::size_t subset, std::span<const double> alone) {
+void CornerSearch::want_first(std::size_t subset, const BlocksAlone& alone) {
   const std::vector<std::size_t>& blocks = table_->subsets[subset];
   want(subset, Signs(blocks.size(), '+'));
   for (const Direction& direction : directions_) {
     Signs signs;
     for (const std::size_t block : blocks) {
       double sum = 0.0;
-      for (const auto& [r, weight] : direction) sum += weight * alone[block * responses_ + r];
+      for (const auto& [r, weight] : direction) sum += weight * alone(block, r);
       signs += sum < 0.0 ? '-' : '+';
     }
     want(subset, signs);
@@ -177,8 +178,8 @@ void CornerSearch::want_first(std::size_t subset, std::span<const double> alone)
 void CornerSearch::want_neighbours(std::size_t subset) {
   for (std::size_t r = 0; r < responses_; ++r) {
     const Tried& tried = tried_[subset];
-    const std::size_t worst = tried.worst(r, responses_, at_size_[r]);
-    if (tried.magnitude[worst * responses_ + r] <= at_size_[r]) continue;
+    const std::size_t worst = tried.worst(r, at_size_[r]);
+    if (tried.magnitude[worst][r] <= at_size_[r]) continue;
     const Signs signs = tried.signs[worst];
     for (std::size_t b = 0; b < signs.size(); ++b) want(subset, flipped(signs, b));
   }
@@ -186,27 +187,27 @@ void CornerSearch::want_neighbours(std::size_t subset) {
 
 void CornerSearch::solve_wanted(std::size_t pose, std::size_t size, SolveCounts& solves) {
   const std::vector<Wanted> all = std::exchange(wanted_, {});
-  for (Tried& tried : tried_) tried.magnitude.resize(tried.signs.size() * responses_, kNaN);
+  for (Tried& tried : tried_) tried.magnitude.resize(tried.signs.size(), std::vector<double>(responses_, kNaN));
   for (std::size_t first = 0; first < all.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, all.size() - first);
-    std::ranges::fill(values_, 0.0);
+    const auto values = next_samples(count);
     for (std::size_t n = 0; n < count; ++n) {
       const auto [subset, corner] = all[first + n];
       const Signs& signs = tried_[subset].signs[corner];
       for (std::size_t b = 0; b < signs.size(); ++b) {
         for (const std::size_t error : table_->blocks[table_->subsets[subset][b]]) {
           const double value = table_->size_of_error[size][error];
-          values_[error * count + n] = signs[b] == '+' ? value : -value;
+          values(error, n) = signs[b] == '+' ? value : -value;
         }
       }
     }
-    solve(pose, count);
+    const auto outcomes = solve(pose, count);
     for (std::size_t n = 0; n < count; ++n) {
       solves.add(status_[n], counts_[n]);
       if (!solved(status_[n])) continue;
       const auto [subset, corner] = all[first + n];
       for (std::size_t r = 0; r < responses_; ++r) {
-        tried_[subset].magnitude[corner * responses_ + r] = std::abs(outcomes_[r * count + n]);
+        tried_[subset].magnitude[corner][r] = std::abs(outcomes(r, n));
       }
     }
   }
@@ -217,12 +218,12 @@ WorstCorners CornerSearch::found(std::size_t subset) const {
   WorstCorners corners;
   corners.tried = tried.signs.size();
   for (std::size_t r = 0; r < responses_; ++r) {
-    const std::size_t worst = tried.worst(r, responses_, at_size_[r]);
-    corners.value.push_back(tried.magnitude[worst * responses_ + r]);
+    const std::size_t worst = tried.worst(r, at_size_[r]);
+    corners.value.push_back(tried.magnitude[worst][r]);
     corners.signs.push_back(std::isnan(corners.value.back()) ? Signs() : tried.signs[worst]);
   }
   for (std::size_t corner = 0; corner < tried.signs.size(); ++corner) {
-    if (!std::isnan(tried.magnitude[corner * responses_])) continue;
+    if (!std::isnan(tried.magnitude[corner].front())) continue;
     if (corners.unsolved++ == 0) corners.first_unsolved = tried.signs[corner];
   }
   return corners;

@@ -19,6 +19,13 @@
 /// either sign, and a corner is a choice of signs. R responses, Z sizes, K subsets of the sources.
 namespace poesy {
 
+namespace axis {
+/// Blocks of errors that move together.
+struct Block {
+  static constexpr std::string_view kName = "block";
+};
+}  // namespace axis
+
 /// Of each block of a subset '+' or '-'.
 using Signs = std::string;
 
@@ -59,9 +66,9 @@ struct CornersAtPose {
 /// Owns the scratch of one thread. What it gives depends on its arguments alone.
 class CornerSearch {
  public:
-  /// rounding: [R x Z] up to which a response is rounding. Refers to all of them.
+  /// rounding: up to which a response is rounding. Refers to all of them.
   CornerSearch(const Model& model, const SolverOptions& solver, const PoseSet& poses, const CornerTable& table,
-               std::span<const double> rounding);
+               const Array<double, axis::Response, axis::Size>& rounding);
 
   /// All subsets at this pose and size.
   CornersAtPose operator()(std::size_t pose, std::size_t size);
@@ -71,10 +78,11 @@ class CornerSearch {
   struct Tried {
     std::unordered_map<Signs, std::size_t> known;  ///< their numbers
     std::vector<Signs> signs;                      ///< in the order in which they were tried
-    std::vector<double> magnitude;                 ///< [corners x R]; NaN where a corner is not solved
+    /// Of each corner, of each response; NaN where the corner is not solved.
+    std::vector<std::vector<double>> magnitude;
 
     /// Of a response the corner whose magnitude is larger than others' by more than rounding.
-    std::size_t worst(std::size_t response, std::size_t responses, double rounding) const;
+    std::size_t worst(std::size_t response, double rounding) const;
   };
   /// A weighted sum of responses.
   using Direction = std::vector<std::pair<std::size_t, double>>;
@@ -84,18 +92,24 @@ class CornerSearch {
     std::size_t corner;
   };
 
+  /// What each block of errors does alone.
+  using BlocksAlone = Array<double, axis::Block, axis::Response>;
+
   static std::vector<Direction> directions(const ModelDescription& model);
   void want(std::size_t subset, Signs signs);
-  void want_first(std::size_t subset, std::span<const double> alone);
+  void want_first(std::size_t subset, const BlocksAlone& alone);
   void want_neighbours(std::size_t subset);
   void solve_wanted(std::size_t pose, std::size_t size, SolveCounts& solves);
-  std::vector<double> blocks_alone(std::size_t pose, std::size_t size);
-  void solve(std::size_t pose, std::size_t count);
+  BlocksAlone blocks_alone(std::size_t pose, std::size_t size);
+  /// Room for the errors of so many samples, all zero.
+  ArrayView<double, axis::Factor, axis::Sample> next_samples(std::size_t count);
+  /// Solves them.
+  ArrayView<const double, axis::Response, axis::Sample> solve(std::size_t pose, std::size_t count);
   WorstCorners found(std::size_t subset) const;
 
   const PoseSet* poses_;
   const CornerTable* table_;
-  std::span<const double> rounding_;
+  const Array<double, axis::Response, axis::Size>* rounding_;
   std::size_t responses_;
   std::vector<Direction> directions_;  ///< whose first-order signs are tried
   std::unique_ptr<Evaluator> evaluator_;
@@ -103,8 +117,8 @@ class CornerSearch {
   std::vector<double> at_size_;        ///< [R] rounding at the size
   std::vector<Tried> tried_;           ///< [K]
   std::vector<Wanted> wanted_;         ///< in the order of what is tried
-  std::vector<double> values_;         ///< [V x B] of one block of samples
-  std::vector<double> outcomes_;       ///< [R x B]
+  std::vector<double> values_;         ///< of one block of samples
+  std::vector<double> outcomes_;       ///< of one block of samples
   std::vector<SolveStatus> status_;    ///< [B]
   std::vector<std::uint32_t> counts_;  ///< [B] iterations
 };

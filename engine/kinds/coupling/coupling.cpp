@@ -14,6 +14,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
+#include "engine/base/units.h"
 #include "engine/kinds/coupling/kind.h"
 #include "engine/kinds/coupling/worst_case.h"
 #include "engine/run/evaluation.h"
@@ -103,109 +104,135 @@ std::pair<double, std::int64_t> largest_at(std::span<const double> values, std::
   return largest;
 }
 
-/// Fills a result: for each response, size and subset, in this order, its poses and then their summary.
+/// "0.1 mm", or "0.1 mm, 0.1 deg".
+std::vector<std::string> size_names(const CouplingStudy& study) {
+  std::vector<std::string> names;
+  for (std::size_t z = 0; z < study.sizes(); ++z) {
+    std::string& name = names.emplace_back();
+    if (!study.linear.empty()) name = readable_text({study.linear[z], Dimension::length});
+    if (study.angular.empty()) continue;
+    name += (name.empty() ? "" : ", ") + readable_text({study.angular[z], Dimension::angle});
+  }
+  return names;
+}
+
+/// The sizes of errors of one dimension; NaN where no error has it.
+Array<double, axis::Size> sizes_or_nan(const std::vector<double>& sizes, std::size_t count) {
+  return {{count}, sizes.empty() ? std::vector<double>(count, kNaN) : sizes};
+}
+
+/// A result with the names of its axes, and arrays of their lengths. responses, poses: how many.
+CouplingResult empty_result(const CouplingStudy& study, std::size_t responses, std::size_t poses) {
+  CouplingResult found;
+  found.size_names = size_names(study);
+  for (const ErrorSource& source : study.sources) found.sources.push_back(source.name);
+  found.subsets = subset_names(study.sources);
+  found.linear = sizes_or_nan(study.linear, study.sizes());
+  found.angular = sizes_or_nan(study.angular, study.sizes());
+  const std::size_t sizes = study.sizes();
+  const std::size_t subsets = found.subsets.size();
+  for (CouplingResult::Curves* curves :
+       {&found.effect, &found.sum, &found.first_order_sum, &found.root_sum_square, &found.cancellation}) {
+    *curves = CouplingResult::Curves({responses, sizes, subsets, poses});
+  }
+  for (CouplingResult::Summary<double>* summary :
+       {&found.effect_max, &found.interaction_max, &found.first_order_sum_max, &found.root_sum_square_max,
+        &found.opposed_share, &found.cancellation_max}) {
+    *summary = CouplingResult::Summary<double>({responses, sizes, subsets});
+  }
+  found.count = CouplingResult::Summary<std::uint64_t>({responses, sizes, subsets});
+  found.effect_max_pose = CouplingResult::Summary<std::int64_t>({responses, sizes, subsets});
+  found.cancellation_max_pose = found.effect_max_pose;
+  found.solves = Array<SolveCounts, axis::Size, axis::Pose>({sizes, poses});
+  return found;
+}
+
+/// Fills a result: for each response, size and subset its poses, and then their summary.
 class Composer {
  public:
   Composer(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model, NotConverged policy,
-           std::vector<double> rounding)
-      : evaluation_(std::move(evaluation)), study_(&study), rows_(coupling_rows(study, model)), policy_(policy) {
-    POESY_EXPECTS(evaluation_.samples == study.sizes() * rows_.errors.size());
-    found_.responses = evaluation_.responses;
-    found_.sizes = study.sizes();
-    found_.subsets = rows_.subsets.size();
-    found_.poses = evaluation_.poses;
+           Array<double, axis::Response, axis::Size> rounding)
+      : evaluation_(std::move(evaluation)),
+        rows_(coupling_rows(study, model)),
+        policy_(policy),
+        found_(empty_result(study, evaluation_.responses(), evaluation_.poses())) {
+    POESY_EXPECTS(evaluation_.samples() == study.sizes() * rows_.errors.size());
     found_.rounding = std::move(rounding);
-    POESY_EXPECTS(found_.rounding.size() == found_.responses * found_.sizes);
-    // A list that grows has all its numbers twice while it is copied.
-    const std::size_t numbers = found_.responses * found_.sizes * found_.subsets * found_.poses;
-    for (std::vector<double>* curve :
-         {&found_.effect, &found_.sum, &found_.first_order_sum, &found_.root_sum_square, &found_.cancellation}) {
-      curve->reserve(numbers);
-    }
   }
 
   CouplingResult operator()() {
-    for (std::size_t r = 0; r < found_.responses; ++r) {
-      for (std::size_t z = 0; z < found_.sizes; ++z) {
-        const std::vector<double> effects = effects_of(r, z);
-        for (std::size_t k = 0; k < found_.subsets; ++k) {
-          add_subset(k, effects, found_.rounding[r * found_.sizes + z]);
-        }
+    for (std::size_t r = 0; r < evaluation_.responses(); ++r) {
+      for (std::size_t z = 0; z < found_.size_names.size(); ++z) {
+        const Effects effects = effects_of(r, z);
+        for (std::size_t k = 0; k < found_.subsets.size(); ++k) add_subset(r, z, k, effects);
       }
     }
-    for (std::size_t z = 0; z < found_.sizes; ++z) {
-      for (std::size_t m = 0; m < found_.poses; ++m) found_.solves.push_back(solves_at(z, m));
+    for (std::size_t z = 0; z < found_.size_names.size(); ++z) {
+      for (std::size_t m = 0; m < evaluation_.poses(); ++m) found_.solves(z, m) = solves_at(z, m);
     }
     // Last, because it follows from others: the outcomes and all curves need not be in memory both.
     evaluation_ = {};
-    found_.interaction.reserve(found_.effect.size());
-    std::ranges::transform(found_.effect, found_.sum, std::back_inserter(found_.interaction), std::minus());
+    found_.interaction = CouplingResult::Curves(found_.effect.lengths());
+    std::ranges::transform(found_.effect, found_.sum, found_.interaction.begin(), std::minus());
     return std::move(found_);
   }
 
  private:
-  std::size_t rows() const { return rows_.errors.size(); }
-  std::size_t solve(std::size_t z, std::size_t m, std::size_t n) const {
-    return m * evaluation_.samples + z * rows() + n;
-  }
+  /// What each row of errors does.
+  using Effects = Array<double, axis::Pose, axis::Sample>;
 
-  /// [M x N]; NaN where the solve does not count.
-  std::vector<double> effects_of(std::size_t r, std::size_t z) const {
-    std::vector<double> effects;
-    effects.reserve(found_.poses * rows());
-    for (std::size_t m = 0; m < found_.poses; ++m) {
+  std::size_t rows() const { return rows_.errors.size(); }
+  std::size_t sample(std::size_t z, std::size_t n) const { return z * rows() + n; }
+
+  /// Of all rows of a size; NaN where the solve does not count.
+  Effects effects_of(std::size_t r, std::size_t z) const {
+    Effects effects({evaluation_.poses(), rows()});
+    for (std::size_t m = 0; m < evaluation_.poses(); ++m) {
       for (std::size_t n = 0; n < rows(); ++n) {
-        const std::size_t at = solve(z, m, n);
-        const bool is_known = counts(evaluation_.status[at], policy_);
-        effects.push_back(is_known ? evaluation_.response[r * evaluation_.status.size() + at] : kNaN);
+        const bool is_known = counts(evaluation_.status(m, sample(z, n)), policy_);
+        effects(m, n) = is_known ? evaluation_.response(r, m, sample(z, n)) : kNaN;
       }
     }
     return effects;
   }
 
-  void add_subset(std::size_t k, std::span<const double> effects, double rounding) {
+  void add_subset(std::size_t r, std::size_t z, std::size_t k, const Effects& effects) {
+    const double rounding = found_.rounding(r, z);
     std::vector<std::size_t> known;  // poses
     std::vector<double> interaction;
     std::size_t opposed = 0;
-    for (std::size_t m = 0; m < found_.poses; ++m) {
-      const Combination at = combination(rows_, k, effects.subspan(m * rows(), rows()));
-      found_.effect.push_back(at.effect);
-      found_.sum.push_back(at.sum);
+    for (std::size_t m = 0; m < evaluation_.poses(); ++m) {
+      const Combination at = combination(rows_, k, effects.row(m));
+      found_.effect(r, z, k, m) = at.effect;
+      found_.sum(r, z, k, m) = at.sum;
       interaction.push_back(at.effect - at.sum);
-      found_.first_order_sum.push_back(at.first_order_sum);
-      found_.root_sum_square.push_back(std::sqrt(at.squares));
-      found_.cancellation.push_back(at.cancellation(rounding));
+      found_.first_order_sum(r, z, k, m) = at.first_order_sum;
+      found_.root_sum_square(r, z, k, m) = std::sqrt(at.squares);
+      found_.cancellation(r, z, k, m) = at.cancellation(rounding);
       if (!at.is_known()) continue;
       known.push_back(m);
       opposed += at.is_opposed(rounding) ? 1 : 0;
     }
-    const auto largest = [&](const std::vector<double>& curves) {
-      return largest_at(std::span(curves).last(found_.poses), known);
-    };
-    const auto [effect, effect_pose] = largest(found_.effect);
-    const auto [cancellation, cancellation_pose] = largest(found_.cancellation);
-    found_.count.push_back(known.size());
-    found_.effect_max.push_back(effect);
-    found_.effect_max_pose.push_back(effect_pose);
-    found_.interaction_max.push_back(largest_at(interaction, known).first);
-    found_.first_order_sum_max.push_back(largest(found_.first_order_sum).first);
-    found_.root_sum_square_max.push_back(largest(found_.root_sum_square).first);
-    found_.opposed_share.push_back(known.empty() ? kNaN
-                                                 : static_cast<double>(opposed) / static_cast<double>(known.size()));
-    found_.cancellation_max.push_back(cancellation);
-    found_.cancellation_max_pose.push_back(cancellation_pose);
+    const auto largest = [&](const CouplingResult::Curves& curves) { return largest_at(curves.row(r, z, k), known); };
+    std::tie(found_.effect_max(r, z, k), found_.effect_max_pose(r, z, k)) = largest(found_.effect);
+    std::tie(found_.cancellation_max(r, z, k), found_.cancellation_max_pose(r, z, k)) = largest(found_.cancellation);
+    found_.count(r, z, k) = known.size();
+    found_.interaction_max(r, z, k) = largest_at(interaction, known).first;
+    found_.first_order_sum_max(r, z, k) = largest(found_.first_order_sum).first;
+    found_.root_sum_square_max(r, z, k) = largest(found_.root_sum_square).first;
+    found_.opposed_share(r, z, k) =
+        known.empty() ? kNaN : static_cast<double>(opposed) / static_cast<double>(known.size());
   }
 
   SolveCounts solves_at(std::size_t z, std::size_t m) const {
     SolveCounts solves;
     for (std::size_t n = 0; n < rows(); ++n) {
-      solves.add(evaluation_.status[solve(z, m, n)], evaluation_.iterations[solve(z, m, n)]);
+      solves.add(evaluation_.status(m, sample(z, n)), evaluation_.iterations(m, sample(z, n)));
     }
     return solves;
   }
 
   EvaluationResult evaluation_;
-  const CouplingStudy* study_;
   CouplingRows rows_;
   NotConverged policy_;
   CouplingResult found_;
@@ -249,7 +276,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const CouplingStudy& coupling = asked_of<CouplingStudy>(run.study.analysis);
   const ModelDescription& model = run.model.description();
   const CornerTable corners(coupling, model);
-  std::vector<double> rounding = coupling_rounding(coupling, run.model);
+  Array<double, axis::Response, axis::Size> rounding = coupling_rounding(coupling, run.model);
   const bool searches = coupling.worst_case == UnknownSigns::search;
   const NumberRange cells = run.options.shard.value_or(Shard()).of(coupling.sizes() * run.poses.size());
   const double at_each = searches ? expected_corners(corners, model.responses.size()) : 0.0;
@@ -275,7 +302,7 @@ WorkOutlook corner_work(const Study& study, const Model& model, const PoseSet& p
           search(model, study.solver, poses, table, rounding) {}
 
     CornerTable table;
-    std::vector<double> rounding;
+    Array<double, axis::Response, axis::Size> rounding;
     CornerSearch search;
   };
   const auto trial = std::make_shared<Trial>(study, model, poses);
@@ -393,29 +420,28 @@ ErrorTable coupling_table(const CouplingStudy& study, const ModelDescription& mo
 }
 
 CouplingResult coupling_result(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model,
-                               NotConverged policy, std::vector<double> rounding) {
+                               NotConverged policy, Array<double, axis::Response, axis::Size> rounding) {
   return Composer(std::move(evaluation), study, model, policy, std::move(rounding))();
 }
 
-std::vector<double> coupling_rounding(const CouplingStudy& study, const Model& model) {
-  std::vector<double> list;
-  for (const double rounding : response_rounding(model)) {
+Array<double, axis::Response, axis::Size> coupling_rounding(const CouplingStudy& study, const Model& model) {
+  const std::vector<double> of_responses = response_rounding(model);
+  Array<double, axis::Response, axis::Size> rounding({of_responses.size(), study.sizes()});
+  for (std::size_t r = 0; r < of_responses.size(); ++r) {
     for (std::size_t z = 0; z < study.sizes(); ++z) {
-      list.push_back(size_rounding(rounding, study.linear.empty() ? kNaN : study.linear[z],
-                                   study.angular.empty() ? kNaN : study.angular[z]));
+      rounding(r, z) = size_rounding(of_responses[r], study.linear.empty() ? kNaN : study.linear[z],
+                                     study.angular.empty() ? kNaN : study.angular[z]);
     }
   }
-  return list;
+  return rounding;
 }
 
 std::vector<std::size_t> responses_without_effect(const CouplingResult& found) {
   std::vector<std::size_t> list;
-  for (std::size_t r = 0; r < found.responses; ++r) {
+  for (std::size_t r = 0; r < found.effect_max.length<axis::Response>(); ++r) {
     bool is_constant_at_all = true;
-    for (std::size_t z = 0; z < found.sizes; ++z) {
-      const std::size_t at = r * found.sizes + z;
-      const auto effects = std::span(found.effect_max).subspan(at * found.subsets, found.subsets);
-      is_constant_at_all = is_constant_at_all && is_constant(effects, found.rounding[at]);
+    for (std::size_t z = 0; z < found.size_names.size(); ++z) {
+      is_constant_at_all = is_constant_at_all && is_constant(found.effect_max.row(r, z), found.rounding(r, z));
     }
     if (is_constant_at_all) list.push_back(r);
   }

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/array.h"
 #include "engine/model/model.h"
 #include "engine/report/tables.h"
 #include "engine/result/result_file.h"
@@ -95,46 +96,72 @@ std::vector<FactorIndex> coupling_factors(const CouplingStudy& study, const Mode
 /// coupling_factors.
 ErrorTable coupling_table(const CouplingStudy& study, const ModelDescription& model);
 
-/// What error sources do one by one and together: R responses, Z sizes, K subsets of the sources, M poses; SI. NaN
-/// where a solve that a number rests on does not count. What each number means: coupling_result.
-struct CouplingResult {
-  std::size_t responses = 0;  ///< R
-  std::size_t sizes = 0;      ///< Z
-  std::size_t subsets = 0;    ///< K
-  std::size_t poses = 0;      ///< M
+/// Axes of what a coupling study finds.
+namespace axis {
+/// @{
+struct Size {
+  static constexpr std::string_view kName = "size";
+};
+struct Source {
+  static constexpr std::string_view kName = "source";
+};
+struct Subset {
+  static constexpr std::string_view kName = "subset";
+};
+/// @}
+}  // namespace axis
 
-  std::vector<double> effect;           ///< [R x Z x K x M]
-  std::vector<double> sum;              ///< [R x Z x K x M]
-  std::vector<double> interaction;      ///< [R x Z x K x M]
-  std::vector<double> first_order_sum;  ///< [R x Z x K x M]
-  std::vector<double> worst_case;       ///< [R x Z x K x M] NaN where no corner is solved
-  std::vector<double> root_sum_square;  ///< [R x Z x K x M]
-  std::vector<double> cancellation;     ///< [R x Z x K x M] from 0 to 1
-  std::vector<double> rounding;         ///< [R x Z] up to this a response to errors of the size is rounding
+/// What error sources do one by one and together, in SI units. NaN where a solve that a number rests on does not count.
+/// What each number means: coupling_result.
+struct CouplingResult {
+  /// A number of each response, size of the errors and subset of the sources, at each pose.
+  using Curves = Array<double, axis::Response, axis::Size, axis::Subset, axis::Pose>;
+  /// What becomes of it over the poses.
+  template <class T>
+  using Summary = Array<T, axis::Response, axis::Size, axis::Subset>;
+
+  std::vector<std::string> size_names;  ///< "0.1 mm"
+  std::vector<std::string> sources;     ///< names
+  std::vector<std::string> subsets;     ///< "FS+T"
+  Array<double, axis::Size> linear;     ///< m; NaN where no error is a length
+  Array<double, axis::Size> angular;    ///< rad; NaN where no error is an angle
+
+  Curves effect;
+  Curves sum;
+  Curves interaction;
+  Curves first_order_sum;
+  Curves worst_case;  ///< NaN where no corner is solved
+  Curves root_sum_square;
+  Curves cancellation;                                 ///< from 0 to 1
+  Array<double, axis::Response, axis::Size> rounding;  ///< up to this a response to errors of the size is rounding
 
   // Over the poses where all of these are known; where there is none, NaN and pose -1.
-  std::vector<std::uint64_t> count;                 ///< [R x Z x K] such poses
-  std::vector<double> effect_max;                   ///< [R x Z x K] largest |effect|
-  std::vector<std::int64_t> effect_max_pose;        ///< [R x Z x K] the first pose that has it
-  std::vector<double> interaction_max;              ///< [R x Z x K] largest |interaction|
-  std::vector<double> first_order_sum_max;          ///< [R x Z x K]
-  std::vector<double> root_sum_square_max;          ///< [R x Z x K]
-  std::vector<double> opposed_share;                ///< [R x Z x K] share of the poses where sources oppose each other
-  std::vector<double> cancellation_max;             ///< [R x Z x K]
-  std::vector<std::int64_t> cancellation_max_pose;  ///< [R x Z x K]
+  Summary<std::uint64_t> count;           ///< such poses
+  Summary<double> effect_max;             ///< largest |effect|
+  Summary<std::int64_t> effect_max_pose;  ///< the first pose that has it
+  Summary<double> interaction_max;        ///< largest |interaction|
+  Summary<double> first_order_sum_max;
+  Summary<double> root_sum_square_max;
+  Summary<double> opposed_share;  ///< share of the poses where sources oppose each other
+  Summary<double> cancellation_max;
+  Summary<std::int64_t> cancellation_max_pose;
 
-  // The search for worst cases; P errors. Maxima are over all poses: where there is none, NaN, pose -1, and signs 0.
-  std::vector<std::uint64_t> corners;             ///< [Z x K x M] corners behind the worst cases
-  std::vector<std::uint64_t> unsolved_corners;    ///< [Z x K x M] of these, corners that have no solution
-  std::vector<double> worst_case_max;             ///< [R x Z x K] largest worst case
-  std::vector<std::int64_t> worst_case_max_pose;  ///< [R x Z x K] the first pose that has it
-  std::vector<std::int64_t> worst_case_signs;     ///< [R x Z x K x P] there: 1, -1, or 0 where an error is zero
-  std::vector<std::int64_t> unsolved_pose;        ///< [Z x K] the first pose with a corner that is not solved
-  std::vector<std::int64_t> unsolved_signs;       ///< [Z x K x P] such a corner, likewise
-  std::vector<SolveCounts> solves;                ///< [Z x M] of all sets of errors and all corners that were solved
+  // The search for worst cases. Maxima are over all poses: where there is none, NaN, pose -1, and signs 0.
+  Array<std::uint64_t, axis::Size, axis::Subset, axis::Pose> corners;  ///< corners behind the worst cases
+  Array<std::uint64_t, axis::Size, axis::Subset, axis::Pose>
+      unsolved_corners;                       ///< of these, corners without a solution
+  Summary<double> worst_case_max;             ///< largest worst case
+  Summary<std::int64_t> worst_case_max_pose;  ///< the first pose that has it
+  /// There: 1, -1, or 0 where an error is zero.
+  Array<std::int64_t, axis::Response, axis::Size, axis::Subset, axis::Factor> worst_case_signs;
+  Array<std::int64_t, axis::Size, axis::Subset> unsolved_pose;  ///< the first pose with a corner that is not solved
+  Array<std::int64_t, axis::Size, axis::Subset, axis::Factor> unsolved_signs;  ///< such a corner, likewise
+  Array<SolveCounts, axis::Size, axis::Pose> solves;  ///< of all sets of errors and all corners that were solved
 
+  /// Poses of the study.
+  std::size_t poses() const { return effect.length<axis::Pose>(); }
   /// Over all sizes and poses.
-  SolveCounts total() const { return total_of(solves); }
+  SolveCounts total() const { return total_of(solves.all()); }
 };
 
 /// Whether worst cases were looked for. Results of version 0.2.0 have first-order sums alone, too.
@@ -163,33 +190,23 @@ inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_c
 /// below the largest |effect of a source in S| by more than rounding: together they do less than one of them.
 ///
 /// evaluation: what run_evaluation found for the study's coupling_table. A solve that does not count (see counts())
-/// makes NaN of everything that rests on it, and is counted in `solves`. rounding: [R x Z] as coupling_rounding gives
-/// it. What the search for worst cases finds is left out: add_worst_cases fills it in.
+/// makes NaN of everything that rests on it, and is counted in `solves`. rounding: as coupling_rounding gives it. What
+/// the search for worst cases finds is left out: add_worst_cases fills it in.
 CouplingResult coupling_result(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model,
-                               NotConverged policy, std::vector<double> rounding);
+                               NotConverged policy, Array<double, axis::Response, axis::Size> rounding);
 
-/// Up to which each response to errors of each size is rounding (stats/indices.h), [R x Z].
-std::vector<double> coupling_rounding(const CouplingStudy& study, const Model& model);
+/// Up to which each response to errors of each size is rounding (stats/indices.h).
+Array<double, axis::Response, axis::Size> coupling_rounding(const CouplingStudy& study, const Model& model);
 
 /// The names of the sources in each subset, joined: "FS", "T", "FS+T".
 std::vector<std::string> subset_names(std::span<const ErrorSource> sources);
-
-/// What a coupling study found, with the names of its axes.
-struct StoredCoupling {
-  CouplingResult found;                 ///< the numbers
-  std::vector<std::string> size_names;  ///< [Z] "0.1 mm"
-  std::vector<double> linear;           ///< [Z] m; NaN where no error is a length
-  std::vector<double> angular;          ///< [Z] rad; NaN where no error is an angle
-  std::vector<std::string> sources;     ///< [S] names
-  std::vector<std::string> subsets;     ///< [K] "FS+T"
-};
 
 /// Positions of the responses that no source moves by more than rounding at any size and pose, though it is known of
 /// one.
 std::vector<std::size_t> responses_without_effect(const CouplingResult& found);
 
 /// Precondition: a coupling result.
-inline const StoredCoupling& coupling_of(const StoredResult& result) { return found_of<StoredCoupling>(result); }
+inline const CouplingResult& coupling_of(const StoredResult& result) { return found_of<CouplingResult>(result); }
 
 /// For each size and each response that a summary shows: a table with a row for each subset of
 /// the sources. Columns: the largest |effect| over the poses and the pose where it is, by number and coordinates, the

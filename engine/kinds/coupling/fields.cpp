@@ -2,8 +2,6 @@
 #include <map>
 #include <utility>
 
-#include "engine/base/nan.h"
-#include "engine/base/units.h"
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/coupling/kind.h"
 #include "engine/result/result_parts.h"
@@ -12,104 +10,62 @@
 namespace poesy {
 namespace {
 
-const Axes kCurveAxes{"response", "size", "subset", "pose"};
-const Axes kSummaryAxes{"response", "size", "subset"};
-const Axes kCornerAxes{"size", "subset", "pose"};
-
 const Group<CouplingResult> kCoupling{
     "/coupling",
     "Single and coupled error sources (San et al. 2023, Section 5.2)",
     {},
-    {{"response", &CouplingResult::responses},
-     {"size", &CouplingResult::sizes},
-     {"subset", &CouplingResult::subsets},
-     {"pose", &CouplingResult::poses}},
-    {{"effect", &CouplingResult::effect, kCurveAxes, kResponseUnit, "All errors of the subset's sources at once"},
-     {"sum", &CouplingResult::sum, kCurveAxes, kResponseUnit, "Sum over the sources of the effect of each alone"},
-     {"interaction", &CouplingResult::interaction, kCurveAxes, kResponseUnit, "effect - sum"},
-     {"first_order_sum", &CouplingResult::first_order_sum, kCurveAxes, kResponseUnit,
+    {},
+    {{"effect", &CouplingResult::effect, kResponseUnit, "All errors of the subset's sources at once"},
+     {"sum", &CouplingResult::sum, kResponseUnit, "Sum over the sources of the effect of each alone"},
+     {"interaction", &CouplingResult::interaction, kResponseUnit, "effect - sum"},
+     {"first_order_sum", &CouplingResult::first_order_sum, kResponseUnit,
       "Sum over the sources' blocks of |effect of the block alone|; errors of a block move together",
       Presence::where_computed},
-     {"worst_case", &CouplingResult::worst_case, kCurveAxes, kResponseUnit,
+     {"worst_case", &CouplingResult::worst_case, kResponseUnit,
       "Largest |response| that was found with either sign of each block: the signs of the first-order sum solved, then "
       "block by block until no flip is worse; no bound. NaN where no combination of signs is solved",
       Presence::where_computed},
-     {"root_sum_square", &CouplingResult::root_sum_square, kCurveAxes, kResponseUnit,
-      "Root of the sum of the squares of these"},
-     {"cancellation", &CouplingResult::cancellation, kCurveAxes, "1",
+     {"root_sum_square", &CouplingResult::root_sum_square, kResponseUnit, "Root of the sum of the squares of these"},
+     {"cancellation", &CouplingResult::cancellation, "1",
       "1 - |sum| / sum of |effect of a source|: 0 no source opposes another, 1 they cancel"},
-     {"rounding",
-      &CouplingResult::rounding,
-      {"response", "size"},
-      kResponseUnit,
+     {"rounding", &CouplingResult::rounding, kResponseUnit,
       "Up to this an effect of errors of the size cannot be told from the rounding of solves",
       Presence::where_computed},
-     {"corners", &CouplingResult::corners, kCornerAxes, "1", "Combinations of signs that were tried for worst_case",
+     {"corners", &CouplingResult::corners, "1", "Combinations of signs that were tried for worst_case",
       Presence::where_computed},
-     {"unsolved_corners", &CouplingResult::unsolved_corners, kCornerAxes, "1",
+     {"unsolved_corners", &CouplingResult::unsolved_corners, "1",
       "Of these, those that have no solution: machines that cannot be assembled", Presence::where_computed},
-     {"count", &CouplingResult::count, kSummaryAxes, "1",
-      "Poses that count: those where all that the subset rests on is solved"},
-     {"effect_max", &CouplingResult::effect_max, kSummaryAxes, kResponseUnit,
-      "Largest |effect| over the poses that count"},
-     {"effect_max_pose", &CouplingResult::effect_max_pose, kSummaryAxes, "1",
+     {"count", &CouplingResult::count, "1", "Poses that count: those where all that the subset rests on is solved"},
+     {"effect_max", &CouplingResult::effect_max, kResponseUnit, "Largest |effect| over the poses that count"},
+     {"effect_max_pose", &CouplingResult::effect_max_pose, "1",
       "First pose of the largest |effect|; -1: there is none"},
-     {"interaction_max", &CouplingResult::interaction_max, kSummaryAxes, kResponseUnit,
+     {"interaction_max", &CouplingResult::interaction_max, kResponseUnit,
       "Largest |interaction| over the poses that count"},
-     {"first_order_sum_max", &CouplingResult::first_order_sum_max, kSummaryAxes, kResponseUnit,
+     {"first_order_sum_max", &CouplingResult::first_order_sum_max, kResponseUnit,
       "Largest first-order sum over the poses that count", Presence::where_computed},
-     {"worst_case_max", &CouplingResult::worst_case_max, kSummaryAxes, kResponseUnit,
-      "Largest worst case over all poses", Presence::where_computed},
-     {"worst_case_max_pose", &CouplingResult::worst_case_max_pose, kSummaryAxes, "1",
+     {"worst_case_max", &CouplingResult::worst_case_max, kResponseUnit, "Largest worst case over all poses",
+      Presence::where_computed},
+     {"worst_case_max_pose", &CouplingResult::worst_case_max_pose, "1",
       "First pose of the largest worst case; -1: there is none", Presence::where_computed},
-     {"root_sum_square_max", &CouplingResult::root_sum_square_max, kSummaryAxes, kResponseUnit,
+     {"root_sum_square_max", &CouplingResult::root_sum_square_max, kResponseUnit,
       "Largest root sum square over the poses that count"},
-     {"opposed_share", &CouplingResult::opposed_share, kSummaryAxes, "1",
+     {"opposed_share", &CouplingResult::opposed_share, "1",
       "Share of the poses that count where |sum| is below the largest |effect of a source|"},
-     {"cancellation_max", &CouplingResult::cancellation_max, kSummaryAxes, "1",
-      "Largest cancellation over the poses that count"},
-     {"cancellation_max_pose", &CouplingResult::cancellation_max_pose, kSummaryAxes, "1",
+     {"cancellation_max", &CouplingResult::cancellation_max, "1", "Largest cancellation over the poses that count"},
+     {"cancellation_max_pose", &CouplingResult::cancellation_max_pose, "1",
       "First pose of the largest cancellation; -1: there is none"},
-     {"worst_case_signs",
-      &CouplingResult::worst_case_signs,
-      {"response", "size", "subset", "factor"},
-      "1",
-      "Sign of each error at the largest worst case; 0 where the error is zero",
-      Presence::where_computed},
-     {"unsolved_pose",
-      &CouplingResult::unsolved_pose,
-      {"size", "subset"},
-      "1",
-      "First pose with a combination of signs that has no solution; -1: there is none",
-      Presence::where_computed},
-     {"unsolved_signs",
-      &CouplingResult::unsolved_signs,
-      {"size", "subset", "factor"},
-      "1",
-      "Sign of each error of the first such combination; 0 where the error is zero",
-      Presence::where_computed}}};
+     {"worst_case_signs", &CouplingResult::worst_case_signs, "1",
+      "Sign of each error at the largest worst case; 0 where the error is zero", Presence::where_computed},
+     {"unsolved_pose", &CouplingResult::unsolved_pose, "1",
+      "First pose with a combination of signs that has no solution; -1: there is none", Presence::where_computed},
+     {"unsolved_signs", &CouplingResult::unsolved_signs, "1",
+      "Sign of each error of the first such combination; 0 where the error is zero", Presence::where_computed}}};
 
-const Fields<StoredCoupling> kSizes{
-    {"size_linear", &StoredCoupling::linear, {"size"}, "m", "Size of errors that are lengths; NaN where there is none"},
-    {"size_angular",
-     &StoredCoupling::angular,
-     {"size"},
-     "rad",
-     "Size of errors that are angles; NaN where there is none"}};
+const Fields<CouplingResult> kSizes{
+    {"size_linear", &CouplingResult::linear, "m", "Size of errors that are lengths; NaN where there is none"},
+    {"size_angular", &CouplingResult::angular, "rad", "Size of errors that are angles; NaN where there is none"}};
 
-/// "0.1 mm", or "0.1 mm, 0.1 deg".
-std::vector<std::string> size_names(const CouplingStudy& study) {
-  std::vector<std::string> names;
-  for (std::size_t z = 0; z < study.sizes(); ++z) {
-    std::string& name = names.emplace_back();
-    if (!study.linear.empty()) name = readable_text({study.linear[z], Dimension::length});
-    if (study.angular.empty()) continue;
-    name += (name.empty() ? "" : ", ") + readable_text({study.angular[z], Dimension::angle});
-  }
-  return names;
-}
-
-/// 1 where a subset has a source, [K x sources].
+/// 1 where a subset has a source, subset by subset.
 std::vector<std::uint8_t> members(std::size_t sources) {
   std::vector<std::uint8_t> list;
   for (const std::vector<std::size_t>& subset : source_subsets(sources)) {
@@ -138,72 +94,69 @@ void add_membership(ResultBuilder& result, const Study& study) {
              {"1", "Block of its source that the error belongs to, from 0; errors of a block move together"});
 }
 
-void add_axes(ResultBuilder& result, const CouplingStudy& coupling) {
-  result.add_axis("size", size_names(coupling), {"1", "Size of the errors"});
-  result.add_axis("source", texts(coupling.sources, &ErrorSource::name), {"1", "Name of the source of errors"});
-  result.add_axis("subset", subset_names(coupling.sources), {"1", "Sources that act at once, joined by +"});
-}
-
 /// The sizes, the subsets, and where each error belongs.
-void add_choices(ResultBuilder& result, const Study& study) {
-  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
-  StoredCoupling sizes;
-  const std::vector<double> none(coupling.sizes(), kNaN);
-  sizes.linear = coupling.linear.empty() ? none : coupling.linear;
-  sizes.angular = coupling.angular.empty() ? none : coupling.angular;
-  write_fields(result, "/coupling", kSizes, sizes);
-  result.add("/coupling/subset_sources", {"subset", "source"}, members(coupling.sources.size()),
+void add_choices(ResultBuilder& result, const Study& study, const CouplingResult& found) {
+  write_fields(result, "/coupling", kSizes, found);
+  result.add("/coupling/subset_sources", {"subset", "source"}, members(found.sources.size()),
              {"1", "1: the source is in the subset"});
   add_membership(result, study);
   result.show_axes("/coupling", {"source", "factor"});
 }
 
-/// The sizes of the errors in each line. per_size: lines of a size, which follow each other.
-void append_size_columns(CsvTable& table, const StoredCoupling& stored, std::size_t per_size) {
-  table.columns.push_back(
-      {"size_linear [m]", [&, per_size](std::size_t line) { return stored.linear[line / per_size]; }});
-  table.columns.push_back(
-      {"size_angular [rad]", [&, per_size](std::size_t line) { return stored.angular[line / per_size]; }});
+/// A line of a table of sizes and subsets, each with so many poses or errors.
+using SubsetLines = AxisLayout<axis::Size, axis::Subset, axis::Pose>;
+
+/// The sizes of the errors in each line.
+void append_size_columns(CsvTable& table, const CouplingResult& found, const SubsetLines& lines) {
+  const auto append = [&](std::string heading, const Array<double, axis::Size>& sizes) {
+    table.columns.push_back(
+        {std::move(heading), [&sizes, lines](std::size_t line) { return sizes(lines.positions(line)[0]); }});
+  };
+  append("size_linear [m]", found.linear);
+  append("size_angular [rad]", found.angular);
 }
 
 /// A table with a line for each size and subset, and for each of `repeated` poses.
 CsvTable subset_table(const StoredResult& result, const std::string& name, std::size_t repeated) {
-  const StoredCoupling& stored = coupling_of(result);
-  const std::size_t subsets = stored.found.subsets;
-  CsvTable table{
-      name,
-      {"subset", [&, repeated, subsets](std::size_t line) { return stored.subsets[line / repeated % subsets]; }},
-      stored.found.sizes * subsets * repeated};
-  append_size_columns(table, stored, subsets * repeated);
+  const CouplingResult& found = coupling_of(result);
+  const SubsetLines lines({found.size_names.size(), found.subsets.size(), repeated});
+  CsvTable table{name,
+                 {"subset", [&found, lines](std::size_t line) { return found.subsets[lines.positions(line)[1]]; }},
+                 lines.elements()};
+  append_size_columns(table, found, lines);
   return table;
 }
 
-/// For each response a column of each row along these axes; without the sum, which follows from others.
-void append_response_columns(CsvTable& table, const StoredResult& result, const Axes& axes) {
+/// For each response a column of each row along the axes of this member; without the sum, which follows from others.
+template <class AnArray>
+void append_response_columns(CsvTable& table, const StoredResult& result) {
+  const CouplingResult& found = coupling_of(result);
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const NamedUnit& response = result.responses[r];
     for (const FieldRow<CouplingResult>& field : kCoupling.fields) {
-      if (field.axes != axes || field.name == "sum") continue;
-      if (field.name.starts_with("worst_case") && !has_worst_cases(coupling_of(result).found)) continue;
+      if (field.axes != AnArray::axis_names() || field.name == "sum") continue;
+      if (field.name.starts_with("worst_case") && !has_worst_cases(found)) continue;
       const std::string name = response.name + "_" + (field.name == "count" ? "poses" : field.name);
-      table.columns.push_back(field_column(with_unit(name, csv_unit(field.unit, result, &response)), field,
-                                           coupling_of(result).found, r * table.lines));
+      table.columns.push_back(
+          field_row_column(with_unit(name, csv_unit(field.unit, result, &response)), field, found, r));
     }
   }
 }
 
 CsvTable curve_table(const StoredResult& result) {
   const std::size_t poses = result.poses.size();
+  const CouplingResult& found = coupling_of(result);
   CsvTable table = subset_table(result, "coupling", poses);
   table.columns.push_back({"pose", [poses](std::size_t line) { return to_number(line % poses); }});
   if (!result.time.empty()) {
     table.columns.push_back({"time [s]", [&, poses](std::size_t line) { return result.time[line % poses]; }});
   }
   for (const FieldRow<CouplingResult>& field : kCoupling.fields) {
-    if (field.axes == kCornerAxes && has_worst_cases(coupling_of(result).found))
-      table.columns.push_back(field_column(field.name, field, coupling_of(result).found));
+    if (field.axes == found.corners.axis_names() && has_worst_cases(found)) {
+      table.columns.push_back(field_column(field.name, field, found));
+    }
   }
-  append_response_columns(table, result, kCurveAxes);
+  append_response_columns<CouplingResult::Curves>(table, result);
   return table;
 }
 
@@ -212,26 +165,38 @@ CsvTable corner_table(const StoredResult& result) {
   const std::size_t errors = result.factors.size();
   CsvTable table = subset_table(result, "coupling_corners", errors);
   table.columns.push_back({"error", [errors](std::size_t line) { return static_cast<double>(line % errors); }});
-  const CouplingResult& found = coupling_of(result).found;
+  const CouplingResult& found = coupling_of(result);
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
-    table.columns.push_back(list_column(result.responses[r].name, found.worst_case_signs, r * table.lines));
+    table.columns.push_back(list_column(result.responses[r].name, found.worst_case_signs.row(r)));
   }
   table.columns.push_back(list_column("unsolved", found.unsolved_signs));
+  return table;
+}
+
+CsvTable solve_table(const StoredResult& result) {
+  const std::size_t poses = result.poses.size();
+  const CouplingResult& found = coupling_of(result);
+  CsvTable table{"not_converged",
+                 {"pose", [poses](std::size_t line) { return std::to_string(line % poses); }},
+                 found.solves.size()};
+  append_size_columns(table, found, SubsetLines({found.size_names.size(), 1, poses}));
+  append_solve_columns(table, found.solves.all());
   return table;
 }
 
 void write(ResultBuilder& result, const Study& study, std::any& any) {
   auto& found = std::any_cast<CouplingResult&>(any);
   add_names(result, study, study.analysis.factors);
-  add_axes(result, asked_of<CouplingStudy>(study.analysis));
+  result.add_axis("size", found.size_names, {"1", "Size of the errors"});
+  result.add_axis("source", found.sources, {"1", "Name of the source of errors"});
+  result.add_axis("subset", found.subsets, {"1", "Sources that act at once, joined by +"});
   write_group(result, kCoupling, std::move(found));
-  add_choices(result, study);
-  add_solver(result, {"size", "pose"}, found.solves);
+  add_choices(result, study, found);
+  add_solver(result, found.solves);
 }
 
 /// In files of version 0.2.0 `worst_case` is the first-order sum, there are no corners, and rounding is that of digits.
-void read_older(StoredCoupling& stored) {
-  CouplingResult& found = stored.found;
+void read_older(CouplingResult& found) {
   if (!found.first_order_sum.empty()) {
     const bool searched = has_worst_cases(found);
     for (const bool lacks : {found.worst_case_max.empty(), found.corners.empty(), found.unsolved_corners.empty(),
@@ -245,43 +210,36 @@ void read_older(StoredCoupling& stored) {
     return;
   }
   if (!has_worst_cases(found) || found.worst_case_max.empty()) throw h5::Error("/coupling lacks first_order_sum");
-  found.rounding.clear();
   found.first_order_sum = std::exchange(found.worst_case, {});
   found.first_order_sum_max = std::exchange(found.worst_case_max, {});
-  for (std::size_t r = 0; r < found.responses; ++r) {
-    for (std::size_t z = 0; z < found.sizes; ++z) {
-      found.rounding.push_back(size_rounding(0.0, stored.linear[z], stored.angular[z]));
+  found.rounding = decltype(found.rounding)({found.effect.length<axis::Response>(), found.size_names.size()});
+  for (std::size_t r = 0; r < found.effect.length<axis::Response>(); ++r) {
+    for (std::size_t z = 0; z < found.size_names.size(); ++z) {
+      found.rounding(r, z) = size_rounding(0.0, found.linear(z), found.angular(z));
     }
   }
 }
 
 void read(const h5::File& file, StoredResult& result) {
-  StoredCoupling stored;
-  stored.size_names = file.read<std::string>("/size");
-  stored.sources = file.read<std::string>("/source");
-  stored.subsets = file.read<std::string>("/subset");
-  read_fields(file, "/coupling", kSizes, stored);
-  read_group(file, kCoupling, stored.found);
-  read_older(stored);
-  stored.found.solves = read_solver(file, {"size", "pose"});
-  result.constant = responses_without_effect(stored.found);
-  result.found = std::move(stored);
+  CouplingResult found;
+  found.size_names = file.read<std::string>("/size");
+  found.sources = file.read<std::string>("/source");
+  found.subsets = file.read<std::string>("/subset");
+  read_fields(file, "/coupling", kSizes, found);
+  read_group(file, kCoupling, found);
+  read_older(found);
+  found.solves = read_solver<decltype(found.solves)>(file);
+  result.constant = responses_without_effect(found);
+  result.found = std::move(found);
 }
 
 void append_tables(CsvTables& tables, const StoredResult& result) {
   tables.push_back(curve_table(result));
   CsvTable summary = subset_table(result, "coupling_summary", 1);
-  append_response_columns(summary, result, kSummaryAxes);
+  append_response_columns<CouplingResult::Summary<double>>(summary, result);
   tables.push_back(std::move(summary));
-  if (has_worst_cases(coupling_of(result).found)) tables.push_back(corner_table(result));
-  const StoredCoupling& stored = coupling_of(result);
-  const std::size_t poses = result.poses.size();
-  CsvTable solves{"not_converged",
-                  {"pose", [poses](std::size_t line) { return std::to_string(line % poses); }},
-                  stored.found.solves.size()};
-  append_size_columns(solves, stored, poses);
-  append_solve_columns(solves, stored.found.solves);
-  tables.push_back(std::move(solves));
+  if (has_worst_cases(coupling_of(result))) tables.push_back(corner_table(result));
+  tables.push_back(solve_table(result));
 }
 
 }  // namespace

@@ -22,78 +22,71 @@ Cell pose_cell(bool known, std::int64_t pose) {
   return known ? count_cell(static_cast<std::uint64_t>(pose)) : text_cell("");
 }
 
-std::vector<Cell> subset_row(const StoredResult& result, std::size_t r, std::size_t at) {
-  const StoredCoupling& stored = coupling_of(result);
-  const CouplingResult& found = stored.found;
-  const double rounding = found.rounding[at / found.subsets];
+std::vector<Cell> subset_row(const StoredResult& result, std::size_t r, std::size_t z, std::size_t k) {
+  const CouplingResult& found = coupling_of(result);
+  const double rounding = found.rounding(r, z);
   const auto cell = [&](double value) {
     Cell shown = number_cell(value / display(result.responses[r]).si, 5);
     if (value <= rounding) shown.text = "0";
     return shown;
   };
-  const bool opposed = found.cancellation_max[at] > 0.0;
-  return {text_cell(stored.subsets[at % found.subsets]),
-          cell(found.effect_max[at]),
-          pose_cell(found.effect_max[at] > rounding, found.effect_max_pose[at]),
-          place_cell(result, found.effect_max[at] > rounding, found.effect_max_pose[at]),
-          cell(found.root_sum_square_max[at]),
-          cell(found.first_order_sum_max[at]),
-          has_worst_cases(found) ? cell(found.worst_case_max[at]) : text_cell(""),
-          cell(found.interaction_max[at]),
-          opposed ? percent_cell(found.opposed_share[at]) : text_cell(""),
-          opposed ? percent_cell(found.cancellation_max[at]) : text_cell(""),
-          pose_cell(opposed, found.cancellation_max_pose[at]),
-          place_cell(result, opposed, found.cancellation_max_pose[at])};
+  const bool opposed = found.cancellation_max(r, z, k) > 0.0;
+  const bool acts = found.effect_max(r, z, k) > rounding;
+  return {text_cell(found.subsets[k]),
+          cell(found.effect_max(r, z, k)),
+          pose_cell(acts, found.effect_max_pose(r, z, k)),
+          place_cell(result, acts, found.effect_max_pose(r, z, k)),
+          cell(found.root_sum_square_max(r, z, k)),
+          cell(found.first_order_sum_max(r, z, k)),
+          has_worst_cases(found) ? cell(found.worst_case_max(r, z, k)) : text_cell(""),
+          cell(found.interaction_max(r, z, k)),
+          opposed ? percent_cell(found.opposed_share(r, z, k)) : text_cell(""),
+          opposed ? percent_cell(found.cancellation_max(r, z, k)) : text_cell(""),
+          pose_cell(opposed, found.cancellation_max_pose(r, z, k)),
+          place_cell(result, opposed, found.cancellation_max_pose(r, z, k))};
 }
 
-/// "+leg_1 -leg_2", of the errors that are not zero. signs: [P] from this position on.
-std::string corner_text(const StoredResult& result, const std::vector<std::int64_t>& signs, std::size_t first) {
+/// "+leg_1 -leg_2", of the errors that are not zero.
+std::string corner_text(const StoredResult& result, std::span<const std::int64_t> signs) {
   constexpr std::size_t kMost = 12;
   std::vector<std::string> names;
   for (std::size_t p = 0; p < result.factors.size(); ++p) {
-    const std::int64_t sign = signs[first + p];
-    if (sign != 0) names.push_back((sign > 0 ? "+" : "-") + result.factors[p].name);
+    if (signs[p] != 0) names.push_back((signs[p] > 0 ? "+" : "-") + result.factors[p].name);
   }
   return some_names(names, kMost);
 }
 
 /// Where the worst case of all sources is, and with which signs; empty where it is rounding, or there is none.
 std::string worst_corner_text(const StoredResult& result, std::size_t z, std::size_t r) {
-  const StoredCoupling& stored = coupling_of(result);
-  const CouplingResult& found = stored.found;
-  const std::size_t at = (r * found.sizes + z + 1) * found.subsets - 1;
-  if (!has_worst_cases(found) || !(found.worst_case_max[at] > found.rounding[r * found.sizes + z])) return {};
-  return fmt::format("worst case of {}: {}, with {}", stored.subsets.back(),
-                     place_text(result, static_cast<std::size_t>(found.worst_case_max_pose[at])),
-                     corner_text(result, found.worst_case_signs, at * result.factors.size()));
+  const CouplingResult& found = coupling_of(result);
+  const std::size_t all = found.subsets.size() - 1;
+  if (!has_worst_cases(found) || !(found.worst_case_max(r, z, all) > found.rounding(r, z))) return {};
+  return fmt::format("worst case of {}: {}, with {}", found.subsets.back(),
+                     place_text(result, static_cast<std::size_t>(found.worst_case_max_pose(r, z, all))),
+                     corner_text(result, found.worst_case_signs.row(r, z, all)));
 }
 
 /// How many corners have no solution, and the first of them; empty where all have one.
 std::string unsolved_text(const StoredResult& result) {
-  const StoredCoupling& stored = coupling_of(result);
-  const CouplingResult& found = stored.found;
-  const auto sum = [](const std::vector<std::uint64_t>& counts) {
-    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
-  };
+  const CouplingResult& found = coupling_of(result);
+  const auto sum = [](const auto& counts) { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); };
   const auto first = std::ranges::find_if(found.unsolved_pose, [](std::int64_t pose) { return pose >= 0; });
   if (first == found.unsolved_pose.end()) return {};
-  const auto at = static_cast<std::size_t>(first - found.unsolved_pose.begin());
+  const auto [z, k] = found.unsolved_pose.positions(static_cast<std::size_t>(first - found.unsolved_pose.begin()));
   return fmt::format(
       "{} of the {} combinations of signs that were tried cannot be assembled, so worst cases are of the others; the "
       "first: {} of {}, {}, with {}",
-      count_text(sum(found.unsolved_corners)), count_text(sum(found.corners)), stored.size_names[at / found.subsets],
-      stored.subsets[at % found.subsets], place_text(result, static_cast<std::size_t>(*first)),
-      corner_text(result, found.unsolved_signs, at * result.factors.size()));
+      count_text(sum(found.unsolved_corners)), count_text(sum(found.corners)), found.size_names[z], found.subsets[k],
+      place_text(result, static_cast<std::size_t>(*first)), corner_text(result, found.unsolved_signs.row(z, k)));
 }
 
 Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
-  const StoredCoupling& stored = coupling_of(result);
-  const CouplingResult& found = stored.found;
+  const CouplingResult& found = coupling_of(result);
   const NamedUnit& response = result.responses[r];
   const std::string_view unit = display(response).name;
   Table table{
       .name = fmt::format("coupling_{}_{}", z + 1, response.name),
-      .caption = fmt::format("{}: {} [{}]", stored.size_names[z], response.name, unit),
+      .caption = fmt::format("{}: {} [{}]", found.size_names[z], response.name, unit),
       .columns = {
           text_column("subset", "subset"), number_column("effect_max", "largest effect", unit),
           number_column("effect_max_pose", "at pose", "", 1), text_column("effect_max_where", "largest where", 4),
@@ -103,9 +96,7 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
           percent_column("opposed_share", "opposed", 3), percent_column("cancellation_max", "cancellation", 2),
           number_column("cancellation_max_pose", "at pose", "", 2),
           text_column("cancellation_max_where", "cancelled where", 4)}};
-  for (std::size_t k = 0; k < found.subsets; ++k) {
-    table.rows.push_back(subset_row(result, r, (r * found.sizes + z) * found.subsets + k));
-  }
+  for (std::size_t k = 0; k < found.subsets.size(); ++k) table.rows.push_back(subset_row(result, r, z, k));
   if (!varies(result, r)) {
     table.notes.push_back(response.name + " does not vary: no source moves it by more than the rounding of solves");
   }
@@ -115,14 +106,12 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
 
 /// Whether a source alone does nothing at any pose, at any size, to one of the responses shown.
 bool does_nothing(const StoredResult& result, const std::string& source) {
-  const StoredCoupling& stored = coupling_of(result);
-  const CouplingResult& found = stored.found;
-  const auto k = static_cast<std::size_t>(std::ranges::find(stored.subsets, source) - stored.subsets.begin());
-  if (k == found.subsets) return false;
+  const CouplingResult& found = coupling_of(result);
+  const auto k = static_cast<std::size_t>(std::ranges::find(found.subsets, source) - found.subsets.begin());
+  if (k == found.subsets.size()) return false;
   return std::ranges::any_of(result.signed_headline, [&](std::size_t r) {
-    for (std::size_t z = 0; z < found.sizes; ++z) {
-      const std::size_t at = r * found.sizes + z;
-      if (!(found.effect_max[at * found.subsets + k] <= found.rounding[at])) return false;
+    for (std::size_t z = 0; z < found.size_names.size(); ++z) {
+      if (!(found.effect_max(r, z, k) <= found.rounding(r, z))) return false;
     }
     return true;
   });
@@ -139,22 +128,21 @@ constexpr std::string_view kWorstCase =
     "or sizes in between, may do more";
 
 std::vector<std::string> notes(const StoredResult& result) {
-  const StoredCoupling& stored = coupling_of(result);
+  const CouplingResult& found = coupling_of(result);
   std::vector<std::string> list{
       fmt::format("{} of errors, alone and together; largest values over {}",
-                  counted(stored.sources.size(), "source", "sources"), counted(stored.found.poses, "pose", "poses")),
+                  counted(found.sources.size(), "source", "sources"), counted(found.poses(), "pose", "poses")),
       "interaction: together minus the sum of each alone",
-      has_worst_cases(stored.found) ? fmt::format("worst case: {}", kWorstCase)
-                                    : "first-order sum: of the magnitudes of each alone; no bound",
+      has_worst_cases(found) ? fmt::format("worst case: {}", kWorstCase)
+                             : "first-order sum: of the magnitudes of each alone; no bound",
       "opposed: share of the poses where the sum is less than its largest part, cancellation: by how much at most; a "
       "norm, which has no sign, cannot tell"};
   if (std::string text = unsolved_text(result); !text.empty()) list.push_back(std::move(text));
-  const std::vector<std::uint64_t>& count = stored.found.count;
-  if (std::ranges::any_of(count, [&](std::uint64_t poses) { return poses < stored.found.poses; })) {
+  if (std::ranges::any_of(found.count, [&](std::uint64_t poses) { return poses < found.poses(); })) {
     list.emplace_back("some subsets leave out poses that were not solved: see the export's coupling_summary.csv");
   }
   if (same_in_all_limbs(result) &&
-      std::ranges::any_of(stored.sources, [&](const std::string& source) { return does_nothing(result, source); })) {
+      std::ranges::any_of(found.sources, [&](const std::string& source) { return does_nothing(result, source); })) {
     list.emplace_back(
         "all limbs have the same error here, so sources that are symmetric cancel; limbs = \"independent\" "
         "shows what they can do");
@@ -164,15 +152,15 @@ std::vector<std::string> notes(const StoredResult& result) {
 
 /// Norms have no sign and cannot tell what cancels, so they are not shown.
 ShownCells cells(const StoredResult& result) {
-  const CouplingResult& found = coupling_of(result).found;
-  return shown_cells(result, found.sizes * (2 * found.subsets + 3), result.signed_headline);
+  const CouplingResult& found = coupling_of(result);
+  return shown_cells(result, found.size_names.size() * (2 * found.subsets.size() + 3), result.signed_headline);
 }
 
 /// The curves of a coupling result: one panel for each response and size. Refers to all that it is given.
 class Curves {
  public:
   Curves(const StoredResult& result, const PoseFigures& figures)
-      : result_(result), found_(coupling_of(result).found), figures_(figures) {}
+      : result_(result), found_(coupling_of(result)), figures_(figures) {}
 
   Lines effects() const {
     return lines("", [&](std::size_t r, std::size_t z) { return effect_series(r, z); });
@@ -201,23 +189,23 @@ class Curves {
     }
     return list;
   }
-  bool has_subsets() const { return found_.subsets > sources(); }
+  bool has_subsets() const { return found_.subsets.size() > sources(); }
 
  private:
   /// The first subsets are the sources one by one.
-  std::size_t sources() const { return std::min(coupling_of(result_).sources.size(), found_.subsets); }
-  std::size_t last() const { return found_.subsets - 1; }
-  const std::string& subset(std::size_t k) const { return coupling_of(result_).subsets[k]; }
+  std::size_t sources() const { return std::min(found_.sources.size(), found_.subsets.size()); }
+  std::size_t last() const { return found_.subsets.size() - 1; }
+  const std::string& subset(std::size_t k) const { return found_.subsets[k]; }
   /// Each response with each size, of which the last comes first: it is what tables show.
   std::vector<std::pair<std::size_t, std::size_t>> panels() const {
     std::vector<std::pair<std::size_t, std::size_t>> list;
     for (const std::size_t r : figures_.responses()) {
-      for (std::size_t z = found_.sizes; z-- > 0;) list.emplace_back(r, z);
+      for (std::size_t z = found_.size_names.size(); z-- > 0;) list.emplace_back(r, z);
     }
     return list;
   }
   std::string panel_label(std::size_t r, std::size_t z) const {
-    return fmt::format("{} at {}", result_.responses[r].name, coupling_of(result_).size_names[z]);
+    return fmt::format("{} at {}", result_.responses[r].name, found_.size_names[z]);
   }
 
   template <class SeriesOf>
@@ -229,25 +217,23 @@ class Curves {
     return all;
   }
 
-  /// Of values [R x Z x K x M], one curve; shares in percent.
-  ArrayName curve(std::string_view what, const std::vector<double>& values, std::size_t r, std::size_t z,
+  /// One curve; shares in percent.
+  ArrayName curve(std::string_view what, const CouplingResult::Curves& values, std::size_t r, std::size_t z,
                   std::size_t k) const {
-    const std::size_t at = (r * found_.sizes + z) * found_.subsets + k;
     const double unit = what == "cancellation" ? 0.01 : display(result_.responses[r]).si;
-    return figures_.add(fmt::format("{}/{}/{}/{}", what, r, z, k),
-                        std::span(values).subspan(at * found_.poses, found_.poses), unit);
+    return figures_.add(fmt::format("{}/{}/{}/{}", what, r, z, k), values.row(r, z, k), unit);
   }
 
-  /// Of values [R x Z x K x M]: the subsets of more than one source, but for that of all.
-  void add_subsets(std::vector<Series>& list, std::string_view what, const std::vector<double>& values, std::size_t r,
-                   std::size_t z) const {
-    for (std::size_t k = sources(); k + 1 < found_.subsets; ++k) {
+  /// The subsets of several sources, without the subset of all.
+  void add_subsets(std::vector<Series>& list, std::string_view what, const CouplingResult::Curves& values,
+                   std::size_t r, std::size_t z) const {
+    for (std::size_t k = sources(); k + 1 < found_.subsets.size(); ++k) {
       list.push_back({subset(k), curve(what, values, r, z, k)});
     }
   }
 
   /// All sources together, then the other subsets.
-  std::vector<Series> subset_series(std::string_view what, const std::vector<double>& values, std::size_t r,
+  std::vector<Series> subset_series(std::string_view what, const CouplingResult::Curves& values, std::size_t r,
                                     std::size_t z) const {
     std::vector<Series> list{{subset(last()), curve(what, values, r, z, last())}};
     add_subsets(list, what, values, r, z);
@@ -260,7 +246,7 @@ class Curves {
     for (std::size_t k = 0; k < sources(); ++k) {
       list.push_back({subset(k) + " alone", curve("effect", found_.effect, r, z, k)});
     }
-    const auto add = [&](std::string label, std::string_view what, const std::vector<double>& values,
+    const auto add = [&](std::string label, std::string_view what, const CouplingResult::Curves& values,
                          std::string style) {
       list.push_back(
           {.label = std::move(label), .value = curve(what, values, r, z, last()), .style = std::move(style)});
@@ -289,7 +275,7 @@ void add_tables(const StoredResult& result, std::span<const Table> tables, Secti
 }
 
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  if (coupling_of(result).found.subsets == 0) return;
+  if (coupling_of(result).subsets.empty()) return;
   const PoseFigures figures(result, cells(result), page);
   const Curves curves(result, figures);
   Section& section = page.add_section("together", "What the sources do, alone and together");
@@ -316,11 +302,12 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
 }
 
 SolveTally tally(const StoredResult& result) {
-  return {"size", coupling_of(result).size_names, result.poses.size(), coupling_of(result).found.solves};
+  const CouplingResult& found = coupling_of(result);
+  return {"size", found.size_names, result.poses.size(), {found.solves.begin(), found.solves.end()}};
 }
 
 /// Items are subsets at a size.
-std::vector<std::string> sized_subsets(const StoredCoupling& coupling) {
+std::vector<std::string> sized_subsets(const CouplingResult& coupling) {
   std::vector<std::string> list;
   for (const std::string& size : coupling.size_names) {
     for (const std::string& subset : coupling.subsets) list.push_back(fmt::format("{} at {}", subset, size));
@@ -330,49 +317,45 @@ std::vector<std::string> sized_subsets(const StoredCoupling& coupling) {
 
 /// Of the last size, which the tables show, and the first response.
 Answer answer(const StoredResult& result) {
-  const StoredCoupling& stored = coupling_of(result);
-  const CouplingResult& found = stored.found;
-  if (found.subsets == 0 || found.sizes == 0 || result.signed_headline.empty()) return {};
+  const CouplingResult& found = coupling_of(result);
+  if (found.subsets.empty() || found.size_names.empty() || result.signed_headline.empty()) return {};
   const std::size_t r = varying_first(result, result.signed_headline).front();
-  const std::size_t first = (r * found.sizes + found.sizes - 1) * found.subsets;
-  const std::size_t all = found.subsets - 1;
-  const std::size_t sources = std::min(stored.sources.size(), found.subsets);
+  const std::size_t z = found.size_names.size() - 1;
+  const std::size_t all = found.subsets.size() - 1;
+  const std::size_t sources = std::min(found.sources.size(), found.subsets.size());
   const NamedUnit& response = result.responses[r];
   const auto text = [&](double value) { return response_text(response, value); };
-  const auto place = [&](const std::vector<std::int64_t>& poses) {
-    return place_text(result, static_cast<std::size_t>(poses[first + all]));
-  };
-  const auto effects = std::span(found.effect_max).subspan(first, sources);
+  const std::string place = place_text(result, static_cast<std::size_t>(found.effect_max_pose(r, z, all)));
+  const auto effects = found.effect_max.row(r, z).first(sources);
   const auto largest = static_cast<std::size_t>(std::ranges::max_element(effects) - effects.begin());
   Answer lines{
-      {"Answer",
-       fmt::format("At {}, {} together move {} by up to {}, at {}.", stored.size_names.back(), stored.subsets[all],
-                   response.name, text(found.effect_max[first + all]), place(found.effect_max_pose))},
-      {"Largest source", fmt::format("{} alone, with up to {}.", stored.subsets[largest], text(effects[largest]))}};
+      {"Answer", fmt::format("At {}, {} together move {} by up to {}, at {}.", found.size_names.back(),
+                             found.subsets[all], response.name, text(found.effect_max(r, z, all)), place)},
+      {"Largest source", fmt::format("{} alone, with up to {}.", found.subsets[largest], text(effects[largest]))}};
   if (sources > 1) {
     const std::string worst = has_worst_cases(found)
                                   ? fmt::format(", and the worst case that was found is {}, which is no bound",
-                                                text(found.worst_case_max[first + all]))
+                                                text(found.worst_case_max(r, z, all)))
                                   : "";
     lines.emplace_back(
         "Together", fmt::format("Interaction is at most {}. Where signs are as likely as not, {} are to be expected at "
                                 "most; magnitudes add up to {}{}.",
-                                text(found.interaction_max[first + all]), text(found.root_sum_square_max[first + all]),
-                                text(found.first_order_sum_max[first + all]), worst));
+                                text(found.interaction_max(r, z, all)), text(found.root_sum_square_max(r, z, all)),
+                                text(found.first_order_sum_max(r, z, all)), worst));
   }
-  lines.emplace_back("How sure", fmt::format("Solved, not sampled, at {}.", counted(found.poses, "pose", "poses")));
+  lines.emplace_back("How sure", fmt::format("Solved, not sampled, at {}.", counted(found.poses(), "pose", "poses")));
   lines.emplace_back("What to do",
                      fmt::format("Make {} smaller first. Where sources cancel, do not count on it: their signs may "
                                  "differ from machine to machine.",
-                                 stored.subsets[largest]));
+                                 found.subsets[largest]));
   return lines;
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
-  const CouplingResult& found = coupling_of(result).found;
-  Comparable all = comparable_by_response(result, "subset", sized_subsets(coupling_of(result)));
+  const CouplingResult& found = coupling_of(result);
+  Comparable all = comparable_by_response(result, "subset", sized_subsets(found));
   add_quantity(all, result, "largest effect over the poses", "effect_max",
-               [&](std::size_t r, std::size_t n) { return found.effect_max[r * found.sizes * found.subsets + n]; });
+               [&](std::size_t r, std::size_t n) { return found.effect_max.row(r)[n]; });
   return all;
 }
 
@@ -380,7 +363,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
 
 std::vector<Table> coupling_tables(const StoredResult& result, const TableOptions&) {
   std::vector<Table> tables;
-  for (std::size_t z = 0; z < coupling_of(result).found.sizes; ++z) {
+  for (std::size_t z = 0; z < coupling_of(result).size_names.size(); ++z) {
     for (const std::size_t r : varying_first(result, result.signed_headline)) {
       tables.push_back(response_table(result, z, r));
     }

@@ -42,7 +42,8 @@ WorstCases::Place read_place(ByteReader& from, std::size_t poses, std::size_t bl
 /// All sizes at all poses, pose by pose: the work of fold().
 class CornerWork {
  public:
-  CornerWork(const StudyRun& run, const CornerTable& table, std::span<const double> rounding, const Shard& shard)
+  CornerWork(const StudyRun& run, const CornerTable& table, const Array<double, axis::Response, axis::Size>& rounding,
+             const Shard& shard)
       : run_(run),
         table_(table),
         rounding_(rounding),
@@ -65,7 +66,7 @@ class CornerWork {
   SolveCounts merge(std::size_t, CornersAtPose&& found) {
     const std::size_t m = next_ / sizes_;
     const std::size_t z = next_ % sizes_;
-    found_.solves[z * poses_ + m] = found.solves;
+    found_.solves(z, m) = found.solves;
     for (std::size_t k = 0; k < subsets_; ++k) add(m, z, k, std::move(found.subsets[k]));
     ++next_;
     return found.solves;
@@ -93,7 +94,7 @@ class CornerWork {
     }
     return found;
   }
-  SolveCounts solved() const { return total_of(found_.solves); }
+  SolveCounts solved() const { return total_of(found_.solves.all()); }
   std::uint64_t left() const {
     const std::size_t done = next_ - cells_.first;
     const double each = done == 0 ? expected_corners(table_, responses_)
@@ -121,28 +122,24 @@ class CornerWork {
   /// Forgets all that was merged.
   void clear() {
     next_ = cells_.first;
-    found_ = {};
-    found_.value.assign(responses_ * sizes_ * subsets_ * poses_, kNaN);
-    found_.tried.resize(sizes_ * subsets_ * poses_);
-    found_.unsolved.resize(found_.tried.size());
-    found_.solves.resize(sizes_ * poses_);
-    found_.worst.resize(responses_ * sizes_ * subsets_);
-    found_.first_unsolved.resize(sizes_ * subsets_);
+    found_.value = decltype(found_.value)({responses_, sizes_, subsets_, poses_}, kNaN);
+    found_.tried = decltype(found_.tried)({sizes_, subsets_, poses_});
+    found_.unsolved = found_.tried;
+    found_.solves = decltype(found_.solves)({sizes_, poses_});
+    found_.worst = decltype(found_.worst)({responses_, sizes_, subsets_});
+    found_.first_unsolved = decltype(found_.first_unsolved)({sizes_, subsets_});
   }
   std::array<std::uint64_t, 6> sizes() const {
     return {kKind, poses_, sizes_, subsets_, responses_, table_.blocks.size()};
   }
-  std::size_t at(std::size_t r, std::size_t z, std::size_t k) const { return (r * sizes_ + z) * subsets_ + k; }
-
   void add(std::size_t m, std::size_t z, std::size_t k, WorstCorners&& corners) {
-    const std::size_t cell = at(0, z, k) * poses_ + m;
-    found_.tried[cell] = corners.tried;
-    found_.unsolved[cell] = corners.unsolved;
+    found_.tried(z, k, m) = corners.tried;
+    found_.unsolved(z, k, m) = corners.unsolved;
     for (std::size_t r = 0; r < responses_; ++r) {
-      found_.value[at(r, z, k) * poses_ + m] = corners.value[r];
-      take_worse(found_.worst[at(r, z, k)], {corners.value[r], static_cast<std::int64_t>(m), corners.signs[r]});
+      found_.value(r, z, k, m) = corners.value[r];
+      take_worse(found_.worst(r, z, k), {corners.value[r], static_cast<std::int64_t>(m), corners.signs[r]});
     }
-    take_first(found_.first_unsolved[at(0, z, k)], {0.0, static_cast<std::int64_t>(m), corners.first_unsolved});
+    take_first(found_.first_unsolved(z, k), {0.0, static_cast<std::int64_t>(m), corners.first_unsolved});
   }
   /// Of an earlier pose and a later one.
   static void take_worse(WorstCases::Place& worst, WorstCases::Place other) {
@@ -156,23 +153,25 @@ class CornerWork {
   void write_cell(std::size_t cell, ByteWriter& to) const {
     const std::size_t m = cell / sizes_;
     const std::size_t z = cell % sizes_;
-    found_.solves[z * poses_ + m].write(to);
+    found_.solves(z, m).write(to);
     for (std::size_t k = 0; k < subsets_; ++k) {
-      to.number(found_.tried[at(0, z, k) * poses_ + m]);
-      to.number(found_.unsolved[at(0, z, k) * poses_ + m]);
-      for (std::size_t r = 0; r < responses_; ++r) to.real(found_.value[at(r, z, k) * poses_ + m]);
+      to.number(found_.tried(z, k, m));
+      to.number(found_.unsolved(z, k, m));
+      for (std::size_t r = 0; r < responses_; ++r) to.real(found_.value(r, z, k, m));
     }
   }
   void read_cell(std::size_t cell, ByteReader& from) {
     const std::size_t m = cell / sizes_;
     const std::size_t z = cell % sizes_;
-    found_.solves[z * poses_ + m] = SolveCounts::read(from);
+    found_.solves(z, m) = SolveCounts::read(from);
     for (std::size_t k = 0; k < subsets_; ++k) {
-      std::uint64_t& tried = found_.tried[at(0, z, k) * poses_ + m];
-      tried = from.number();
-      found_.unsolved[at(0, z, k) * poses_ + m] = from.number_up_to(tried);
-      for (std::size_t r = 0; r < responses_; ++r) found_.value[at(r, z, k) * poses_ + m] = from.real();
+      found_.tried(z, k, m) = from.number();
+      found_.unsolved(z, k, m) = from.number_up_to(found_.tried(z, k, m));
+      for (std::size_t r = 0; r < responses_; ++r) found_.value(r, z, k, m) = from.real();
     }
+  }
+  WorstCases::Place read_place(ByteReader& from, std::size_t subset) const {
+    return poesy::read_place(from, poses_, table_.subsets[subset].size());
   }
   void restore_one(ByteReader& from) {
     const auto expect = [&](std::uint64_t number) {
@@ -183,17 +182,19 @@ class CornerWork {
     const auto end = static_cast<std::size_t>(from.number_up_to(cells_.end));
     if (end < next_) throw BytesError("has poses that end before they begin");
     for (; next_ < end; ++next_) read_cell(next_, from);
-    for (std::size_t n = 0; n < found_.worst.size(); ++n) {
-      take_worse(found_.worst[n], read_place(from, poses_, table_.subsets[n % subsets_].size()));
+    for (std::size_t r = 0; r < responses_; ++r) {
+      for (std::size_t z = 0; z < sizes_; ++z) {
+        for (std::size_t k = 0; k < subsets_; ++k) take_worse(found_.worst(r, z, k), read_place(from, k));
+      }
     }
-    for (std::size_t n = 0; n < found_.first_unsolved.size(); ++n) {
-      take_first(found_.first_unsolved[n], read_place(from, poses_, table_.subsets[n % subsets_].size()));
+    for (std::size_t z = 0; z < sizes_; ++z) {
+      for (std::size_t k = 0; k < subsets_; ++k) take_first(found_.first_unsolved(z, k), read_place(from, k));
     }
   }
 
   const StudyRun& run_;
   const CornerTable& table_;
-  std::span<const double> rounding_;
+  const Array<double, axis::Response, axis::Size>& rounding_;
   std::size_t poses_;
   std::size_t sizes_;
   std::size_t subsets_;
@@ -204,39 +205,51 @@ class CornerWork {
   WorstCases found_;
 };
 
-/// The signs of the errors at these places, [places x P].
-std::vector<std::int64_t> signs_of(std::span<const WorstCases::Place> places, const CornerTable& table) {
-  std::vector<std::int64_t> list;
-  for (std::size_t n = 0; n < places.size(); ++n) {
-    for (const double sign : table.signs_of_errors(n % table.subsets.size(), places[n].signs)) {
-      list.push_back(static_cast<std::int64_t>(sign));
-    }
-  }
-  return list;
+/// Fills in the signs of the errors at this place.
+void fill_signs(const WorstCases::Place& place, std::size_t subset, const CornerTable& table,
+                std::span<std::int64_t> signs) {
+  std::ranges::transform(table.signs_of_errors(subset, place.signs), signs.begin(),
+                         [](double sign) { return static_cast<std::int64_t>(sign); });
 }
 
 }  // namespace
 
 std::optional<WorstCases> run_worst_cases(const StudyRun& run, const CornerTable& table,
-                                          std::span<const double> rounding, const RunOptions& options) {
+                                          const Array<double, axis::Response, axis::Size>& rounding,
+                                          const RunOptions& options) {
   CornerWork work(run, table, rounding, options.shard.value_or(Shard()));
   if (!fold(work, options) || options.shard) return std::nullopt;
   return std::move(work).result();
 }
 
 void add_worst_cases(WorstCases found, const CornerTable& table, CouplingResult& result) {
-  POESY_EXPECTS(found.value.size() == result.first_order_sum.size());
+  POESY_EXPECTS(found.value.lengths() == result.first_order_sum.lengths());
+  const auto [responses, sizes, subsets] = found.worst.lengths();
+  const std::size_t errors = table.factors.size();
   result.worst_case = std::move(found.value);
   result.corners = std::move(found.tried);
   result.unsolved_corners = std::move(found.unsolved);
-  for (const WorstCases::Place& place : found.worst) {
-    result.worst_case_max.push_back(place.pose < 0 ? kNaN : place.value);
-    result.worst_case_max_pose.push_back(place.pose);
+  result.worst_case_max = decltype(result.worst_case_max)(found.worst.lengths());
+  result.worst_case_max_pose = decltype(result.worst_case_max_pose)(found.worst.lengths());
+  result.worst_case_signs = decltype(result.worst_case_signs)({responses, sizes, subsets, errors});
+  result.unsolved_pose = decltype(result.unsolved_pose)({sizes, subsets});
+  result.unsolved_signs = decltype(result.unsolved_signs)({sizes, subsets, errors});
+  for (std::size_t z = 0; z < sizes; ++z) {
+    for (std::size_t k = 0; k < subsets; ++k) {
+      for (std::size_t r = 0; r < responses; ++r) {
+        const WorstCases::Place& worst = found.worst(r, z, k);
+        result.worst_case_max(r, z, k) = worst.pose < 0 ? kNaN : worst.value;
+        result.worst_case_max_pose(r, z, k) = worst.pose;
+        fill_signs(worst, k, table, result.worst_case_signs.row(r, z, k));
+      }
+      const WorstCases::Place& unsolved = found.first_unsolved(z, k);
+      result.unsolved_pose(z, k) = unsolved.pose;
+      fill_signs(unsolved, k, table, result.unsolved_signs.row(z, k));
+    }
+    for (std::size_t m = 0; m < found.solves.length<axis::Pose>(); ++m) {
+      result.solves(z, m).merge(found.solves(z, m));
+    }
   }
-  for (const WorstCases::Place& place : found.first_unsolved) result.unsolved_pose.push_back(place.pose);
-  result.worst_case_signs = signs_of(found.worst, table);
-  result.unsolved_signs = signs_of(found.first_unsolved, table);
-  for (std::size_t cell = 0; cell < found.solves.size(); ++cell) result.solves[cell].merge(found.solves[cell]);
 }
 
 }  // namespace poesy

@@ -15,15 +15,15 @@ namespace {
 constexpr Pairing kPairing = Pairing::every_pose_with_every_row;
 
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
-  auto evaluation = run_evaluation(run.model, run.study.solver, run.poses,
-                                   case_table(asked_of<CaseOptions>(run.study.analysis).cases), kPairing, run.options);
-  if (!evaluation || !run.makes_result()) return std::nullopt;
+  const std::vector<ErrorCase>& cases = asked_of<CaseOptions>(run.study.analysis).cases;
+  auto solves = run_evaluation(run.model, run.study.solver, run.poses, case_table(cases), kPairing, run.options);
+  if (!solves || !run.makes_result()) return std::nullopt;
   if (const auto& limits = run.study.analysis.limits; !limits.empty()) {
-    evaluation->verdicts = judge_rows(limits, *evaluation, kPairing, run.study.not_converged);
+    solves->verdicts = judge_rows(limits, *solves, kPairing, run.study.not_converged);
   }
-  StudyResult found{{}, evaluation->verdicts, {}};
-  for (const ErrorCase& one : asked_of<CaseOptions>(run.study.analysis).cases) found.row_names.push_back(one.name);
-  found.found = case_result(std::move(*evaluation), run.study.not_converged);
+  StudyResult found{{}, solves->verdicts, {}};
+  for (const ErrorCase& one : cases) found.row_names.push_back(one.name);
+  found.found = evaluation_of_cases(*std::move(solves), cases, run.model.description(), run.study.not_converged);
   return found;
 }
 
@@ -49,46 +49,62 @@ ErrorTable case_table(std::span<const ErrorCase> cases) {
   return table;
 }
 
-CaseResult case_result(EvaluationResult evaluation, NotConverged policy) {
-  CaseResult result;
-  const std::size_t cases = evaluation.samples;
-  const std::size_t all = evaluation.poses * cases;
-  for (std::size_t r = 0; r < evaluation.responses; ++r) {
-    for (std::size_t c = 0; c < cases; ++c) {
+Evaluation evaluation(EvaluationResult solves, const ErrorTable& errors, Pairing pairing,
+                      const ModelDescription& model) {
+  Evaluation found;
+  found.solves = std::move(solves);
+  found.details = model.details;
+  for (const JointDisplacement& joint : model.joints) found.joints.push_back(joint.name);
+  found.pairing = pairing;
+  found.errors = decltype(found.errors)({errors.rows, errors.factors.size()}, errors.values);
+  found.labels = errors.labels;
+  return found;
+}
+
+Evaluation evaluation_of_cases(EvaluationResult solves, std::span<const ErrorCase> cases, const ModelDescription& model,
+                               NotConverged policy) {
+  Evaluation found = evaluation(std::move(solves), case_table(cases), kPairing, model);
+  for (const ErrorCase& one : cases) found.cases.push_back(one.name);
+  const EvaluationResult& all = found.solves;
+  found.mean = decltype(found.mean)({all.responses(), cases.size()}, kNaN);
+  found.max = found.mean;
+  found.count = decltype(found.count)(found.mean.lengths());
+  for (std::size_t r = 0; r < all.responses(); ++r) {
+    for (std::size_t c = 0; c < cases.size(); ++c) {
       std::uint64_t count = 0;
       double sum = 0.0;
       double largest = -std::numeric_limits<double>::infinity();
-      for (std::size_t m = 0; m < evaluation.poses; ++m) {
-        if (!counts(evaluation.status[m * cases + c], policy)) continue;
-        const double value = evaluation.response[r * all + m * cases + c];
-        sum += value;
-        largest = std::max(largest, value);
+      for (std::size_t m = 0; m < all.poses(); ++m) {
+        if (!counts(all.status(m, c), policy)) continue;
+        sum += all.response(r, m, c);
+        largest = std::max(largest, all.response(r, m, c));
         ++count;
       }
-      result.count.push_back(count);
-      result.mean.push_back(count == 0 ? kNaN : sum / static_cast<double>(count));
-      result.max.push_back(count == 0 ? kNaN : largest);
+      found.count(r, c) = count;
+      if (count == 0) continue;
+      found.mean(r, c) = sum / static_cast<double>(count);
+      found.max(r, c) = largest;
     }
   }
-  result.evaluation = std::move(evaluation);
-  return result;
+  return found;
 }
 
-std::vector<RowOutcome> row_outcomes(const StoredEvaluation& stored, std::size_t response) {
-  const EvaluationResult& found = stored.evaluation;
-  const std::size_t solves = found.status.size();
-  std::vector<RowOutcome> rows(stored.labels.names.size());
-  for (std::size_t at = 0; at < solves; ++at) {
-    if (!solved(found.status[at])) continue;
-    const double value = found.response[response * solves + at];
-    RowOutcome& row = rows[row_of_solve(stored, at)];
-    if (row.solved == 0) row.mean = row.extreme = 0.0;
-    row.mean += value;  // their sum, until all are there
-    if (row.solved == 0 || std::abs(value) > std::abs(row.extreme)) {
-      row.extreme = value;
-      row.pose = at / found.samples;
+std::vector<RowOutcome> row_outcomes(const Evaluation& found, std::size_t response) {
+  const EvaluationResult& solves = found.solves;
+  std::vector<RowOutcome> rows(found.labels.names.size());
+  for (std::size_t m = 0; m < solves.poses(); ++m) {
+    for (std::size_t s = 0; s < solves.samples(); ++s) {
+      if (!solved(solves.status(m, s))) continue;
+      const double value = solves.response(response, m, s);
+      RowOutcome& row = rows[row_of_solve(found, m, s)];
+      if (row.solved == 0) row.mean = row.extreme = 0.0;
+      row.mean += value;  // their sum, until all are there
+      if (row.solved == 0 || std::abs(value) > std::abs(row.extreme)) {
+        row.extreme = value;
+        row.pose = m;
+      }
+      ++row.solved;
     }
-    ++row.solved;
   }
   for (RowOutcome& row : rows) row.mean /= static_cast<double>(row.solved);
   return rows;

@@ -30,33 +30,47 @@ struct CaseOptions {
 /// The kind of study of named cases of fixed errors.
 extern const StudyKind kEvaluateStudy;
 
-/// What named cases of errors do: C cases, R responses. evaluation has the cases as its samples.
-struct CaseResult {
-  EvaluationResult evaluation;       ///< with the cases as its samples
-  std::vector<double> mean;          ///< [R x C] over the poses that count; NaN where there is none
-  std::vector<double> max;           ///< [R x C]
-  std::vector<std::uint64_t> count;  ///< [R x C] poses that count
+namespace axis {
+struct Case {
+  static constexpr std::string_view kName = "case";
+};
+/// Rows of a table of errors.
+struct Row {
+  static constexpr std::string_view kName = "row";
+};
+}  // namespace axis
+
+/// What given errors do: named cases, or the rows of a table. Its verdicts are those of StoredResult.
+struct Evaluation {
+  /// A number of each response to each case over the poses that count; empty where there are no cases.
+  template <class T>
+  using OverPoses = Array<T, axis::Response, axis::Case>;
+
+  EvaluationResult solves;          ///< with the cases, or the rows of the table, as samples
+  std::vector<Detail> details;      ///< of the model; solves.detail holds their components one after the other
+  std::vector<std::string> joints;  ///< names
+  Pairing pairing = Pairing::every_pose_with_every_row;  ///< of poses with rows of errors
+  Array<double, axis::Row, axis::Factor> errors;         ///< that were given, SI
+  RowLabels labels;                                      ///< of the rows of errors; empty where they have no names
+  std::vector<std::string> cases;                        ///< names of the samples, where they are cases
+  OverPoses<double> mean;                                ///< NaN where no pose counts
+  OverPoses<double> max;                                 ///< NaN where no pose counts
+  OverPoses<std::uint64_t> count;                        ///< poses that count
 };
 
 /// The errors of named cases as a table: a row for each case, a column for each of the model's factors.
 ErrorTable case_table(std::span<const ErrorCase> cases);
 
-/// What run_evaluation found for a case_table, summed up over the poses whose solve counts (see counts()).
-CaseResult case_result(EvaluationResult evaluation, NotConverged policy);
+/// What run_evaluation found for these rows of errors.
+Evaluation evaluation(EvaluationResult solves, const ErrorTable& errors, Pairing pairing,
+                      const ModelDescription& model);
 
-/// What an evaluation says, read back. Its verdicts are those of StoredResult. Where the model has details,
-/// evaluation.detail holds their components in the order of `details`. `mean`, `max` and `count` are of cases.
-struct StoredEvaluation : CaseResult {
-  std::vector<Detail> details;                           ///< of the model
-  std::vector<std::string> joints;                       ///< [joints] names
-  Pairing pairing = Pairing::every_pose_with_every_row;  ///< of poses with rows of errors
-  std::vector<double> errors;                            ///< [S x P], or [M x P] row by row; SI
-  RowLabels labels;                                      ///< of the rows of errors; empty where they have no names
-  std::vector<std::string> cases;                        ///< names of the samples, where they are cases
-};
+/// The same for a case_table, summed up over the poses whose solve counts (see counts()).
+Evaluation evaluation_of_cases(EvaluationResult solves, std::span<const ErrorCase> cases, const ModelDescription& model,
+                               NotConverged policy);
 
 /// Precondition: a result of an evaluation.
-inline const StoredEvaluation& evaluation_of(const StoredResult& result) { return found_of<StoredEvaluation>(result); }
+inline const Evaluation& evaluation_of(const StoredResult& result) { return found_of<Evaluation>(result); }
 
 /// The errors of its solves.
 GivenErrors evaluated_errors(const StoredResult& result);
@@ -65,9 +79,10 @@ GivenErrors evaluated_errors(const StoredResult& result);
 /// them.
 std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std::size_t rows);
 
-/// Writes the result of `poesy evaluate`, which takes poses and errors from tables; as write_result.
-void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses, const ErrorTable& errors,
-                      Pairing pairing, const EvaluationResult& result, const RunFacts& facts);
+/// Writes the result of `poesy evaluate`, which takes poses and errors from tables; as write_result. factors: the
+/// errors that the table gives.
+void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses,
+                      std::span<const FactorIndex> factors, const Evaluation& found, const RunFacts& facts);
 
 /// Per response, the mean and the extremes over all solved samples. Where the rows of errors have labels, notes name
 /// the worst.
@@ -82,15 +97,15 @@ struct RowOutcome {
 };
 
 /// Of an evaluation whose rows have labels: the outcome of each, in their order.
-std::vector<RowOutcome> row_outcomes(const StoredEvaluation& stored, std::size_t response);
+std::vector<RowOutcome> row_outcomes(const Evaluation& found, std::size_t response);
 
 /// The position of the row whose extreme is the largest in magnitude, the first of equals; the number of rows when no
 /// row was solved.
 std::size_t worst_row(const std::vector<RowOutcome>& outcomes);
 
-/// The row of errors of a solve, `at` counted pose by pose.
-inline std::size_t row_of_solve(const StoredEvaluation& stored, std::size_t at) {
-  return stored.pairing == Pairing::row_by_row ? at / stored.evaluation.samples : at % stored.evaluation.samples;
+/// The row of errors of this solve.
+inline std::size_t row_of_solve(const Evaluation& found, std::size_t pose, std::size_t sample) {
+  return found.pairing == Pairing::row_by_row ? pose : sample;
 }
 
 }  // namespace poesy

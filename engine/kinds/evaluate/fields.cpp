@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "engine/kinds/evaluate/cases.h"
@@ -12,9 +14,6 @@
 namespace poesy {
 namespace {
 
-/// Rows and columns of the datasets of solves: a table's solves are kept by pose, those of cases by case.
-const Axes kTableAxes{"pose", "sample"};
-const Axes kCaseAxes{"case", "pose"};
 constexpr const char* kLabels = "/evaluate/label";
 
 /// How poses and rows of errors belong together, as files say it.
@@ -23,55 +22,55 @@ constexpr const char* kRowByRow = "row-by-row";
 constexpr const char* kEveryPoseWithEveryRow = "every-pose-with-every-row";
 /// @}
 
-/// What is stored of every solve in addition to responses and details. axes: rows and columns of the datasets of
-/// solves.
-Fields<EvaluationResult> solve_fields(const Axes& axes) {
-  return {{"iterations", &EvaluationResult::iterations, axes, "1", "Iterations of the solve"},
-          {"joint_displacements",
-           &EvaluationResult::joint_displacement,
-           {"pose", "joint"},
-           "rad or m, by joint",
-           "Joint displacements of the perfect mechanism"}};
+const Fields<EvaluationResult> kJointFields{{"joint_displacements", &EvaluationResult::joint_displacement,
+                                             "rad or m, by joint", "Joint displacements of the perfect mechanism"}};
+
+const Fields<Evaluation> kCaseFields{
+    {"mean", &Evaluation::mean, kResponseUnit, "Mean over the poses that count; NaN where there is none"},
+    {"max", &Evaluation::max, kResponseUnit, "Largest value over the poses that count"},
+    {"count", &Evaluation::count, "1", "Poses that count: solved, or as not_converged has it"}};
+
+/// How a file keeps solves: those of a table pose by pose, those of cases case by case.
+/// @{
+using TableLayout = AxisLayout<axis::Pose, axis::Sample>;
+using CaseLayout = AxisLayout<axis::Case, axis::Pose>;
+/// @}
+
+/// The pose and the sample at two positions in the file.
+template <class Layout>
+std::pair<std::size_t, std::size_t> solve_at(std::size_t first, std::size_t second) {
+  if constexpr (std::is_same_v<Layout, CaseLayout>) return {second, first};
+  return {first, second};
 }
 
-const Axes kSumAxes{"response", "case"};
-const Fields<CaseResult> kSumFields{
-    {"mean", &CaseResult::mean, kSumAxes, kResponseUnit, "Mean over the poses that count; NaN where there is none"},
-    {"max", &CaseResult::max, kSumAxes, kResponseUnit, "Largest value over the poses that count"},
-    {"count", &CaseResult::count, kSumAxes, "1", "Poses that count: solved, or as not_converged has it"}};
+/// A dataset of solves. value(pose, sample): of one.
+template <h5::Number T, class Layout, class Value>
+void add_values(ResultBuilder& result, const std::string& name, const Layout& layout, const Value& value,
+                const Label& label) {
+  result.add_computed<T>(
+      "/evaluate/" + name, layout,
+      [&](std::size_t first, std::size_t second) { return std::apply(value, solve_at<Layout>(first, second)); }, label);
+}
 
-template <class T>
-void transpose(std::vector<T>& values, std::size_t rows, std::size_t columns, std::size_t width) {
-  std::vector<T> turned(values.size());
-  for (std::size_t at = 0; at < values.size(); ++at) {
-    const std::size_t cell = at / width;
-    const std::size_t block = cell / (rows * columns);
-    const std::size_t row = cell / columns % rows;
-    const std::size_t column = cell % columns;
-    turned[((block * columns + column) * rows + row) * width + at % width] = values[at];
+/// Reads it. set(pose, sample, value): takes one.
+template <h5::Number T, class... A, class Set>
+void read_values(const h5::File& file, const std::string& name, const AxisLayout<A...>& layout, const Set& set) {
+  const auto values = read_array<Array<T, A...>>(file, "/evaluate/" + name);
+  for (std::size_t place = 0; place < layout.elements(); ++place) {
+    const auto [first, second] = layout.positions(place);
+    const auto [m, s] = solve_at<AxisLayout<A...>>(first, second);
+    set(m, s, values(first, second));
   }
-  values = std::move(turned);
 }
 
-/// [sample x pose] turned to [pose x sample].
-EvaluationResult transposed(EvaluationResult found) {
-  transpose(found.response, found.poses, found.samples, 1);
-  transpose(found.status, found.poses, found.samples, 1);
-  transpose(found.iterations, found.poses, found.samples, 1);
-  if (found.details > 0) transpose(found.detail, found.poses, found.samples, found.details);
-  std::swap(found.poses, found.samples);
-  return found;
-}
-
-template <class Order>
-void add_details(ResultBuilder& result, const std::vector<Detail>& details, const EvaluationResult& found,
-                 const Axes& axes, const Order& order) {
-  if (found.details == 0) return;
-  const auto names = texts(details, &Detail::name);
+template <class... A>
+void add_details(ResultBuilder& result, const Evaluation& found, const AxisLayout<A...>& layout) {
+  if (found.solves.detail.empty()) return;
+  const auto names = texts(found.details, &Detail::name);
   result.file().set_attribute("/evaluate", "details", std::span(names));
   std::map<std::vector<std::string>, std::string> axis_of;  // details with the same components share an axis
   std::size_t first = 0;
-  for (const Detail& detail : details) {
+  for (const Detail& detail : found.details) {
     const std::size_t width = detail.components.size();
     const std::string next = "component" + (axis_of.empty() ? "" : "_" + std::to_string(axis_of.size() + 1));
     const auto [axis, is_new] = axis_of.try_emplace(detail.components, next);
@@ -79,11 +78,17 @@ void add_details(ResultBuilder& result, const std::vector<Detail>& details, cons
       result.add_axis(axis->second, detail.components, {"1", "Component of " + detail.name + " and its like"});
       result.show_axes("/evaluate", {axis->second});
     }
-    const auto value = [&](std::size_t at) {
-      return found.detail[order(at / width) * found.details + first + at % width];
+    const auto [rows, columns] = layout.lengths();
+    const AxisLayout<A..., axis::Component> of_detail({rows, columns, width});
+    const auto value = [&](std::size_t place) {
+      const auto at = of_detail.positions(place);
+      const auto [m, s] = solve_at<AxisLayout<A...>>(at[0], at[1]);
+      return found.solves.detail(m, s, first + at[2]);
     };
+    Axes axes = layout.axis_names();
+    axes.push_back(axis->second);
     const std::string path = "/evaluate/" + detail.name;
-    result.add_computed<double>(path, {axes[0], axes[1], axis->second}, value, {detail.unit, detail.description});
+    result.add_computed<double>(path, axes, value, {detail.unit, detail.description});
     result.file().set_attribute(path, "components", std::span(detail.components));
     first += width;
   }
@@ -102,81 +107,87 @@ std::vector<Detail> read_details(const h5::File& file) {
   return details;
 }
 
-void read_detail_values(const h5::File& file, const std::vector<Detail>& details, EvaluationResult& found) {
-  for (const Detail& detail : details) found.details += detail.components.size();
-  found.detail.resize(found.poses * found.samples * found.details);
+template <class... A>
+void read_detail_values(const h5::File& file, const AxisLayout<A...>& layout, Evaluation& found) {
+  const auto [rows, columns] = layout.lengths();
   std::size_t first = 0;
-  for (const Detail& detail : details) {
+  for (const Detail& detail : found.details) {
     const std::size_t width = detail.components.size();
-    const auto values = read_shaped<double>(file, "/evaluate/" + detail.name, {found.poses, found.samples, width});
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      found.detail[k / width * found.details + first + k % width] = values[k];
+    const auto read = read_shaped<double>(file, "/evaluate/" + detail.name, {rows, columns, width});
+    const Array<double, A..., axis::Component> values({rows, columns, width}, read);
+    for (std::size_t place = 0; place < values.size(); ++place) {
+      const auto at = values.positions(place);
+      const auto [m, s] = solve_at<AxisLayout<A...>>(at[0], at[1]);
+      found.solves.detail(m, s, first + at[2]) = values(at[0], at[1], at[2]);
     }
     first += width;
   }
 }
 
-std::vector<SolveStatus> read_status(const h5::File& file, const Axes& axes) {
-  std::vector<SolveStatus> list;
-  for (const std::uint8_t code : read_along<std::uint8_t>(file, "/evaluate/status", axes)) {
+/// Fills in the solves. layout: of the file.
+template <class Layout>
+void read_solves(const h5::File& file, const std::vector<NamedUnit>& responses, const Layout& layout,
+                 Evaluation& found) {
+  EvaluationResult& solves = found.solves;
+  const auto [rows, columns] = layout.lengths();
+  const auto [poses, samples] = solve_at<Layout>(rows, columns);
+  std::size_t components = 0;
+  for (const Detail& detail : found.details) components += detail.components.size();
+  solves.response = decltype(solves.response)({responses.size(), poses, samples});
+  solves.detail = decltype(solves.detail)({poses, samples, components});
+  solves.status = decltype(solves.status)({poses, samples});
+  solves.iterations = decltype(solves.iterations)({poses, samples});
+  for (std::size_t r = 0; r < responses.size(); ++r) {
+    read_values<double>(file, responses[r].name, layout,
+                        [&](std::size_t m, std::size_t s, double value) { solves.response(r, m, s) = value; });
+  }
+  read_values<std::uint8_t>(file, "status", layout, [&](std::size_t m, std::size_t s, std::uint8_t code) {
     if (code >= kStatusNames.size()) throw h5::Error("/evaluate/status holds an unknown status");
-    list.push_back(static_cast<SolveStatus>(code));
-  }
-  return list;
+    solves.status(m, s) = static_cast<SolveStatus>(code);
+  });
+  read_values<std::uint32_t>(file, "iterations", layout, [&](std::size_t m, std::size_t s, std::uint32_t count) {
+    solves.iterations(m, s) = count;
+  });
+  read_detail_values(file, layout, found);
+  read_fields(file, "/evaluate", kJointFields, solves);
 }
 
-EvaluationResult read_solves(const h5::File& file, const std::vector<NamedUnit>& responses,
-                             const std::vector<Detail>& details, const Axes& axes) {
-  EvaluationResult found;
-  found.poses = axis_length(file, axes[0]);
-  found.samples = axis_length(file, axes[1]);
-  found.responses = responses.size();
-  for (const NamedUnit& response : responses) {
-    const auto values = read_along<double>(file, "/evaluate/" + response.name, axes);
-    found.response.insert(found.response.end(), values.begin(), values.end());
-  }
-  found.status = read_status(file, axes);
-  read_detail_values(file, details, found);
-  read_fields(file, "/evaluate", solve_fields(axes), found);
-  return found;
-}
-
-/// axes: of the solves in the file. order(at): position in memory, where they are kept by pose, of one in the file.
-template <class Order>
-void add_solves(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found, const Axes& axes,
-                const Order& order) {
-  result.add_axis("joint", texts(model.joints, &JointDisplacement::name), {"1", "Name of the joint displacement"});
+/// layout: of the solves in the file.
+template <class Layout>
+void add_solves(ResultBuilder& result, const ModelDescription& model, const Evaluation& found, const Layout& layout) {
+  const EvaluationResult& solves = found.solves;
+  result.add_axis("joint", found.joints, {"1", "Name of the joint displacement"});
   result.file().make_group("/evaluate");
-  result.show_axes("/evaluate", {axes[0], axes[1], "joint"});
-  const std::size_t cells = found.poses * found.samples;
+  result.show_axes("/evaluate", layout.axis_names());
+  result.show_axes("/evaluate", {"joint"});
   for (std::size_t r = 0; r < model.responses.size(); ++r) {
     const Response& response = model.responses[r];
-    const auto value = [&](std::size_t at) { return found.response[r * cells + order(at)]; };
-    result.add_computed<double>("/evaluate/" + response.name, axes, value, {unit_of(response), response.description});
+    add_values<double>(result, response.name, layout,
+                       [&](std::size_t m, std::size_t s) { return solves.response(r, m, s); },
+                       {unit_of(response), response.description});
   }
-  add_details(result, model.details, found, axes, order);
-  const auto status_names = listed_statuses(found.total().not_assembled());
-  result.add_computed<std::uint8_t>("/evaluate/status", axes, [&](std::size_t at) { return found.status[order(at)]; },
-                                    {"1", "How the solve ended: a position in status_names, from 0"});
+  add_details(result, found, layout);
+  const auto status_names = listed_statuses(solves.total().not_assembled());
+  add_values<std::uint8_t>(result, "status", layout, [&](std::size_t m, std::size_t s) { return solves.status(m, s); },
+                           {"1", "How the solve ended: a position in status_names, from 0"});
   result.file().set_attribute("/evaluate/status", "status_names", std::span(status_names));
-  const Fields<EvaluationResult> fields = solve_fields(axes);
-  result.add_computed<std::uint32_t>("/evaluate/" + fields[0].name, axes,
-                                     [&](std::size_t at) { return found.iterations[order(at)]; },
-                                     {fields[0].unit, fields[0].description});
-  write_field(result, "/evaluate", fields[1], std::span(&found, 1));
+  add_values<std::uint32_t>(result, "iterations", layout,
+                            [&](std::size_t m, std::size_t s) { return solves.iterations(m, s); },
+                            {"1", "Iterations of the solve"});
+  write_fields(result, "/evaluate", kJointFields, solves);
 }
 
 /// rows: the axis of the rows of errors.
-void add_errors(ResultBuilder& result, const ErrorTable& errors, const std::string& rows, Pairing pairing) {
-  const bool row_by_row = pairing == Pairing::row_by_row;
+void add_errors(ResultBuilder& result, const Evaluation& found, const std::string& rows) {
+  const bool row_by_row = found.pairing == Pairing::row_by_row;
   result.file().make_group("/errors");
   result.file().set_attribute("/errors", "pairing", std::string(row_by_row ? kRowByRow : kEveryPoseWithEveryRow));
   result.show_axes("/errors", {rows, "factor"});
-  result.add("/errors/values", {rows, "factor"}, errors.values,
+  result.add("/errors/values", {rows, "factor"}, found.errors.all(),
              {kFactorUnit, "The errors that were given; all others are zero"});
-  if (errors.labels.names.empty()) return;
-  result.add(kLabels, {rows}, errors.labels.names, {"1", "What the table of errors calls its rows"});
-  result.file().set_attribute(kLabels, "column", errors.labels.column);
+  if (found.labels.names.empty()) return;
+  result.add(kLabels, {rows}, found.labels.names, {"1", "What the table of errors calls its rows"});
+  result.file().set_attribute(kLabels, "column", found.labels.column);
 }
 
 /// Every row of errors was tried, so that a verdict names one of them.
@@ -221,82 +232,89 @@ void set_first_cells(CsvTable& table, const RowLabels& labels, const std::string
   table.columns.push_back({heading, [number](std::size_t line) { return to_number(number(line)); }});
 }
 
-/// What a solve gave. at(line): its position, counted pose by pose.
-template <class At>
-void append_solve_columns(CsvTable& table, const StoredResult& result, const At& at) {
-  const StoredEvaluation& stored = evaluation_of(result);
-  const EvaluationResult& found = stored.evaluation;
+/// What a solve gave. solve(line): its pose and its sample.
+template <class Solve>
+void append_solve_columns(CsvTable& table, const StoredResult& result, const Solve& solve) {
+  const Evaluation& found = evaluation_of(result);
+  const EvaluationResult& solves = found.solves;
   const auto append = [&](const std::string& heading, auto number) {
-    table.columns.push_back({heading, [at, number](std::size_t line) { return to_number(number(at(line))); }});
+    table.columns.push_back(
+        {heading, [solve, number](std::size_t line) { return to_number(std::apply(number, solve(line))); }});
   };
-  if (!result.time.empty()) append("time [s]", [&](std::size_t k) { return result.time[k / found.samples]; });
-  for (std::size_t r = 0; r < found.responses; ++r) {
+  if (!result.time.empty()) append("time [s]", [&](std::size_t m, std::size_t) { return result.time[m]; });
+  for (std::size_t r = 0; r < solves.responses(); ++r) {
     const NamedUnit& response = result.responses[r];
     append(with_unit(response.name, response.unit),
-           [&, r](std::size_t k) { return found.response[r * found.status.size() + k]; });
+           [&, r](std::size_t m, std::size_t s) { return solves.response(r, m, s); });
   }
   std::size_t d = 0;
-  for (const Detail& detail : stored.details) {
+  for (const Detail& detail : found.details) {
     const auto units = component_units(detail.unit, detail.components.size());
     for (std::size_t k = 0; k < units.size(); ++k, ++d) {
       append(with_unit(detail.name + "_" + detail.components[k], units[k]),
-             [&found, d](std::size_t solve) { return found.detail[solve * found.details + d]; });
+             [&solves, d](std::size_t m, std::size_t s) { return solves.detail(m, s, d); });
     }
   }
-  append("status", [&](std::size_t k) { return found.status[k]; });
-  append("iterations", [&](std::size_t k) { return found.iterations[k]; });
+  append("status", [&](std::size_t m, std::size_t s) { return solves.status(m, s); });
+  append("iterations", [&](std::size_t m, std::size_t s) { return solves.iterations(m, s); });
 }
 
 /// Pose by pose.
 CsvTable solve_table(const StoredResult& result) {
-  const StoredEvaluation& stored = evaluation_of(result);
-  const std::size_t samples = stored.evaluation.samples;
-  CsvTable table{"evaluate", {}, stored.evaluation.status.size()};
+  const Evaluation& found = evaluation_of(result);
+  const auto solve = [layout = TableLayout(found.solves.status.lengths())](std::size_t line) {
+    const auto [m, s] = layout.positions(line);
+    return std::pair(m, s);
+  };
+  CsvTable table{"evaluate", {}, found.solves.status.size()};
   set_first_cells(
-      table, stored.labels, "pose", [&stored](std::size_t at) { return row_of_solve(stored, at); },
-      [samples](std::size_t at) { return at / samples; });
-  table.columns.push_back({"sample", [samples](std::size_t at) { return to_number(at % samples); }});
-  append_solve_columns(table, result, std::identity());
+      table, found.labels, "pose",
+      [&found, solve](std::size_t line) { return row_of_solve(found, solve(line).first, solve(line).second); },
+      [solve](std::size_t line) { return solve(line).first; });
+  table.columns.push_back({"sample", [solve](std::size_t line) { return to_number(solve(line).second); }});
+  append_solve_columns(table, result, solve);
   return table;
 }
 
 /// Case by case.
 CsvTable case_solve_table(const StoredResult& result) {
-  const StoredEvaluation& stored = evaluation_of(result);
-  const std::size_t poses = stored.evaluation.poses;
-  const std::size_t cases = stored.cases.size();
-  CsvTable table{
-      "evaluate", {"case", [&, poses](std::size_t line) { return stored.cases[line / poses]; }}, cases * poses};
-  table.columns.push_back({"pose", [poses](std::size_t line) { return to_number(line % poses); }});
-  append_solve_columns(table, result, [poses, cases](std::size_t line) { return line % poses * cases + line / poses; });
+  const Evaluation& found = evaluation_of(result);
+  const auto solve = [layout = CaseLayout({found.cases.size(), found.solves.poses()})](std::size_t line) {
+    const auto [c, m] = layout.positions(line);
+    return std::pair(m, c);
+  };
+  CsvTable table{"evaluate",
+                 {"case", [&found, solve](std::size_t line) { return found.cases[solve(line).second]; }},
+                 found.solves.status.size()};
+  table.columns.push_back({"pose", [solve](std::size_t line) { return to_number(solve(line).first); }});
+  append_solve_columns(table, result, solve);
   return table;
 }
 
 CsvTable joint_table(const StoredResult& result) {
-  const StoredEvaluation& stored = evaluation_of(result);
-  const std::size_t joints = stored.joints.size();
-  const std::vector<double>& values = stored.evaluation.joint_displacement;
+  const Evaluation& found = evaluation_of(result);
   CsvTable table = lines_of_poses(result, "joint_displacements");
-  table.lines = values.size() / std::max<std::size_t>(joints, 1);
-  for (std::size_t j = 0; j < joints; ++j) {
-    table.columns.push_back(list_column(with_unit(stored.joints[j], "rad or m"), values, j, joints));
+  table.lines = found.solves.joint_displacement.length<axis::Pose>();
+  for (std::size_t j = 0; j < found.joints.size(); ++j) {
+    table.columns.push_back({with_unit(found.joints[j], "rad or m"),
+                             [&found, j](std::size_t m) { return found.solves.joint_displacement(m, j); }});
   }
   return table;
 }
 
 CsvTable error_table(const StoredResult& result) {
-  const StoredEvaluation& stored = evaluation_of(result);
-  const std::size_t factors = result.factors.size();
-  CsvTable table{"errors", {}, stored.errors.size() / std::max<std::size_t>(factors, 1)};
-  if (stored.cases.empty()) {
-    const bool row_by_row = stored.pairing == Pairing::row_by_row;
-    set_first_cells(table, stored.labels, row_by_row ? "pose" : "sample", std::identity(), std::identity());
+  const Evaluation& found = evaluation_of(result);
+  CsvTable table{"errors", {}, found.errors.length<axis::Row>()};
+  if (found.cases.empty()) {
+    const bool row_by_row = found.pairing == Pairing::row_by_row;
+    set_first_cells(table, found.labels, row_by_row ? "pose" : "sample", std::identity(), std::identity());
   } else {
-    table.first = {"case", [&](std::size_t c) { return stored.cases[c]; }};
+    table.first = {"case", [&](std::size_t c) { return found.cases[c]; }};
   }
-  for (std::size_t p = 0; p < factors; ++p) {
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
     const NamedUnit& factor = result.factors[p];
-    table.columns.push_back(list_column(with_unit(factor.name, factor.unit), stored.errors, p, factors));
+    table.columns.push_back(
+        {with_unit(factor.name, factor.unit), [&found, p](std::size_t row) { return found.errors(row, p); }});
   }
   return table;
 }
@@ -321,92 +339,85 @@ CsvTable part_table(const StoredResult& result) {
 }
 
 CsvTable case_sum_table(const StoredResult& result) {
-  const StoredEvaluation& stored = evaluation_of(result);
-  const CaseResult& found = stored;
-  const std::size_t cases = stored.cases.size();
-  CsvTable table{"cases", {"case", [&](std::size_t c) { return stored.cases[c]; }}, cases};
+  const Evaluation& found = evaluation_of(result);
+  CsvTable table{"cases", {"case", [&](std::size_t c) { return found.cases[c]; }}, found.cases.size()};
   table.columns.push_back(list_column("poses", found.count));
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const NamedUnit& response = result.responses[r];
-    for (const FieldRow<CaseResult>& field : kSumFields) {
+    for (const FieldRow<Evaluation>& field : kCaseFields) {
       if (field.name == "count") continue;
       const std::string heading = with_unit(response.name + "_" + field.name, csv_unit(field.unit, result, &response));
-      table.columns.push_back(field_column(heading, field, found, r * cases));
+      table.columns.push_back(field_row_column(heading, field, found, r));
     }
   }
   return table;
 }
 
-/// What `poesy evaluate` found. Refers to all.
-struct EvaluatedTable {
-  const EvaluationResult& found;
-  const ErrorTable& errors;
-  Pairing pairing;
+/// What `poesy evaluate` writes: what it found, and the errors that its table gives. Refers to both.
+struct TableOfErrors {
+  std::span<const FactorIndex> factors;
+  const Evaluation& found;
 };
 
-void write_table(ResultBuilder& result, const Study& study, const EvaluatedTable& table) {
-  const ModelDescription& model = study.model();
-  add_names(result, study, table.errors.factors);
-  result.add_axis("sample", axis_numbers(table.found.samples), {"1", "Number of the sample at each pose, from 0"});
-  add_solves(result, model, table.found, kTableAxes, std::identity());
-  add_errors(result, table.errors, table.pairing == Pairing::row_by_row ? "pose" : "sample", table.pairing);
-  add_limits(result, model, table.found.verdicts);
+void write_table(ResultBuilder& result, const Study& study, const TableOfErrors& table) {
+  const Evaluation& found = table.found;
+  add_names(result, study, table.factors);
+  result.add_axis("sample", axis_numbers(found.solves.samples()), {"1", "Number of the sample at each pose, from 0"});
+  add_solves(result, study.model(), found, TableLayout(found.solves.status.lengths()));
+  add_errors(result, found, found.pairing == Pairing::row_by_row ? "pose" : "sample");
+  add_limits(result, study.model(), found.solves.verdicts);
 }
 
-void write_cases(ResultBuilder& result, const Study& study, const CaseResult& found) {
-  const std::vector<ErrorCase>& cases = asked_of<CaseOptions>(study.analysis).cases;
-  const ErrorTable errors = case_table(cases);
-  add_names(result, study, errors.factors);
-  result.add_axis("case", texts(cases, &ErrorCase::name), {"1", "Name of the case"});
-  const auto by_pose = [poses = found.evaluation.poses, count = cases.size()](std::size_t at) {
-    return at % poses * count + at / poses;
-  };
-  add_solves(result, study.model(), found.evaluation, kCaseAxes, by_pose);
-  add_errors(result, errors, "case", Pairing::every_pose_with_every_row);
-  add_limits(result, study.model(), found.evaluation.verdicts);
+void write_cases(ResultBuilder& result, const Study& study, const Evaluation& found) {
+  add_names(result, study, case_table(asked_of<CaseOptions>(study.analysis).cases).factors);
+  result.add_axis("case", found.cases, {"1", "Name of the case"});
+  add_solves(result, study.model(), found, CaseLayout({found.cases.size(), found.solves.poses()}));
+  add_errors(result, found, "case");
+  add_limits(result, study.model(), found.solves.verdicts);
   result.show_axes("/evaluate", {"response"});
-  write_fields(result, "/evaluate", kSumFields, found);
+  write_fields(result, "/evaluate", kCaseFields, found);
 }
 
-void write(ResultBuilder& result, const Study& study, std::any& found) {
-  if (const auto* cases = std::any_cast<CaseResult>(&found)) return write_cases(result, study, *cases);
-  write_table(result, study, std::any_cast<const EvaluatedTable&>(found));
+void write(ResultBuilder& result, const Study& study, std::any& any) {
+  if (const auto* cases = std::any_cast<Evaluation>(&any)) return write_cases(result, study, *cases);
+  write_table(result, study, std::any_cast<const TableOfErrors&>(any));
 }
 
 void read(const h5::File& file, StoredResult& result) {
-  StoredEvaluation stored;
-  stored.details = read_details(file);
-  stored.joints = file.read<std::string>("/joint");
+  Evaluation found;
+  found.details = read_details(file);
+  found.joints = file.read<std::string>("/joint");
   const bool has_cases = file.exists("/case");
   if (has_cases) {
-    stored.cases = file.read<std::string>("/case");
-    read_fields<CaseResult>(file, "/evaluate", kSumFields, stored);
-    stored.evaluation = transposed(read_solves(file, result.responses, stored.details, kCaseAxes));
+    found.cases = file.read<std::string>("/case");
+    read_fields(file, "/evaluate", kCaseFields, found);
+    read_solves(file, result.responses, CaseLayout(lengths_in<CaseLayout>(file)), found);
   } else {
-    stored.evaluation = read_solves(file, result.responses, stored.details, kTableAxes);
+    read_solves(file, result.responses, TableLayout(lengths_in<TableLayout>(file)), found);
   }
   const bool row_by_row = !has_cases && file.attribute<std::string>("/errors", "pairing").at(0) == kRowByRow;
-  stored.pairing = row_by_row ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
+  found.pairing = row_by_row ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
   const std::string rows = row_by_row ? "pose" : has_cases ? "case" : "sample";
   result.verdicts = read_limits(file, result);
   if (result.verdicts) check_rows(result.verdicts->limits, axis_length(file, rows));
-  stored.errors = read_along<double>(file, "/errors/values", {rows, "factor"});
-  stored.labels = read_labels(file, rows);
+  found.errors = decltype(found.errors)({axis_length(file, rows), axis_length(file, "factor")},
+                                        read_along<double>(file, "/errors/values", {rows, "factor"}));
+  found.labels = read_labels(file, rows);
   if (result.verdicts) {
-    result.row_names = has_cases ? stored.cases : row_names(stored.labels, stored.pairing, stored.evaluation.samples);
+    result.row_names = has_cases ? found.cases : row_names(found.labels, found.pairing, found.solves.samples());
   }
-  result.found = std::move(stored);
+  result.found = std::move(found);
 }
 
 void append_tables(CsvTables& tables, const StoredResult& result) {
   append_limit_table(tables, result);
-  const StoredEvaluation& stored = evaluation_of(result);
-  const bool has_cases = !stored.cases.empty();
+  const Evaluation& found = evaluation_of(result);
+  const bool has_cases = !found.cases.empty();
   tables.push_back(has_cases ? case_solve_table(result) : solve_table(result));
   tables.push_back(joint_table(result));
   tables.push_back(error_table(result));
   if (has_cases) tables.push_back(case_sum_table(result));
-  if (!has_cases && !stored.labels.names.empty()) tables.push_back(part_table(result));
+  if (!has_cases && !found.labels.names.empty()) tables.push_back(part_table(result));
 }
 
 }  // namespace
@@ -414,13 +425,13 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 constinit const FileKind kEvaluationFile{.write = write, .read = read, .append_tables = append_tables};
 
 GivenErrors evaluated_errors(const StoredResult& result) {
-  const StoredEvaluation& stored = evaluation_of(result);
-  if (!stored.cases.empty()) return {.word = "case", .names = stored.cases, .values = stored.errors};
+  const Evaluation& found = evaluation_of(result);
+  if (!found.cases.empty()) return {.word = "case", .names = found.cases, .values = found.errors.all()};
   return {.word = "varied error",
           .names = {std::string(kAllFactors)},
-          .samples = stored.evaluation.samples,
-          .pairing = stored.pairing,
-          .values = stored.errors};
+          .samples = found.solves.samples(),
+          .pairing = found.pairing,
+          .values = found.errors.all()};
 }
 
 std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std::size_t rows) {
@@ -431,10 +442,9 @@ std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std
   return names;
 }
 
-void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses, const ErrorTable& errors,
-                      Pairing pairing, const EvaluationResult& result, const RunFacts& facts) {
-  write_result(path, kEvaluateStudy.name, kEvaluationFile, study, poses, EvaluatedTable{result, errors, pairing},
-               facts);
+void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses,
+                      std::span<const FactorIndex> factors, const Evaluation& found, const RunFacts& facts) {
+  write_result(path, kEvaluateStudy.name, kEvaluationFile, study, poses, TableOfErrors{factors, found}, facts);
 }
 
 }  // namespace poesy

@@ -29,14 +29,14 @@ struct Summary {
 };
 
 Summary summary(const EvaluationResult& found, std::size_t r) {
-  const std::size_t all = found.poses * found.samples;
   double sum = 0.0;
   double smallest = std::numeric_limits<double>::infinity();
   double largest = -smallest;
   std::size_t count = 0;
-  for (std::size_t n = 0; n < all; ++n) {
-    if (!solved(found.status[n])) continue;
-    const double value = found.response[r * all + n];
+  const std::span<const double> values = found.response.row(r);
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    if (!solved(found.status.all()[n])) continue;
+    const double value = values[n];
     sum += value;
     smallest = std::min(smallest, value);
     largest = std::max(largest, value);
@@ -95,27 +95,26 @@ Table parts_table(const StoredResult& result) {
 }
 
 Table cases_table(const StoredResult& result) {
-  const StoredEvaluation& found = evaluation_of(result);
-  const std::size_t cases = found.cases.size();
+  const Evaluation& found = evaluation_of(result);
   Table table{.name = "cases",
               .caption = "Each case over its poses: mean and largest value of the responses",
               .columns = {},
               .notes = {"poses: those whose solve counts"}};
   std::vector<FilledColumn> columns{
       {text_column("case", "case"), [&](std::size_t c) { return text_cell(found.cases[c]); }},
-      {number_column("poses", "poses"), [&](std::size_t c) { return count_cell(found.count[c]); }}};
+      {number_column("poses", "poses"), [&](std::size_t c) { return count_cell(found.count.all()[c]); }}};
   int dispensable = 0;  // of the first response's columns; the last response's go first
   for (const std::size_t r : result.headline) {
     const NamedUnit& response = result.responses[r];
     const std::string_view unit = display(response).name;
     columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable),
-                       [&, r](std::size_t c) { return value_cell(found.mean[r * cases + c], response, kDigits); }});
+                       [&, r](std::size_t c) { return value_cell(found.mean(r, c), response, kDigits); }});
     columns.push_back(
         {number_column(response.name + "_max", response.name + " max", unit, dispensable == 0 ? 0 : dispensable + 1),
-         [&, r](std::size_t c) { return value_cell(found.max[r * cases + c], response, kDigits); }});
+         [&, r](std::size_t c) { return value_cell(found.max(r, c), response, kDigits); }});
     dispensable += 2;
   }
-  fill(table, positions(cases), columns);
+  fill(table, positions(found.cases.size()), columns);
   return table;
 }
 
@@ -124,12 +123,11 @@ ShownCells cells(const StoredResult& result) {
   return shown_cells(result, cases == 0 ? kSummaryRows : cases);
 }
 
-/// One response to one row of errors at all poses, [M]; NaN where it was not solved.
+/// One response to one row of errors at all poses; NaN where it was not solved.
 std::vector<double> response_to(const EvaluationResult& found, std::size_t r, std::size_t sample) {
-  std::vector<double> values(found.poses);
-  for (std::size_t m = 0; m < found.poses; ++m) {
-    const std::size_t at = m * found.samples + sample;
-    values[m] = solved(found.status[at]) ? found.response[r * found.poses * found.samples + at] : kNaN;
+  std::vector<double> values;
+  for (std::size_t m = 0; m < found.poses(); ++m) {
+    values.push_back(solved(found.status(m, sample)) ? found.response(r, m, sample) : kNaN);
   }
   return values;
 }
@@ -144,7 +142,7 @@ void add_cases(const StoredResult& result, const PoseFigures& figures, Page& pag
     Panel panel{response.name, unit_text(response), {}};
     for (std::size_t c = 0; c < cases.size(); ++c) {
       const ArrayName array =
-          figures.add(fmt::format("case/{}/{}", c, r), response_to(evaluation_of(result).evaluation, r, c), response);
+          figures.add(fmt::format("case/{}/{}", c, r), response_to(evaluation_of(result).solves, r, c), response);
       panel.series.push_back({cases[c], array});
       fields.push_back({fmt::format("{}, {}", response.name, cases[c]), unit_text(response), array});
     }
@@ -156,12 +154,12 @@ void add_cases(const StoredResult& result, const PoseFigures& figures, Page& pag
   figures.add_workspace(section, std::move(fields));
 }
 
-/// Order statistics of a response over these samples (positions pose x samples + sample) that were solved, NaN of none.
-std::vector<double> order_statistics(const EvaluationResult& found, std::size_t response, std::size_t first,
-                                     std::size_t count, std::span<const double> levels) {
+/// Order statistics of these values where they were solved; NaN where none was.
+std::vector<double> order_statistics(std::span<const double> all, std::span<const SolveStatus> status,
+                                     std::span<const double> levels) {
   std::vector<double> values;
-  for (std::size_t at = first; at < first + count; ++at) {
-    if (solved(found.status[at])) values.push_back(found.response[response * found.poses * found.samples + at]);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    if (solved(status[n])) values.push_back(all[n]);
   }
   std::ranges::sort(values);
   std::vector<double> list;
@@ -172,12 +170,12 @@ std::vector<double> order_statistics(const EvaluationResult& found, std::size_t 
   return list;
 }
 
-/// Of the rows at each pose: the 5 % quantile, the median, the 95 % quantile and the largest value, each [M].
+/// Of the rows at each pose: the 5 % quantile, the median, the 95 % quantile and the largest value.
 std::array<std::vector<double>, 4> quantiles_at_poses(const EvaluationResult& found, std::size_t r) {
   constexpr std::array kLevels{0.05, 0.5, 0.95, 1.0};
   std::array<std::vector<double>, 4> quantiles;
-  for (std::size_t m = 0; m < found.poses; ++m) {
-    const std::vector<double> values = order_statistics(found, r, m * found.samples, found.samples, kLevels);
+  for (std::size_t m = 0; m < found.poses(); ++m) {
+    const std::vector<double> values = order_statistics(found.response.row(r, m), found.status.row(m), kLevels);
     for (std::size_t q = 0; q < values.size(); ++q) quantiles[q].push_back(values[q]);
   }
   return quantiles;
@@ -186,14 +184,14 @@ std::array<std::vector<double>, 4> quantiles_at_poses(const EvaluationResult& fo
 /// The distribution of each response over all poses and rows.
 void add_distribution(const StoredResult& result, Page& page, Section& section) {
   constexpr std::size_t kLevels = 101;
-  const EvaluationResult& found = evaluation_of(result).evaluation;
+  const EvaluationResult& found = evaluation_of(result).solves;
   std::vector<double> levels;
   for (std::size_t n = 0; n < kLevels; ++n) levels.push_back(static_cast<double>(n) / (kLevels - 1.0));
   ArrayPool& pool = page.figures.pool;
   const ArrayName shares = pool.add("axis_levels", levels, 0.01);
   for (const std::size_t r : headline_order(result)) {
     const NamedUnit& response = result.responses[r];
-    const std::vector<double> values = order_statistics(found, r, 0, found.poses * found.samples, levels);
+    const std::vector<double> values = order_statistics(found.response.row(r), found.status.all(), levels);
     const ArrayName array = pool.add(fmt::format("distribution/{}", r), values, display(response).si);
     add_figure(page, section, fmt::format("distribution-{}", r),
                Lines{.x = {response.name, unit_text(response), array},
@@ -209,7 +207,7 @@ void add_rows(const StoredResult& result, const PoseFigures& figures, Page& page
   for (const std::size_t r : figures.responses()) {
     const NamedUnit& response = result.responses[r];
     const std::string unit = unit_text(response);
-    const auto [low, middle, high, largest] = quantiles_at_poses(evaluation_of(result).evaluation, r);
+    const auto [low, middle, high, largest] = quantiles_at_poses(evaluation_of(result).solves, r);
     const auto add = [&](std::string_view what, const std::vector<double>& values) {
       return figures.add(fmt::format("{}/{}", what, r), values, response);
     };
@@ -232,7 +230,7 @@ std::string rows_text(const StoredResult& result) {
   const std::string poses = counted(result.poses.size(), "pose", "poses");
   if (evaluation_of(result).pairing == Pairing::row_by_row)
     return fmt::format("{}, each with a row of errors of its own.", poses);
-  return fmt::format("{} of errors, each at {}.", counted(evaluation_of(result).evaluation.samples, "row", "rows"),
+  return fmt::format("{} of errors, each at {}.", counted(evaluation_of(result).solves.samples(), "row", "rows"),
                      poses);
 }
 
@@ -257,43 +255,40 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
 /// Samples that are no cases are one row together.
 SolveTally tally(const StoredResult& result) {
   const std::vector<std::string>& cases = evaluation_of(result).cases;
-  const EvaluationResult& found = evaluation_of(result).evaluation;
-  SolveTally outcomes{"case", cases, found.poses, {}};
-  if (cases.empty()) outcomes.names = {"all rows"};
-  outcomes.cells.resize(outcomes.names.size() * found.poses);
-  for (std::size_t m = 0; m < found.poses; ++m) {
-    for (std::size_t s = 0; s < found.samples; ++s) {
-      const std::size_t row = cases.empty() ? 0 : s;
-      const std::size_t at = m * found.samples + s;
-      outcomes.cells[row * found.poses + m].add(found.status[at], found.iterations[at]);
+  const EvaluationResult& found = evaluation_of(result).solves;
+  const std::vector<std::string> names = cases.empty() ? std::vector<std::string>{"all rows"} : cases;
+  Array<SolveCounts, axis::Row, axis::Pose> cells({names.size(), found.poses()});
+  for (std::size_t m = 0; m < found.poses(); ++m) {
+    for (std::size_t s = 0; s < found.samples(); ++s) {
+      cells(cases.empty() ? 0 : s, m).add(found.status(m, s), found.iterations(m, s));
     }
   }
-  return outcomes;
+  return {"case", names, found.poses(), {cells.begin(), cells.end()}};
 }
 
 StudyWords words(const StoredResult& result) {
-  const StoredEvaluation& stored = evaluation_of(result);
-  if (stored.cases.empty()) {
-    return {.from_tables = true, .samples = counted(stored.evaluation.samples, "row of errors", "rows of errors")};
+  const Evaluation& found = evaluation_of(result);
+  if (found.cases.empty()) {
+    return {.from_tables = true, .samples = counted(found.solves.samples(), "row of errors", "rows of errors")};
   }
-  return {.samples = counted(stored.cases.size(), "case", "cases")};
+  return {.samples = counted(found.cases.size(), "case", "cases")};
 }
 
 /// By the response that ranks.
 Answer answer(const StoredResult& result) {
-  const StoredEvaluation& stored = evaluation_of(result);
+  const Evaluation& found = evaluation_of(result);
   const std::size_t r = response_named(result, default_ranking(result));
   const NamedUnit& response = result.responses[r];
-  const std::size_t cases = stored.cases.size();
-  const Summary all = summary(stored.evaluation, r);
+  const std::size_t cases = found.cases.size();
+  const Summary all = summary(found.solves, r);
   Answer lines;
   if (cases > 0) {
-    const auto largest = std::span(stored.max).subspan(r * cases, cases);
+    const auto largest = found.max.row(r);
     const auto worst = static_cast<std::size_t>(std::ranges::max_element(largest) - largest.begin());
     lines.emplace_back(
         "Answer", fmt::format("Of {}, {} does most: {} of up to {}, on average {}.", counted(cases, "case", "cases"),
-                              stored.cases[worst], response.name, response_text(response, largest[worst]),
-                              response_text(response, stored.mean[r * cases + worst])));
+                              found.cases[worst], response.name, response_text(response, largest[worst]),
+                              response_text(response, found.mean(r, worst))));
   } else {
     lines.emplace_back("Answer", fmt::format("{} is {} on average, between {} and {}.", response.name,
                                              response_text(response, all.mean), response_text(response, all.smallest),
@@ -311,34 +306,32 @@ Answer answer(const StoredResult& result) {
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
-  const StoredEvaluation& stored = evaluation_of(result);
-  if (stored.cases.empty()) {
+  const Evaluation& found = evaluation_of(result);
+  if (found.cases.empty()) {
     constexpr double kLevels[] = {0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0};
-    const EvaluationResult& found = stored.evaluation;
     Comparable all = comparable_by_response(
         result, "number",
         {"smallest", "5 % quantile", "25 % quantile", "median", "75 % quantile", "95 % quantile", "largest"});
     std::vector<std::vector<double>> statistics;
     for (std::size_t r = 0; r < result.responses.size(); ++r) {
-      statistics.push_back(order_statistics(found, r, 0, found.poses * found.samples, kLevels));
+      statistics.push_back(order_statistics(found.solves.response.row(r), found.solves.status.all(), kLevels));
     }
     add_quantity(all, result, "over all poses and rows", "rows",
                  [&](std::size_t r, std::size_t n) { return statistics[r][n]; });
     return all;
   }
-  const std::size_t cases = stored.cases.size();
-  Comparable all = comparable_by_response(result, "case", stored.cases);
+  Comparable all = comparable_by_response(result, "case", found.cases);
   add_quantity(all, result, "mean over the poses", "case_mean",
-               [&](std::size_t r, std::size_t c) { return stored.mean[r * cases + c]; });
+               [&](std::size_t r, std::size_t c) { return found.mean(r, c); });
   add_quantity(all, result, "largest over the poses", "case_max",
-               [&](std::size_t r, std::size_t c) { return stored.max[r * cases + c]; });
+               [&](std::size_t r, std::size_t c) { return found.max(r, c); });
   return all;
 }
 
 std::vector<Table> evaluation_tables(const StoredResult& result, const TableOptions&) {
-  const StoredEvaluation& stored = evaluation_of(result);
-  std::vector<Table> tables{stored.cases.empty() ? evaluation_table(result) : cases_table(result)};
-  if (!stored.labels.names.empty()) tables.push_back(parts_table(result));
+  const Evaluation& found = evaluation_of(result);
+  std::vector<Table> tables{found.cases.empty() ? evaluation_table(result) : cases_table(result)};
+  if (!found.labels.names.empty()) tables.push_back(parts_table(result));
   return tables;
 }
 
@@ -346,8 +339,7 @@ std::vector<Table> evaluation_tables(const StoredResult& result, const TableOpti
 
 Table evaluation_table(const StoredResult& result) {
   std::vector<Summary> found;
-  for (std::size_t r = 0; r < result.responses.size(); ++r)
-    found.push_back(summary(evaluation_of(result).evaluation, r));
+  for (std::size_t r = 0; r < result.responses.size(); ++r) found.push_back(summary(evaluation_of(result).solves, r));
   const auto number = [&](const std::string& name, double Summary::*member) {
     return FilledColumn{number_column(name, name), [&, member](std::size_t r) {
                           return value_cell(found[r].*member, result.responses[r], kDigits);

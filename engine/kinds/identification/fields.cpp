@@ -9,27 +9,25 @@ namespace {
 
 using Identification = IdentificationResult;
 
-const Axes kGroupAxes{"group", "factor"};
-
 const Group<Identification> kIdentification{
     "/identification",
     "Which errors deform the mechanism (Du et al. 2022, Section 5.1)",
     {{"rounding", &Identification::rounding}},
-    {{"factor", &Identification::factors}, {"group", &Identification::groups}, {"pose", &Identification::poses}},
-    {{"single", &Identification::single, kByFactor, "1", "1: deforms alone, in any group (Table 6)"},
-     {"coupled", &Identification::coupled, kByFactor, "1",
+    {{"pose", &Identification::poses}},
+    {{"single", &Identification::single, "1", "1: deforms alone, in any group (Table 6)"},
+     {"coupled", &Identification::coupled, "1",
       "1: deforms alone or as named member of a coupling, in any group (Table 7)"},
-     {"single_by_group", &Identification::single_by_group, kGroupAxes, "1", "single, for each group"},
-     {"coupled_by_group", &Identification::coupled_by_group, kGroupAxes, "1", "coupled, for each group"},
-     {"single_below", &Identification::single_below, kGroupAxes, "1",
+     {"single_by_group", &Identification::single_by_group, "1", "single, for each group"},
+     {"coupled_by_group", &Identification::coupled_by_group, "1", "coupled, for each group"},
+     {"single_below", &Identification::single_below, "1",
       "Poses where the error alone gives no more than rounding; with required_poses of them it is harmless"},
-     {"single_max", &Identification::single_max, kGroupAxes, "SI: unit of the measure of deformation",
+     {"single_max", &Identification::single_max, "SI: unit of the measure of deformation",
       "Largest deformation by the error alone; NaN where not solved"},
-     {"not_solved", &Identification::not_solved, kGroupAxes, "1",
+     {"not_solved", &Identification::not_solved, "1",
       "Poses without a solution for the error alone; they count as deformed"},
-     {"coupled_below", &Identification::coupled_below, kGroupAxes, "1",
+     {"coupled_below", &Identification::coupled_below, "1",
       "Poses where the errors tried together in its frame give no more than rounding; 0 if it was not"},
-     {"coupled_reduced", &Identification::coupled_reduced, kGroupAxes, "1",
+     {"coupled_reduced", &Identification::coupled_reduced, "1",
       "Poses where setting it to zero takes nine tenths of its frame's deformation away"}}};
 
 const Fields<ErrorSize> kSizeFields{
@@ -47,10 +45,9 @@ bool by_group(const FieldRow<Identification>& field) { return field.name.ends_wi
 /// A column for each group of a row along [group x factor].
 void append_group_columns(CsvTable& table, const StoredResult& result, const std::string& prefix,
                           const FieldRow<Identification>& field) {
-  for (std::size_t g = 0; g < identification_of(result).groups; ++g) {
+  for (std::size_t g = 0; g < identification_of(result).groups(); ++g) {
     const std::string heading = prefix + "group_" + std::to_string(g + 1);
-    table.columns.push_back(
-        field_column<Identification>(heading, field, identification_of(result), g * result.factors.size()));
+    table.columns.push_back(field_row_column(heading, field, identification_of(result), g));
   }
 }
 
@@ -58,7 +55,7 @@ CsvTable verdict_table(const StoredResult& result) {
   CsvTable table = lines_of_factors(result, "identification");
   for (const FieldRow<Identification>& field : kIdentification.fields) {
     if (field.axes == kByFactor) {
-      table.columns.push_back(field_column<Identification>(field.name, field, identification_of(result)));
+      table.columns.push_back(field_column(field.name, field, identification_of(result)));
     } else if (by_group(field)) {
       append_group_columns(table, result, field.name.substr(0, field.name.find('_')) + "_", field);
     }
@@ -82,16 +79,15 @@ CsvTable coupling_table(const StoredResult& result) {
 
 void write(ResultBuilder& result, const Study& study, std::any& any) {
   const auto& found = std::any_cast<const Identification&>(any);
-  POESY_EXPECTS(found.factors == study.analysis.factors.size());
+  POESY_EXPECTS(found.factors() == study.analysis.factors.size());
   add_names(result, study, study.analysis.factors);
-  const std::vector<ErrorSize>& groups = asked_of<IdentificationOptions>(study.analysis).groups;
   const std::vector<std::string> statuses = listed_statuses(found.solves.not_assembled());
   result.add_axis("status", statuses, {"1", "How a solve ended"});
-  result.add_axis("group", texts(groups, &ErrorSize::name), {"1", "Name of the group of sizes"});
+  result.add_axis("group", texts(found.sizes, &ErrorSize::name), {"1", "Name of the group of sizes"});
   result.add_axis("coupling", axis_numbers(found.couplings.size()), {"1", "Number of the coupling, from 0"});
   write_group(result, kIdentification, found);
   result.file().set_attribute("/identification", "required_poses", static_cast<std::int64_t>(found.required_poses));
-  write_columns(result, "/identification", kSizeFields, groups);
+  write_columns(result, "/identification", kSizeFields, found.sizes);
   write_columns(result, "/identification", kCouplingFields, found.couplings);
   const auto by_all = std::span(found.solves.by_status).first(statuses.size());
   const std::vector<std::uint64_t> by_status(by_all.begin(), by_all.end());
@@ -100,8 +96,8 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
 }
 
 void read(const h5::File& file, StoredResult& result) {
-  StoredIdentification found;
-  read_group<Identification>(file, kIdentification, found);
+  Identification found;
+  read_group(file, kIdentification, found);
   found.required_poses =
       static_cast<std::uint64_t>(file.attribute<std::int64_t>("/identification", "required_poses").at(0));
   found.sizes = read_columns(file, "/identification", kSizeFields);
@@ -109,7 +105,7 @@ void read(const h5::File& file, StoredResult& result) {
   for (std::size_t g = 0; g < names.size(); ++g) found.sizes[g].name = names[g];
   found.couplings = read_columns(file, "/identification", kCouplingFields);
   for (const Coupling& coupling : found.couplings) {
-    if (coupling.group >= found.groups || coupling.first >= found.factors || coupling.second >= found.factors) {
+    if (coupling.group >= found.groups() || coupling.first >= found.factors() || coupling.second >= found.factors()) {
       throw h5::Error("/identification/coupling_* name an unknown group or error");
     }
   }
@@ -128,7 +124,7 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
                      list_column("angular [rad]", sizes, 0, 1, &ErrorSize::angular)}});
   tables.push_back(verdict_table(result));
   for (const FieldRow<Identification>& field : kIdentification.fields) {
-    if (field.axes != kGroupAxes || by_group(field)) continue;
+    if (field.axes == kByFactor || by_group(field)) continue;
     CsvTable table = lines_of_factors(result, field.name);
     append_group_columns(table, result, "", field);
     tables.push_back(std::move(table));

@@ -26,28 +26,33 @@ class Identification {
   Identification(const Analysis& analysis, const ModelDescription& model, const SolveTable& solve)
       : analysis_(&analysis), asked_(&asked_of<IdentificationOptions>(analysis)), model_(&model), solve_(&solve) {
     POESY_EXPECTS(model.deformation.has_value());
-    found_.factors = analysis.factors.size();
-    found_.groups = asked_->groups.size();
+    const std::size_t factors = analysis.factors.size();
+    const std::size_t groups = asked_->groups.size();
+    found_.sizes = asked_->groups;
     found_.rounding = model.deformation->rounding;
-    const std::size_t cells = found_.groups * found_.factors;
-    found_.coupled_below.resize(cells);
-    found_.coupled_reduced.resize(cells);
-    found_.single.resize(found_.factors);
-    found_.coupled.resize(found_.factors);
+    for (auto* counts : {&found_.single_below, &found_.not_solved, &found_.coupled_below, &found_.coupled_reduced}) {
+      *counts = IdentificationResult::ByGroup<std::uint64_t>({groups, factors});
+    }
+    found_.single_max = IdentificationResult::ByGroup<double>({groups, factors});
+    found_.single_by_group = IdentificationResult::ByGroup<std::uint8_t>({groups, factors});
+    found_.single = Array<std::uint8_t, axis::Factor>({factors});
+    found_.coupled = found_.single;
   }
 
   std::optional<IdentificationResult> operator()() {
     if (!single_stage() || !coupled_stage()) return std::nullopt;
-    for (std::size_t cell = 0; cell < found_.single_by_group.size(); ++cell) {
-      found_.single[cell % found_.factors] |= found_.single_by_group[cell];
-      found_.coupled[cell % found_.factors] |= found_.coupled_by_group[cell];
+    for (std::size_t g = 0; g < found_.groups(); ++g) {
+      for (std::size_t p = 0; p < found_.factors(); ++p) {
+        found_.single(p) |= found_.single_by_group(g, p);
+        found_.coupled(p) |= found_.coupled_by_group(g, p);
+      }
     }
     return std::move(found_);
   }
 
  private:
   /// The set of errors in which these members have the size of the group and all others are zero.
-  struct Trial {
+  struct ErrorSet {
     std::size_t group;
     FrameErrors members;
   };
@@ -58,25 +63,24 @@ class Identification {
   }
 
   /// Solves all trials at all poses at once, and gives the deformations of each. Empty when stopped.
-  std::optional<std::vector<Deformations>> solve(const std::vector<Trial>& trials) {
+  std::optional<std::vector<Deformations>> solve(const std::vector<ErrorSet>& trials) {
     ErrorTable table{analysis_->factors, {}, trials.size()};
-    table.values.resize(trials.size() * found_.factors);
+    table.values.resize(trials.size() * found_.factors());
+    const ArrayView<double, axis::Sample, axis::Factor> values(table.values, {trials.size(), found_.factors()});
     for (std::size_t t = 0; t < trials.size(); ++t) {
-      for (const std::size_t p : trials[t].members) table.values[t * found_.factors + p] = size(trials[t].group, p);
+      for (const std::size_t p : trials[t].members) values(t, p) = size(trials[t].group, p);
     }
     const auto solved_table = (*solve_)(table);
     if (!solved_table) return std::nullopt;
-    found_.poses = solved_table->poses;
+    found_.poses = solved_table->poses();
     found_.required_poses = std::max<std::uint64_t>(
         1, static_cast<std::uint64_t>(std::llround(asked_->pose_share * static_cast<double>(found_.poses))));
     found_.solves.merge(solved_table->total());
-    const std::size_t all = solved_table->poses * trials.size();
-    const auto response = std::span(solved_table->response).subspan(model_->deformation->response * all, all);
     std::vector<Deformations> deformations(trials.size(), Deformations(found_.poses));
     for (std::size_t m = 0; m < found_.poses; ++m) {
       for (std::size_t t = 0; t < trials.size(); ++t) {
-        const std::size_t at = m * trials.size() + t;
-        deformations[t][m] = solved(solved_table->status[at]) ? response[at] : kNaN;
+        const bool is_known = solved(solved_table->status(m, t));
+        deformations[t][m] = is_known ? solved_table->response(model_->deformation->response, m, t) : kNaN;
       }
     }
     return deformations;
@@ -90,23 +94,26 @@ class Identification {
   bool deforms(std::uint64_t below_rounding) const { return below_rounding < found_.required_poses; }
 
   bool single_stage() {
-    std::vector<Trial> trials;
-    for (std::size_t g = 0; g < found_.groups; ++g) {
-      for (std::size_t p = 0; p < found_.factors; ++p) trials.push_back({g, {p}});
+    std::vector<ErrorSet> trials;
+    for (std::size_t g = 0; g < found_.groups(); ++g) {
+      for (std::size_t p = 0; p < found_.factors(); ++p) trials.push_back({g, {p}});
     }
     const auto deformations = solve(trials);
     if (!deformations) return false;
-    for (const Deformations& values : *deformations) {
+    for (std::size_t t = 0; t < trials.size(); ++t) {
+      const Deformations& values = (*deformations)[t];
+      const std::size_t g = trials[t].group;
+      const std::size_t p = trials[t].members.front();
       double largest = kNaN;
       std::uint64_t missing = 0;
       for (const double value : values) {
         largest = std::fmax(largest, value);  // passes over NaN
         missing += std::isnan(value) ? 1 : 0;
       }
-      found_.single_below.push_back(below(values));
-      found_.single_max.push_back(largest);
-      found_.not_solved.push_back(missing);
-      found_.single_by_group.push_back(deforms(found_.single_below.back()) ? 1 : 0);
+      found_.single_below(g, p) = below(values);
+      found_.single_max(g, p) = largest;
+      found_.not_solved(g, p) = missing;
+      found_.single_by_group(g, p) = deforms(found_.single_below(g, p)) ? 1 : 0;
     }
     found_.coupled_by_group = found_.single_by_group;
     return true;
@@ -115,9 +122,9 @@ class Identification {
   /// The errors of each frame that do not deform alone in this group; two at least.
   std::vector<FrameErrors> frames(std::size_t group) const {
     std::map<std::pair<std::size_t, std::size_t>, FrameErrors> by_frame;
-    for (std::size_t p = 0; p < found_.factors; ++p) {
+    for (std::size_t p = 0; p < found_.factors(); ++p) {
       const Factor& factor = model_->factors[analysis_->factors[p].value];
-      if (found_.single_by_group[group * found_.factors + p] == 0) by_frame[{factor.limb, factor.frame}].push_back(p);
+      if (found_.single_by_group(group, p) == 0) by_frame[{factor.limb, factor.frame}].push_back(p);
     }
     std::vector<FrameErrors> list;
     for (auto& [frame, unit] : by_frame) {
@@ -127,8 +134,8 @@ class Identification {
   }
 
   bool coupled_stage() {
-    std::vector<Trial> together;
-    for (std::size_t g = 0; g < found_.groups; ++g) {
+    std::vector<ErrorSet> together;
+    for (std::size_t g = 0; g < found_.groups(); ++g) {
       for (FrameErrors& errors : frames(g)) together.push_back({g, std::move(errors)});
     }
     const auto deformations = solve(together);
@@ -136,7 +143,7 @@ class Identification {
     for (std::size_t t = 0; t < together.size(); ++t) {
       const std::uint64_t count = below((*deformations)[t]);
       for (const std::size_t p : together[t].members) {
-        found_.coupled_below[together[t].group * found_.factors + p] = count;
+        found_.coupled_below(together[t].group, p) = count;
       }
       if (deforms(count) && !split(together[t], (*deformations)[t])) return false;
     }
@@ -144,10 +151,10 @@ class Identification {
   }
 
   /// Which members of a unit that deforms take part in it, and which pairs of its members deform.
-  bool split(const Trial& whole, const Deformations& with_all) {
-    std::vector<Trial> trials;
+  bool split(const ErrorSet& whole, const Deformations& with_all) {
+    std::vector<ErrorSet> trials;
     for (const std::size_t p : whole.members) {
-      Trial without = whole;
+      ErrorSet without = whole;
       std::erase(without.members, p);
       trials.push_back(std::move(without));
     }
@@ -156,7 +163,7 @@ class Identification {
     FrameErrors taking_part;
     for (std::size_t n = 0; n < whole.members.size(); ++n) {
       const std::uint64_t count = reduced(with_all, (*deformations)[n]);
-      found_.coupled_reduced[whole.group * found_.factors + whole.members[n]] = count;
+      found_.coupled_reduced(whole.group, whole.members[n]) = count;
       if (count >= found_.required_poses) taking_part.push_back(whole.members[n]);
     }
     return find_couplings(whole, taking_part);
@@ -168,8 +175,8 @@ class Identification {
     return count;
   }
 
-  bool find_couplings(const Trial& whole, const FrameErrors& taking_part) {
-    std::vector<Trial> pairs;
+  bool find_couplings(const ErrorSet& whole, const FrameErrors& taking_part) {
+    std::vector<ErrorSet> pairs;
     for (std::size_t a = 0; a < whole.members.size(); ++a) {
       for (std::size_t b = a + 1; b < whole.members.size(); ++b) {
         pairs.push_back({whole.group, {whole.members[a], whole.members[b]}});
@@ -187,7 +194,7 @@ class Identification {
     }
     if (found_.couplings.size() > known) return true;
     // It takes more than two of them.
-    for (const std::size_t p : taking_part) found_.coupled_by_group[whole.group * found_.factors + p] = 1;
+    for (const std::size_t p : taking_part) found_.coupled_by_group(whole.group, p) = 1;
     return true;
   }
 
@@ -196,8 +203,8 @@ class Identification {
       return model_->factors[analysis_->factors[p].value].dimension == Dimension::angle;
     };
     const bool alike = is_angle(a) == is_angle(b);
-    if (alike || is_angle(a)) found_.coupled_by_group[group * found_.factors + a] = 1;
-    if (alike || is_angle(b)) found_.coupled_by_group[group * found_.factors + b] = 1;
+    if (alike || is_angle(a)) found_.coupled_by_group(group, a) = 1;
+    if (alike || is_angle(b)) found_.coupled_by_group(group, b) = 1;
   }
 
   const Analysis* analysis_;

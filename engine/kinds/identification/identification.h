@@ -36,25 +36,38 @@ struct Coupling {
   std::uint64_t deforming_poses;  ///< poses where both together deform, and neither alone
 };
 
-/// Which of P errors deform the mechanism, tried at G groups of sizes and M poses.
+namespace axis {
+/// Groups of sizes.
+struct SizeGroup {
+  static constexpr std::string_view kName = "group";
+};
+}  // namespace axis
+
+/// Which errors deform the mechanism, tried at groups of sizes and at poses.
 struct IdentificationResult {
-  std::size_t factors = 0;           ///< P
-  std::size_t groups = 0;            ///< G
-  std::size_t poses = 0;             ///< M
+  /// A number for each group and error.
+  template <class T>
+  using ByGroup = Array<T, axis::SizeGroup, axis::Factor>;
+
+  std::vector<ErrorSize> sizes;      ///< of the errors, by group
+  std::size_t poses = 0;             ///< that were tried
   double rounding = 0.0;             ///< deformations up to this cannot be told from zero
   std::uint64_t required_poses = 0;  ///< that a verdict asks for
 
-  std::vector<std::uint64_t> single_below;     ///< [G x P] poses where the error alone gives no more than rounding
-  std::vector<double> single_max;              ///< [G x P] largest deformation over the solved poses; NaN where none
-  std::vector<std::uint64_t> not_solved;       ///< [G x P] poses without a solution, single stage
-  std::vector<std::uint64_t> coupled_below;    ///< [G x P] as single_below, for all errors tried together in its frame
-  std::vector<std::uint64_t> coupled_reduced;  ///< [G x P] poses where leaving it out takes nine tenths away
-  std::vector<std::uint8_t> single_by_group;   ///< [G x P] verdict of the single stage, 0 or 1
-  std::vector<std::uint8_t> coupled_by_group;  ///< [G x P] verdict of both stages
-  std::vector<std::uint8_t> single;            ///< [P] in any group
-  std::vector<std::uint8_t> coupled;           ///< [P] in any group
-  std::vector<Coupling> couplings;             ///< pairs that deform together only, by group and position
-  SolveCounts solves;                          ///< of all solves of both stages
+  ByGroup<std::uint64_t> single_below;        ///< poses where the error alone gives no more than rounding
+  ByGroup<double> single_max;                 ///< largest deformation over the solved poses; NaN where none
+  ByGroup<std::uint64_t> not_solved;          ///< poses without a solution, single stage
+  ByGroup<std::uint64_t> coupled_below;       ///< as single_below, for all errors tried together in its frame
+  ByGroup<std::uint64_t> coupled_reduced;     ///< poses where leaving it out takes nine tenths away
+  ByGroup<std::uint8_t> single_by_group;      ///< verdict of the single stage, 0 or 1
+  ByGroup<std::uint8_t> coupled_by_group;     ///< verdict of both stages
+  Array<std::uint8_t, axis::Factor> single;   ///< in any group
+  Array<std::uint8_t, axis::Factor> coupled;  ///< in any group
+  std::vector<Coupling> couplings;            ///< pairs that deform together only, by group and position
+  SolveCounts solves;                         ///< of all solves of both stages
+
+  std::size_t groups() const { return single_by_group.length<axis::SizeGroup>(); }  ///< Of sizes.
+  std::size_t factors() const { return single.length<axis::Factor>(); }             ///< Errors that were tried.
 };
 
 /// Solves every row of a table of errors at every pose of the study. Empty when stopped.
@@ -75,14 +88,9 @@ using SolveTable = std::function<std::optional<EvaluationResult>(const ErrorTabl
 std::optional<IdentificationResult> identify(const Analysis& analysis, const ModelDescription& model,
                                              const SolveTable& solve);
 
-/// What an identification says, read back.
-struct StoredIdentification : IdentificationResult {
-  std::vector<ErrorSize> sizes;  ///< [G] of the errors, by group
-};
-
 /// Precondition: the result of an identification.
-inline const StoredIdentification& identification_of(const StoredResult& result) {
-  return found_of<StoredIdentification>(result);
+inline const IdentificationResult& identification_of(const StoredResult& result) {
+  return found_of<IdentificationResult>(result);
 }
 
 }  // namespace poesy

@@ -16,14 +16,14 @@ constexpr std::string_view kCoupled = "deforms in a coupling";
 constexpr std::string_view kAbsorbed = "absorbed";
 
 std::string_view verdict(const IdentificationResult& found, std::size_t p) {
-  if (found.single[p] != 0) return kAlone;
-  return found.coupled[p] != 0 ? kCoupled : kAbsorbed;
+  if (found.single(p) != 0) return kAlone;
+  return found.coupled(p) != 0 ? kCoupled : kAbsorbed;
 }
 
 bool groups_agree(const IdentificationResult& found) {
-  for (std::size_t cell = 0; cell < found.coupled_by_group.size(); ++cell) {
-    if (found.coupled_by_group[cell] != found.coupled[cell % found.factors]) return false;
-    if (found.single_by_group[cell] != found.single[cell % found.factors]) return false;
+  for (std::size_t g = 0; g < found.groups(); ++g) {
+    if (!std::ranges::equal(found.coupled_by_group.row(g), found.coupled)) return false;
+    if (!std::ranges::equal(found.single_by_group.row(g), found.single)) return false;
   }
   return true;
 }
@@ -42,19 +42,18 @@ Table verdict_table(const StoredResult& result) {
   Table table{
       .name = "identification",
       .caption = fmt::format("{} of {} errors deform alone, {} with couplings", std::ranges::count(found.single, 1),
-                             found.factors, std::ranges::count(found.coupled, 1)),
+                             found.factors(), std::ranges::count(found.coupled, 1)),
       .columns = {},
       .notes = notes(found)};
   std::vector<FilledColumn> columns{
       name_column(result.factors, "error"),
       {text_column("verdict", "verdict"), [&](std::size_t p) { return text_cell(verdict(found, p)); }}};
-  for (std::size_t g = 0; g < found.groups; ++g) {
-    columns.push_back(
-        {number_column(fmt::format("deforming_poses_{}", g + 1), identification_of(result).sizes[g].name, "",
-                       static_cast<int>(g)),
-         [&, g](std::size_t p) { return count_cell(found.poses - found.single_below[g * found.factors + p]); }});
+  for (std::size_t g = 0; g < found.groups(); ++g) {
+    columns.push_back({number_column(fmt::format("deforming_poses_{}", g + 1), identification_of(result).sizes[g].name,
+                                     "", static_cast<int>(g)),
+                       [&, g](std::size_t p) { return count_cell(found.poses - found.single_below(g, p)); }});
   }
-  fill(table, positions(found.factors), columns);
+  fill(table, positions(found.factors()), columns);
   return table;
 }
 
@@ -78,9 +77,9 @@ std::vector<std::string> group_names(const StoredResult& result) {
   return names;
 }
 
-/// Of counts of poses [G x P], the share of all poses, or of all but these.
-std::vector<double> share_of_poses(const IdentificationResult& found, const std::vector<std::uint64_t>& counts,
-                                   bool but_these) {
+/// The share that counts of poses have of all poses, or what is left of them.
+std::vector<double> share_of_poses(const IdentificationResult& found,
+                                   const IdentificationResult::ByGroup<std::uint64_t>& counts, bool but_these) {
   std::vector<double> list;
   for (const std::uint64_t count : counts) {
     const std::uint64_t those = but_these ? found.poses - count : count;
@@ -91,7 +90,7 @@ std::vector<double> share_of_poses(const IdentificationResult& found, const std:
 
 Bars bars_of(const StoredResult& result, ArrayPool& pool) {
   const IdentificationResult& found = identification_of(result);
-  const std::vector<std::vector<std::string>> percent(found.groups, {"%"});
+  const std::vector<std::vector<std::string>> percent(found.groups(), {"%"});
   const auto quantity = [&](std::string label, const std::string& array, const std::vector<double>& shares) {
     return BarQuantity{std::move(label), percent, pool.add(array, shares, 0.01)};
   };
@@ -112,7 +111,7 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
       "is harmless where nothing deforms by more than {:.3g}, which is rounding, at {} of the {} poses; a pose that "
       "was "
       "not solved counts as deformed.",
-      counted(found.groups, "size", "sizes"), found.rounding, count_text(found.required_poses),
+      counted(found.groups(), "size", "sizes"), found.rounding, count_text(found.required_poses),
       count_text(found.poses)));
   add_figure(page, section, "deforming", bars_of(result, page.figures.pool),
              "At how many of the poses each error deforms the mechanism.");
@@ -122,7 +121,7 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
 /// The errors with this verdict.
 std::vector<std::string> errors_that(const StoredResult& result, std::string_view what) {
   std::vector<std::string> names;
-  for (std::size_t p = 0; p < identification_of(result).factors; ++p) {
+  for (std::size_t p = 0; p < identification_of(result).factors(); ++p) {
     if (verdict(identification_of(result), p) == what) names.push_back(result.factors[p].name);
   }
   return names;
@@ -134,13 +133,13 @@ Answer answer(const StoredResult& result) {
   const std::vector<std::string> coupled = errors_that(result, kCoupled);
   const std::vector<std::string> absorbed = errors_that(result, kAbsorbed);
   Answer lines{{"Answer", fmt::format("{} of {} deform the mechanism alone, {} more in a coupling; {} absorbed.",
-                                      alone.size(), counted(found.factors, "error", "errors"), coupled.size(),
+                                      alone.size(), counted(found.factors(), "error", "errors"), coupled.size(),
                                       counted(absorbed.size(), "is", "are"))}};
   if (!coupled.empty()) lines.emplace_back("In couplings", some_names(coupled) + ".");
   if (!absorbed.empty()) lines.emplace_back("Absorbed", some_names(absorbed) + ".");
   lines.emplace_back("How sure", fmt::format("Solved, not sampled, at {}: {} decide. The {} of errors {}.",
                                              counted(found.poses, "pose", "poses"), count_text(found.required_poses),
-                                             counted(found.groups, "size", "sizes"),
+                                             counted(found.groups(), "size", "sizes"),
                                              groups_agree(found) ? "agree" : "do not agree on all errors"));
   lines.emplace_back("What to do",
                      "Tolerances of errors that are absorbed do not load the mechanism. A sensitivity study with "
@@ -161,7 +160,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
           .item_word = "error",
           .items = names_of(result.factors),
           .quantities = {{"poses where the error deforms alone", "deforms",
-                          std::vector<std::vector<std::string>>(found.groups, {"%"}), std::move(percent)}}};
+                          std::vector<std::vector<std::string>>(found.groups(), {"%"}), std::move(percent)}}};
 }
 
 std::vector<Table> identification_tables(const StoredResult& result, const TableOptions&) {

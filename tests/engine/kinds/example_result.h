@@ -246,13 +246,14 @@ class Example {
                         .row = {}}}};
   }
 
-  using CouplingMember = std::vector<double> CouplingResult::*;
-  static constexpr CouplingMember kCurves[] = {&CouplingResult::effect,          &CouplingResult::sum,
+  using CouplingCurves = CouplingResult::Curves CouplingResult::*;
+  static constexpr CouplingCurves kCurves[] = {&CouplingResult::effect,          &CouplingResult::sum,
                                                &CouplingResult::interaction,     &CouplingResult::worst_case,
                                                &CouplingResult::root_sum_square, &CouplingResult::cancellation};
-  static constexpr CouplingMember kSummaries[] = {&CouplingResult::effect_max,     &CouplingResult::interaction_max,
-                                                  &CouplingResult::worst_case_max, &CouplingResult::root_sum_square_max,
-                                                  &CouplingResult::opposed_share,  &CouplingResult::cancellation_max};
+  using CouplingSummary = CouplingResult::Summary<double> CouplingResult::*;
+  static constexpr CouplingSummary kSummaries[] = {
+      &CouplingResult::effect_max,          &CouplingResult::interaction_max, &CouplingResult::worst_case_max,
+      &CouplingResult::root_sum_square_max, &CouplingResult::opposed_share,   &CouplingResult::cancellation_max};
 
   /// Two sizes, two sources; sets the study to match. Numbers count on through the arrays.
   CouplingResult coupling() {
@@ -261,37 +262,49 @@ class Example {
     analysis.factors = {FactorIndex(0), FactorIndex(2)};
     analysis.asked = CouplingStudy{{1e-4, 2e-4}, {}, {}, {{"D", {FactorIndex(2)}}, {"E", {FactorIndex(0)}}}};
     CouplingResult result;
-    result.responses = 2;
-    result.sizes = 2;
-    result.subsets = 3;
-    result.poses = kPoses;
+    result.size_names = {"0.1 mm", "0.2 mm"};
+    result.sources = {"D", "E"};
+    result.subsets = {"D", "E", "D+E"};
+    result.linear = {{2}, {1e-4, 2e-4}};
+    result.angular = Array<double, axis::Size>({2}, std::numeric_limits<double>::quiet_NaN());
     double next = 0.0;
-    const auto fill = [&](std::vector<double>& values, std::size_t length) {
-      for (std::size_t k = 0; k < length; ++k) values.push_back(next += 0.125);
-      values.back() = std::numeric_limits<double>::quiet_NaN();
+    const auto fill = [&](auto& values, const auto& lengths) {
+      values = std::remove_cvref_t<decltype(values)>(lengths);
+      for (double& value : values) value = next += 0.125;
+      values.all().back() = std::numeric_limits<double>::quiet_NaN();
     };
-    for (const CouplingMember member : kCurves) fill(result.*member, 12 * kPoses);
-    for (const CouplingMember member : kSummaries) fill(result.*member, 12);
+    const CouplingResult::Curves::Lengths all{2, 2, 3, kPoses};
+    const CouplingResult::Summary<double>::Lengths over_poses{2, 2, 3};
+    for (const CouplingCurves member : kCurves) fill(result.*member, all);
+    for (const CouplingSummary member : kSummaries) fill(result.*member, over_poses);
+    result.count = CouplingResult::Summary<std::uint64_t>(over_poses);
+    for (auto* poses : {&result.effect_max_pose, &result.cancellation_max_pose, &result.worst_case_max_pose}) {
+      *poses = CouplingResult::Summary<std::int64_t>(over_poses);
+    }
+    result.worst_case_signs = decltype(result.worst_case_signs)({2, 2, 3, 2});
     for (std::size_t cell = 0; cell < 12; ++cell) {
-      result.count.push_back(kPoses - cell % 2);
-      result.effect_max_pose.push_back(static_cast<std::int64_t>(cell) - 1);
-      result.cancellation_max_pose.push_back(static_cast<std::int64_t>(cell % 3));
+      const auto [r, z, k] = result.count.positions(cell);
+      result.count(r, z, k) = kPoses - cell % 2;
+      result.effect_max_pose(r, z, k) = static_cast<std::int64_t>(cell) - 1;
+      result.cancellation_max_pose(r, z, k) = static_cast<std::int64_t>(cell % 3);
+      result.worst_case_max_pose(r, z, k) = static_cast<std::int64_t>(cell % kPoses);
+      result.worst_case_signs(r, z, k, 0) = cell % 2 == 0 ? 1 : -1;
+      result.worst_case_signs(r, z, k, 1) = cell % 3 == 0 ? 0 : 1;
     }
-    fill(result.first_order_sum, 12 * kPoses);
-    fill(result.first_order_sum_max, 12);
-    result.rounding = {1e-14, 2e-14, 3e-14, 4e-14};
-    for (std::size_t cell = 0; cell < 6 * kPoses; ++cell) {
-      result.corners.push_back(20 + cell);
-      result.unsolved_corners.push_back(cell % 2);
+    fill(result.first_order_sum, all);
+    fill(result.first_order_sum_max, over_poses);
+    result.rounding = {{2, 2}, {1e-14, 2e-14, 3e-14, 4e-14}};
+    result.corners = decltype(result.corners)({2, 3, kPoses});
+    result.unsolved_corners = result.corners;
+    for (std::size_t cell = 0; cell < result.corners.size(); ++cell) {
+      result.corners.all()[cell] = 20 + cell;
+      result.unsolved_corners.all()[cell] = cell % 2;
     }
-    for (std::size_t cell = 0; cell < 12; ++cell) {
-      result.worst_case_max_pose.push_back(static_cast<std::int64_t>(cell % kPoses));
-      result.worst_case_signs.insert(result.worst_case_signs.end(), {cell % 2 == 0 ? 1 : -1, cell % 3 == 0 ? 0 : 1});
-    }
-    result.unsolved_pose = {-1, 1, 2, -1, 0, 3};
-    result.unsolved_signs = {0, 0, 1, 0, -1, 1, 0, 0, 1, -1, -1, -1};
+    result.unsolved_pose = {{2, 3}, {-1, 1, 2, -1, 0, 3}};
+    result.unsolved_signs = {{2, 3, 2}, {0, 0, 1, 0, -1, 1, 0, 0, 1, -1, -1, -1}};
+    result.solves = decltype(result.solves)({2, kPoses});
     for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) {
-      result.solves.push_back({.by_status = {3, 0, cell, 1, 0}, .iterations = 8 + cell, .most_iterations = 5});
+      result.solves.all()[cell] = {.by_status = {3, 0, cell, 1, 0}, .iterations = 8 + cell, .most_iterations = 5};
     }
     return result;
   }
@@ -301,52 +314,53 @@ class Example {
     study.analysis.kind = &kIdentificationStudy;
     asked_of<IdentificationOptions>(study.analysis).groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
     IdentificationResult result;
-    result.factors = 2;
-    result.groups = 2;
+    result.sizes = asked_of<IdentificationOptions>(study.analysis).groups;
     result.poses = kPoses;
     result.rounding = 1.5e-14;
     result.required_poses = 3;
-    result.single_below = {0, 4, 1, 4};
-    result.single_max = {1e-3, 0.0, 2e-3, std::numeric_limits<double>::infinity()};
-    result.not_solved = {0, 0, 1, 0};
-    result.coupled_below = {0, 2, 0, 3};
-    result.coupled_reduced = {0, 4, 0, 1};
-    result.single_by_group = {1, 0, 1, 0};
-    result.coupled_by_group = {1, 1, 1, 0};
-    result.single = {1, 0};
-    result.coupled = {1, 1};
+    result.single_below = {{2, 2}, {0, 4, 1, 4}};
+    result.single_max = {{2, 2}, {1e-3, 0.0, 2e-3, std::numeric_limits<double>::infinity()}};
+    result.not_solved = {{2, 2}, {0, 0, 1, 0}};
+    result.coupled_below = {{2, 2}, {0, 2, 0, 3}};
+    result.coupled_reduced = {{2, 2}, {0, 4, 0, 1}};
+    result.single_by_group = {{2, 2}, {1, 0, 1, 0}};
+    result.coupled_by_group = {{2, 2}, {1, 1, 1, 0}};
+    result.single = {{2}, {1, 0}};
+    result.coupled = {{2}, {1, 1}};
     result.couplings = {{0, 0, 1, 4}, {1, 1, 0, 2}};
     result.solves.by_status = {5, 4, 3, 2, 1};
     return result;
   }
 
   /// Two cases, all details kept; sets the study to match.
-  CaseResult cases() {
+  Evaluation cases() {
     study.analysis.kind = &kEvaluateStudy;
-    asked_of<CaseOptions>(study.analysis).cases = {{"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}};
-    EvaluationResult all = evaluation(Pairing::every_pose_with_every_row);
-    const std::size_t cells = 2 * kPoses;
-    all.samples = 2;
-    all.response.resize(2 * cells);
-    all.detail.resize(8 * cells);
-    all.status.resize(cells);
-    all.iterations.resize(cells);
-    return case_result(std::move(all), NotConverged::include);
+    std::vector<ErrorCase>& cases = asked_of<CaseOptions>(study.analysis).cases;
+    cases = {{"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}};
+    return evaluation_of_cases(solves(2), cases, study.model(), NotConverged::include);
   }
 
-  EvaluationResult evaluation(Pairing pairing) const {
-    const std::size_t samples = pairing == Pairing::row_by_row ? 1 : kSamples;
-    const std::size_t rows = kPoses * samples;
+  Evaluation evaluation(Pairing pairing) const {
+    return poesy::evaluation(solves(pairing == Pairing::row_by_row ? 1 : kSamples), errors(pairing), pairing,
+                             study.model());
+  }
+
+  /// Numbers count on through the arrays.
+  EvaluationResult solves(std::size_t samples) const {
     EvaluationResult result;
-    result.poses = kPoses;
-    result.samples = samples;
-    result.responses = 2;
-    result.details = 8;
-    for (std::size_t k = 0; k < 2 * rows; ++k) result.response.push_back(static_cast<double>(k) / 8.0);
-    for (std::size_t k = 0; k < 8 * rows; ++k) result.detail.push_back(static_cast<double>(k));
-    for (std::size_t k = 0; k < rows; ++k) result.status.push_back(static_cast<SolveStatus>(k % 5));
-    for (std::size_t k = 0; k < rows; ++k) result.iterations.push_back(static_cast<std::uint32_t>(10 + k));
-    for (std::size_t k = 0; k < 2 * kPoses; ++k) result.joint_displacement.push_back(static_cast<double>(k) / 4.0);
+    result.response = decltype(result.response)({2, kPoses, samples});
+    result.detail = decltype(result.detail)({kPoses, samples, 8});
+    result.status = decltype(result.status)({kPoses, samples});
+    result.iterations = decltype(result.iterations)({kPoses, samples});
+    result.joint_displacement = decltype(result.joint_displacement)({kPoses, 2});
+    const auto fill = [](auto& values, const auto& value) {
+      for (std::size_t k = 0; k < values.size(); ++k) values.all()[k] = value(k);
+    };
+    fill(result.response, [](std::size_t k) { return static_cast<double>(k) / 8.0; });
+    fill(result.detail, [](std::size_t k) { return static_cast<double>(k); });
+    fill(result.status, [](std::size_t k) { return static_cast<SolveStatus>(k % 5); });
+    fill(result.iterations, [](std::size_t k) { return static_cast<std::uint32_t>(10 + k); });
+    fill(result.joint_displacement, [](std::size_t k) { return static_cast<double>(k) / 4.0; });
     return result;
   }
 
@@ -481,7 +495,7 @@ class Example {
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_cases(const std::string& path) {
-    const CaseResult result = cases();
+    const Evaluation result = cases();
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_identification(const std::string& path) {
@@ -489,7 +503,7 @@ class Example {
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_evaluation(const std::string& path, Pairing pairing) const {
-    poesy::write_evaluation(path, study, poses, errors(pairing), pairing, evaluation(pairing), facts);
+    poesy::write_evaluation(path, study, poses, errors(pairing).factors, evaluation(pairing), facts);
   }
 
   Study study;

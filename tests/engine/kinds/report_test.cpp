@@ -220,23 +220,20 @@ TEST_F(HtmlReport, OfEveryKindIsWhole) {
 TEST_F(HtmlReport, OfAnIdentificationIsWhole) {
   ReportedResult result = sensitivity();
   result.stored.kind = "identification";
-  StoredIdentification found{{.factors = 2,
-                              .groups = 2,
-                              .poses = 4,
-                              .rounding = 1e-14,
-                              .required_poses = 4,
-                              .single_below = {4, 0, 4, 1},
-                              .single_max = {0.0, 1e-3, 0.0, 1e-2},
-                              .not_solved = {0, 0, 0, 0},
-                              .coupled_below = {4, 4, 2, 4},
-                              .coupled_reduced = {0, 0, 2, 0},
-                              .single_by_group = {0, 1, 0, 1},
-                              .coupled_by_group = {0, 1, 0, 1},
-                              .single = {0, 1},
-                              .coupled = {0, 1},
-                              .couplings = {},
-                              .solves = {}},
-                             {{"small", 1e-4, 1e-3}, {"large", 1e-3, 1e-2}}};
+  IdentificationResult found;
+  found.sizes = {{"small", 1e-4, 1e-3}, {"large", 1e-3, 1e-2}};
+  found.poses = 4;
+  found.rounding = 1e-14;
+  found.required_poses = 4;
+  found.single_below = {{2, 2}, {4, 0, 4, 1}};
+  found.single_max = {{2, 2}, {0.0, 1e-3, 0.0, 1e-2}};
+  found.not_solved = {{2, 2}, {0, 0, 0, 0}};
+  found.coupled_below = {{2, 2}, {4, 4, 2, 4}};
+  found.coupled_reduced = {{2, 2}, {0, 0, 2, 0}};
+  found.single_by_group = {{2, 2}, {0, 1, 0, 1}};
+  found.coupled_by_group = {{2, 2}, {0, 1, 0, 1}};
+  found.single = {{2}, {0, 1}};
+  found.coupled = {{2}, {0, 1}};
   result.stored.found = found;
   const std::string html = report(result);
   check_page(html);

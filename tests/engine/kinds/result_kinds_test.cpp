@@ -7,6 +7,7 @@
 #include "engine/result/result_file.h"
 #include "engine/storage/h5.h"
 #include "tests/engine/kinds/example_result.h"
+#include "tests/support/elements.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -21,7 +22,7 @@ class CasesFile : public testing::Test {
 
   test::TempFolder folder_;
   test::Example example_;
-  CaseResult result_;
+  Evaluation result_;
   std::string path_;
 };
 
@@ -29,10 +30,9 @@ TEST_F(CasesFile, KeepsSolvesCaseByCase) {
   const h5::File file = h5::File::open(path_);
   EXPECT_EQ(file.shape("/evaluate/linear_deformation"), (h5::Shape{2, test::Example::kPoses}));
   const auto values = file.read<double>("/evaluate/linear_deformation");
-  const std::vector<double>& by_pose = result_.evaluation.response;
   for (std::size_t c = 0; c < 2; ++c) {
     for (std::size_t m = 0; m < test::Example::kPoses; ++m) {
-      EXPECT_EQ(values[c * test::Example::kPoses + m], by_pose[(test::Example::kPoses + m) * 2 + c]);
+      EXPECT_EQ(values[c * test::Example::kPoses + m], result_.solves.response(1, m, c));
     }
   }
 }
@@ -40,17 +40,17 @@ TEST_F(CasesFile, KeepsSolvesCaseByCase) {
 TEST_F(CasesFile, IsReadBackAsItWas) {
   const StoredResult stored = read_result(path_);
   EXPECT_EQ(stored.kind, "evaluate");
-  const StoredEvaluation& found = evaluation_of(stored);
+  const Evaluation& found = evaluation_of(stored);
   EXPECT_EQ(found.cases, (std::vector<std::string>{"fine", "coarse"}));
-  EXPECT_EQ(found.evaluation.response, result_.evaluation.response);
-  EXPECT_EQ(found.evaluation.detail, result_.evaluation.detail);
-  EXPECT_EQ(found.evaluation.status, result_.evaluation.status);
-  EXPECT_EQ(found.evaluation.iterations, result_.evaluation.iterations);
-  EXPECT_EQ(found.evaluation.joint_displacement, result_.evaluation.joint_displacement);
+  EXPECT_EQ(found.solves.response, result_.solves.response);
+  EXPECT_EQ(found.solves.detail, result_.solves.detail);
+  EXPECT_EQ(found.solves.status, result_.solves.status);
+  EXPECT_EQ(found.solves.iterations, result_.solves.iterations);
+  EXPECT_EQ(found.solves.joint_displacement, result_.solves.joint_displacement);
   EXPECT_EQ(found.mean, result_.mean);
   EXPECT_EQ(found.max, result_.max);
   EXPECT_EQ(found.count, result_.count);
-  EXPECT_EQ(found.errors, (std::vector<double>{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3}));
+  EXPECT_EQ(test::elements(found.errors), (std::vector<double>{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3}));
   EXPECT_TRUE(verify_result(path_).matches());
 }
 
@@ -107,7 +107,7 @@ class IdentificationFile : public testing::Test {
 TEST_F(IdentificationFile, IsReadBackAsItWas) {
   const IdentificationResult written = example_.identification();
   const StoredResult read = stored(written);
-  const StoredIdentification& found = identification_of(read);
+  const IdentificationResult& found = identification_of(read);
   EXPECT_EQ(read.kind, "identification");
   EXPECT_EQ(found.sizes[1].name, "small");
   EXPECT_EQ(found.sizes[1].angular, 4e-4);

@@ -20,7 +20,7 @@ Found& found_in(StoredResult& result) {
 
 inline StoredSensitivity& sensitivity_in(StoredResult& result) { return found_in<StoredSensitivity>(result); }
 inline MonteCarloResult& monte_carlo_in(StoredResult& result) { return found_in<MonteCarloResult>(result); }
-inline StoredCoupling& coupling_in(StoredResult& result) { return found_in<StoredCoupling>(result); }
+inline CouplingResult& coupling_in(StoredResult& result) { return found_in<CouplingResult>(result); }
 
 /// Gives a sensitivity result these global indices [R x P], which hold at a tenth of the sizes, with intervals of no
 /// width. Precondition: it has its errors and responses.

@@ -12,6 +12,7 @@
 #include "engine/run/evaluation.h"
 #include "engine/run/run_options.h"
 #include "tests/engine/run/prepared.h"
+#include "tests/support/elements.h"
 #include "tests/support/failing_model.h"
 #include "tests/support/kinds.h"
 
@@ -88,15 +89,15 @@ inline Bits bits_of(const MonteCarloResult& result) {
 
 inline Bits bits_of(const EvaluationResult& result) {
   Bits bits;
-  append(bits, result.response);
-  append(bits, result.detail);
+  append(bits, elements(result.response));
+  append(bits, elements(result.detail));
   append(bits, result.total());
   return bits;
 }
 
 inline Bits bits_of(const IdentificationResult& result) {
-  Bits bits(result.coupled_below);
-  append(bits, result.single_max);
+  Bits bits(elements(result.coupled_below));
+  append(bits, elements(result.single_max));
   bits.insert(bits.end(), result.coupled_reduced.begin(), result.coupled_reduced.end());
   bits.insert(bits.end(), result.coupled.begin(), result.coupled.end());
   append(bits, result.solves);

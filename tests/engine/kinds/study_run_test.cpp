@@ -40,7 +40,7 @@ TEST(RunStudy, FindsWhatTheRunOfAMonteCarloStudyFinds) {
 TEST(RunStudy, JudgesTheLimitsOfCases) {
   const auto result = run_study(with_cases());
   ASSERT_TRUE(result);
-  EXPECT_EQ(result->as<CaseResult>().evaluation.samples, 2u);
+  EXPECT_EQ(result->as<Evaluation>().solves.samples(), 2u);
   ASSERT_TRUE(result->verdicts);
   EXPECT_FALSE(result->verdicts->passed());
 }

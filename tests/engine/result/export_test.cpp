@@ -176,9 +176,9 @@ TEST_F(Export, EvaluationHasARowForEachSolve) {
 TEST_F(Export, LabelsOfRowsComeBack) {
   ErrorTable errors = example_.errors(Pairing::every_pose_with_every_row);
   errors.labels = {"part", {"17", "Gehäuse", "19"}};
-  const EvaluationResult found = example_.evaluation(Pairing::every_pose_with_every_row);
-  write_evaluation(folder_ / "l.h5", example_.study, example_.poses, errors, Pairing::every_pose_with_every_row, found,
-                   example_.facts);
+  Evaluation found = example_.evaluation(Pairing::every_pose_with_every_row);
+  found.labels = errors.labels;
+  write_evaluation(folder_ / "l.h5", example_.study, example_.poses, errors.factors, found, example_.facts);
   const StoredResult stored = read_result(folder_ / "l.h5");
   EXPECT_EQ(evaluation_of(stored).labels.column, "part");
   EXPECT_EQ(evaluation_of(stored).labels.names, errors.labels.names);

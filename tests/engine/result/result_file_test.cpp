@@ -13,6 +13,7 @@
 #include "engine/storage/version.h"
 #include "engine/study/study_file.h"
 #include "tests/engine/kinds/example_result.h"
+#include "tests/support/elements.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy::test {
@@ -132,9 +133,9 @@ TEST_P(EvaluationFile, ReadsBackAsWritten) {
   const Example example;
   example.write_evaluation(folder / "e.h5", GetParam());
   const StoredResult stored = read_result(folder / "e.h5");
-  const EvaluationResult expected = example.evaluation(GetParam());
-  const StoredEvaluation& evaluation = evaluation_of(stored);
-  const EvaluationResult& found = evaluation.evaluation;
+  const EvaluationResult expected = example.evaluation(GetParam()).solves;
+  const Evaluation& evaluation = evaluation_of(stored);
+  const EvaluationResult& found = evaluation.solves;
 
   EXPECT_EQ(stored.kind, "evaluate");
   EXPECT_EQ(evaluation.pairing, GetParam());
@@ -142,19 +143,15 @@ TEST_P(EvaluationFile, ReadsBackAsWritten) {
   EXPECT_EQ(evaluation.joints, (Names{"q_1", "q_2"}));
   expect_same(stored.poses, example.poses.poses);
   EXPECT_EQ(stored.condition, example.poses.condition);
-  expect_same(evaluation.errors, example.errors(GetParam()).values, "errors");
+  EXPECT_EQ(elements(evaluation.errors), example.errors(GetParam()).values);
   ASSERT_EQ(evaluation.details.size(), 3U);
   EXPECT_EQ(evaluation.details[2].name, "twist_32");
   EXPECT_EQ(evaluation.details[2].unit, "rad,rad,m");
   EXPECT_EQ(evaluation.details[2].components, (Names{"omega_x", "omega_y", "v_z"}));
 
-  EXPECT_EQ(found.poses, expected.poses);
-  EXPECT_EQ(found.samples, expected.samples);
-  EXPECT_EQ(found.responses, expected.responses);
-  EXPECT_EQ(found.details, expected.details);
-  expect_same(found.response, expected.response, "response");
-  expect_same(found.detail, expected.detail, "detail");
-  expect_same(found.joint_displacement, expected.joint_displacement, "joint_displacement");
+  EXPECT_EQ(found.response, expected.response);
+  EXPECT_EQ(found.detail, expected.detail);
+  EXPECT_EQ(found.joint_displacement, expected.joint_displacement);
   EXPECT_EQ(found.status, expected.status);
   EXPECT_EQ(found.iterations, expected.iterations);
 }

@@ -1,9 +1,11 @@
 #include "engine/kinds/monte_carlo/columns.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/run/evaluation.h"
+#include "tests/support/elements.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -79,11 +81,8 @@ TEST(JudgeDraws, RefusesWhatIsNotKnown) {
 /// Three poses, two rows; row 1 is the larger one, with both signs.
 EvaluationResult evaluation() {
   EvaluationResult result;
-  result.poses = 3;
-  result.samples = 2;
-  result.responses = 1;
-  result.response = {1.0, 10.0, 2.0, -90.0, 6.0, 20.0};  // pose by pose
-  result.status.assign(6, SolveStatus::converged);
+  result.response = {{1, 3, 2}, {1.0, 10.0, 2.0, -90.0, 6.0, 20.0}};
+  result.status = decltype(result.status)({3, 2}, SolveStatus::converged);
   return result;
 }
 
@@ -108,20 +107,20 @@ TEST(JudgeRows, ByTheLargestMagnitudeOfEachRow) {
 /// A row that was not solved at a pose is not within any limit, though its other values are.
 TEST(JudgeRows, RefusesARowThatWasNotSolvedEverywhere) {
   EvaluationResult some = evaluation();
-  some.status[4] = SolveStatus::iteration_cap;  // row 0 at the last pose
+  some.status(2, 0) = SolveStatus::iteration_cap;  // row 0 at the last pose
   const LimitVerdict exclude = judged(100.0, some);
   EXPECT_FALSE(exclude.passed);
   EXPECT_EQ(exclude.within, 1u);
   EXPECT_TRUE(judged(100.0, some, NotConverged::include).passed);
-  some.status.assign(6, SolveStatus::singular);
+  std::ranges::fill(some.status, SolveStatus::singular);
   EXPECT_TRUE(std::isnan(judged(100.0, some, NotConverged::include).value));
   EXPECT_FALSE(judged(100.0, some, NotConverged::include).row);
 }
 
 TEST(JudgeRows, TakesEachRowAtItsOwnPoseRowByRow) {
-  EvaluationResult paired = evaluation();
-  paired.poses = 6;
-  paired.samples = 1;
+  EvaluationResult paired;
+  paired.response = {{1, 6, 1}, test::elements(evaluation().response)};
+  paired.status = decltype(paired.status)({6, 1}, SolveStatus::converged);
   const std::vector<ResponseLimit> limits{{0, 10.0}};
   const LimitVerdict verdict = judge_rows(limits, paired, Pairing::row_by_row, NotConverged::exclude).limits.at(0);
   EXPECT_EQ(verdict.tried, 6u);

@@ -9,6 +9,7 @@
 #include "engine/kinds/coupling/kind.h"
 #include "engine/kinds/coupling/worst_case.h"
 #include "engine/kinds/study_run.h"
+#include "tests/support/elements.h"
 #include "tests/support/function_model.h"
 
 namespace poesy::test {
@@ -86,7 +87,7 @@ struct Search {
   CouplingStudy study;
   PoseSet poses{1, {0.25, 0.75}};
   CornerTable table;
-  std::vector<double> rounding;
+  Array<double, axis::Response, axis::Size> rounding;
   CornerSearch search;
 };
 
@@ -237,19 +238,19 @@ TEST(WorstCases, AreOfAllPosesInAStudy) {
   const auto& found = result.as<CouplingResult>();
   const auto sum_at = [](double pose) { return (1.0 + pose + 1.0 - pose + 2.0 + pose + 2.0 - pose) * kSize; };
   for (std::size_t m = 0; m < 3; ++m) {
-    EXPECT_NEAR(found.first_order_sum[2 * 3 + m], sum_at(poses[PoseIndex(m)][0]), 1e-17);
-    EXPECT_NEAR(found.worst_case[2 * 3 + m], found.first_order_sum[2 * 3 + m], 1e-17) << "it is linear";
-    EXPECT_GT(found.corners[2 * 3 + m], 4u);
+    EXPECT_NEAR(found.first_order_sum(0, 0, 2, m), sum_at(poses[PoseIndex(m)][0]), 1e-17);
+    EXPECT_NEAR(found.worst_case(0, 0, 2, m), found.first_order_sum(0, 0, 2, m), 1e-17) << "it is linear";
+    EXPECT_GT(found.corners(0, 2, m), 4u);
   }
-  EXPECT_NEAR(found.worst_case_max[0], 2.0 * kSize, 1e-17) << "1 + pose and 1 - pose";
-  EXPECT_GE(found.worst_case_max_pose[2], 0);
-  const std::int64_t side = found.worst_case_signs[2 * 4];
-  EXPECT_EQ(std::vector(found.worst_case_signs.begin() + 8, found.worst_case_signs.end()),
-            (std::vector<std::int64_t>{side, -side, side, -side}));
-  EXPECT_EQ(found.unsolved_pose, (std::vector<std::int64_t>{-1, -1, 0}));
-  EXPECT_EQ(std::vector(found.unsolved_signs.begin() + 8, found.unsolved_signs.end()),
-            (std::vector<std::int64_t>{1, 1, 1, 1}));
-  EXPECT_EQ(found.total().not_converged(), found.solves[0].not_converged() * 3);
+  EXPECT_NEAR(found.worst_case_max(0, 0, 0), 2.0 * kSize, 1e-17) << "1 + pose and 1 - pose";
+  EXPECT_GE(found.worst_case_max_pose(0, 0, 2), 0);
+  const std::span<const std::int64_t> signs = found.worst_case_signs.row(0, 0, 2);
+  const std::int64_t side = signs.front();
+  EXPECT_EQ(std::vector(signs.begin(), signs.end()), (std::vector<std::int64_t>{side, -side, side, -side}));
+  EXPECT_EQ(elements(found.unsolved_pose), (std::vector<std::int64_t>{-1, -1, 0}));
+  const std::span<const std::int64_t> unsolved = found.unsolved_signs.row(0, 2);
+  EXPECT_EQ(std::vector(unsolved.begin(), unsolved.end()), (std::vector<std::int64_t>{1, 1, 1, 1}));
+  EXPECT_EQ(found.total().not_converged(), found.solves(0, 0).not_converged() * 3);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/support/elements.h"
 #include "tests/support/fake_model.h"
 
 namespace poesy {
@@ -23,32 +24,30 @@ using Effect = std::function<double(std::span<const double> errors, std::size_t 
 EvaluationResult evaluation_of(const ErrorTable& table, std::size_t factors, std::size_t poses,
                                const std::vector<Effect>& responses) {
   EvaluationResult result;
-  result.poses = poses;
-  result.samples = table.rows;
-  result.responses = responses.size();
-  result.status.assign(poses * table.rows, SolveStatus::converged);
-  result.iterations.assign(poses * table.rows, 2);
-  for (const Effect& response : responses) {
+  result.response = decltype(result.response)({responses.size(), poses, table.rows});
+  result.status = decltype(result.status)({poses, table.rows}, SolveStatus::converged);
+  result.iterations = decltype(result.iterations)({poses, table.rows}, 2);
+  for (std::size_t r = 0; r < responses.size(); ++r) {
     for (std::size_t m = 0; m < poses; ++m) {
       for (std::size_t row = 0; row < table.rows; ++row) {
         std::vector<double> errors(factors, 0.0);
         for (std::size_t v = 0; v < table.factors.size(); ++v) {
           errors[table.factors[v].value] = table.values[row * table.factors.size() + v];
         }
-        result.response.push_back(response(errors, m));
+        result.response(r, m, row) = responses[r](errors, m);
       }
     }
   }
   return result;
 }
 
-/// Of responses that solves do not round, [R x Z].
-std::vector<double> rounding_of(const CouplingStudy& study, std::size_t responses) {
-  std::vector<double> list;
+/// Of responses that solves do not round.
+Array<double, axis::Response, axis::Size> rounding_of(const CouplingStudy& study, std::size_t responses) {
+  Array<double, axis::Response, axis::Size> rounding({responses, study.sizes()});
   for (std::size_t r = 0; r < responses; ++r) {
-    for (const double size : study.linear) list.push_back(size_rounding(0.0, size, 0.0));
+    for (std::size_t z = 0; z < study.sizes(); ++z) rounding(r, z) = size_rounding(0.0, study.linear[z], 0.0);
   }
-  return list;
+  return rounding;
 }
 
 /// Two limbs with three lengths each, x, y and a scalar; the sources are limb by limb a (x and y) and q.
@@ -83,9 +82,6 @@ class CouplingOfSixErrors : public testing::Test {
   CouplingStudy study_;
 };
 
-/// Position of (response, size, subset, pose) where there are two sizes, three subsets and three poses.
-std::size_t cell(std::size_t r, std::size_t z, std::size_t k, std::size_t m) { return ((r * 2 + z) * 3 + k) * 3 + m; }
-
 TEST_F(CouplingOfSixErrors, HasClosedFormsWhereBlocksAreSources) {
   const CouplingResult found = solve({bilinear});
   ASSERT_EQ(found.effect.size(), 18u);
@@ -93,18 +89,17 @@ TEST_F(CouplingOfSixErrors, HasClosedFormsWhereBlocksAreSources) {
   for (std::size_t z = 0; z < 2; ++z) {
     const double e = study_.linear[z];
     for (std::size_t m = 0; m < kPoses; ++m) {
-      EXPECT_NEAR(found.effect[cell(0, z, 0, m)], 4.0 * e, 1e-17);
-      EXPECT_NEAR(found.effect[cell(0, z, 1, m)], q[m] * e, 1e-17);
-      EXPECT_EQ(found.interaction[cell(0, z, 0, m)], 0.0);
-      EXPECT_EQ(found.cancellation[cell(0, z, 1, m)], 0.0);
-      EXPECT_EQ(found.first_order_sum[cell(0, z, 1, m)], std::abs(found.effect[cell(0, z, 1, m)]));
-      const std::size_t both = cell(0, z, 2, m);
-      EXPECT_NEAR(found.sum[both], (4.0 + q[m]) * e, 1e-17);
-      EXPECT_NEAR(found.effect[both], (4.0 + q[m]) * e + 7.0 * e * e, 1e-17);
-      EXPECT_NEAR(found.interaction[both], 7.0 * e * e, 1e-17);
-      EXPECT_NEAR(found.first_order_sum[both], (4.0 + std::abs(q[m])) * e, 1e-17);
-      EXPECT_NEAR(found.root_sum_square[both], std::hypot(4.0, q[m]) * e, 1e-17);
-      EXPECT_NEAR(found.cancellation[both], 1.0 - std::abs(4.0 + q[m]) / (4.0 + std::abs(q[m])), 1e-14);
+      EXPECT_NEAR(found.effect(0, z, 0, m), 4.0 * e, 1e-17);
+      EXPECT_NEAR(found.effect(0, z, 1, m), q[m] * e, 1e-17);
+      EXPECT_EQ(found.interaction(0, z, 0, m), 0.0);
+      EXPECT_EQ(found.cancellation(0, z, 1, m), 0.0);
+      EXPECT_EQ(found.first_order_sum(0, z, 1, m), std::abs(found.effect(0, z, 1, m)));
+      EXPECT_NEAR(found.sum(0, z, 2, m), (4.0 + q[m]) * e, 1e-17);
+      EXPECT_NEAR(found.effect(0, z, 2, m), (4.0 + q[m]) * e + 7.0 * e * e, 1e-17);
+      EXPECT_NEAR(found.interaction(0, z, 2, m), 7.0 * e * e, 1e-17);
+      EXPECT_NEAR(found.first_order_sum(0, z, 2, m), (4.0 + std::abs(q[m])) * e, 1e-17);
+      EXPECT_NEAR(found.root_sum_square(0, z, 2, m), std::hypot(4.0, q[m]) * e, 1e-17);
+      EXPECT_NEAR(found.cancellation(0, z, 2, m), 1.0 - std::abs(4.0 + q[m]) / (4.0 + std::abs(q[m])), 1e-14);
     }
   }
 }
@@ -112,26 +107,25 @@ TEST_F(CouplingOfSixErrors, HasClosedFormsWhereBlocksAreSources) {
 TEST_F(CouplingOfSixErrors, SumsUpOverThePoses) {
   const CouplingResult found = solve({bilinear});
   const double e = kSize;
-  const std::size_t both = 2;  // of the first size
-  EXPECT_EQ(found.count[both], kPoses);
-  EXPECT_NEAR(found.effect_max[both], 5.0 * e + 7.0 * e * e, 1e-17);
-  EXPECT_EQ(found.effect_max_pose[both], 2);
-  EXPECT_NEAR(found.interaction_max[both], 7.0 * e * e, 1e-17);
-  EXPECT_NEAR(found.first_order_sum_max[both], 9.0 * e, 1e-17);
-  EXPECT_NEAR(found.root_sum_square_max[both], std::hypot(4.0, 5.0) * e, 1e-17);
-  EXPECT_DOUBLE_EQ(found.opposed_share[both], 2.0 / 3.0);  // |4 - 5| < 5 and |4 - 2| < 4
-  EXPECT_NEAR(found.cancellation_max[both], 8.0 / 9.0, 1e-14);
-  EXPECT_EQ(found.cancellation_max_pose[both], 0);
-  EXPECT_EQ(found.effect_max_pose[0], 0);  // the first of equal ones
-  EXPECT_EQ(found.opposed_share[0], 0.0);
+  EXPECT_EQ(found.count(0, 0, 2), kPoses);
+  EXPECT_NEAR(found.effect_max(0, 0, 2), 5.0 * e + 7.0 * e * e, 1e-17);
+  EXPECT_EQ(found.effect_max_pose(0, 0, 2), 2);
+  EXPECT_NEAR(found.interaction_max(0, 0, 2), 7.0 * e * e, 1e-17);
+  EXPECT_NEAR(found.first_order_sum_max(0, 0, 2), 9.0 * e, 1e-17);
+  EXPECT_NEAR(found.root_sum_square_max(0, 0, 2), std::hypot(4.0, 5.0) * e, 1e-17);
+  EXPECT_DOUBLE_EQ(found.opposed_share(0, 0, 2), 2.0 / 3.0);  // |4 - 5| < 5 and |4 - 2| < 4
+  EXPECT_NEAR(found.cancellation_max(0, 0, 2), 8.0 / 9.0, 1e-14);
+  EXPECT_EQ(found.cancellation_max_pose(0, 0, 2), 0);
+  EXPECT_EQ(found.effect_max_pose(0, 0, 0), 0);  // the first of equal ones
+  EXPECT_EQ(found.opposed_share(0, 0, 0), 0.0);
 }
 
 TEST_F(CouplingOfSixErrors, TakesBlocksOnTheirOwnInTheFirstOrderSum) {
   const auto worst_of_a = [&](Choice limbs, Choice components) {
     study_.pattern = {limbs, 0, components, {}};
     const CouplingResult found = solve({bilinear});
-    EXPECT_NEAR(found.effect[cell(0, 0, 0, 1)], 4.0 * kSize, 1e-17);  // whatever moves with what
-    return std::pair(found.first_order_sum[cell(0, 0, 0, 1)] / kSize, found.root_sum_square[cell(0, 0, 0, 1)] / kSize);
+    EXPECT_NEAR(found.effect(0, 0, 0, 1), 4.0 * kSize, 1e-17);  // whatever moves with what
+    return std::pair(found.first_order_sum(0, 0, 0, 1) / kSize, found.root_sum_square(0, 0, 0, 1) / kSize);
   };
   const auto near = [](std::pair<double, double> found, double worst, double squares) {
     EXPECT_NEAR(found.first, worst, 1e-13);
@@ -146,19 +140,18 @@ TEST_F(CouplingOfSixErrors, TakesBlocksOnTheirOwnInTheFirstOrderSum) {
 TEST_F(CouplingOfSixErrors, KnowsNoOppositionWhereAResponseIsANorm) {
   const CouplingResult found = solve({[](auto errors, std::size_t m) { return std::abs(bilinear(errors, m)); }});
   for (std::size_t m = 0; m < kPoses; ++m) {
-    const std::size_t both = cell(0, 0, 2, m);
-    EXPECT_EQ(found.cancellation[both], 0.0);
-    EXPECT_EQ(found.sum[both], found.first_order_sum[both]);
-    EXPECT_LE(found.effect[both], found.first_order_sum[both] + 7.0 * kSize * kSize);
+    EXPECT_EQ(found.cancellation(0, 0, 2, m), 0.0);
+    EXPECT_EQ(found.sum(0, 0, 2, m), found.first_order_sum(0, 0, 2, m));
+    EXPECT_LE(found.effect(0, 0, 2, m), found.first_order_sum(0, 0, 2, m) + 7.0 * kSize * kSize);
   }
-  EXPECT_EQ(found.opposed_share[2], 0.0);
+  EXPECT_EQ(found.opposed_share(0, 0, 2), 0.0);
 }
 
 TEST_F(CouplingOfSixErrors, TakesRoundingForNothing) {
   const CouplingResult found =
       solve({[](std::span<const double> errors, std::size_t) { return 1e-12 * errors[0] - 1e-12 * errors[2]; }});
-  EXPECT_EQ(found.cancellation[cell(0, 0, 2, 0)], 0.0);
-  EXPECT_EQ(found.opposed_share[2], 0.0);
+  EXPECT_EQ(found.cancellation(0, 0, 2, 0), 0.0);
+  EXPECT_EQ(found.opposed_share(0, 0, 2), 0.0);
 }
 
 TEST_F(CouplingOfSixErrors, LeavesOutWhatDoesNotCount) {
@@ -167,33 +160,33 @@ TEST_F(CouplingOfSixErrors, LeavesOutWhatDoesNotCount) {
   const std::size_t rows = table.rows / 2;
   ASSERT_EQ(rows, 7u);  // A, Q, A+Q, and two blocks of both
   EvaluationResult some = evaluation_of(table, 6, kPoses, {bilinear});
-  some.status[0 * table.rows + 0] = SolveStatus::singular;       // pose 0: A
-  some.status[1 * table.rows + 6] = SolveStatus::iteration_cap;  // pose 1: a block of Q
-  some.status[2 * table.rows + rows] = SolveStatus::non_finite;  // pose 2, second size: A
+  some.status(0, 0) = SolveStatus::singular;       // pose 0: A
+  some.status(1, 6) = SolveStatus::iteration_cap;  // pose 1: a block of Q
+  some.status(2, rows) = SolveStatus::non_finite;  // pose 2, second size: A
   const auto found_with = [&](NotConverged policy) {
     return coupling_result(some, study_, model_, policy, rounding_of(study_, 1));
   };
   const CouplingResult exclude = found_with(NotConverged::exclude);
-  EXPECT_EQ(exclude.count, (std::vector<std::uint64_t>{2, 2, 1, 2, 3, 2}));
-  EXPECT_TRUE(std::isnan(exclude.effect[cell(0, 0, 0, 0)]));
-  EXPECT_FALSE(std::isnan(exclude.effect[cell(0, 0, 2, 0)]));
-  EXPECT_TRUE(std::isnan(exclude.interaction[cell(0, 0, 2, 0)]));
-  EXPECT_TRUE(std::isnan(exclude.cancellation[cell(0, 0, 2, 0)]));
-  EXPECT_TRUE(std::isnan(exclude.first_order_sum[cell(0, 0, 1, 1)]));
-  EXPECT_FALSE(std::isnan(exclude.interaction[cell(0, 0, 2, 1)]));
-  EXPECT_EQ(exclude.effect_max_pose[2], 2);
-  EXPECT_EQ(found_with(NotConverged::include).count, (std::vector<std::uint64_t>{2, 3, 2, 2, 3, 2}));
+  EXPECT_EQ(test::elements(exclude.count), (std::vector<std::uint64_t>{2, 2, 1, 2, 3, 2}));
+  EXPECT_TRUE(std::isnan(exclude.effect(0, 0, 0, 0)));
+  EXPECT_FALSE(std::isnan(exclude.effect(0, 0, 2, 0)));
+  EXPECT_TRUE(std::isnan(exclude.interaction(0, 0, 2, 0)));
+  EXPECT_TRUE(std::isnan(exclude.cancellation(0, 0, 2, 0)));
+  EXPECT_TRUE(std::isnan(exclude.first_order_sum(0, 0, 1, 1)));
+  EXPECT_FALSE(std::isnan(exclude.interaction(0, 0, 2, 1)));
+  EXPECT_EQ(exclude.effect_max_pose(0, 0, 2), 2);
+  EXPECT_EQ(test::elements(found_with(NotConverged::include).count), (std::vector<std::uint64_t>{2, 3, 2, 2, 3, 2}));
   EXPECT_EQ(exclude.solves.size(), 2 * kPoses);
-  EXPECT_EQ(exclude.solves[0].not_converged(), 1u);
-  EXPECT_EQ(exclude.solves[1].not_converged(), 1u);
-  EXPECT_EQ(exclude.solves[2].not_converged(), 0u);
-  EXPECT_EQ(exclude.solves[kPoses + 2].not_converged(), 1u);
+  EXPECT_EQ(exclude.solves(0, 0).not_converged(), 1u);
+  EXPECT_EQ(exclude.solves(0, 1).not_converged(), 1u);
+  EXPECT_EQ(exclude.solves(0, 2).not_converged(), 0u);
+  EXPECT_EQ(exclude.solves(1, 2).not_converged(), 1u);
   EXPECT_EQ(exclude.total().total(), table.rows * kPoses);
-  some.status.assign(some.status.size(), SolveStatus::singular);
+  std::ranges::fill(some.status, SolveStatus::singular);
   const CouplingResult nothing = found_with(NotConverged::include);
-  EXPECT_TRUE(std::isnan(nothing.effect_max[0]));
-  EXPECT_TRUE(std::isnan(nothing.opposed_share[0]));
-  EXPECT_EQ(nothing.effect_max_pose[0], -1);
+  EXPECT_TRUE(std::isnan(nothing.effect_max(0, 0, 0)));
+  EXPECT_TRUE(std::isnan(nothing.opposed_share(0, 0, 0)));
+  EXPECT_EQ(nothing.effect_max_pose(0, 0, 0), -1);
 }
 
 TEST(CouplingOfAMechanism, IsThatOfItsAbsoluteValues) {
@@ -205,16 +198,15 @@ TEST(CouplingOfAMechanism, IsThatOfItsAbsoluteValues) {
                                          Pairing::every_pose_with_every_row, {1, {}, {}}, Outcomes::responses);
   const CouplingResult found =
       coupling_result(*evaluation, study, model, NotConverged::exclude, coupling_rounding(study, fake));
-  ASSERT_EQ(found.subsets, 7u);
+  ASSERT_EQ(found.subsets.size(), 7u);
   for (std::size_t r = 0; r < 2; ++r) {
     for (std::size_t m = 0; m < 2; ++m) {
       const auto weight = [&](std::size_t p) {
         return test::FakeModel::weight(test::FakeModel::kArm, r, p, poses[PoseIndex(m)]);
       };
-      const std::size_t all = (r * 7 + 6) * 2 + m;
-      EXPECT_NEAR(found.effect[all], 1e-3 * weight(0) + 1e-2 * weight(1), 1e-17);
-      EXPECT_NEAR(found.interaction[all], 0.0, 1e-17);
-      EXPECT_NEAR(found.root_sum_square[all], std::hypot(1e-3 * weight(0), 1e-2 * weight(1)), 1e-17);
+      EXPECT_NEAR(found.effect(r, 0, 6, m), 1e-3 * weight(0) + 1e-2 * weight(1), 1e-17);
+      EXPECT_NEAR(found.interaction(r, 0, 6, m), 0.0, 1e-17);
+      EXPECT_NEAR(found.root_sum_square(r, 0, 6, m), std::hypot(1e-3 * weight(0), 1e-2 * weight(1)), 1e-17);
     }
   }
 }

@@ -19,35 +19,31 @@ StoredResult example() {
   result.factors = {{"a", "m"}, {"b", "m"}};
   result.responses = {{"tilt", "rad"}, {"x", "m"}};
   result.signed_headline = {1};
-  StoredCoupling& stored = coupling_in(result);
-  stored.size_names = {"0.1 mm"};
-  stored.linear = {1e-4};
-  stored.angular = {std::numeric_limits<double>::quiet_NaN()};
-  stored.sources = {"FS", "T"};
-  stored.subsets = {"FS", "T", "FS+T"};
-  CouplingResult& found = stored.found;
-  found.responses = 2;
-  found.sizes = 1;
-  found.subsets = 3;
-  found.poses = 4;
-  found.count.assign(6, 4);
-  found.effect_max = {0.0, 0.0, 0.0, 4e-5, 1e-5, 3.5e-5};
-  found.effect_max_pose = {0, 0, 0, 3, 0, 3};
-  found.interaction_max = {0.0, 0.0, 0.0, 0.0, 0.0, 1e-8};
-  found.rounding = {1e-14, 1e-14};
-  found.first_order_sum_max = {0.0, 0.0, 0.0, 4e-5, 1e-5, 4.5e-5};
-  found.worst_case = {0.0};  // of each pose; what tables show is the largest
-  found.worst_case_max = {0.0, 0.0, 0.0, 4e-5, 1e-5, 5.5e-5};
-  found.worst_case_max_pose = {0, 0, 0, 3, 0, 3};
-  found.worst_case_signs = {1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 1, -1};
-  found.corners.assign(12, 4);
-  found.unsolved_corners.assign(12, 0);
-  found.unsolved_pose = {-1, -1, -1};
-  found.unsolved_signs.assign(6, 0);
-  found.root_sum_square_max = {0.0, 0.0, 0.0, 4e-5, 1e-5, 4.125e-5};
-  found.opposed_share = {0.0, 0.0, 0.0, 0.0, 0.0, 0.75};
-  found.cancellation_max = {0.0, 0.0, 0.0, 0.0, 0.0, 0.5};
-  found.cancellation_max_pose = {0, 0, 0, 0, 0, 2};
+  CouplingResult& found = coupling_in(result);
+  found.size_names = {"0.1 mm"};
+  found.linear = {{1}, {1e-4}};
+  found.angular = {{1}, {std::numeric_limits<double>::quiet_NaN()}};
+  found.sources = {"FS", "T"};
+  found.subsets = {"FS", "T", "FS+T"};
+  found.effect = CouplingResult::Curves({2, 1, 3, 4});
+  found.worst_case = found.effect;  // what tables show is the largest
+  found.count = CouplingResult::Summary<std::uint64_t>({2, 1, 3}, 4);
+  found.effect_max = {{2, 1, 3}, {0.0, 0.0, 0.0, 4e-5, 1e-5, 3.5e-5}};
+  found.effect_max_pose = {{2, 1, 3}, {0, 0, 0, 3, 0, 3}};
+  found.interaction_max = {{2, 1, 3}, {0.0, 0.0, 0.0, 0.0, 0.0, 1e-8}};
+  found.rounding = {{2, 1}, {1e-14, 1e-14}};
+  found.first_order_sum_max = {{2, 1, 3}, {0.0, 0.0, 0.0, 4e-5, 1e-5, 4.5e-5}};
+  found.worst_case_max = {{2, 1, 3}, {0.0, 0.0, 0.0, 4e-5, 1e-5, 5.5e-5}};
+  found.worst_case_max_pose = {{2, 1, 3}, {0, 0, 0, 3, 0, 3}};
+  found.worst_case_signs = {{2, 1, 3, 2}, {1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 1, -1}};
+  found.corners = decltype(found.corners)({1, 3, 4}, 4);
+  found.unsolved_corners = decltype(found.unsolved_corners)({1, 3, 4}, 0);
+  found.unsolved_pose = {{1, 3}, {-1, -1, -1}};
+  found.unsolved_signs = decltype(found.unsolved_signs)({1, 3, 2}, 0);
+  found.root_sum_square_max = {{2, 1, 3}, {0.0, 0.0, 0.0, 4e-5, 1e-5, 4.125e-5}};
+  found.opposed_share = {{2, 1, 3}, {0.0, 0.0, 0.0, 0.0, 0.0, 0.75}};
+  found.cancellation_max = {{2, 1, 3}, {0.0, 0.0, 0.0, 0.0, 0.0, 0.5}};
+  found.cancellation_max_pose = {{2, 1, 3}, {0, 0, 0, 0, 0, 2}};
   return result;
 }
 
@@ -85,10 +81,10 @@ TEST(CouplingTable, NamesCornersThatCannotBeAssembled) {
   StoredResult result = example();
   EXPECT_EQ(coupling_tables(result).back().notes.front(),
             "worst case of FS+T: pose 3 (z -180 mm, gamma 5.73 deg), with +a, -b");
-  CouplingResult& found = coupling_in(result).found;
-  found.unsolved_corners = {0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0};
-  found.unsolved_pose = {-1, -1, 0};
-  found.unsolved_signs = {0, 0, 0, 0, -1, -1};
+  CouplingResult& found = coupling_in(result);
+  found.unsolved_corners = {{1, 3, 4}, {0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0}};
+  found.unsolved_pose = {{1, 3}, {-1, -1, 0}};
+  found.unsolved_signs = {{1, 3, 2}, {0, 0, 0, 0, -1, -1}};
   EXPECT_EQ(
       coupling_tables(result).back().notes[5],
       "3 of the 48 combinations of signs that were tried cannot be assembled, so worst cases are of the others; the "
@@ -97,7 +93,7 @@ TEST(CouplingTable, NamesCornersThatCannotBeAssembled) {
 
 TEST(CouplingTable, SaysWherePosesAreLeftOut) {
   StoredResult result = example();
-  coupling_in(result).found.count[4] = 3;
+  coupling_in(result).count(1, 0, 1) = 3;
   const std::string note = coupling_tables(result).back().notes.back();
   EXPECT_NE(note.find("some subsets leave out poses"), std::string::npos) << note;
 }
@@ -106,7 +102,7 @@ TEST(CouplingTable, SaysWhySymmetricSourcesCancel) {
   StoredResult result = example();
   result.study_text = "[analysis]\nlimbs = \"all\"\n";
   EXPECT_EQ(coupling_tables(result).back().notes.size(), 5U) << "every source does something";
-  coupling_in(result).found.effect_max[4] = 0.0;
+  coupling_in(result).effect_max(1, 0, 1) = 0.0;
   EXPECT_TRUE(coupling_tables(result).back().notes.back().starts_with("all limbs have the same error here"));
   result.study_text = "[analysis]\nlimbs = \"independent\"\n";
   EXPECT_EQ(coupling_tables(result).back().notes.size(), 5U);
@@ -114,7 +110,7 @@ TEST(CouplingTable, SaysWhySymmetricSourcesCancel) {
 
 TEST(CouplingTable, NamesNoPoseOfRounding) {
   StoredResult result = example();
-  coupling_in(result).found.effect_max[4] = 1e-16;
+  coupling_in(result).effect_max(1, 0, 1) = 1e-16;
   const std::vector<Cell> row = coupling_tables(result)[0].rows[1];
   EXPECT_EQ(row[1].text, "0");
   EXPECT_EQ(row[2].text, "-");
@@ -123,7 +119,7 @@ TEST(CouplingTable, NamesNoPoseOfRounding) {
 
 TEST(CouplingTable, CallsRoundingZero) {
   StoredResult result = example();
-  coupling_in(result).found.interaction_max[5] = 1e-15;
+  coupling_in(result).interaction_max(1, 0, 2) = 1e-15;
   const Table table = coupling_tables(result)[0];
   const auto column = std::ranges::find(table.columns, "interaction_max", &Column::name) - table.columns.begin();
   const Cell& cell = table.rows[2][static_cast<std::size_t>(column)];

@@ -1,5 +1,6 @@
 #include "engine/kinds/identification/identification.h"
 #include "engine/run/evaluation.h"
+#include "tests/support/elements.h"
 #include "tests/support/kinds.h"
 
 #include <gtest/gtest.h>
@@ -31,17 +32,15 @@ using Deformation = std::function<double(std::span<const double> errors, std::si
 SolveTable solver(Deformation deformation) {
   return [deformation](const ErrorTable& errors) {
     EvaluationResult result;
-    result.poses = kPoses;
-    result.samples = errors.rows;
-    result.responses = 2;
-    result.response.assign(kPoses * errors.rows, 1.0);
+    result.response = decltype(result.response)({2, kPoses, errors.rows}, 1.0);
+    result.status = decltype(result.status)({kPoses, errors.rows});
+    result.iterations = decltype(result.iterations)({kPoses, errors.rows}, 1);
     for (std::size_t m = 0; m < kPoses; ++m) {
       for (std::size_t s = 0; s < errors.rows; ++s) {
         const double value =
             deformation(std::span(errors.values).subspan(s * errors.factors.size(), errors.factors.size()), m);
-        result.response.push_back(value);
-        result.status.push_back(std::isnan(value) ? SolveStatus::iteration_cap : SolveStatus::converged);
-        result.iterations.push_back(1);
+        result.response(1, m, s) = value;
+        result.status(m, s) = std::isnan(value) ? SolveStatus::iteration_cap : SolveStatus::converged;
       }
     }
     return std::optional(result);
@@ -65,22 +64,22 @@ using Verdicts = std::vector<std::uint8_t>;
 TEST(Identify, FindsErrorsThatDeformAloneAndCouplingsOfAFrame) {
   const IdentificationResult found =
       identified([](auto e, std::size_t) { return std::abs(e[4]) + std::abs(e[0] * e[1]) + std::abs(e[2] * e[3]); });
-  EXPECT_EQ(found.single, (Verdicts{0, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(test::elements(found.single), (Verdicts{0, 0, 0, 0, 1, 0}));
   // Of the length and the angle the angle is named; of two angles both.
-  EXPECT_EQ(found.coupled, (Verdicts{0, 1, 1, 1, 1, 0}));
+  EXPECT_EQ(test::elements(found.coupled), (Verdicts{0, 1, 1, 1, 1, 0}));
   ASSERT_EQ(found.couplings.size(), 4u);
   EXPECT_EQ(found.couplings[0].first, 0u);
   EXPECT_EQ(found.couplings[0].second, 1u);
   EXPECT_EQ(found.couplings[1].first, 2u);
   EXPECT_EQ(found.couplings[1].deforming_poses, kPoses);
   EXPECT_EQ(found.couplings[3].group, 1u);
-  EXPECT_EQ(found.coupled_reduced[0], kPoses);
-  EXPECT_EQ(found.coupled_reduced[4], 0u);
+  EXPECT_EQ(found.coupled_reduced(0, 0), kPoses);
+  EXPECT_EQ(found.coupled_reduced(0, 4), 0u);
 }
 
 TEST(Identify, DoesNotCoupleErrorsOfDifferentFrames) {
   const IdentificationResult found = identified([](auto e, std::size_t) { return std::abs(e[0] * e[2]); });
-  EXPECT_EQ(found.coupled, (Verdicts{0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(test::elements(found.coupled), (Verdicts{0, 0, 0, 0, 0, 0}));
   EXPECT_TRUE(found.couplings.empty());
 }
 
@@ -92,7 +91,7 @@ TEST(Identify, FindsOverlappingPairs) {
   const auto found = identify(analysis(), three,
                               solver([](auto e, std::size_t) { return std::abs(e[2] * e[3]) + std::abs(e[2] * e[5]); }))
                          .value();
-  EXPECT_EQ(found.coupled, (Verdicts{0, 0, 1, 1, 0, 1}));
+  EXPECT_EQ(test::elements(found.coupled), (Verdicts{0, 0, 1, 1, 0, 1}));
   EXPECT_EQ(found.couplings.size(), 4u);
 }
 
@@ -117,22 +116,22 @@ TEST(Identify, AsksForOnePoseAtLeast) {
   asked_of<IdentificationOptions>(hardly).pose_share = 0.01;
   const IdentificationResult found = identified([](auto e, std::size_t) { return std::abs(e[0]); }, hardly);
   EXPECT_EQ(found.required_poses, 1u);
-  EXPECT_EQ(found.single, (Verdicts{1, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(test::elements(found.single), (Verdicts{1, 0, 0, 0, 0, 0}));
 }
 
 TEST(Identify, CountsAnUnsolvedPoseAsDeformed) {
   const IdentificationResult found =
       identified([](auto e, std::size_t pose) { return e[0] != 0.0 && pose < 2 ? std::nan("") : 0.0; });
-  EXPECT_EQ(found.single[0], 1);
-  EXPECT_EQ(found.not_solved[0], 2u);
-  EXPECT_EQ(found.single_max[0], 0.0);
+  EXPECT_EQ(found.single(0), 1);
+  EXPECT_EQ(found.not_solved(0, 0), 2u);
+  EXPECT_EQ(found.single_max(0, 0), 0.0);
 }
 
 TEST(Identify, KeepsGroupsApart) {
   const IdentificationResult found = identified([](auto e, std::size_t) { return e[0] > 1e-3 ? 1.0 : 0.0; });
-  EXPECT_EQ(found.single_by_group[0], 1);
-  EXPECT_EQ(found.single_by_group[6], 0);
-  EXPECT_EQ(found.single[0], 1);
+  EXPECT_EQ(found.single_by_group(0, 0), 1);
+  EXPECT_EQ(found.single_by_group(1, 0), 0);
+  EXPECT_EQ(found.single(0), 1);
 }
 
 TEST(Identify, StopsWhenTheSolvesStop) {

@@ -52,10 +52,10 @@ std::vector<std::vector<double>> solved_samples(const Study& study, const Model&
   const PoseSet pose(poses.coordinates(), {poses[m].begin(), poses[m].end()});
   const EvaluationResult found =
       run_evaluation(model, study.solver, pose, table_of(study, m), Pairing::every_pose_with_every_row, {}).value();
-  std::vector<std::vector<double>> samples(found.responses);
-  for (std::size_t r = 0; r < found.responses; ++r) {
+  std::vector<std::vector<double>> samples(found.responses());
+  for (std::size_t r = 0; r < found.responses(); ++r) {
     for (std::size_t s = 0; s < kSamples; ++s) {
-      if (solved(found.status[s])) samples[r].push_back(found.response[r * kSamples + s]);
+      if (solved(found.status(0, s))) samples[r].push_back(found.response(r, 0, s));
     }
   }
   return samples;
