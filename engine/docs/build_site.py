@@ -34,12 +34,13 @@ SECTIONS = {
                   ("C++ library", f"{LIBRARY}/index.html"), ("Changes", "CHANGELOG.md")],
     "Theory": [("Equations and sources", "engine/THEORY.md"), ("Rankings of one study", "results/2upr-rpu-sensitivity/README.md"),
                ("2UPR-RPU, published", "results/2upr-rpu-paper/README.md"), ("3-PRS, published", "results/3prs-paper/README.md"),
-               ("Paper", "results/paper/paper.md"), ("Design and decisions", "engine/README.md"), ("Benchmarks", "bench/README.md")],
+               ("Paper", "results/paper/paper.md"), ("The engine", "engine/README.md"), ("Decisions", "engine/docs/decisions/README.md"),
+               ("Benchmarks", "bench/README.md")],
 }
 LIBRARY_START = """# Library reference
 
 Every public header, by [class](annotated.html) and by [file](files.html). How the rooms fit together is said in
-*Design and decisions* of the documentation.
+*The engine* of the documentation.
 """
 COPIED = {".png", ".svg"}  # other files that pages link to become pages with their text
 BLOCK_MATH = re.compile(r"^```math\n(.*?)^```$", re.DOTALL | re.MULTILINE)

@@ -11,7 +11,7 @@
 /// How the solves of a result of any kind ended, and when a reader is warned of those that did not converge.
 namespace poesy {
 
-/// Share of samples without a solution above which statistics of the others mislead (engine/README.md, D8).
+/// Share of samples without a solution above which statistics of the others mislead (D8).
 inline constexpr double kManyNotConverged = 0.01;
 
 /// Share of samples without a solution above which a reader is warned of them: the share that the study allows

@@ -9,7 +9,7 @@
 #include "engine/stats/moments.h"
 
 /// First-order indices of an error from samples in bins of the uniform from which it was drawn, all other errors
-/// varying too. Formulas and coverage of the intervals: THEORY.md, README.md (D58).
+/// varying too. Formulas and coverage of the intervals: THEORY.md, D58.
 namespace poesy {
 
 /// Bins of equal probability.

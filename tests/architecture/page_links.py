@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the pages that people read: links lead to files and headings that exist, headers in THEORY.md are there.
+"""Checks the pages that people read: links lead to files and headings that exist, headers in THEORY.md are there, and
+each decision has a short page of its own that the index lists.
 
 Usage: page_links.py ROOT
 """
@@ -12,6 +13,9 @@ FENCED = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADER = re.compile(r"`((?:\w+/)+\w+\.h)`")
 SKIPPED = {"build", ".git"}
+DECISIONS = "engine/docs/decisions"
+TITLE = re.compile(r"# D(\d+)\. .+\n\nStatus: (accepted|superseded by \[D\d+\]\(.+\))\. Date: \d{4}-\d\d-\d\d\. Room: [\w/]+\.\n")
+MOST_LINES = 40
 
 
 def prose(page):
@@ -43,8 +47,24 @@ def problems(root):
             yield f"engine/THEORY.md: there is no header {header}"
 
 
+def decision_problems(root):
+    """Pages of decisions that break the rules which their index states."""
+    folder = root / DECISIONS
+    index = (folder / "README.md").read_text(encoding="utf-8")
+    for page in sorted(folder.glob("[0-9]*.md")):
+        text = page.read_text(encoding="utf-8")
+        title = TITLE.match(text)
+        if not title or int(title[1]) != int(page.name[:4]):
+            yield f"{DECISIONS}/{page.name}: begin with '# D{int(page.name[:4])}. TITLE' and 'Status: ... Date: ... Room: ...'"
+        elif f"- [D{title[1]}]({page.name})" not in index:
+            yield f"{DECISIONS}/README.md: does not list {page.name}"
+        if text.count("\n") > MOST_LINES:
+            yield f"{DECISIONS}/{page.name}: has more than {MOST_LINES} lines; move measurements to bench/README.md"
+
+
 def main():
-    found = list(problems(Path(sys.argv[1])))
+    root = Path(sys.argv[1])
+    found = [*problems(root), *decision_problems(root)]
     print("\n".join(found) if found else "Every link leads somewhere.")
     return 1 if found else 0
 

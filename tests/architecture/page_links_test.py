@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plants links that lead nowhere: page_links.py must find each, and nothing in right pages."""
+"""Plants links that lead nowhere and wrong pages of decisions: page_links.py must find each, and nothing in right pages."""
 
 import tempfile
 import unittest
@@ -32,6 +32,25 @@ class PageLinksTest(unittest.TestCase):
     def test_missing_header(self):
         problem = "engine/THEORY.md: there is no header run/gone.h"
         self.assertEqual(self.found(theory="# The theory\n`run/gone.h`"), [problem])
+
+    def found_in_decision(self, page, index="- [D7](0007-a.md) A title\n"):
+        with tempfile.TemporaryDirectory() as folder:
+            decisions = Path(folder) / page_links.DECISIONS
+            decisions.mkdir(parents=True)
+            (decisions / "README.md").write_text(index)
+            (decisions / "0007-a.md").write_text(page)
+            return [problem.split(": ", 1)[1] for problem in page_links.decision_problems(Path(folder))]
+
+    def test_decisions(self):
+        right = "# D7. A title\n\nStatus: accepted. Date: 2026-01-02. Room: kinds/sobol.\n\nText.\n"
+        self.assertEqual(self.found_in_decision(right), [])
+        self.assertEqual(self.found_in_decision(right.replace("accepted", "superseded by [D8](0008-b.md)")), [])
+        self.assertEqual(self.found_in_decision(right, index=""), ["does not list 0007-a.md"])
+        self.assertEqual(self.found_in_decision(right + 40 * "Text.\n"),
+                         ["has more than 40 lines; move measurements to bench/README.md"])
+        for wrong in ("D7.", "accepted", "2026-01-02", "kinds/sobol"):
+            problems = self.found_in_decision(right.replace(wrong, ""))
+            self.assertEqual(problems, ["begin with '# D7. TITLE' and 'Status: ... Date: ... Room: ...'"])
 
 
 if __name__ == "__main__":
