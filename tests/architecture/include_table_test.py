@@ -16,7 +16,7 @@ CLEAN = {
 |---|---|---|
 | `engine/base` | - | Eigen |
 | `engine/run` | `engine/base` | oneTBB in `runner.cpp` |
-| `engine/files` | `engine/base`, `engine/run/result.h` | HDF5 in `h5.*`, files |
+| `engine/storage` | `engine/base`, `engine/run/result.h` | HDF5 in `h5.*`, files |
 | `models/two_legs` | `engine/base` | Eigen |
 | `models` | `engine/base`, `models/two_legs` | - |
 | `engine/app` | everything | CLI11 |
@@ -68,12 +68,12 @@ class IncludeTableTest(unittest.TestCase):
                         "engine/base may not include engine/run")
 
     def test_engine_includes_a_model(self):
-        self.expect_one("engine/files/file.cpp", '#include "models/registry.h"\n', "engine/files/file.cpp:1: ",
-                        "engine/files may not include models")
+        self.expect_one("engine/storage/file.cpp", '#include "models/registry.h"\n', "engine/storage/file.cpp:1: ",
+                        "engine/storage may not include models")
 
     def test_only_the_named_header_of_a_room_is_open(self):
-        self.expect_one("engine/files/file.h", '#include "engine/run/runner.h"\n', "engine/files/file.h:1: ",
-                        "engine/files may not include engine/run")
+        self.expect_one("engine/storage/file.h", '#include "engine/run/runner.h"\n', "engine/storage/file.h:1: ",
+                        "engine/storage may not include engine/run")
 
     def test_library_in_another_file_than_the_table_says(self):
         self.expect_one("engine/run/result.cpp", "#  include <tbb/parallel_for.h>\n", "engine/run/result.cpp:1: ",
