@@ -9,7 +9,7 @@
 #include "tests/engine/kinds/sobol/shapley_coverage.h"
 #include "tests/engine/stats/effect_coverage.h"
 
-// The coverage of intervals in engine/THEORY.md, by the code of the tests and with more repetitions:
+// The coverage of intervals in engine/docs/theory.md, by the code of the tests and with more repetitions:
 // coverage_table [REPETITIONS].
 
 namespace {

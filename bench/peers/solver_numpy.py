@@ -212,7 +212,7 @@ class PublishedMetric:
 
 
 class PlatformMetric:
-    """Residuals count as the displacement of the points where the limbs hold the platform (engine/THEORY.md)."""
+    """Residuals count as the displacement of the points where the limbs hold the platform (engine/docs/theory.md)."""
 
     tolerance, flat_iterations = 1e-14, 0  # of the reach
 

@@ -27,12 +27,12 @@ START = "README.md"
 # of these is part of the site too.
 SECTIONS = {
     "Tutorial": [("Start", START), ("From a drawing to tolerances", "results/tutorial/README.md")],
-    "How to": [("Use it: user guide", "engine/USER_GUIDE.md"), ("Read results", "results/README.md"),
-               ("Run long and on clusters", "engine/LONG_RUNS.md"), ("Start from a mechanism", "results/gallery/README.md"),
+    "How to": [("Use it: user guide", "engine/docs/guide.md"), ("Read results", "results/README.md"),
+               ("Run long and on clusters", "engine/docs/long-runs.md"), ("Start from a mechanism", "results/gallery/README.md"),
                ("Add a mechanism", "models/README.md"), ("Contribute", "CONTRIBUTING.md")],
-    "Reference": [("Study files", "engine/STUDY_FILE.md"), ("Result files", "engine/RESULT_FILE.md"),
+    "Reference": [("Study files", "engine/docs/study-file.md"), ("Result files", "engine/docs/result-file.md"),
                   ("C++ library", f"{LIBRARY}/index.html"), ("Changes", "CHANGELOG.md")],
-    "Theory": [("Equations and sources", "engine/THEORY.md"), ("Rankings of one study", "results/2upr-rpu-sensitivity/README.md"),
+    "Theory": [("Equations and sources", "engine/docs/theory.md"), ("Rankings of one study", "results/2upr-rpu-sensitivity/README.md"),
                ("2UPR-RPU, published", "results/2upr-rpu-paper/README.md"), ("3-PRS, published", "results/3prs-paper/README.md"),
                ("Paper", "results/paper/paper.md"), ("The engine", "engine/README.md"), ("Decisions", "engine/docs/decisions/README.md"),
                ("Benchmarks", "bench/README.md")],

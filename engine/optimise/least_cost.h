@@ -10,7 +10,7 @@
 
 /// Tolerances at least cost under limits, with a proof. In T^2 (in T, in the worst case) limits are linear and costs
 /// convex, so the multipliers of the limits give a lower bound on the cost of all tolerances that keep the limits:
-/// THEORY.md, D65.
+/// theory.md, D65.
 namespace poesy {
 
 /// One way of making a part.

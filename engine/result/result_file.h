@@ -141,7 +141,7 @@ Verification verify_result(const std::string& path);
 
 /// Writes every table of a result of this kind as CSV into a folder, made if missing, in place of the unchanged tables
 /// of another result (OutputFolder): one file per table, first line the column names with their units.
-/// engine/RESULT_FILE.md lists them. Only the first column may hold text (names of factors), nothing is quoted: in
+/// engine/docs/result-file.md lists them. Only the first column may hold text (names of factors), nothing is quoted: in
 /// Octave `t = importdata('global.csv', ',', 1)` gives t.data and t.rowheaders. Returns the paths of the files written.
 /// Throws FileError; InputError where a file that would go is not poesy's, or changed.
 std::vector<std::string> export_tables(const StoredResult& result, const FileKind& kind, const std::string& folder);

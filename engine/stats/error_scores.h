@@ -42,11 +42,11 @@ struct NormalScore {
 ///     S(e) = sum over k = 1 .. kDegree of E[p_k'(e) (e - c)] p_k(e)
 ///
 /// For the uniform that is the sum of (2k + 1) P_k over k = 2, 4, 6 (Legendre), for a normal z^2 - 1 whatever the
-/// degree from 2 on. What the event's probability has beyond that degree is left out: THEORY.md has the bias.
+/// degree from 2 on. What the event's probability has beyond that degree is left out: theory.md has the bias.
 /// The growth score has E[p_k(c + g (e - c))] in the place of the first factor.
 class PolynomialScore {
  public:
-  static constexpr std::size_t kDegree = 6;  ///< Higher ones have more noise than they take off bias (THEORY.md).
+  static constexpr std::size_t kDegree = 6;  ///< Higher ones have more noise than they take off bias (theory.md).
 
   /// points, weights: [n] in the unit of the error, over which means of polynomials up to degree 3 kDegree are
   /// those of the error. Where n points or fewer are distinct, the degree is below that number. degree: of the score,

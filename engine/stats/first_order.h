@@ -9,7 +9,7 @@
 #include "engine/stats/moments.h"
 
 /// First-order indices of an error from samples in bins of the uniform from which it was drawn, all other errors
-/// varying too. Formulas and coverage of the intervals: THEORY.md, D58.
+/// varying too. Formulas and coverage of the intervals: theory.md, D58.
 namespace poesy {
 
 /// Bins of equal probability.
@@ -80,7 +80,7 @@ enum class Dependence {
 /// Of 95 % intervals, 95 to 98 % held the true index from 256 to 16 384 samples, for linear and folded responses of
 /// normal errors and the Ishigami function, and up to 99.7 % for what is heavy-tailed or all interaction. Where the
 /// standard error falls below the bias of the bins (binned_variance) they hold it less often: 77 % for an index of 0.59
-/// of exp(z) with 16 384 samples. Tables: THEORY.md. Precondition: 0 < conf_level < 1.
+/// of exp(z) with 16 384 samples. Tables: theory.md. Precondition: 0 < conf_level < 1.
 Estimate first_order_index(std::span<const BinnedVariance> parts, Dependence dependence, double conf_level);
 
 }  // namespace poesy

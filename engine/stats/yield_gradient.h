@@ -35,7 +35,7 @@ struct PowerSums {
 /// have had its largest values (as Agresti and Coull 1998, Am. Stat. 52, 119-126, add two of each kind for a share).
 inline constexpr double kAddedRejects = 4.0;
 
-/// With fewer rejects an interval holds the gradient less often than it says (THEORY.md).
+/// With fewer rejects an interval holds the gradient less often than it says (theory.md).
 inline constexpr std::uint64_t kFewRejects = 20;
 
 /// The mean of a number over n machines, of which `powers` has the sums, with an interval at this level by the central
@@ -69,7 +69,7 @@ class ScoreSums {
 
   /// [P] dY/dt, for each unit of the error (1/m, 1/rad). The interval is skewed_mean() over all machines, of which the
   /// good ones have the score 0, with Student's quantile for the number of rejects: of 95 % intervals, 93 to 95 % held
-  /// the gradient of a sum of normal errors from nine rejects on, and 90 % with five (THEORY.md). The scores of errors
+  /// the gradient of a sum of normal errors from nine rejects on, and 90 % with five (theory.md). The scores of errors
   /// of other shapes and of correlated ones spread more, so their second and third moments are taken with four rejects
   /// in addition, with any error. The interval does not cover what a PolynomialScore leaves out; where that is much,
   /// because one error alone makes the rejects, the gradient by that error is NaN: its score up to degree 2 then has

@@ -29,7 +29,7 @@ inline constexpr std::uint32_t kSlowIterations = 16;
 /// vanishes while r does not. With C(r) what a residual r adds to N = J^T W J in Newton's matrix M = N + C
 /// (BlockKernel), a machine cannot be assembled where
 ///     N - 2 C(r)
-/// is not positive definite. No unit and no size enters, and the border is where the loops just close (THEORY.md,
+/// is not positive definite. No unit and no size enters, and the border is where the loops just close (theory.md,
 /// "Machines that cannot be assembled").
 ///
 /// Plain double arithmetic, for samples that a solver did not solve or doubts: the one place that decides. Owns the

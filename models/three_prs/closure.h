@@ -90,7 +90,7 @@ using ClosureObserver = std::function<void(const ClosureIteration&)>;
 ///   iteration_cap  when j is the allowed number of iterations;
 ///   singular       when a pivot of the Jacobian falls to rounding, or when the solve has come to rest where the
 ///                  determinant of the Jacobian has the other sign: no way leads there from the nominal pose, as errors
-///                  grow from zero, but through a singular one (THEORY.md, "Which root");
+///                  grow from zero, but through a singular one (theory.md, "Which root");
 ///   non_finite     when an equation's value is not finite.
 /// A solve that ends at the cap or as singular is not_assembled instead where is_impossible() says so and orientation
 /// is not 0. `motion` is the start on entry, the last iterate on return. orientation: ClosureStart::orientation(); 0

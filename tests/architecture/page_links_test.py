@@ -7,7 +7,7 @@ from pathlib import Path
 
 import page_links
 
-RIGHT = "# Start here: a *page*\n[itself](#start-here-a-page) [other](engine/THEORY.md#the-theory) [web](https://example.org)\n"
+RIGHT = "# Start here: a *page*\n[itself](#start-here-a-page) [other](engine/docs/theory.md#the-theory) [web](https://example.org)\n"
 
 
 class PageLinksTest(unittest.TestCase):
@@ -16,7 +16,8 @@ class PageLinksTest(unittest.TestCase):
             root = Path(folder)
             (root / "engine/stats").mkdir(parents=True)
             (root / "engine/stats/moments.h").touch()
-            (root / "engine/THEORY.md").write_text(theory)
+            (root / "engine/docs").mkdir()
+            (root / "engine/docs/theory.md").write_text(theory)
             (root / "README.md").write_text(page)
             return list(page_links.problems(root))
 
@@ -30,7 +31,7 @@ class PageLinksTest(unittest.TestCase):
         self.assertEqual(self.found(RIGHT + "[gone](#gone)"), ["README.md: no heading for #gone"])
 
     def test_missing_header(self):
-        problem = "engine/THEORY.md: there is no header run/gone.h"
+        problem = "engine/docs/theory.md: there is no header run/gone.h"
         self.assertEqual(self.found(theory="# The theory\n`run/gone.h`"), [problem])
 
     def found_in_decision(self, page, index="- [D7](0007-a.md) A title\n"):

@@ -99,17 +99,17 @@ class Site(unittest.TestCase):
         self.assertEqual({place for place in lost if re.match(r"library/(class|struct)poesy.*(?<!-members)\.html", place)}, set())
 
     def test_every_markdown_page_of_people_is_there(self):
-        for source in ("engine/USER_GUIDE.md", "engine/THEORY.md", "results/gallery/6-ups/README.md", "bench/README.md",
+        for source in ("engine/docs/guide.md", "engine/docs/theory.md", "results/gallery/6-ups/README.md", "bench/README.md",
                        "engine/docs/decisions/0036-child-reads-first.md"):
             self.assertIn(source.replace(".md", ".html"), self.pages)
 
     def test_sections_are_in_the_navigation_of_each_page(self):
         text = (self.site / "results/gallery/6-ups/README.html").read_text(encoding="utf-8")
         self.assertEqual(re.findall(r"<h2>(.*?)</h2><ul>", text), ["Tutorial", "How to", "Reference", "Theory"])
-        self.assertIn('aria-current="page"', (self.site / "engine/THEORY.html").read_text(encoding="utf-8"))
+        self.assertIn('aria-current="page"', (self.site / "engine/docs/theory.html").read_text(encoding="utf-8"))
 
     def test_formulas_are_mathml(self):
-        text = (self.site / "engine/THEORY.html").read_text(encoding="utf-8")
+        text = (self.site / "engine/docs/theory.html").read_text(encoding="utf-8")
         self.assertGreater(text.count("<math"), 300)
         self.assertGreater(text.count('<math display="block"'), 10)
         self.assertNotRegex(re.sub(r"<pre>.*?</pre>|<annotation.*?</annotation>", "", text, flags=re.DOTALL), r"\$`|`\$|\$\$")
@@ -136,8 +136,8 @@ class Site(unittest.TestCase):
     def test_search_finds_in_a_browser_without_a_server(self):
         with tempfile.TemporaryDirectory() as profile:
             command = ["chromium", "--headless", "--no-sandbox", f"--user-data-dir={profile}", "--virtual-time-budget=10000", "--dump-dom"]
-            for words, expected in {"clopper pearson": "../engine/USER_GUIDE.html#machines-and-their-yield", "absentword": None}.items():
-                address = f"{(self.site / 'engine/THEORY.html').as_uri()}?q={words.replace(' ', '%20')}"
+            for words, expected in {"clopper pearson": "../../engine/docs/guide.html#machines-and-their-yield", "absentword": None}.items():
+                address = f"{(self.site / 'engine/docs/theory.html').as_uri()}?q={words.replace(' ', '%20')}"
                 shown = subprocess.run([*command, address], capture_output=True, text=True, timeout=120, check=True).stdout
                 found = re.search(r'<ol id="found">(.*?)</ol>', shown, re.DOTALL)[1]
                 self.assertEqual(re.findall(r'href="([^"]*)"', found)[:1], [expected] if expected else [])

@@ -5,7 +5,7 @@ from pathlib import Path
 from poesy_program import ProgramTest, main
 
 ROOT = Path(__file__).resolve().parents[2]
-REFERENCE = ROOT / "engine" / "STUDY_FILE.md"
+REFERENCE = ROOT / "engine" / "docs" / "study-file.md"
 
 
 class Reference(ProgramTest):

@@ -9,7 +9,7 @@ namespace poesy {
 
 /// Machines whose load is near the limit of 1: what they tell of rejects to come where one part is made coarser. A
 /// machine counts as a reject by degrees, from 0 to 1 within a window about the limit, so that effects too small to
-/// change a count show. THEORY.md, "A coarser part".
+/// change a count show. theory.md, "A coarser part".
 class NearLimit {
  public:
   /// Chooses `count` of these machines (ascending numbers) nearest to the limit, by their loads [the same number]:

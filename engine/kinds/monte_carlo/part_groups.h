@@ -7,7 +7,7 @@
 #include "engine/random/smoothed_values.h"
 #include "engine/study/plan.h"
 
-/// How much each part that was measured weighs in the density of the errors of a machine: derivation in THEORY.md,
+/// How much each part that was measured weighs in the density of the errors of a machine: derivation in theory.md,
 /// "What few parts leave open".
 namespace poesy {
 

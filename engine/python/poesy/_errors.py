@@ -1,4 +1,4 @@
-"""What can go wrong, each with the program's own sentence. The exit codes are those of engine/USER_GUIDE.md."""
+"""What can go wrong, each with the program's own sentence. The exit codes are those of engine/docs/guide.md."""
 
 from __future__ import annotations
 

@@ -136,7 +136,7 @@ def mechanism(
     ----------
     description
         Name of one that is built in ("2upr-rpu"), path of a mechanism's file, or what such a file holds as a dict, of which
-        ``format`` and ``version`` may be left out (engine/STUDY_FILE.md, "Mechanism files").
+        ``format`` and ``version`` may be left out (engine/docs/study-file.md, "Mechanism files").
     path
         Where to write the file of a dict; default: a folder that lives as long as the object.
 

@@ -36,7 +36,7 @@ def run(
     Parameters
     ----------
     study
-        A dict with what a study file holds (engine/STUDY_FILE.md); ``format`` and ``version`` may be left out, a
+        A dict with what a study file holds (engine/docs/study-file.md); ``format`` and ``version`` may be left out, a
         `Mechanism` may stand for its table, and files are relative to the current folder. Or the path of a study file.
     output
         The result file. Default: a file in a temporary folder, which is removed with the `Result`.

@@ -92,7 +92,7 @@ TEST(PolynomialScore, OfThreePointsIsAParabola) {
   EXPECT_NEAR(score(3.0) - 3.0 * score(1.0) + 3.0 * score(-1.0) - score(-3.0), 0.0, 1e-12);
 }
 
-/// THEORY.md has these: what the gradient by one uniform error lacks where it alone makes the rejects, and where the
+/// theory.md has these: what the gradient by one uniform error lacks where it alone makes the rejects, and where the
 /// other errors, normal with this standard deviation, make a part of them.
 TEST(PolynomialScore, LeavesOutWhatIsStated) {
   const Distribution uniform = Distribution::uniform(1.0);
