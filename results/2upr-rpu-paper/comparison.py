@@ -268,19 +268,20 @@ def limit(converged, response, size):
             *markdown(["tolerances", "mean", "root mean square", "95 % lie below", "the limit"], lines)]
 
 
-HEAD = """# The first paper beside poesy
+HEAD = """# The first paper compared with poesy
 
 X. Du, B. Wang, J. Zheng, Machines 2022, 10(11), 990. Written by `./regenerate`; no number is typed by hand: published
 figures come from [published/](published), ours from the exported tables of the studies in [studies/](studies).
 
-**converged**: Newton's method, and what does not settle is left out. **published procedure**: Gauss-Newton, 50
-iterations, the last iterate kept whether it settled or not. They differ where solves do not settle in 50 iterations: an
-unfinished iterate can be far off, so that a handful of draws makes an index. Where both differ from the paper, the printed
-equations, the inferred workspace or unknown draws are behind it: [README.md](README.md) goes through it table by table.
+**converged**: Newton's method; draws that do not settle are left out. **published procedure**: Gauss-Newton, 50 iterations, and the
+last iterate is kept whether it settled or not. They differ where solves do not settle in 50 iterations: an unfinished iterate can be far
+off, so that a few draws determine an index. Where both differ from the paper, the cause is the printed equations, the inferred workspace
+or the unknown draws: [README.md](README.md) explains it table by table.
 
-What the tables depend on: lengths are in metres, the base frame's origin is the paper's, and errors have the sizes stated, 1 mm and 1 degree in
-Figures 8 and 9 and Table 10. The scheme balances radians against metres at that origin, so in another unit, frame or size there are other numbers and
-another ranking; [2upr-rpu-sensitivity](../2upr-rpu-sensitivity/README.md) shows which, and a metric that has none of this.
+The tables depend on the unit, the frame and the size of the errors: lengths are in metres, the base frame's origin is the paper's, and
+errors have the stated sizes, 1 mm and 1 degree in Figures 8 and 9 and Table 10. The scheme weighs radians against metres at that origin,
+so another unit, frame or size gives other numbers and another ranking; [2upr-rpu-sensitivity](../2upr-rpu-sensitivity/README.md) shows
+them, and a metric without this dependence.
 """
 
 

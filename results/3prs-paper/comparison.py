@@ -116,14 +116,14 @@ def maxima(folder):
     within = {way: sum(abs(found[key] / theirs[key] - 1) <= 0.1 for key in theirs) for way, found in ways.items()}
     best, most = min(spread, key=spread.get), max(within, key=within.get)
     return ["## Figures 8-11: the largest errors of the tool tip on the first trajectory, errors of 0.1 mm", "",
-            "In mm. Neither the tool's length nor the limbs and components that carry the errors are printed; the last two "
-            f"columns are the closest of {len(ways)} readings, each maximum by itself.", "",
+            "In mm. Neither the tool's length nor the limbs and components with errors are printed; the last two columns are the "
+            f"closest of {len(ways)} readings (interpretations), for each maximum separately.", "",
             *markdown(["source", "axis", "printed", *shown, "closest", "its reading"], lines),
             f"**Not reproduced.** No single reading gives them all: the one whose worst deviation is smallest ({best}) is "
             f"off by a factor of {math.exp(spread[best]):.2g}; the one with most maxima within 10 % ({most}) has "
             f"{within[most]} of {len(theirs)}.", "",
-            "Of L at 0.1 mm the text gives nothing in x and 0.0154 in y, which is the figure of R in x. Those at 0.3 and 0.5 mm "
-            "(0.0526, 0.0878) are three and five times 0.0175, so both are left out here.", ""]
+            "For L at 0.1 mm the text gives no value in x, and 0.0154 in y, which is the value of R in x. The values at 0.3 and 0.5 mm "
+            "(0.0526, 0.0878) are three and five times 0.0175, so both values at 0.1 mm are left out here.", ""]
 
 
 def larger(folder):
@@ -144,8 +144,9 @@ def larger(folder):
     return ["## Figures 8-11: errors of 0.3 and 0.5 mm", "",
             "In mm, and in proportion to the maxima at 0.1 mm (ours: limb 1).", "",
             *markdown(["size, mm", "source", "axis", "printed", *SHOWN, "printed / at 0.1", "ours / at 0.1", "growth"], lines),
-            "Errors grow in proportion, printed and ours, with two exceptions among the printed: R in z at 0.3 mm, 0.084, is "
-            "three times 0.0280, not 0.0268, so that 0.0804 was meant; and L in z, printed 0.0003, 0.00032 and 0.0005.", ""]
+            "Printed and computed errors grow in proportion to the size, with two exceptions among the printed ones: R in z at 0.3 mm, "
+            "0.084, is three times 0.0280, not 0.0268, so 0.0804 was probably meant; and L in z is printed as 0.0003, 0.00032 and "
+            "0.0005.", ""]
 
 
 # What the paper says in words
@@ -170,9 +171,10 @@ def in_words(folder):
                 if not (signed and "independent" in name):
                     lines.append([place, claim, name, *verdict(check, own)])
     return ["## What the paper says in words", "",
-            f"Tool of {MAIN_TOOL}, errors of 0.1 mm, exact solves. Independent errors have no common sign, so what needs "
-            "directions is checked for the other two readings; two curves have the same direction, or the opposite one, where "
-            "they have it for two thirds of the way. In brackets: what a word without a number was taken to mean.", "",
+            f"Tool of {MAIN_TOOL}, errors of 0.1 mm, exact solves. Independent errors have no common sign, so claims "
+            "about directions are checked for the other two readings. Two curves count as having the same direction, or the "
+            "opposite one, if they have it for two thirds of the trajectory. Brackets state how a word without a number was "
+            "interpreted.", "",
             *markdown(["place", "claim", "reading", "", "found"], lines)]
 
 
@@ -211,9 +213,9 @@ def interaction(folder):
     header = [f"{name}, {what}" for name in ("all limbs", "limb 1")
               for what in ("exact, 0.1 mm", "exact, 0.5 mm", "first order, 0.5 mm")]
     return ["## Figures 16-18: coupled minus sum", "",
-            "Largest |coupled - sum of the single effects| of the tool tip in mm, of the largest coupled effect. First order "
+            "Largest |coupled - sum of the single effects| of the tool tip in mm, compared with the largest coupled effect. First order "
             "is a sum by construction. **Coupling is superposition**, to two thousandths of the effects at 0.1 mm; the rest grows "
-            "with the square of the size. What the paper calls offsetting is the adding of signs.", "",
+            "with the square of the size. The offsetting described in the paper is the addition of effects with opposite signs.", "",
             *markdown(["coupled", *header], lines)]
 
 
@@ -234,8 +236,8 @@ def cancelling(folder):
                     lines.append([name, subset, axis, f"{100 * opposite:.0f} %", f"{100 * own[most]:.0f} %",
                                   f"{curves.time[most]:.2f} s"])
     return ["## Which sources cancel, and where", "",
-            "Pairs on the first trajectory, errors of 0.1 mm: at how much of the way they are opposed, the largest share of "
-            "their single effects that is lost in the sum (100 %: they cancel), and when that is.", "",
+            "Pairs on the first trajectory, errors of 0.1 mm: on which share of the trajectory they are opposed, the largest share "
+            "of their single effects that is lost in the sum (100 %: they cancel), and the time at which that happens.", "",
             *markdown(["reading", "pair", "axis", "opposed", "largest cancellation", "at"], lines)]
 
 
@@ -257,13 +259,13 @@ def separation(folder):
     drive = by_kind(lines, lambda row: float(row["drive_share"]))
     removable = by_kind(lines, lambda row: float(row["removable"]))
     return ["## Section 4.2: what calibration can remove", "",
-            "Over 100 poses of the workspace, means of the three limbs. Drive share: how much of an error's effect enters "
-            "through the drives' equations rather than the constraints'. Removable: how much of it the drives can take away, "
-            "each pose by itself. The paper has 24 compensable errors, with c as one number for each limb, and 21 others.", "",
+            "Over 100 poses of the workspace, means of the three limbs. Drive share: the part of an error's effect that enters "
+            "through the drives' equations rather than the constraints'. Removable: the part that the drives can remove at each "
+            "pose separately. The paper has 24 compensable errors, with c as one number for each limb, and 21 others.", "",
             *markdown(["error", "the paper", "drive share", "removable"],
                       [[kind, paper[kind], f"{100 * drive[kind]:.1f} %", f"{100 * removable[kind]:.1f} %"]
                        for kind in sorted(drive, key=lambda kind: -removable[kind])]),
-            "The two classes are as printed, but for c, the position of the spherical joint on the platform: it enters both "
+            "The two classes are as printed, except for c, the position of the spherical joint on the platform: it enters both "
             "kinds of equations, and calibration leaves part of its effect.", ""]
 
 
@@ -287,11 +289,12 @@ def sensitivity(folder):
     linear_count = sum(int(float(row["linear"])) for row in verdicts)
     return ["## Sensitivity of the head over its workspace", "",
             "51 errors, 100 poses, 1000 draws each; normal errors of 0.1 mm and 0.01 deg; exact solves and first order on the "
-            "same draws. By how far an error of that size moves the tool tip, root mean square over draws, poses and limbs:", "",
+            "same draws. The table shows how far an error of that size moves the tool tip, root mean square "
+            "over draws, poses and limbs:", "",
             *markdown(["error", "tip, um"], [[kind, f"{effect[kind]:.1f}"]
                                              for kind in sorted(effect, key=lambda kind: -effect[kind])]),
-            f"First order serves for {linear_count} of {len(verdicts)} errors of this size: no index differs, nor the mean "
-            "shifts, by more than 1 % of the error's largest one.", ""]
+            f"First order is sufficient for {linear_count} of {len(verdicts)} errors of this size: no index differs, and no mean "
+            "shifts, by more than 1 % of the error's largest index.", ""]
 
 
 def machine(folder):
@@ -303,16 +306,16 @@ def machine(folder):
     lines = [[part, *(f"{scale * math.sqrt(squares[part][response]):.3g}" for response, scale in scales.items())]
              for part in squares]
     return ["## The 5-DOF machine: slides against head", "",
-            "Root mean squares of what all errors of the head and all of the slides do (mean squares of single errors added), "
-            "normal errors of 0.1 mm and 0.01 deg. The paper calls the slides secondary; with errors of equal size they are "
-            "not.", "",
+            "Root mean squares of the effects of all errors of the head and of all errors of the slides (sums of the mean squares of "
+            "single errors), normal errors of 0.1 mm and 0.01 deg. The paper calls the slides secondary; with errors of equal size "
+            "they are not.", "",
             *markdown(["errors of", "rotation, arcsec", "position, um", "tip, um"], lines)]
 
 
 def text(folder):
     return "\n".join([
-        "# San, Ding, Zhang, Wu 2023, beside ours", "",
-        "Written by `regenerate`; do not edit. What the paper prints stands in `published/`.", "",
+        "# San, Ding, Zhang, Wu 2023, compared with ours", "",
+        "Written by `regenerate`; do not edit. The printed numbers of the paper are in `published/`.", "",
         *maxima(folder), *larger(folder), *in_words(folder), *second_trajectory(folder), *interaction(folder),
         *cancelling(folder), *separation(folder), *sensitivity(folder), *machine(folder)]).rstrip() + "\n"
 
