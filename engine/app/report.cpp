@@ -45,13 +45,12 @@ int report(const ReportOptions& options) {
   const std::string named = options.report.empty() ? default_path(options.results) : options.report;
   const bool pdf = is_pdf(named);
   const std::string path = check_output_path(named, {"report", pdf ? is_pdf_report : may_be_replaced}, options.results);
-  const std::string browser = pdf ? printing_browser(path) : std::string();
   std::vector<ReportedResult> results;
   for (const std::string& result : options.results) results.push_back(reported(result));
   const std::string page = html_report(kind_of(results.front().stored).report, results);
   if (!pdf) {
     write_text(path, page);
-  } else if (write_pdf(path, page, browser) == Printed::interrupted) {
+  } else if (!write_pdf(path, page)) {
     return complain("interrupted: " + path + " is not written", kInterrupted);
   }
   print(printable_line(path) + "\n");

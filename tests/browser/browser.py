@@ -53,7 +53,7 @@ class Browser:
 
     def set_scheme(self, scheme):
         features = [{"name": "prefers-color-scheme", "value": scheme}]
-        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": features})
 
     def settle(self):
         """Waits until figures that follow a change of size are drawn: they are within two frames."""
@@ -89,6 +89,14 @@ class Browser:
         shot = self.driver.execute_cdp_cmd("Page.captureScreenshot", {"captureBeyondViewport": True, "clip": clip})
         Path(path).write_bytes(base64.b64decode(shot["data"]))
         self.settle()
+
+    def printed_width(self, paper):
+        """The width of the page on paper so wide; what is wider is printed smaller."""
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+        size = {"width": paper, "height": HEIGHT, "deviceScaleFactor": 1, "mobile": False}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        self.settle()
+        return self.run("return document.scrollingElement.scrollWidth")
 
     def print(self, path):
         printed = self.driver.execute_cdp_cmd("Page.printToPDF", {"paperWidth": 8.27, "paperHeight": 11.69})

@@ -22,6 +22,7 @@ ROOT = Path(__file__).resolve().parents[2]
 WEB = Path(os.environ["POESY_WEB"])
 SHOTS = Path(os.environ["POESY_SCREENSHOTS"])
 WIDTHS = (1400, 400)
+PAPER = 680  # A4 without its margins
 MOST_BYTES = 3_000_000
 MOST_SECONDS = 30  # ten times what is asked for: a busy machine is no reason to fail
 
@@ -65,6 +66,7 @@ class PageTest(unittest.TestCase):
         self.browser.screenshot(SHOTS / f"{page.stem}-{width}-dark.png")
         if width == max(WIDTHS):
             self.browser.print(SHOTS / f"{page.stem}.pdf")
+            self.assertLessEqual(self.browser.printed_width(PAPER), PAPER)
 
     def check_silent(self, page):
         self.assertEqual(self.browser.console(), [])

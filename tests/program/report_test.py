@@ -160,7 +160,7 @@ class Report(ProgramTest):
             pdf = (self.folder / "r.pdf").read_bytes()
             self.assertTrue(pdf.startswith(b"%PDF-"))
             self.assertGreater(len(pdf), 20000)
-        temporary = self.folder / "t #1%20"
+        temporary = self.folder / "it's #1%20 $HOME"
         temporary.mkdir()
         done = self.printed({"TMPDIR": str(temporary)}, "r.h5", "-o", "r.pdf")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -178,7 +178,7 @@ class Report(ProgramTest):
     def test_is_not_written_where_the_browser_fails(self):
         temporary = self.folder / "tmp"
         temporary.mkdir()
-        for script, said in (("echo no display >&2; exit 1", b"no display"), ("exit 0", b"said: nothing"),
+        for script, said in (("echo no display >&2; exit 1", b"no display"), ("exit 0", b"said: nothing"), ("kill -9 $$", b"said: nothing"),
                              ('for a; do case $a in --print-to-pdf=*) echo %PDF-1.4 > "${a#*=}";; esac; done', b"was not")):
             with self.subTest(script):
                 done = self.printed(self.browser(script) | {"TMPDIR": str(temporary)}, "r.h5", "-o", "r.pdf")
@@ -192,10 +192,10 @@ class Report(ProgramTest):
         temporary.mkdir()
         environment = self.browser(f"echo $$ > {self.folder}/id; exec sleep 100") | {"TMPDIR": str(temporary)}
         started = subprocess.Popen([PROGRAM, "report", "r.h5", "-o", "r.pdf"], cwd=self.folder, stderr=subprocess.PIPE,
-                                   env=os.environ | environment)
+                                   env=os.environ | environment, start_new_session=True)
         while not (self.folder / "id").exists() or not (self.folder / "id").read_text().endswith("\n"):
             time.sleep(0.02)
-        started.send_signal(signal.SIGINT)
+        os.killpg(started.pid, signal.SIGINT)  # as Ctrl-C does
         self.assertIn(b"is not written", started.communicate(timeout=60)[1])
         self.assertEqual(started.returncode, 4)
         with self.assertRaises(ProcessLookupError):
