@@ -12,11 +12,6 @@
 namespace poesy::app {
 namespace {
 
-/// "poesy run" or "poesy"
-std::string title(const CLI::App& command) {
-  return command.get_parent() == nullptr ? "poesy" : "poesy " + command.get_name();
-}
-
 std::string see_help(const CLI::App& command) { return "see " + title(command) + " --help"; }
 
 std::string shown_name(const CLI::Option& option) {
@@ -170,7 +165,12 @@ std::string heading(const CLI::Option& option) {
   return is_repeated(option) ? text + " ..." : text;
 }
 
+std::string title(const CLI::App& command) {
+  return command.get_parent() == nullptr ? "poesy" : "poesy " + command.get_name();
+}
+
 std::string synopsis(const CLI::App& command) {
+  if (command.get_parent() == nullptr) return "poesy COMMAND [arguments] [options]";
   std::string by_place;
   std::string by_name;
   for (const CLI::Option* option : command.get_options()) {
@@ -180,7 +180,7 @@ std::string synopsis(const CLI::App& command) {
       by_name += " " + names_of(*option).front() + " " + value_of(*option);
     }
   }
-  return "poesy " + command.get_name() + by_place + by_name + " [options]";
+  return title(command) + by_place + by_name + " [options]";
 }
 
 bool has_unknown_command(const Command& program) {

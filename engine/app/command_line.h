@@ -79,7 +79,6 @@ Command& add_models(Command& program);
 Command& add_template(Command& program);
 Command& add_tolerances(Command& program);
 Command& add_completion(Command& program);
-Command& add_man(Command& program);
 Command& add_help(Command& program);
 Command& add_version(Command& program);
 
@@ -98,11 +97,14 @@ bool is_repeated(const CLI::Option& option);
 /// "-o, --output RESULT.h5", "SHARD.h5 ..."
 std::string heading(const CLI::Option& option);
 
+/// "poesy run", or "poesy".
+std::string title(const CLI::App& command);
+
 /// "poesy evaluate STUDY.toml --poses P.csv --errors E.csv [options]"
 std::string synopsis(const CLI::App& command);
 
-/// What --help prints of the program or of one command, in as many columns as stdout has.
-std::string help_text(const Command& command);
+/// Prints help of the program and of its commands, in as many columns as stdout has.
+std::shared_ptr<CLI::FormatterBase> help_formatter();
 
 /// What is wrong with the command line that CLI11 refused, and what to do: "problem; remedy". Names the nearest command
 /// or option that there is.

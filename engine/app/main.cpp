@@ -20,9 +20,7 @@ namespace {
 std::string version_text() { return "poesy " + std::string(poesy_version()) + " (" + std::string(git_commit()) + ")"; }
 
 void describe_program(Command& program) {
-  program.formatter_fn([](const CLI::App* app, const std::string&, CLI::AppFormatMode) {
-    return help_text(dynamic_cast<const Command&>(*app));
-  });
+  program.formatter(help_formatter());
   program.set_help_flag("-h,--help", "print this help");
   program.set_version_flag("-v,--version", version_text(), "print the version");
   program.require_subcommand(1);
@@ -45,7 +43,8 @@ void add_commands(Command& program) {
   group("Prepare a study", {add_models, add_template, add_check});
   group("Compute", {add_run, add_merge, add_evaluate});
   group("Look at results", {add_show, add_report, add_tolerances, add_replay, add_export, add_verify});
-  group(kAboutTheProgram, {add_help, add_version, add_completion, add_man});
+  group(kAboutTheProgram, {add_help, add_version, add_completion});
+  program.set_help_all_flag("--help-all", "print the help of all commands");
 }
 
 /// HDF5 1.10 and others crash where they find no memory for a beginning.
@@ -86,7 +85,7 @@ int parse_and_run(int argc, char** argv) {
   describe_program(program);
   add_commands(program);
   if (argc < 2) {
-    print(help_text(program));
+    print(program.help());
     return kDone;
   }
   try {

@@ -30,7 +30,7 @@ CLONE = "root/poesy"  # inside the root
 ERRORS = 25  # of the published study
 MOST_PACKAGES = {"bookworm": 155, "trixie": 195}  # 143 and 184 are needed
 FOR_TESTS_ALONE = {"libgtest-dev", "libbenchmark-dev", "npm", "nodejs", "octave", "octave-dev", "chromium", "doxygen", "pandoc",
-                   "python3-numpy", "gnuplot-nox", "zsh", "man-db"}
+                   "python3-numpy", "gnuplot-nox", "zsh", "man-db", "help2man"}
 FOR_PYTHON = {"python3-numpy"}  # of these
 MOST_FOR_PYTHON = {"bookworm": 265, "trixie": 310}  # 253 and 296 are needed
 ENVIRONMENT = "build/python-venv"

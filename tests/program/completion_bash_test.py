@@ -35,7 +35,7 @@ class Bash(ProgramTest):
         return set(done.stdout.split("\n")) - {""}
 
     def test_commands(self):
-        self.assertLessEqual({"run", "check", "show", "template", "completion", "man"}, self.offers(""))
+        self.assertLessEqual({"run", "check", "show", "template", "completion"}, self.offers(""))
         self.assertEqual(self.offers("te"), {"template"})
         self.assertEqual(self.offers("--v"), {"--version"})
 
@@ -43,7 +43,7 @@ class Bash(ProgramTest):
         self.assertEqual(self.offers("run", "--m"), {"--max-wall"})
         self.assertLessEqual({"--threads", "--resume", "-o", "--output", "--help"}, self.offers("run", "study.toml", "-"))
         self.assertNotIn("--resume", self.offers("show", "-"))
-        self.assertEqual(self.offers("man", ""), {"-h", "--help"})
+        self.assertEqual(self.offers("version", ""), {"-h", "--help"})
 
     def test_files(self):
         self.assertEqual(self.offers("run", ""), {"one.toml", "two words.toml", "a*b.toml", "studies"})

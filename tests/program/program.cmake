@@ -57,6 +57,7 @@ foreach(look IN ITEMS terminal completion_bash completion_zsh man_page)
   program_test(${look} unit)
   set_tests_properties(program.${look} PROPERTIES SKIP_RETURN_CODE 77)
 endforeach()
+set_property(TEST program.man_page APPEND PROPERTY ENVIRONMENT POESY_MAN_PAGE=${PROJECT_BINARY_DIR}/engine/app/share/poesy.1)
 set_property(TEST program.terminal APPEND PROPERTY ENVIRONMENT POESY_SCREENS=${CMAKE_CURRENT_BINARY_DIR}/screens)
 set_tests_properties(program.full_disk PROPERTIES SKIP_RETURN_CODE 77)
 # Sanitizers find fault with memory and threads of Open MPI's own; ranks_test runs ranks as threads under them.

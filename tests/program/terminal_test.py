@@ -125,7 +125,7 @@ class Terminal(ProgramTest):
         environment = {**os.environ, "TERM": "xterm", "CLICOLOR_FORCE": "1"}
         environment.pop("NO_COLOR", None)
         for command in ("run study.toml -o again.h5", "check study.toml", "show r.h5", "models", "models 3-prs", "--help",
-                        "run --help", "template 3-prs", "export r.h5 -d t", "verify r.h5", "man", "completion bash",
+                        "run --help", "template 3-prs", "export r.h5 -d t", "verify r.h5", "--help-all", "completion bash",
                         "completion zsh", "show nothing.h5", "run", "rum", "show r.h5 --response x", "--version",
                         "tolerances r.h5 --response linear_deformation --extrapolate -d tolerances"):
             with self.subTest(command=command):
