@@ -1,6 +1,6 @@
 #pragma once
 
-/// What a part costs that is made to a tolerance. The laws are those of the literature on tolerance allocation
+/// The cost of a part that is made to a tolerance. The laws are those of the literature on tolerance allocation
 /// (Chase, Greenwood, Loosli and Hauglund 1990, Manuf. Rev. 3, 49-59).
 namespace poesy {
 
@@ -42,16 +42,14 @@ class CostLaw {
   /// The size at which cost + price x size is least, among all sizes > 0; infinite for price 0. Preconditions: price
   /// >= 0, the law is not constant.
   double cheapest_size(double price, Stacking stacking) const;
-  /// What is left of the cost at any large tolerance.
+  /// The part of the cost that no tolerance saves.
   double fixed() const { return fixed_; }
-  bool is_constant() const { return form_ == Form::constant; }  ///< Whether no tolerance costs more than another.
-
-  bool operator==(const CostLaw&) const = default;  ///< Same form and numbers.
+  bool is_constant() const { return form_ == Form::constant; }  ///< Whether all tolerances cost the same.
 
  private:
   enum class Form { constant, power, exponential };
   CostLaw(Form form, double fixed, double b, double shape);
-  /// Exponent of the size in 1 / size^exponent.
+  /// The exponent q of a cost that falls as 1 / size^q.
   double exponent(Stacking stacking) const;
 
   Form form_;

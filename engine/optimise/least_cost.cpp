@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "engine/base/contract.h"
-#include "engine/optimise/chosen_processes.h"
-#include "engine/optimise/process_search.h"
+#include "engine/optimise/branch_and_bound.h"
+#include "engine/optimise/convex_programme.h"
 #include "engine/optimise/sized_problem.h"
 
 namespace poesy {
@@ -16,7 +16,7 @@ AtBound bound_of(const Process& process, double tolerance) {
   return tolerance == process.hi ? AtBound::upper : AtBound::none;
 }
 
-/// What follows from the tolerances alone.
+/// Fills in what follows from the tolerances alone.
 void complete(const AllocationProblem& problem, LeastCost& found) {
   for (std::size_t i = 0; i < problem.parts.size(); ++i) {
     found.bound.push_back(bound_of(problem.parts[i][found.best.process[i]], found.best.tolerance[i]));
@@ -25,9 +25,9 @@ void complete(const AllocationProblem& problem, LeastCost& found) {
 }
 
 LeastCost without_choice(const AllocationProblem& problem, const SizedProblem& sized) {
-  // The lowest bounds keep the limits: what was found so.
-  const ChosenAllocation chosen = allocate_chosen(problem, sized, {}).value();
-  return {chosen.allocation, chosen.lower_bound, {}, chosen.multiplier, chosen.multiplier, {0, 0.0}, {}};
+  // It has a value, because sized_problem() found that the lowest bounds keep the limits.
+  const ConvexSolution found = solve_convex(problem, sized, {}).value();
+  return {found.allocation, found.lower_bound, {}, found.multiplier, found.multiplier, {0, 0.0}, {}};
 }
 
 }  // namespace
@@ -43,11 +43,11 @@ std::vector<Process> available_values(const CostLaw& cost, std::span<const doubl
 AllocationOutcome least_cost(const AllocationProblem& problem, const SearchOptions& options) {
   const std::vector<double> effects = effects_by_room(problem.limits);
   const auto sized = sized_problem(problem, effects);
-  if (const auto* broken = std::get_if<CannotBeMet>(&sized)) return *broken;
-  if (const auto* endless = std::get_if<WithoutEnd>(&sized)) return *endless;
+  if (const auto* infeasible = std::get_if<Infeasible>(&sized)) return *infeasible;
+  if (const auto* unbounded = std::get_if<Unbounded>(&sized)) return *unbounded;
   const SizedProblem& ready = std::get<SizedProblem>(sized);
-  const bool choice = std::ranges::any_of(ready.menus, [](const auto& menu) { return menu.size() > 1; });
-  LeastCost found = choice ? search_processes(problem, ready, options) : without_choice(problem, ready);
+  const bool choice = std::ranges::any_of(ready.processes, [](const auto& processes) { return processes.size() > 1; });
+  LeastCost found = choice ? branch_and_bound(problem, ready, options) : without_choice(problem, ready);
   complete(problem, found);
   return found;
 }

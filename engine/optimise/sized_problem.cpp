@@ -15,19 +15,19 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-std::vector<std::vector<SizedProcess>> menus_of(const AllocationProblem& problem) {
+std::vector<std::vector<SizedProcess>> processes_by_size(const AllocationProblem& problem) {
   const Stacking stacking = problem.limits.stacking;
-  std::vector<std::vector<SizedProcess>> menus(problem.parts.size());
-  for (std::size_t i = 0; i < menus.size(); ++i) {
+  std::vector<std::vector<SizedProcess>> processes(problem.parts.size());
+  for (std::size_t i = 0; i < processes.size(); ++i) {
     for (std::size_t p = 0; p < problem.parts[i].size(); ++p) {
       const Process& process = problem.parts[i][p];
       POESY_EXPECTS(process.lo >= 0.0 && process.hi >= process.lo);
-      menus[i].push_back({process.cost, size_of(process.lo, stacking), size_of(process.hi, stacking), p});
+      processes[i].push_back({process.cost, size_of(process.lo, stacking), size_of(process.hi, stacking), p});
     }
-    POESY_EXPECTS(!menus[i].empty());
-    std::ranges::sort(menus[i], {}, [](const SizedProcess& a) { return std::tuple(a.lo, a.hi, a.process); });
+    POESY_EXPECTS(!processes[i].empty());
+    std::ranges::sort(processes[i], {}, [](const SizedProcess& a) { return std::tuple(a.lo, a.hi, a.index); });
   }
-  return menus;
+  return processes;
 }
 
 std::vector<double> lowest_tolerances(const SizedProblem& problem) {
@@ -36,13 +36,13 @@ std::vector<double> lowest_tolerances(const SizedProblem& problem) {
   return tolerance;
 }
 
-/// The worst limit that the lowest bounds break.
-std::optional<CannotBeMet> broken(const ToleranceLimits& limits, const SizedProblem& problem) {
+/// The limit that the lowest bounds break most; none where they keep all.
+std::optional<Infeasible> find_infeasible(const ToleranceLimits& limits, const SizedProblem& problem) {
   if (limits.count() == 0) return std::nullopt;
   const std::vector<double> tolerance = lowest_tolerances(problem);
   const LimitUse worst = worst_use(limits, tolerance);
   if (worst.share <= 1.0) return std::nullopt;
-  return CannotBeMet{worst.limit, limits.need(worst.limit, tolerance), limits.room[worst.limit]};
+  return Infeasible{worst.limit, limits.need(worst.limit, tolerance), limits.room[worst.limit]};
 }
 
 std::vector<double> largest_effects(std::span<const double> effects, std::size_t parts) {
@@ -53,27 +53,27 @@ std::vector<double> largest_effects(std::span<const double> effects, std::size_t
   return largest;
 }
 
-/// Gives parts without effect their largest sizes, and processes whose cost does not depend on the tolerance their
-/// lowest ones.
-std::vector<std::size_t> settle_what_is_free(SizedProblem& problem) {
-  std::vector<std::size_t> endless;
+/// Fixes parts without effect at their largest sizes, and processes whose cost does not depend on the tolerance at
+/// their lowest ones. The parts without effect that have no largest size.
+std::vector<std::size_t> fix_free_parts(SizedProblem& problem) {
+  std::vector<std::size_t> unbounded;
   for (std::size_t i = 0; i < problem.parts(); ++i) {
     const bool effect = problem.largest_effect[i] > 0.0;
     bool ends = true;
-    for (SizedProcess& process : problem.menus[i]) {
+    for (SizedProcess& process : problem.processes[i]) {
       if (effect && process.cost.is_constant()) process.hi = process.lo;
       if (effect) continue;
       ends = ends && process.hi < kInfinity;
       process.lo = process.hi;
     }
-    if (!ends) endless.push_back(i);
+    if (!ends) unbounded.push_back(i);
   }
-  return endless;
+  return unbounded;
 }
 
-/// No size is larger than what a limit leaves when all other parts are at their lowest. A little more is allowed, so
-/// that rounding makes no bound that the problem has not.
-void bound_by_limits(SizedProblem& problem) {
+/// Bounds each size by what limits leave when all other parts are at their lowest. A little more is allowed, so that
+/// rounding makes no bound that the problem does not have.
+void tighten_bounds(SizedProblem& problem) {
   const std::vector<double> lo = lowest(problem);
   std::vector<double> largest(problem.parts(), kInfinity);
   for (std::size_t l = 0; l < problem.limits; ++l) {
@@ -84,31 +84,31 @@ void bound_by_limits(SizedProblem& problem) {
     }
   }
   for (std::size_t i = 0; i < largest.size(); ++i) {
-    auto& menu = problem.menus[i];
+    auto& processes = problem.processes[i];
     const double most = largest[i] * (1.0 + 4.0 * kEpsilon);  // lo and what is left are rounded
     if (most == kInfinity) continue;
-    std::erase_if(menu, [&](const SizedProcess& process) { return process.lo > most; });
-    for (SizedProcess& process : menu) process.hi = std::fmin(process.hi, most);
+    std::erase_if(processes, [&](const SizedProcess& process) { return process.lo > most; });
+    for (SizedProcess& process : processes) process.hi = std::fmin(process.hi, most);
   }
 }
 
 /// Fixes the parts of limits that their lowest bounds fill up to rounding. The first limit where that costs an infinite
-/// amount.
-std::optional<std::size_t> fill(SizedProblem& problem) {
+/// amount; none otherwise.
+std::optional<std::size_t> fix_tight_limits(SizedProblem& problem) {
   const std::vector<double> lo = lowest(problem);
   for (std::size_t l = 0; l < problem.limits; ++l) {
     const auto row = problem.row(l);
     if (dot(row, lo) <= 1.0 - 4.0 * rounding_margin(problem.parts())) continue;
-    problem.full[l] = 1;
+    problem.tight[l] = 1;
     for (std::size_t i = 0; i < row.size(); ++i) {
       if (row[i] == 0.0) continue;
-      auto& menu = problem.menus[i];
-      std::erase_if(menu, [&](const SizedProcess& process) { return process.lo > lo[i]; });
-      for (SizedProcess& process : menu) process.hi = process.lo;
+      auto& processes = problem.processes[i];
+      std::erase_if(processes, [&](const SizedProcess& process) { return process.lo > lo[i]; });
+      for (SizedProcess& process : processes) process.hi = process.lo;
       const auto finite = [&](const SizedProcess& process) {
         return std::isfinite(process.cost.at(tolerance_of(process.lo, problem.stacking)));
       };
-      if (std::ranges::none_of(menu, finite)) return l;
+      if (std::ranges::none_of(processes, finite)) return l;
     }
   }
   return std::nullopt;
@@ -147,34 +147,38 @@ double dot(std::span<const double> a, std::span<const double> b) {
 
 std::vector<double> lowest(const SizedProblem& problem) {
   std::vector<double> lo;
-  for (const auto& menu : problem.menus) lo.push_back(menu.front().lo);
+  for (const auto& processes : problem.processes) lo.push_back(processes.front().lo);
   return lo;
 }
 
-std::variant<SizedProblem, CannotBeMet, WithoutEnd> sized_problem(const AllocationProblem& problem,
-                                                                  std::span<const double> effects) {
+std::variant<SizedProblem, Infeasible, Unbounded> sized_problem(const AllocationProblem& problem,
+                                                                std::span<const double> effects) {
   const ToleranceLimits& limits = problem.limits;
   POESY_EXPECTS(limits.parts == problem.parts.size());
-  SizedProblem sized{limits.stacking,   limits.count(),
-                     effects,           largest_effects(effects, limits.parts),
-                     menus_of(problem), std::vector<char>(limits.count(), 0)};
-  if (const auto worst = broken(limits, sized)) return *worst;
-  WithoutEnd endless{settle_what_is_free(sized)};
-  if (!endless.parts.empty()) return endless;
-  bound_by_limits(sized);
-  if (const auto l = fill(sized)) return CannotBeMet{*l, limits.need(*l, lowest_tolerances(sized)), limits.room[*l]};
+  SizedProblem sized{limits.stacking,
+                     limits.count(),
+                     effects,
+                     largest_effects(effects, limits.parts),
+                     processes_by_size(problem),
+                     std::vector<char>(limits.count(), 0)};
+  if (const auto worst = find_infeasible(limits, sized)) return *worst;
+  Unbounded unbounded{fix_free_parts(sized)};
+  if (!unbounded.parts.empty()) return unbounded;
+  tighten_bounds(sized);
+  if (const auto l = fix_tight_limits(sized))
+    return Infeasible{*l, limits.need(*l, lowest_tolerances(sized)), limits.room[*l]};
   return sized;
 }
 
-std::optional<SizedProblem> with_chosen(const SizedProblem& problem, std::span<const std::size_t> places) {
-  SizedProblem chosen{problem.stacking, problem.limits, problem.effects, problem.largest_effect, {}, problem.full};
-  for (std::size_t i = 0; i < problem.parts(); ++i) chosen.menus.push_back({problem.menus[i][places[i]]});
+std::optional<SizedProblem> with_processes(const SizedProblem& problem, std::span<const std::size_t> choice) {
+  SizedProblem chosen{problem.stacking, problem.limits, problem.effects, problem.largest_effect, {}, problem.tight};
+  for (std::size_t i = 0; i < problem.parts(); ++i) chosen.processes.push_back({problem.processes[i][choice[i]]});
   const std::vector<double> lo = lowest(chosen);
   const double margin = rounding_margin(chosen.parts());
   for (std::size_t l = 0; l < chosen.limits; ++l) {
     if (dot(chosen.row(l), lo) > 1.0 + margin) return std::nullopt;
   }
-  if (fill(chosen)) return std::nullopt;
+  if (fix_tight_limits(chosen)) return std::nullopt;
   return chosen;
 }
 

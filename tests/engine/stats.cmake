@@ -18,9 +18,9 @@ poesy_test(stats_statistical_test LABELS statistical
                    engine/stats/squared_differences_statistical_test.cpp
            LINKS poesy_stats poesy_random Boost::headers)
 poesy_test(least_cost_test LABELS unit
-           SOURCES engine/optimise/cost_law_test.cpp engine/optimise/it_grade_test.cpp
-                   engine/optimise/least_cost_test.cpp engine/optimise/loosest_test.cpp
-                   engine/optimise/process_search_test.cpp engine/optimise/tolerance_limits_test.cpp
+           SOURCES engine/optimise/branch_and_bound_test.cpp engine/optimise/cost_law_test.cpp
+                   engine/optimise/least_cost_test.cpp engine/optimise/max_tolerances_test.cpp
+                   engine/optimise/tolerance_limits_test.cpp
            LINKS poesy_optimise)
 poesy_test(least_cost_property_test LABELS property DATA
            SOURCES engine/optimise/least_cost_property_test.cpp

@@ -7,9 +7,9 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
+#include "engine/kinds/allocation/it_grade.h"
 #include "engine/kinds/allocation/parts.h"
-#include "engine/optimise/it_grade.h"
-#include "engine/optimise/loosest.h"
+#include "engine/optimise/max_tolerances.h"
 
 namespace poesy {
 namespace {
@@ -209,11 +209,10 @@ ToleranceLimits ToleranceProgramme::limits(const MeanSquares& squares, std::span
                                            double wider) const {
   const std::vector<ResponseLimit>& stated = study_.analysis.limits;
   const std::size_t poses = squares.value.size() / stated.size();
-  ToleranceLimits limits{
-      .stacking = Stacking::root_sum_square,
-      .parts = size(),
-      .effects = part_effects(Stacking::root_sum_square, squares.slope, study_.analysis.factors.size(), drawn_),
-      .room = std::vector<double>(squares.value.size())};
+  ToleranceLimits limits{.stacking = Stacking::root_sum_square,
+                         .parts = size(),
+                         .effects = part_effects(squares.slope, study_.analysis.factors.size(), drawn_),
+                         .room = std::vector<double>(squares.value.size())};
   for (std::size_t l = 0; l < limits.count(); ++l) {
     const double most = share * wider * stated[l / poses].most;
     limits.room[l] = most * most - squares.value[l] + limits.need(l, at);
@@ -221,9 +220,9 @@ ToleranceLimits ToleranceProgramme::limits(const MeanSquares& squares, std::span
   return limits;
 }
 
-std::vector<std::vector<Process>> ToleranceProgramme::within(const Reach& reach,
+std::vector<std::vector<Process>> ToleranceProgramme::within(const TrustRegion& region,
                                                              std::vector<std::vector<std::size_t>>& kept) const {
-  if (reach.from.empty()) {
+  if (region.centre.empty()) {
     for (const auto& list : processes_) {
       kept.emplace_back();
       for (std::size_t k = 0; k < list.size(); ++k) kept.back().push_back(k);
@@ -233,7 +232,7 @@ std::vector<std::vector<Process>> ToleranceProgramme::within(const Reach& reach,
   const std::vector<double> lowest = this->lowest().tolerance;
   std::vector<std::vector<Process>> near;
   for (std::size_t i = 0; i < size(); ++i) {
-    const double most = std::max(reach.growth * reach.from[i], lowest[i]);
+    const double most = std::max(region.growth * region.centre[i], lowest[i]);
     near.emplace_back();
     kept.emplace_back();
     for (std::size_t k = 0; k < processes_[i].size(); ++k) {
@@ -246,12 +245,12 @@ std::vector<std::vector<Process>> ToleranceProgramme::within(const Reach& reach,
   return near;
 }
 
-ChoiceOfTolerances ToleranceProgramme::least(const ToleranceLimits& limits, const Reach& reach) const {
-  constexpr SearchOptions kSearch{.relative_gap = 1e-6, .alternatives = 0, .most_nodes = 5000};
+ChoiceOfTolerances ToleranceProgramme::least(const ToleranceLimits& limits, const TrustRegion& region) const {
+  constexpr SearchOptions kSearch{.relative_gap = 1e-6, .alternatives = 0, .max_nodes = 5000};
   std::vector<std::vector<std::size_t>> kept;
-  AllocationOutcome outcome = least_cost({limits, within(reach, kept)}, kSearch);
-  if (const auto* broken = std::get_if<CannotBeMet>(&outcome)) return *broken;
-  if (const auto* endless = std::get_if<WithoutEnd>(&outcome)) return *endless;
+  AllocationOutcome outcome = least_cost({limits, within(region, kept)}, kSearch);
+  if (const auto* broken = std::get_if<Infeasible>(&outcome)) return *broken;
+  if (const auto* endless = std::get_if<Unbounded>(&outcome)) return *endless;
   const LeastCost& found = std::get<LeastCost>(outcome);
   ChosenTolerances chosen{{found.best.tolerance, {}, 0.0}, found.lower_bound, found.multiplier};
   if (std::ranges::all_of(chosen.multiplier, [](double one) { return one == 0.0; })) {
@@ -289,7 +288,7 @@ std::vector<double> ToleranceProgramme::proportions(const ToleranceLimits& limit
   return list;
 }
 
-ChoiceOfTolerances ToleranceProgramme::loosest(const ToleranceLimits& limits) const {
+ChoiceOfTolerances ToleranceProgramme::largest(const ToleranceLimits& limits) const {
   std::vector<ToleranceRange> ranges;
   for (const auto& list : processes_) {
     ranges.push_back({std::ranges::min(list, {}, &Process::lo).lo, std::ranges::max(list, {}, &Process::hi).hi});
@@ -297,12 +296,12 @@ ChoiceOfTolerances ToleranceProgramme::loosest(const ToleranceLimits& limits) co
   if (std::ranges::any_of(limits.room, [](double room) { return room <= 0.0; })) {
     const std::vector<double> least = lowest().tolerance;
     const std::size_t worst = worst_use(limits, least).limit;
-    return CannotBeMet{worst, limits.need(worst, least), limits.room[worst]};
+    return Infeasible{worst, limits.need(worst, least), limits.room[worst]};
   }
-  const auto outcome = as_loose_as_limits_allow(limits, proportions(limits), ranges);
-  if (const auto* broken = std::get_if<CannotBeMet>(&outcome)) return *broken;
-  const TolerancePoint point = at_most(std::get<Loosest>(outcome).tolerance);
-  WithoutEnd endless;
+  const auto outcome = maximise_tolerances(limits, proportions(limits), ranges);
+  if (const auto* broken = std::get_if<Infeasible>(&outcome)) return *broken;
+  const TolerancePoint point = at_most(std::get<MaxTolerances>(outcome).tolerance);
+  Unbounded endless;
   for (std::size_t i = 0; i < size(); ++i) {
     if (std::isinf(point.tolerance[i])) endless.parts.push_back(i);
   }
@@ -310,8 +309,8 @@ ChoiceOfTolerances ToleranceProgramme::loosest(const ToleranceLimits& limits) co
   return ChosenTolerances{point, kNaN, {}};
 }
 
-ChoiceOfTolerances ToleranceProgramme::choose(const ToleranceLimits& limits, const Reach& reach) const {
-  return asked_of<AllocationOptions>(study_.analysis).aim == Aim::least_cost ? least(limits, reach) : loosest(limits);
+ChoiceOfTolerances ToleranceProgramme::choose(const ToleranceLimits& limits, const TrustRegion& region) const {
+  return asked_of<AllocationOptions>(study_.analysis).aim == Aim::least_cost ? least(limits, region) : largest(limits);
 }
 
 Study ToleranceProgramme::at(std::span<const double> tolerance) const {

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/kinds/allocation/drawn_part.h"
 #include "engine/kinds/allocation/mean_squares.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/model/model.h"
@@ -30,14 +31,14 @@ struct ChosenTolerances : TolerancePoint {
   std::vector<double> multiplier;  ///< [L] what one unit more of room would save; empty for an aim without costs
 };
 
-/// How far tolerances may go from those at which mean squares were found.
-struct Reach {
-  std::span<const double> from = {};                        ///< [N]; empty: anywhere
-  double growth = std::numeric_limits<double>::infinity();  ///< at most times these
+/// The trust region around the tolerances at which mean squares were found.
+struct TrustRegion {
+  std::span<const double> centre = {};                      ///< [N] these tolerances; empty: no region
+  double growth = std::numeric_limits<double>::infinity();  ///< tolerances are at most so many times these
 };
 
 /// What a programme gives: tolerances, or why there are none.
-using ChoiceOfTolerances = std::variant<ChosenTolerances, CannotBeMet, WithoutEnd>;
+using ChoiceOfTolerances = std::variant<ChosenTolerances, Infeasible, Unbounded>;
 
 /// The parts of a study as an optimiser sees them.
 class ToleranceProgramme {
@@ -69,16 +70,17 @@ class ToleranceProgramme {
   ToleranceLimits limits(const MeanSquares& squares, std::span<const double> at, double share,
                          double wider = 1.0) const;
   /// The tolerances by the study's aim.
-  ChoiceOfTolerances choose(const ToleranceLimits& limits, const Reach& reach) const;
+  ChoiceOfTolerances choose(const ToleranceLimits& limits, const TrustRegion& region) const;
 
   /// The study with these tolerances [N].
   Study at(std::span<const double> tolerance) const;
 
  private:
-  std::vector<std::vector<Process>> within(const Reach& reach, std::vector<std::vector<std::size_t>>& kept) const;
+  std::vector<std::vector<Process>> within(const TrustRegion& region,
+                                           std::vector<std::vector<std::size_t>>& kept) const;
   double cost_of(const TolerancePoint& point) const;
-  ChoiceOfTolerances least(const ToleranceLimits& limits, const Reach& reach) const;
-  ChoiceOfTolerances loosest(const ToleranceLimits& limits) const;
+  ChoiceOfTolerances least(const ToleranceLimits& limits, const TrustRegion& region) const;
+  ChoiceOfTolerances largest(const ToleranceLimits& limits) const;
   std::vector<double> proportions(const ToleranceLimits& limits) const;
 
   const Study& study_;

@@ -19,7 +19,7 @@ std::string ToleranceSearch::row_text(std::size_t row) const {
   return fmt::format("{} at pose {}", run_.study.model().responses[limit.response].name, row % poses);
 }
 
-void ToleranceSearch::refuse(const CannotBeMet& broken) const {
+void ToleranceSearch::refuse(const Infeasible& broken) const {
   const std::size_t poses = run_.poses.size();
   const ResponseLimit& limit = run_.study.analysis.limits[broken.limit / poses];
   const Response& response = run_.study.model().responses[limit.response];
@@ -59,7 +59,7 @@ void ToleranceSearch::refuse_unbounded(std::uint64_t rejects) const {
                    "widen a limit, give the parts bounds, or leave out poses where machines cannot be solved");
 }
 
-void ToleranceSearch::refuse_endless(const WithoutEnd& endless) const {
+void ToleranceSearch::refuse_endless(const Unbounded& endless) const {
   throw InputError({},
                    fmt::format("part '{}' has no effect on any limit, and no upper bound",
                                programme_.parts()[endless.parts.front()].name),

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "engine/base/index.h"
+#include "engine/kinds/allocation/it_grade.h"
 #include "engine/optimise/cost_law.h"
-#include "engine/optimise/it_grade.h"
 #include "engine/optimise/least_cost.h"
 #include "engine/report/tables.h"
 #include "engine/result/result_file.h"

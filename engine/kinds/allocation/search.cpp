@@ -123,11 +123,11 @@ bool ToleranceSearch::measure(std::span<const double> tolerance, std::size_t dra
 }
 
 /// Whether the limits of this share can be kept on root mean squares; then chosen_ and found_ keep them.
-bool ToleranceSearch::choose(const Reach& reach) {
+bool ToleranceSearch::choose(const TrustRegion& region) {
   ToleranceLimits limits = programme_.limits(squares_, measured_, share_);
-  const ChoiceOfTolerances choice = programme_.choose(limits, reach);
-  if (const auto* endless = std::get_if<WithoutEnd>(&choice)) refuse_endless(*endless);
-  if (std::holds_alternative<CannotBeMet>(choice)) return false;
+  const ChoiceOfTolerances choice = programme_.choose(limits, region);
+  if (const auto* endless = std::get_if<Unbounded>(&choice)) refuse_endless(*endless);
+  if (std::holds_alternative<Infeasible>(choice)) return false;
   limits_ = std::move(limits);
   chosen_ = std::get<ChosenTolerances>(choice);
   found_ = chosen_;
@@ -135,13 +135,13 @@ bool ToleranceSearch::choose(const Reach& reach) {
 }
 
 /// The same by the least share between these with which they can be kept, to a thousandth.
-bool ToleranceSearch::choose_by_least_share(double low, double high, const Reach& reach) {
+bool ToleranceSearch::choose_by_least_share(double low, double high, const TrustRegion& region) {
   while (high > 1.001 * low) {
     share_ = std::sqrt(low * high);
-    (choose(reach) ? high : low) = share_;
+    (choose(region) ? high : low) = share_;
   }
   share_ = high;
-  return choose(reach);
+  return choose(region);
 }
 
 void ToleranceSearch::add_stage(std::string name, std::uint64_t machines, std::uint64_t rejects) {
@@ -160,7 +160,7 @@ bool ToleranceSearch::linearise() {
   if (!measure(small, 0)) return false;
   if (!choose({})) {
     const ChoiceOfTolerances whole = programme_.choose(programme_.limits(squares_, measured_, 1.0), {});
-    if (const auto* broken = std::get_if<CannotBeMet>(&whole)) refuse(*broken);
+    if (const auto* broken = std::get_if<Infeasible>(&whole)) refuse(*broken);
     choose_by_least_share(share_, 1.0, {});
   }
   add_stage("linear", 0, 0);
@@ -289,10 +289,10 @@ bool ToleranceSearch::lower_to_least() {
 bool ToleranceSearch::rescale(double load) {
   const TolerancePoint before = found_;
   const double share = share_;
-  const Reach reach{before.tolerance, kGrowth};
+  const TrustRegion region{before.tolerance, kGrowth};
   share_ /= std::clamp(load * (1.0 + 0.25 * kFine), 0.25, 4.0);
-  if (choose(reach)) return load > 1.0 || found_.tolerance != before.tolerance;
-  if (load > 1.0 && choose_by_least_share(share_, share, reach)) return found_.tolerance != before.tolerance;
+  if (choose(region)) return load > 1.0 || found_.tolerance != before.tolerance;
+  if (load > 1.0 && choose_by_least_share(share_, share, region)) return found_.tolerance != before.tolerance;
   found_ = before;
   return false;
 }

@@ -62,8 +62,8 @@ class ToleranceSearch {
 
  private:
   bool measure(std::span<const double> tolerance, std::size_t draws);
-  bool choose(const Reach& reach);
-  bool choose_by_least_share(double low, double high, const Reach& reach);
+  bool choose(const TrustRegion& region);
+  bool choose_by_least_share(double low, double high, const TrustRegion& region);
   bool linearise();
   bool settle_effects();
   bool rescale(double load);
@@ -131,10 +131,10 @@ class ToleranceSearch {
 
   void add_stage(std::string name, std::uint64_t machines, std::uint64_t rejects);
   std::string row_text(std::size_t row) const;
-  [[noreturn]] void refuse(const CannotBeMet& broken) const;
+  [[noreturn]] void refuse(const Infeasible& broken) const;
   [[noreturn]] void refuse_lowest() const;
   [[noreturn]] void refuse_unbounded(std::uint64_t rejects) const;
-  [[noreturn]] void refuse_endless(const WithoutEnd& endless) const;
+  [[noreturn]] void refuse_endless(const Unbounded& endless) const;
 
   const StudyRun& run_;
   const AllocationOptions& asked_;

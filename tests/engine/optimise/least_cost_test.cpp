@@ -162,9 +162,9 @@ TEST(LeastCost, RefusesPartsThatCouldBeLoosenedForEver) {
   AllocationProblem problem{{Stacking::root_sum_square, 3, {1, 0, 0}, {1.0}}, {}};
   const Process endless{CostLaw::reciprocal(0, 1), 0, kInfinity};
   problem.parts = {{endless}, {endless}, {{CostLaw::constant(1), 0.1, 0.7}, endless}};
-  EXPECT_EQ(std::get<WithoutEnd>(least_cost(problem)).parts, (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(std::get<Unbounded>(least_cost(problem)).parts, (std::vector<std::size_t>{1, 2}));
   problem.limits = {Stacking::root_sum_square, 3, {}, {}};
-  EXPECT_EQ(std::get<WithoutEnd>(least_cost(problem)).parts, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_EQ(std::get<Unbounded>(least_cost(problem)).parts, (std::vector<std::size_t>{0, 1, 2}));
 }
 
 TEST(LeastCost, WithoutLimitsIsThatOfTheUpperBounds) {
@@ -197,7 +197,7 @@ TEST(LeastCost, SaysWhichLimitCannotBeMet) {
   AllocationProblem problem{{Stacking::root_sum_square, 2, {4, 1, 9, 1, 1, 1}, {1.0, 1.0, 2.0}}, {}};
   problem.parts = {{{CostLaw::reciprocal(0, 1), 0.5, 2.0}, {CostLaw::reciprocal(0, 1), 0.4, 2.0}},
                    {{CostLaw::reciprocal(0, 1), 0.1, 2.0}}};
-  const auto broken = std::get<CannotBeMet>(least_cost(problem));
+  const auto broken = std::get<Infeasible>(least_cost(problem));
   EXPECT_EQ(broken.limit, 1u);
   EXPECT_DOUBLE_EQ(broken.need, 1.45);
   EXPECT_EQ(broken.room, 1.0);
@@ -206,7 +206,7 @@ TEST(LeastCost, SaysWhichLimitCannotBeMet) {
 TEST(LeastCost, CannotMeetALimitWithoutRoom) {
   AllocationProblem problem{{Stacking::root_sum_square, 1, {4, 1}, {1.0, -0.5}}, {}};
   problem.parts = {{{CostLaw::reciprocal(0, 1), 0.0, 2.0}}};
-  const auto broken = std::get<CannotBeMet>(least_cost(problem));
+  const auto broken = std::get<Infeasible>(least_cost(problem));
   EXPECT_EQ(broken.limit, 1u);
   EXPECT_EQ(broken.room, -0.5);
 }
@@ -225,7 +225,7 @@ TEST(LeastCost, IsAtTheLowerBoundsWhereTheseFillALimit) {
 TEST(LeastCost, LeavesSomethingToEachPart) {
   AllocationProblem problem{{Stacking::worst_case, 2, {1, 1}, {0.5}}, {}};
   problem.parts = {{{CostLaw::reciprocal(0, 1), 0.0, 2.0}}, {fixed_process(0.5)}};
-  const auto broken = std::get<CannotBeMet>(least_cost(problem));
+  const auto broken = std::get<Infeasible>(least_cost(problem));
   EXPECT_EQ(broken.limit, 0u);
   EXPECT_EQ(broken.need, broken.room);
 }

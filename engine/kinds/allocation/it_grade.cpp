@@ -1,4 +1,4 @@
-#include "engine/optimise/it_grade.h"
+#include "engine/kinds/allocation/it_grade.h"
 
 #include <array>
 #include <cstddef>
@@ -42,13 +42,6 @@ constexpr std::array<SizeStep, 21> kSteps{{{3, {0.3, 0.5, 0.8, 1.2, 2, 3, 4, 6, 
 std::string it_grade_name(ItGrade grade) {
   const int place = static_cast<int>(grade);
   return place == 0 ? "IT01" : "IT" + std::to_string(place - 1);
-}
-
-std::optional<ItGrade> it_grade(std::string_view name) {
-  for (int place = 0; place <= static_cast<int>(ItGrade::it18); ++place) {
-    if (it_grade_name(ItGrade{place}) == name) return ItGrade{place};
-  }
-  return std::nullopt;
 }
 
 std::optional<double> it_grade_width(double nominal_size, ItGrade grade) {

@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 
 /// Grades of ISO 286-1: the width of the tolerance zone of a linear size.
 namespace poesy {
@@ -31,8 +30,6 @@ enum class ItGrade {
   it18
 };
 
-/// "IT7" -> ItGrade::it7; none for another text.
-std::optional<ItGrade> it_grade(std::string_view name);
 /// ItGrade::it01 -> "IT01".
 std::string it_grade_name(ItGrade grade);
 

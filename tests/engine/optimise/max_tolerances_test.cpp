@@ -1,4 +1,4 @@
-#include "engine/optimise/loosest.h"
+#include "engine/optimise/max_tolerances.h"
 
 #include <gtest/gtest.h>
 
@@ -14,23 +14,23 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const ToleranceLimits kSquares{Stacking::root_sum_square, 3, {4, 1, 0, 1, 9, 0}, {1.0, 2.0}};
 const std::vector<ToleranceRange> kUnbounded(3, {0.0, kInfinity});
 
-Loosest loosest(const ToleranceLimits& limits, const std::vector<double>& proportions,
-                const std::vector<ToleranceRange>& ranges) {
-  return std::get<Loosest>(as_loose_as_limits_allow(limits, proportions, ranges));
+MaxTolerances largest(const ToleranceLimits& limits, const std::vector<double>& proportions,
+                      const std::vector<ToleranceRange>& ranges) {
+  return std::get<MaxTolerances>(maximise_tolerances(limits, proportions, ranges));
 }
 
-TEST(LoosestTolerances, OfEqualEffectUseEqualSharesOfOneLimit) {
+TEST(MaxTolerances, OfEqualEffectUseEqualSharesOfOneLimit) {
   const ToleranceLimits limits{Stacking::root_sum_square, 4, {4, 1, 9, 0}, {2.0}};
   const std::vector<double> proportions = equal_effect_proportions(limits);
   EXPECT_EQ(proportions[3], kInfinity);
-  const Loosest found = loosest(limits, proportions, std::vector<ToleranceRange>(4, {0.0, kInfinity}));
+  const MaxTolerances found = largest(limits, proportions, std::vector<ToleranceRange>(4, {0.0, kInfinity}));
   for (const std::size_t i : {0u, 1u, 2u}) {
     EXPECT_NEAR(limits.effects[i] * found.tolerance[i] * found.tolerance[i], 2.0 / 3.0, 1e-13);
   }
   EXPECT_EQ(found.tolerance[3], kInfinity);
 }
 
-TEST(LoosestTolerances, OfEqualEffectCountTheLimitThatAPartUsesMost) {
+TEST(MaxTolerances, OfEqualEffectCountTheLimitThatAPartUsesMost) {
   const std::vector<double> squares = equal_effect_proportions(kSquares);
   EXPECT_DOUBLE_EQ(squares[0], 0.5);
   EXPECT_DOUBLE_EQ(squares[1], std::sqrt(2.0) / 3.0);
@@ -39,52 +39,53 @@ TEST(LoosestTolerances, OfEqualEffectCountTheLimitThatAPartUsesMost) {
   EXPECT_DOUBLE_EQ(equal_effect_proportions(magnitudes)[1], 2.0 / 9.0);
 }
 
-TEST(LoosestTolerances, OfEqualSizeAreTheClosedForm) {
-  const Loosest found = loosest(kSquares, {1, 1, 1}, {{0, kInfinity}, {0, kInfinity}, {0, 7}});
+TEST(MaxTolerances, OfEqualSizeAreTheClosedForm) {
+  const MaxTolerances found = largest(kSquares, {1, 1, 1}, {{0, kInfinity}, {0, kInfinity}, {0, 7}});
   EXPECT_NEAR(found.factor, std::sqrt(1.0 / 5.0), 1e-14);
   EXPECT_EQ(found.limit, 0u);  // and 1 as well
   EXPECT_EQ(found.tolerance[0], found.factor);
   EXPECT_EQ(found.tolerance[1], found.factor);
   ToleranceLimits magnitudes = kSquares;
   magnitudes.stacking = Stacking::worst_case;
-  const Loosest linear = loosest(magnitudes, {1, 2, 1}, kUnbounded);
+  const MaxTolerances linear = largest(magnitudes, {1, 2, 1}, kUnbounded);
   EXPECT_NEAR(linear.factor, 2.0 / 19.0, 1e-14);
   EXPECT_EQ(linear.limit, 1u);
 }
 
-TEST(LoosestTolerances, ShareWhatBoundsLeave) {
+TEST(MaxTolerances, ShareWhatBoundsLeave) {
   // Part 1 ends at 0.3 and part 0 begins at 0.4: 4 T^2 + 0.09 = 1 and T^2 + 0.81 = 2.
-  const Loosest found = loosest(kSquares, {1, 1, 1}, {{0.4, kInfinity}, {0, 0.3}, {0, 1}});
+  const MaxTolerances found = largest(kSquares, {1, 1, 1}, {{0.4, kInfinity}, {0, 0.3}, {0, 1}});
   EXPECT_NEAR(found.tolerance[0], std::sqrt(0.91 / 4.0), 1e-13);
   EXPECT_EQ(found.tolerance[1], 0.3);
   EXPECT_EQ(found.limit, 0u);
 }
 
-TEST(LoosestTolerances, KeepLowerBoundsAboveTheirProportions) {
-  const Loosest found = loosest(kSquares, {1, 1, 1}, {{0, kInfinity}, {0.46, 1}, {0, 1}});
+TEST(MaxTolerances, KeepLowerBoundsAboveTheirProportions) {
+  const MaxTolerances found = largest(kSquares, {1, 1, 1}, {{0, kInfinity}, {0.46, 1}, {0, 1}});
   EXPECT_EQ(found.tolerance[1], 0.46);
   EXPECT_NEAR(found.tolerance[0], std::sqrt(2.0 - 9.0 * 0.46 * 0.46), 1e-13);
 }
 
-TEST(LoosestTolerances, AreAllUpperBoundsWhereNoLimitIsReached) {
-  const Loosest found = loosest(kSquares, {1, 2, 3}, {{0, 0.1}, {0, 0.2}, {0, 0.3}});
+TEST(MaxTolerances, AreAllUpperBoundsWhereNoLimitIsReached) {
+  const MaxTolerances found = largest(kSquares, {1, 2, 3}, {{0, 0.1}, {0, 0.2}, {0, 0.3}});
   EXPECT_EQ(found.tolerance, (std::vector{0.1, 0.2, 0.3}));
   EXPECT_EQ(found.factor, kInfinity);
   EXPECT_EQ(found.limit, std::nullopt);
 }
 
-TEST(LoosestTolerances, CannotMeetWhatLowerBoundsBreak) {
-  const auto outcome = as_loose_as_limits_allow(kSquares, std::vector{1.0, 1.0, 1.0},
-                                                std::vector<ToleranceRange>{{0.6, 1}, {0.5, 1}, {0, 1}});
-  const auto broken = std::get<CannotBeMet>(outcome);
+TEST(MaxTolerances, CannotMeetWhatLowerBoundsBreak) {
+  const auto outcome = maximise_tolerances(kSquares, std::vector{1.0, 1.0, 1.0},
+                                           std::vector<ToleranceRange>{{0.6, 1}, {0.5, 1}, {0, 1}});
+  const auto broken = std::get<Infeasible>(outcome);
   EXPECT_EQ(broken.limit, 0u);
   EXPECT_DOUBLE_EQ(broken.need, 1.69);
 }
 
-TEST(LoosestTolerances, NeverBreakALimitByRounding) {
+TEST(MaxTolerances, NeverBreakALimitByRounding) {
   for (int k = 1; k < 2000; ++k) {
     const ToleranceLimits limits{Stacking::root_sum_square, 3, {1.0 / k, 0.1 * k, 0.37}, {0.01 * k}};
-    const Loosest found = loosest(limits, {0.7, 1.0 / k, 0.3 * k}, {{0, kInfinity}, {0, 0.2}, {0.001, kInfinity}});
+    const MaxTolerances found =
+        largest(limits, {0.7, 1.0 / k, 0.3 * k}, {{0, kInfinity}, {0, 0.2}, {0.001, kInfinity}});
     EXPECT_LE(limits.need(0, found.tolerance), limits.room[0]);
     EXPECT_GE(limits.need(0, found.tolerance), limits.room[0] * (1.0 - 1e-13));
   }

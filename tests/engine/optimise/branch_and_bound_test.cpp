@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <utility>
 #include <vector>
 
-#include "engine/optimise/it_grade.h"
 #include "engine/optimise/least_cost.h"
 #include "tests/engine/optimise/overrunning_clutch.h"
 #include "tests/engine/optimise/random_programme.h"
@@ -106,14 +105,14 @@ TEST(SearchAmongProcesses, ThatEndsEarlySaysHowFarItMayBeOff) {
   const AllocationProblem problem = random_choice(1, 30, 10, 10, Choice::values);
   const double least = std::get<LeastCost>(least_cost(problem)).best.cost;
   SearchOptions options;
-  options.most_nodes = 2;
+  options.max_nodes = 2;
   const LeastCost found = std::get<LeastCost>(least_cost(problem, options));
   EXPECT_EQ(found.nodes, 2u);
   EXPECT_GT(found.gap(), 1e-9 * least);
   EXPECT_LE(found.lower_bound, least);
   EXPECT_GE(found.best.cost, least);
   EXPECT_LE(found.gap(), 0.02 * least);
-  options.most_nodes = 20000;
+  options.max_nodes = 20000;
   options.relative_gap = 0.01;
   EXPECT_LE(std::get<LeastCost>(least_cost(problem, options)).gap(), 0.01 * least);
 }
@@ -130,15 +129,16 @@ TEST(SearchAmongProcesses, KnowsWhatMixedProcessesWouldPayForRoom) {
   EXPECT_GT(saved, 0.2 * more * found.relaxed[0]);
 }
 
+// IT5 to IT12 of ISO 286-1 at 12 mm, 100 mm and 400 mm, by enumeration of 8^3 choices.
 TEST(SearchAmongProcesses, TakesGradesOfAStandard) {
-  // Three sizes, one limit: by enumeration of 8^3 grades.
+  const std::vector<std::pair<double, std::vector<double>>> widths{{0.012, {8, 11, 18, 27, 43, 70, 110, 180}},
+                                                                   {0.1, {15, 22, 35, 54, 87, 140, 220, 350}},
+                                                                   {0.4, {25, 36, 57, 89, 140, 230, 360, 570}}};
   std::vector<std::vector<double>> tolerances;
   AllocationProblem problem{{Stacking::worst_case, 3, {1.0, 0.5, 2.0}, {60e-6}}, {}};
-  for (const double nominal : {0.012, 0.1, 0.4}) {
+  for (const auto& [nominal, micrometres] : widths) {
     std::vector<double>& list = tolerances.emplace_back();
-    for (int grade = static_cast<int>(ItGrade::it5); grade <= static_cast<int>(ItGrade::it12); ++grade) {
-      list.push_back(0.5 * it_grade_width(nominal, ItGrade{grade}).value());
-    }
+    for (const double width : micrometres) list.push_back(0.5e-6 * width);
     problem.parts.push_back(available_values(CostLaw::reciprocal(1.0, nominal * 1e-3), list));
   }
   double least = std::numeric_limits<double>::infinity();

@@ -11,10 +11,10 @@
 /// Tolerances without costs: proportions, and the largest common factor that limits allow.
 namespace poesy {
 
-/// What a tolerance may be: 0 <= lo <= hi, SI; hi may be infinite.
+/// The range of a tolerance, SI: 0 <= lo <= hi; hi may be infinite.
 struct ToleranceRange {
-  double lo;  ///< >= 0
-  double hi;  ///< >= lo
+  double lo;  ///< least tolerance
+  double hi;  ///< largest tolerance
 };
 
 /// Proportions [N] of equal effect: every part alone uses the same share of the limit that it uses most,
@@ -22,18 +22,18 @@ struct ToleranceRange {
 /// effect.
 std::vector<double> equal_effect_proportions(const ToleranceLimits& limits);
 
-/// Tolerances as loose as limits allow.
-struct Loosest {
+/// The largest tolerances in given proportions.
+struct MaxTolerances {
   std::vector<double> tolerance;     ///< [N] factor x proportion, within the ranges
   double factor;                     ///< infinite where every part is at its upper bound or has no effect
-  std::optional<std::size_t> limit;  ///< that allows no larger factor
+  std::optional<std::size_t> limit;  ///< the limit that allows no larger factor
 };
 
 /// The largest factor at which T_i = factor x proportion_i, but no less than lo_i and no more than hi_i, keeps all
-/// limits; in closed form, from where bounds begin to hold. A part of infinite proportion has its upper bound. Equal
-/// tolerances have proportions of 1. Preconditions: proportions [N] > 0, ranges [N]; a part with effect has a finite
-/// proportion.
-std::variant<Loosest, CannotBeMet> as_loose_as_limits_allow(const ToleranceLimits& limits,
+/// limits. It has a closed form between the factors at which bounds begin to hold. A part of infinite proportion has
+/// its upper bound. Equal tolerances have proportions of 1. Preconditions: proportions [N] > 0, ranges [N]; a part with
+/// effect has a finite proportion.
+std::variant<MaxTolerances, Infeasible> maximise_tolerances(const ToleranceLimits& limits,
                                                             std::span<const double> proportions,
                                                             std::span<const ToleranceRange> ranges);
 

@@ -1,4 +1,4 @@
-#include "engine/optimise/loosest.h"
+#include "engine/optimise/max_tolerances.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// T_i at a factor.
+/// The tolerance of a part at a factor.
 double tolerance_at(double factor, double proportion, const ToleranceRange& range) {
   if (proportion == kInfinity) return range.hi;
   return std::clamp(factor * proportion, range.lo, range.hi);
@@ -24,7 +24,7 @@ std::vector<double> tolerances_at(double factor, std::span<const double> proport
   return tolerance;
 }
 
-/// What tolerances need of a limit. An unlimited part without effect needs nothing.
+/// What tolerances need of a limit. A part without effect needs nothing, even if its tolerance is infinite.
 double need_of(const ToleranceLimits& limits, std::size_t l, std::span<const double> tolerance) {
   double sum = 0.0;
   for (std::size_t i = 0; i < tolerance.size(); ++i) {
@@ -33,9 +33,9 @@ double need_of(const ToleranceLimits& limits, std::size_t l, std::span<const dou
   return sum;
 }
 
-/// The limit of which the tolerances need most beyond its room; none where all keep theirs.
-std::optional<CannotBeMet> broken(const ToleranceLimits& limits, std::span<const double> tolerance) {
-  std::optional<CannotBeMet> worst;
+/// The limit that the tolerances break most; none where they keep all.
+std::optional<Infeasible> find_infeasible(const ToleranceLimits& limits, std::span<const double> tolerance) {
+  std::optional<Infeasible> worst;
   for (std::size_t l = 0; l < limits.count(); ++l) {
     const double need = need_of(limits, l, tolerance);
     if (need <= limits.room[l] && limits.room[l] > 0.0) continue;
@@ -89,27 +89,29 @@ std::vector<double> equal_effect_proportions(const ToleranceLimits& limits) {
   return largest;
 }
 
-std::variant<Loosest, CannotBeMet> as_loose_as_limits_allow(const ToleranceLimits& limits,
+std::variant<MaxTolerances, Infeasible> maximise_tolerances(const ToleranceLimits& limits,
                                                             std::span<const double> proportions,
                                                             std::span<const ToleranceRange> ranges) {
   POESY_EXPECTS(proportions.size() == limits.parts && ranges.size() == limits.parts);
-  const auto keeps = [&](double factor) { return !broken(limits, tolerances_at(factor, proportions, ranges)); };
-  if (const auto worst = broken(limits, tolerances_at(0.0, proportions, ranges))) return *worst;
+  const auto keeps = [&](double factor) {
+    return !find_infeasible(limits, tolerances_at(factor, proportions, ranges));
+  };
+  if (const auto worst = find_infeasible(limits, tolerances_at(0.0, proportions, ranges))) return *worst;
   // Between two corners no bound begins or ceases to hold.
   const std::vector<double> factors = corners(proportions, ranges);
   const auto next = std::ranges::partition_point(factors, keeps);
   const double from = *std::prev(next);
   const double to = next == factors.end() ? kInfinity : *next;
   const double inside = to == kInfinity ? 2.0 * from + 1.0 : 0.5 * (from + to);
-  Loosest loosest{{}, to, std::nullopt};
+  MaxTolerances found{{}, to, std::nullopt};
   for (std::size_t l = 0; l < limits.count(); ++l) {
     const double factor = std::fmax(from, factor_of(limits, l, inside, proportions, ranges));
-    if (factor < loosest.factor || !loosest.limit) loosest = {{}, std::fmin(factor, to), l};
+    if (factor < found.factor || !found.limit) found = {{}, std::fmin(factor, to), l};
   }
-  if (loosest.factor == kInfinity) loosest.limit.reset();
-  if (!keeps(loosest.factor)) loosest.factor = from;  // corners that are apart by rounding
-  loosest.tolerance = tolerances_at(loosest.factor, proportions, ranges);
-  return loosest;
+  if (found.factor == kInfinity) found.limit.reset();
+  if (!keeps(found.factor)) found.factor = from;  // corners that are apart by rounding
+  found.tolerance = tolerances_at(found.factor, proportions, ranges);
+  return found;
 }
 
 }  // namespace poesy

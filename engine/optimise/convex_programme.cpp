@@ -1,0 +1,150 @@
+#include "engine/optimise/convex_programme.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/optimise/dual_path.h"
+
+namespace poesy {
+namespace {
+
+constexpr double kNegligible = 1e-9;  ///< a multiplier over the sum of all that counts as 0
+constexpr double kGoodGap = 1e-11;    ///< a gap over the cost that needs no better multipliers
+
+const Process& process_of(const AllocationProblem& problem, const SizedProblem& sized, std::size_t part) {
+  return problem.parts[part][sized.processes[part].front().index];
+}
+
+/// The tolerance of a size: exactly that of a bound where the size is at one.
+double tolerance_within(const Process& process, const SizedProcess& sized, double size, Stacking stacking) {
+  if (size <= sized.lo) return size == size_of(process.hi, stacking) ? process.hi : process.lo;
+  const double tolerance = tolerance_of(size, stacking);
+  return size == size_of(process.hi, stacking) ? process.hi : std::clamp(tolerance, process.lo, process.hi);
+}
+
+/// Tolerances of sizes [N], of which this share of what is above the lowest bounds is kept.
+std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedProblem& sized,
+                                  std::span<const double> sizes, double keep) {
+  std::vector<double> tolerance(sizes.size());
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const SizedProcess& process = sized.processes[i].front();
+    const double size = keep == 1.0 ? sizes[i] : process.lo + keep * (sizes[i] - process.lo);
+    tolerance[i] = tolerance_within(process_of(problem, sized, i), process, size, sized.stacking);
+  }
+  return tolerance;
+}
+
+/// The share of what is above the lowest bounds that limits leave.
+double share_within(const SizedProblem& sized, std::span<const double> sizes) {
+  const double room = 1.0 - 4.0 * rounding_margin(sized.parts());
+  const std::vector<double> lo = lowest(sized);
+  double share = 1.0;
+  for (std::size_t l = 0; l < sized.limits; ++l) {
+    const double least = dot(sized.row(l), lo);
+    const double use = dot(sized.row(l), sizes);
+    if (use > room && use > least) share = std::fmin(share, std::fmax(0.0, (room - least) / (use - least)));
+  }
+  return share;
+}
+
+/// Tolerances of sizes [N] that keep the limits, drawn towards the lowest bounds where rounding would break one; none
+/// where not even these keep them.
+std::optional<std::vector<double>> tolerances_within(const AllocationProblem& problem, const SizedProblem& sized,
+                                                     std::span<const double> sizes) {
+  for (const double keep : {1.0, share_within(sized, sizes), 0.0}) {
+    std::vector<double> tolerance = tolerances_of(problem, sized, sizes, keep);
+    if (problem.limits.count() == 0 || worst_use(problem.limits, tolerance).share <= 1.0) return tolerance;
+  }
+  return std::nullopt;
+}
+
+double cost_of(const AllocationProblem& problem, const SizedProblem& sized, std::span<const double> tolerance) {
+  double cost = 0.0;
+  for (std::size_t i = 0; i < tolerance.size(); ++i) cost += process_of(problem, sized, i).cost.at(tolerance[i]);
+  return cost;
+}
+
+/// Multipliers [K] of a working set and the lower bound that they prove.
+struct DualCertificate {
+  std::vector<std::size_t> working_set;
+  std::vector<double> multipliers;
+  double bound;
+};
+
+DualCertificate certify(const SizedProblem& sized, std::vector<std::size_t> working_set,
+                        std::vector<double> multipliers) {
+  const std::vector<ProcessRange> all(sized.parts(), {0, 1});
+  const double bound = lower_bound(sized, all, working_set, multipliers);
+  return {std::move(working_set), std::move(multipliers), bound};
+}
+
+/// The same with negligible multipliers set to 0, where the bound stays as good.
+DualCertificate without_negligible(const SizedProblem& sized, const DualCertificate& whole, double cost) {
+  const double sum = std::accumulate(whole.multipliers.begin(), whole.multipliers.end(), 0.0);
+  DualCertificate less = whole;
+  for (double& multiplier : less.multipliers) multiplier = multiplier < kNegligible * sum ? 0.0 : multiplier;
+  less = certify(sized, std::move(less.working_set), std::move(less.multipliers));
+  return cost - less.bound <= 2.0 * (cost - whole.bound) + kGoodGap * std::abs(cost) ? less : whole;
+}
+
+/// Adds the least multipliers of tight limits at which their parts are best off at their lowest bounds, unless such a
+/// multiplier is infinite. The bound stays as it is, because these parts have no other size in it.
+void add_tight_limits(const AllocationProblem& problem, const SizedProblem& sized, DualCertificate& found) {
+  for (std::size_t l = 0; l < sized.limits; ++l) {
+    if (!sized.tight[l]) continue;
+    double multiplier = 0.0;
+    for (std::size_t i = 0; i < sized.parts(); ++i) {
+      const Process& process = process_of(problem, sized, i);
+      if (sized.row(l)[i] == 0.0 || process.lo == process.hi) continue;
+      double others = process.cost.curve(sized.processes[i].front().lo, sized.stacking).slope;
+      for (std::size_t k = 0; k < found.working_set.size(); ++k) {
+        others += found.multipliers[k] * sized.row(found.working_set[k])[i];
+      }
+      multiplier = std::fmax(multiplier, -others / sized.row(l)[i]);
+    }
+    if (multiplier == 0.0 || !std::isfinite(multiplier)) continue;
+    found.working_set.push_back(l);
+    found.multipliers.push_back(multiplier);
+  }
+}
+
+}  // namespace
+
+std::vector<double> limit_multipliers(const ToleranceLimits& limits, std::span<const std::size_t> working_set,
+                                      std::span<const double> multipliers) {
+  std::vector<double> of_limit(limits.count(), 0.0);
+  const double sum = std::accumulate(multipliers.begin(), multipliers.end(), 0.0);
+  for (std::size_t k = 0; k < working_set.size(); ++k) {
+    const std::size_t l = working_set[k];
+    if (multipliers[k] >= kNegligible * sum) of_limit[l] = multipliers[k] / limits.room[l];
+  }
+  return of_limit;
+}
+
+std::optional<ConvexSolution> solve_convex(const AllocationProblem& problem, const SizedProblem& sized,
+                                           std::span<const std::size_t> working_set) {
+  std::vector<double> sizes = lowest(sized);
+  DualCertificate found = certify(sized, {}, {});
+  const auto single = [](const auto& processes) { return processes.front().single(); };
+  if (!std::ranges::all_of(sized.processes, single)) {
+    const std::vector<ProcessRange> all(sized.parts(), {0, 1});
+    DualPath path(sized, {working_set.begin(), working_set.end()});
+    const PathPoint end = path.follow(all, {}, {});
+    for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = end.parts[i].size;
+    found = {path.working_set(), end.multipliers, end.lower_bound};
+  }
+  auto tolerance = tolerances_within(problem, sized, sizes);
+  if (!tolerance) return std::nullopt;
+  ConvexSolution solution;
+  solution.allocation.tolerance = *std::move(tolerance);
+  for (const auto& processes : sized.processes) solution.allocation.process.push_back(processes.front().index);
+  solution.allocation.cost = cost_of(problem, sized, solution.allocation.tolerance);
+  found = without_negligible(sized, found, solution.allocation.cost);
+  add_tight_limits(problem, sized, found);
+  solution.lower_bound = std::fmin(found.bound, solution.allocation.cost);
+  solution.multiplier = limit_multipliers(problem.limits, found.working_set, found.multipliers);
+  return solution;
+}
+
+}  // namespace poesy

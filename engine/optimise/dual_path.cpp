@@ -1,0 +1,331 @@
+#include "engine/optimise/dual_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "engine/base/contract.h"
+
+namespace poesy {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kMuReduction = 0.1;        ///< mu of a maximum over mu of the one before
+constexpr double kRelativeGap = 1e-12;      ///< gap at the end of the path, over what tolerances can change of the cost
+constexpr double kSmallestMu = 1e-16;       ///< mu over its scale at which rounding ends the path
+constexpr double kSmallestMixingMu = 3e-8;  ///< the same of mixes, over what tolerances can change of the cost
+constexpr int kMaxNewtonSteps = 60;         ///< for one maximum
+constexpr int kMaxLineSearchSteps = 60;     ///< along one direction
+constexpr int kMaxIterations = 400;         ///< maxima, and additions to the working set
+constexpr std::size_t kAddedAtOnce = 4;     ///< violated limits that join the working set together
+constexpr double kNegligibleExponent = 40.0;  ///< a process so many mu above the best one has no weight
+
+double inverse_curvature(const SizedProcess& process, double size, Stacking stacking) {
+  return size > process.lo && size < process.hi ? 1.0 / process.cost.curve(size, stacking).curvature : 0.0;
+}
+
+/// What tolerances can change of the cost of a mix, as a scale.
+double changeable(std::span<const SizedProcess> processes, ProcessRange allowed, const BestResponse& part) {
+  double least = kInfinity;
+  for (std::size_t p = allowed.first; p < allowed.last; ++p) least = std::fmin(least, processes[p].cost.fixed());
+  return std::fmax(0.0, part.cost - least);
+}
+
+/// A scale for multipliers: what the use of a limit would be worth if all parts had an equal share of the limit they
+/// matter most for.
+double multiplier_scale(const SizedProblem& problem, std::span<const ProcessRange> allowed) {
+  const auto parts = static_cast<double>(problem.parts());
+  double sum = 0.0;
+  double costs = 0.0;
+  for (std::size_t i = 0; i < problem.parts(); ++i) {
+    const double effect = problem.largest_effect[i];
+    if (effect == 0.0) continue;
+    for (std::size_t p = allowed[i].first; p < allowed[i].last; ++p) {
+      const SizedProcess& process = problem.processes[i][p];
+      const double size = std::fmax(process.lo, std::fmin(process.hi, 1.0 / (parts * effect)));
+      if (!process.single()) sum += -size * process.cost.curve(size, problem.stacking).slope;
+      costs += std::abs(process.cost.at(tolerance_of(size, problem.stacking)));
+    }
+  }
+  if (sum > 0.0 && std::isfinite(sum)) return sum;
+  return costs > 0.0 && std::isfinite(costs) ? costs : 1.0;
+}
+
+/// Cholesky's factorisation in place of a symmetric matrix [K x K], of which the lower half is given. Rounding may
+/// leave it not quite positive definite; therefore the diagonal gets a little more.
+void factorise(std::vector<double>& matrix, std::size_t k) {
+  double trace = 0.0;
+  for (std::size_t r = 0; r < k; ++r) trace += matrix[r * k + r];
+  const double ridge = 4.0 * kEpsilon * trace;
+  for (std::size_t c = 0; c < k; ++c) {
+    double pivot = matrix[c * k + c] + ridge;
+    for (std::size_t j = 0; j < c; ++j) pivot -= matrix[c * k + j] * matrix[c * k + j];
+    pivot = std::sqrt(std::fmax(pivot, ridge));
+    matrix[c * k + c] = pivot;
+    for (std::size_t r = c + 1; r < k; ++r) {
+      double sum = matrix[r * k + c];
+      for (std::size_t j = 0; j < c; ++j) sum -= matrix[r * k + j] * matrix[c * k + j];
+      matrix[r * k + c] = sum / pivot;
+    }
+  }
+}
+
+/// Solves with a factor of factorise(), in place.
+void solve(const std::vector<double>& factor, std::vector<double>& x) {
+  const std::size_t k = x.size();
+  for (std::size_t r = 0; r < k; ++r) {
+    for (std::size_t j = 0; j < r; ++j) x[r] -= factor[r * k + j] * x[j];
+    x[r] /= factor[r * k + r];
+  }
+  for (std::size_t r = k; r-- > 0;) {
+    for (std::size_t j = r + 1; j < k; ++j) x[r] -= factor[j * k + r] * x[j];
+    x[r] /= factor[r * k + r];
+  }
+}
+
+}  // namespace
+
+ProcessResponse process_response(const SizedProcess& process, double price, Stacking stacking) {
+  const double size = process.size_at(price, stacking);
+  const double cost = process.cost.at(tolerance_of(size, stacking));
+  return {size, cost, cost + price * size};
+}
+
+BestResponse best_response(std::span<const SizedProcess> processes, ProcessRange allowed, double price, double mu,
+                           Stacking stacking) {
+  POESY_EXPECTS(allowed.size() > 0 && allowed.last <= processes.size());
+  const ProcessResponse first = process_response(processes[allowed.first], price, stacking);
+  BestResponse part{price, first.size, 0.0, first.cost, first.lagrangian, 0.0, allowed.first};
+  if (allowed.size() == 1) {
+    part.inverse_curvature = inverse_curvature(processes[allowed.first], first.size, stacking);
+    return part;
+  }
+  for (std::size_t p = allowed.first + 1; p < allowed.last; ++p) {
+    const double lagrangian = process_response(processes[p], price, stacking).lagrangian;
+    if (lagrangian >= part.lagrangian) continue;
+    part.lagrangian = lagrangian;
+    part.main = p;
+  }
+  double weights = 0.0;
+  double inverse = 0.0;
+  double cost = 0.0;
+  double shift = 0.0;  // of sizes from that of the main process, because a variance needs differences
+  double square = 0.0;
+  const double size = processes[part.main].size_at(price, stacking);
+  for (std::size_t p = allowed.first; p < allowed.last; ++p) {
+    const ProcessResponse one = process_response(processes[p], price, stacking);
+    const double exponent = (one.lagrangian - part.lagrangian) / mu;
+    if (!(exponent < kNegligibleExponent)) continue;
+    const double weight = std::exp(-exponent);
+    weights += weight;
+    inverse += weight * inverse_curvature(processes[p], one.size, stacking);
+    cost += weight * one.cost;
+    shift += weight * (one.size - size);
+    square += weight * (one.size - size) * (one.size - size);
+  }
+  const double mean = shift / weights;
+  const double variance = std::fmax(0.0, square / weights - mean * mean);
+  part.size = size + mean;
+  part.cost = cost / weights;
+  part.inverse_curvature = inverse / weights + variance / mu;
+  part.deviation = std::sqrt(variance);
+  return part;
+}
+
+double lower_bound(const SizedProblem& problem, std::span<const ProcessRange> allowed,
+                   std::span<const std::size_t> working_set, std::span<const double> multipliers) {
+  double bound = 0.0;
+  double magnitude = 0.0;
+  for (std::size_t i = 0; i < problem.parts(); ++i) {
+    double price = 0.0;
+    for (std::size_t k = 0; k < working_set.size(); ++k) price += multipliers[k] * problem.row(working_set[k])[i];
+    ProcessResponse best{0.0, 0.0, kInfinity};
+    for (std::size_t p = allowed[i].first; p < allowed[i].last; ++p) {
+      const ProcessResponse one = process_response(problem.processes[i][p], price, problem.stacking);
+      if (one.lagrangian < best.lagrangian) best = one;
+    }
+    bound += best.lagrangian;
+    magnitude += std::abs(best.cost) + price * best.size;
+  }
+  for (const double multiplier : multipliers) bound -= multiplier;
+  magnitude = std::accumulate(multipliers.begin(), multipliers.end(), magnitude);
+  // Each number is the result of some 64 operations at most, and of one for each limit and each part.
+  const double operations = static_cast<double>(problem.parts() + working_set.size()) + 64.0;
+  return bound - operations * kEpsilon * magnitude;
+}
+
+DualPath::DualPath(const SizedProblem& problem, std::vector<std::size_t> working_set)
+    : problem_(problem),
+      room_(1.0 - rounding_margin(problem.parts())),
+      is_in_set_(problem.tight),  // so that tight limits never join: their parts are fixed already
+      responses_(problem.parts()),
+      sizes_(problem.parts()) {
+  for (const std::size_t limit : working_set) {
+    if (!is_in_set_[limit]) add_limit(limit);
+  }
+}
+
+void DualPath::add_limit(std::size_t limit) {
+  is_in_set_[limit] = 1;
+  working_set_.push_back(limit);
+  const auto effects = problem_.row(limit);
+  effects_.insert(effects_.end(), effects.begin(), effects.end());
+  multipliers_.push_back(0.0);
+}
+
+void DualPath::begin(std::span<const double> start, double mu) {
+  for (std::size_t k = 0; k < multipliers_.size(); ++k) {
+    multipliers_[k] = std::fmax(mu, k < start.size() ? start[k] : 0.0);
+  }
+}
+
+/// Finds the best responses at the multipliers, and the slack that they leave.
+void DualPath::update_responses(double mu) {
+  const std::size_t parts = problem_.parts();
+  std::fill(sizes_.begin(), sizes_.end(), 0.0);  // they hold the prices first
+  for (std::size_t k = 0; k < working_set_.size(); ++k) {
+    for (std::size_t i = 0; i < parts; ++i) sizes_[i] += multipliers_[k] * effects_[k * parts + i];
+  }
+  for (std::size_t i = 0; i < parts; ++i) {
+    responses_[i] = best_response(problem_.processes[i], allowed_[i], sizes_[i], mu, problem_.stacking);
+    sizes_[i] = responses_[i].size;
+  }
+  slack_.resize(working_set_.size());
+  for (std::size_t k = 0; k < working_set_.size(); ++k) {
+    slack_[k] = room_ - dot({&effects_[k * parts], parts}, sizes_);
+  }
+}
+
+/// Whether multiplier x slack is between mu / 2 and 3 mu / 2 for all limits, which are kept then.
+bool DualPath::is_centred(double mu) const {
+  for (std::size_t k = 0; k < working_set_.size(); ++k) {
+    if (!(std::abs(mu - multipliers_[k] * slack_[k]) <= 0.5 * mu)) return false;
+  }
+  return true;
+}
+
+bool DualPath::centre(double mu) {
+  update_responses(mu);
+  for (int step = 0; step < kMaxNewtonSteps && !is_centred(mu); ++step) {
+    if (!find_newton_direction(mu)) return false;
+    search_line(mu);
+  }
+  return is_centred(mu);
+}
+
+/// Newton's direction in units of the multipliers: (P A G A' P + mu I) d = mu - P slack, with P = diag(multipliers), G
+/// = diag(inverse curvature). False when the direction is not finite because numbers overflow.
+bool DualPath::find_newton_direction(double mu) {
+  const std::size_t count = working_set_.size();
+  const std::size_t parts = problem_.parts();
+  std::vector<double> scaled(count * parts);
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t i = 0; i < parts; ++i) {
+      scaled[k * parts + i] = multipliers_[k] * effects_[k * parts + i] * responses_[i].inverse_curvature;
+    }
+  }
+  std::vector<double> matrix(count * count);
+  direction_.resize(count);
+  for (std::size_t r = 0; r < count; ++r) {
+    for (std::size_t c = 0; c <= r; ++c) {
+      matrix[r * count + c] = multipliers_[c] * dot({&scaled[r * parts], parts}, {&effects_[c * parts], parts});
+    }
+    matrix[r * count + r] += mu;
+    direction_[r] = mu - multipliers_[r] * slack_[r];
+  }
+  factorise(matrix, count);
+  solve(matrix, direction_);
+  return std::ranges::all_of(direction_, [](double one) { return std::isfinite(one); });
+}
+
+/// Goes along the direction. The function is concave, so its slope falls on the way. A step that makes it as negative
+/// as half of what it was positive is too long; between such a step and a point before it the slope is made small,
+/// because parts that come to a bound bend the function sharply.
+void DualPath::search_line(double mu) {
+  const std::vector<double> before = multipliers_;
+  double step = 1.0;
+  for (const double d : direction_) step = std::fmin(step, d < 0.0 ? -0.9 / d : d > 0.0 ? 10.0 / d : 1.0);
+  const auto slope = [&] {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      sum += direction_[k] * before[k] * (mu / multipliers_[k] - slack_[k]);
+    }
+    return sum;
+  };
+  const double steep = slope();
+  std::pair<double, double> near{0.0, steep};  // step and slope
+  std::pair<double, double> far{kInfinity, 0.0};
+  for (int attempt = 0; attempt < kMaxLineSearchSteps; ++attempt) {
+    for (std::size_t k = 0; k < before.size(); ++k) multipliers_[k] = before[k] * (1.0 + step * direction_[k]);
+    update_responses(mu);
+    const double now = slope();
+    const bool too_long = now < -0.5 * steep;
+    const bool too_short = now > 0.5 * steep && far.first < kInfinity;
+    if (!too_long && !too_short) return;
+    (too_long ? far : near) = {step, now};
+    const double part = std::clamp(near.second / (near.second - far.second), 0.1, 0.9);
+    step = near.first + part * (far.first - near.first);
+  }
+}
+
+/// Adds the limits that the sizes violate most to the working set, a few at once. False where none is violated.
+bool DualPath::add_violated_limits(double mu) {
+  struct Violation {
+    double excess;
+    std::size_t limit;
+  };
+  std::vector<Violation> violated;
+  const double least = 0.5 * (1.0 - room_);
+  for (std::size_t l = 0; l < problem_.limits; ++l) {
+    if (is_in_set_[l]) continue;
+    const double excess = dot(problem_.row(l), sizes_) - room_;
+    if (excess > least) violated.push_back({excess, l});
+  }
+  std::ranges::sort(violated, [](const Violation& a, const Violation& b) {
+    return a.excess != b.excess ? a.excess > b.excess : a.limit < b.limit;
+  });
+  if (violated.size() > kAddedAtOnce) violated.resize(kAddedAtOnce);
+  for (const Violation& one : violated) {
+    add_limit(one.limit);
+    multipliers_.back() = mu / one.excess;
+  }
+  return !violated.empty();
+}
+
+PathPoint DualPath::here() const {
+  double cost = 0.0;
+  for (const BestResponse& part : responses_) cost += part.cost;
+  return {responses_, multipliers_, lower_bound(problem_, allowed_, working_set_, multipliers_), cost};
+}
+
+PathPoint DualPath::follow(std::span<const ProcessRange> allowed, std::span<const double> start,
+                           const PathTarget& target) {
+  allowed_ = allowed;
+  const double scale = multiplier_scale(problem_, allowed);
+  double entropy = 0.0;
+  for (const ProcessRange& range : allowed) entropy += std::log(static_cast<double>(range.size()));
+  double mu = (start.empty() ? 0.1 : 0.01) * scale;
+  begin(start, mu);
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    const bool centred = centre(mu);
+    if (add_violated_limits(mu)) continue;
+    PathPoint point = here();
+    double changes = 0.0;
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
+      changes += changeable(problem_.processes[i], allowed[i], responses_[i]);
+    }
+    const bool mixes = std::ranges::any_of(responses_, [](const BestResponse& part) { return part.deviation > 0.0; });
+    const double gap = (1.5 * static_cast<double>(working_set_.size()) + entropy) * mu;
+    const bool ended =
+        gap <= kRelativeGap * changes || mu <= kSmallestMu * scale || (mixes && mu <= kSmallestMixingMu * changes);
+    const bool hopeless = target.only_to_branch && point.cost < target.cutoff &&
+                          point.cost - point.lower_bound < 0.2 * (target.cutoff - point.lower_bound);
+    if (!centred || ended || hopeless || point.lower_bound >= target.cutoff) return point;
+    mu *= kMuReduction;
+  }
+  return here();
+}
+
+}  // namespace poesy
