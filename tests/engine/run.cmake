@@ -29,8 +29,8 @@ poesy_test(adaptive_statistical_test LABELS statistical SOURCES engine/run/adapt
 poesy_test(ranks_test LABELS robustness SOURCES engine/run/ranks_test.cpp LINKS poesy_kinds)
 poesy_test(study_run_test LABELS unit SOURCES engine/kinds/outlook_test.cpp engine/kinds/study_run_test.cpp LINKS poesy_kinds)
 poesy_test(tolerance_search_test LABELS statistical
-           SOURCES engine/kinds/allocation/near_limit_test.cpp engine/kinds/allocation/search_test.cpp
-                   engine/kinds/allocation/variations_test.cpp
+           SOURCES engine/kinds/allocation/near_limit_test.cpp engine/kinds/allocation/search_stages_test.cpp
+                   engine/kinds/allocation/search_test.cpp engine/kinds/allocation/variations_test.cpp
            LINKS poesy_kinds)
 poesy_test(sobol_test LABELS unit SOURCES engine/kinds/sobol/groups_test.cpp engine/kinds/sobol/constant_test.cpp
            LINKS poesy_kinds)

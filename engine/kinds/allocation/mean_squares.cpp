@@ -13,23 +13,23 @@
 namespace poesy {
 namespace {
 
-constexpr std::uint64_t kKind = 71;          ///< no other state begins with this number
+constexpr std::uint64_t kKind = 71;          ///< the first number of a state, which no other stage has
 constexpr std::size_t kNodes = 3;            ///< mu - sigma, 0, mu + sigma
-constexpr std::size_t kDrawsOfPiece = 16;    ///< that one piece of work takes
-constexpr double kUnsolvedOverLimit = 10.0;  ///< what a sample without a solution counts as
-constexpr double kLargestSum = 1e100;        ///< of squares: responses stay far below it, and slopes from it are finite
+constexpr std::size_t kDrawsOfPiece = 16;    ///< draws of one piece of work
+constexpr double kUnsolvedOverLimit = 10.0;  ///< response over limit of a sample without a solution
+constexpr double kLargestSum = 1e100;        ///< largest sum of squares in a state; slopes from it are finite
 
-/// What a piece of work finds at its pose: K limits, P errors.
+/// The result of a piece of work at its pose: K limits, P errors.
 struct AddedSquares {
   std::vector<double> base;     ///< [K] y(0)^2 of the perfect mechanism; empty among others
-  std::vector<double> added;    ///< [K x P] summed over the draws
-  std::vector<double> counted;  ///< [P] draws
+  std::vector<double> added;    ///< [K x P] sums over the draws
+  std::vector<double> counted;  ///< [P] draws that were solved
 
   AddedSquares() = default;
   AddedSquares(std::size_t limits, std::size_t errors) : added(limits * errors), counted(errors) {}
 };
 
-/// Pieces of work: at each pose one of each error alone, then some for the draws of the others.
+/// The pieces of work: at each pose one for each error alone, then some for each error among draws of the others.
 struct Pieces {
   std::size_t poses;
   std::size_t draws;
@@ -70,12 +70,12 @@ class AddedSquaresEvaluator : private UnitSolver {
   }
 
  private:
-  /// The error of a slot while another one is looked at.
+  /// The value of another error in a slot.
   double other(std::size_t n, std::size_t sample, std::size_t slot) const {
     return pieces_.alone(n) ? 0.0 : draws_[slot * pieces_.draws + pieces_.first_draw(n) + sample];
   }
 
-  /// Pairs of a sample and an error, sample by sample, each at its nodes.
+  /// Solves pairs of a sample and an error, sample by sample, each at its nodes.
   void add_pairs(std::size_t n, std::size_t first, std::size_t pairs, AddedSquares& found) {
     const std::size_t errors = plan_->factors().size();
     const std::size_t count = pairs * kNodes;

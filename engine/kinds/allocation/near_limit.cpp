@@ -8,7 +8,8 @@
 namespace poesy {
 namespace {
 
-/// Loads farther from the limit say nothing of it; a window that is narrower holds too few where loads are alike.
+/// Bounds of the window: loads farther from the limit say nothing about it, and where loads are alike a narrower window
+/// holds too few machines.
 constexpr double kWidest = 0.2;
 constexpr double kNarrowest = 0.02;
 
@@ -57,20 +58,20 @@ double NearLimit::change(std::span<const double> loads) const {
   return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
-double NearLimit::rejects_to_come(std::span<const double> coarser) const {
+double NearLimit::added_rejects(std::span<const double> coarser) const {
   POESY_EXPECTS(coarser.size() == loads_.size());
   double come = 0.0;
   for (std::size_t k = 0; k < loads_.size(); ++k) come += reject(coarser[k]) - reject(loads_[k]);
   return scale_ * come;
 }
 
-double NearLimit::rejects_to_come(std::span<const double> coarser, std::span<const double> mirrored,
-                                  std::span<const double> mirrored_coarser) const {
+double NearLimit::added_rejects(std::span<const double> coarser, std::span<const double> mirrored,
+                                std::span<const double> mirrored_coarser) const {
   POESY_EXPECTS(coarser.size() == loads_.size() && mirrored.size() == loads_.size() &&
                 mirrored_coarser.size() == loads_.size());
   double come = 0.0;
   for (std::size_t k = 0; k < loads_.size(); ++k) {
-    // Where both machines of a pair are near, either may have been drawn: half of what they say is the other's.
+    // Where both machines of a pair are near, either may have been drawn, so each counts as half of the pair.
     const double weight = is_near(mirrored[k]) ? 0.5 : 1.0;
     const double of_machine = reject(coarser[k]) - reject(loads_[k]);
     const double of_mirrored = reject(mirrored_coarser[k]) - reject(mirrored[k]);

@@ -15,7 +15,7 @@ namespace poesy {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Four standard deviations of a normal error reach as far as its part is large.
+/// The largest tolerance over the size of its part: four standard deviations of a normal error are the whole part then.
 constexpr double kShareOfPart = 0.25;
 
 /// The standard deviation of a perfect part, m or rad: far below what any solve can tell from zero.
@@ -91,12 +91,13 @@ DrawnPart drawn_part(const AllocatedPart& part, const Study& study) {
   return drawn;
 }
 
-/// The largest tolerance up to `most` that some process holds, and the cheapest such process; else the lowest one.
+/// A tolerance and a process that holds it.
 struct Held {
   double tolerance;
   std::size_t process;
 };
 
+/// The largest tolerance up to `most` that some process holds, and the cheapest such process; else the lowest one.
 Held held_below(const std::vector<Process>& processes, double most) {
   std::optional<Held> best;
   for (std::size_t k = 0; k < processes.size(); ++k) {
@@ -168,7 +169,7 @@ std::optional<TolerancePoint> ToleranceProgramme::coarser(const TolerancePoint& 
   if (now.hi > from) {
     next.tolerance[part] = std::min(now.hi, factor * from);
   } else {
-    std::optional<std::size_t> above;  // the next one that is not a range around what is
+    std::optional<std::size_t> above;  // the next single value
     for (std::size_t k = 0; k < list.size(); ++k) {
       if (list[k].lo != list[k].hi || list[k].lo <= from) continue;
       if (!above || list[k].lo < list[*above].lo) above = k;
@@ -222,17 +223,11 @@ ToleranceLimits ToleranceProgramme::limits(const MeanSquares& squares, std::span
 
 std::vector<std::vector<Process>> ToleranceProgramme::within(const TrustRegion& region,
                                                              std::vector<std::vector<std::size_t>>& kept) const {
-  if (region.centre.empty()) {
-    for (const auto& list : processes_) {
-      kept.emplace_back();
-      for (std::size_t k = 0; k < list.size(); ++k) kept.back().push_back(k);
-    }
-    return processes_;
-  }
+  const bool anywhere = region.centre.empty();
   const std::vector<double> lowest = this->lowest().tolerance;
   std::vector<std::vector<Process>> near;
   for (std::size_t i = 0; i < size(); ++i) {
-    const double most = std::max(region.growth * region.centre[i], lowest[i]);
+    const double most = anywhere ? kInfinity : std::max(region.growth * region.centre[i], lowest[i]);
     near.emplace_back();
     kept.emplace_back();
     for (std::size_t k = 0; k < processes_[i].size(); ++k) {
@@ -254,7 +249,7 @@ ChoiceOfTolerances ToleranceProgramme::least(const ToleranceLimits& limits, cons
   const LeastCost& found = std::get<LeastCost>(outcome);
   ChosenTolerances chosen{{found.best.tolerance, {}, 0.0}, found.lower_bound, found.multiplier};
   if (std::ranges::all_of(chosen.multiplier, [](double one) { return one == 0.0; })) {
-    chosen.multiplier = found.relaxed;  // values that can be had leave no price of their own
+    chosen.multiplier = found.relaxed;  // single values have no multiplier of their own
   }
   for (std::size_t i = 0; i < size(); ++i) chosen.process.push_back(kept[i][found.best.process[i]]);
   chosen.cost = cost_of(chosen);

@@ -8,6 +8,7 @@
 
 #include "engine/base/nan.h"
 #include "engine/kinds/allocation/kind.h"
+#include "engine/kinds/allocation/machine_loads.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/search.h"
 #include "engine/kinds/confirming_study.h"
@@ -15,26 +16,25 @@
 #include "engine/stats/proportion.h"
 #include "engine/study/study_file.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 /// Yields and multiples of the limits for which a cost is predicted.
 constexpr std::array kYields{0.9, 0.95, 0.98, 0.99, 0.995, 0.9973, 0.999, 0.9995, 0.9999};
 constexpr std::array kFactors{0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5, 2.0};
 
-/// The study that tries fresh machines with these tolerances.
-Study certificate_study(const ToleranceProgramme& programme, const TolerancePoint& found, const Study& study) {
-  const AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
-  Study fresh = as_confirming_study(programme.at(found.tolerance), "certificate");
-  fresh.seed = seed_of_others(study, SampleIndex(0));
-  fresh.analysis.kind->ask_yield(fresh, asked.yield);
-  fresh.analysis.conf_level = asked.confidence;
+/// The study that tries fresh machines with these tolerances [N].
+Study certificate_study(const SearchProblem& problem, std::span<const double> tolerance) {
+  Study fresh = as_confirming_study(problem.programme.at(tolerance), "certificate");
+  fresh.seed = seed_of_others(problem.run.study, SampleIndex(0));
+  fresh.analysis.kind->ask_yield(fresh, problem.options.yield);
+  fresh.analysis.conf_level = problem.options.confidence;
   return fresh;
 }
 
-YieldVerdict verdict_of(const Trial& trial, double yield, double confidence) {
-  const std::uint64_t machines = trial.load.size();
-  const std::uint64_t good = machines - trial.rejects();
+YieldVerdict verdict_of(const MachineLoads& fresh, double yield, double confidence) {
+  const std::uint64_t machines = fresh.load.size();
+  const std::uint64_t good = machines - rejects_of(fresh.load);
   const Estimate share = proportion(good, machines, confidence);
   YieldVerdict verdict{.decision = YieldVerdict::Decision::undecided,
                        .asked = yield,
@@ -44,36 +44,37 @@ YieldVerdict verdict_of(const Trial& trial, double yield, double confidence) {
                        .ci_high = share.interval.high,
                        .machines = machines,
                        .rejects = machines - good,
-                       .unsolved = trial.unsolved,
-                       .solves = total_of(trial.solves)};
+                       .unsolved = fresh.unsolved,
+                       .solves = total_of(fresh.solves)};
   if (proportion_at_least(good, machines, confidence) >= yield) verdict.decision = YieldVerdict::Decision::kept;
   if (proportion_at_most(good, machines, confidence) < yield) verdict.decision = YieldVerdict::Decision::not_kept;
   return verdict;
 }
 
-/// Divides a part's share of the mean square among its errors, which have one variance, by their slopes under this
-/// limit.
-void divide_share(const ToleranceSearch& search, std::size_t limit, std::size_t part, AllocationResult& found) {
-  const std::span<const std::size_t> errors = search.programme().errors(part);
-  const std::span<const double> slopes =
-      std::span(search.squares().slope).subspan(limit * found.error_mean_square_share.size());
+/// Divides a part's share of the mean square among its errors, which have one variance, in proportion to their slopes
+/// [P].
+void divide_share(std::span<const double> slopes, std::span<const std::size_t> errors, double of_part,
+                  std::vector<double>& shares) {
   double sum = 0.0;
   for (const std::size_t p : errors) sum += slopes[p];
   for (const std::size_t p : errors) {
     const double within = sum > 0.0 ? slopes[p] / sum : 1.0 / static_cast<double>(errors.size());
-    found.error_mean_square_share[p] = within * found.mean_square_share[part];
+    shares[p] = within * of_part;
   }
 }
 
-/// What is said of each part.
-void add_parts(const ToleranceSearch& search, const Study& study, AllocationResult& found) {
-  const ToleranceProgramme& programme = search.programme();
-  const TolerancePoint& point = search.found();
-  found.error_mean_square_share.assign(study.analysis.factors.size(), kNaN);
-  const std::size_t parts = programme.size();
-  const std::size_t tightest = worst_use(search.limits(), point.tolerance).limit;
-  const double need = search.limits().need(tightest, point.tolerance);
-  for (std::size_t i = 0; i < parts; ++i) {
+/// Fills in what is found of each part.
+void add_parts(const SearchProblem& problem, const FoundTolerances& search, const ToleranceLimits& limits,
+               AllocationResult& found) {
+  const Study& study = problem.run.study;
+  const ToleranceProgramme& programme = problem.programme;
+  const TolerancePoint& point = search.design.candidate.point;
+  const std::size_t errors = study.analysis.factors.size();
+  found.error_mean_square_share.assign(errors, kNaN);
+  const std::size_t tightest = worst_use(limits, point.tolerance).limit;
+  const double need = limits.need(tightest, point.tolerance);
+  const auto slopes = std::span(search.linearisation.squares.slope).subspan(tightest * errors, errors);
+  for (std::size_t i = 0; i < programme.size(); ++i) {
     const AllocatedPart& part = programme.parts()[i];
     const Spread spread{part.sigmas, part.shift};
     const double tolerance = point.tolerance[i];
@@ -90,98 +91,103 @@ void add_parts(const ToleranceSearch& search, const Study& study, AllocationResu
     found.shift.push_back(part.shift * tolerance);
     found.cost.push_back(std::isnan(point.cost) ? kNaN : programme.cost(i, tolerance, point.process[i]));
     found.share.push_back(found.cost.back() / point.cost);
-    found.mean_square_share.push_back(search.limits().row(tightest)[i] * tolerance * tolerance / need);
-    divide_share(search, tightest, i, found);
+    found.mean_square_share.push_back(limits.row(tightest)[i] * tolerance * tolerance / need);
+    divide_share(slopes, programme.errors(i), found.mean_square_share[i], found.error_mean_square_share);
     found.bound.push_back(static_cast<std::uint8_t>(programme.at_bound(i, tolerance, point.process[i])));
     found.chosen.push_back(programme.chosen_name(i, point.process[i]));
   }
-  found.coarser_yield = search.coarser_yield();
+  found.coarser_yield = search.coarser_yield;
 }
 
-/// What is said of each limit.
-void add_limits(const ToleranceSearch& search, const Study& study, AllocationResult& found) {
-  const ToleranceLimits& limits = search.limits();
+/// Fills in what is found of each limit.
+void add_limits(const SearchProblem& problem, const Candidate& candidate, const ToleranceLimits& limits,
+                AllocationResult& found) {
+  const std::vector<ResponseLimit>& stated = problem.run.study.analysis.limits;
+  const std::vector<double>& multiplier = candidate.chosen.multiplier;
   const std::size_t cells = found.responses * found.poses;
   found.limit.assign(found.responses, kNaN);
   found.saving.assign(found.responses, kNaN);
   found.multiplier.assign(cells, kNaN);
   found.limit_use.assign(cells, kNaN);
-  for (std::size_t k = 0; k < study.analysis.limits.size(); ++k) {
-    const ResponseLimit& limit = study.analysis.limits[k];
-    found.limit[limit.response] = limit.most;
-    const double allowed = search.share() * limit.most;
-    double price = 0.0;
+  for (std::size_t k = 0; k < stated.size(); ++k) {
+    const auto [response, most] = std::pair(stated[k].response, stated[k].most);
+    found.limit[response] = most;
+    const double allowed = candidate.share * most;
+    double sum = 0.0;
     for (std::size_t m = 0; m < found.poses; ++m) {
       const std::size_t row = k * found.poses + m;
-      const std::size_t cell = limit.response * found.poses + m;
-      const double square = allowed * allowed - limits.room[row] + limits.need(row, search.found().tolerance);
+      const std::size_t cell = response * found.poses + m;
+      const double square = allowed * allowed - limits.room[row] + limits.need(row, candidate.point.tolerance);
       found.limit_use[cell] = std::sqrt(std::max(0.0, square)) / allowed;
-      if (search.chosen().multiplier.empty()) continue;
+      if (multiplier.empty()) continue;
       // The room is (share x limit)^2 less what is fixed.
-      found.multiplier[cell] = search.chosen().multiplier[row] * 2.0 * search.share() * allowed;
-      price += found.multiplier[cell];
+      found.multiplier[cell] = multiplier[row] * 2.0 * candidate.share * allowed;
+      sum += found.multiplier[cell];
     }
-    if (!search.chosen().multiplier.empty()) found.saving[limit.response] = 0.01 * limit.most * price;
+    if (!multiplier.empty()) found.saving[response] = 0.01 * most * sum;
   }
 }
 
-/// Costs of other yields, by the loads of the design's machines, and of other limits.
-void add_curves(const ToleranceSearch& search, const AllocationOptions& asked, AllocationResult& found) {
-  if (std::isnan(search.found().cost)) return;
-  const double cost_here = search.cost_at(search.share(), 1.0);
-  const double scale = search.found().cost / cost_here;
-  std::vector<double> loads(search.loads().begin(), search.loads().end());
+/// Fills in the costs of other yields, by the loads of the design's machines, and of other limits.
+void add_curves(const SearchProblem& problem, const FoundTolerances& search, AllocationResult& found) {
+  const auto& [point, chosen, share] = search.design.candidate;
+  if (std::isnan(point.cost)) return;
+  const double confidence = problem.options.confidence;
+  const double scale = point.cost / predicted_cost(problem, search, share, 1.0);
+  std::vector<double> loads = search.design.load;
   std::ranges::sort(loads, std::ranges::greater());
   for (const double yield : kYields) {
-    if (loads.size() < trials_without_failure(yield, asked.confidence)) continue;
-    const std::uint64_t rejects = allowed_rejects(yield, asked.confidence, loads.size()).design;
+    if (loads.size() < trials_without_failure(yield, confidence)) continue;
+    const std::uint64_t rejects = allowed_rejects(yield, confidence, loads.size()).design;
     const double load = loads[rejects];
     if (rejects == 0 || !(load > 0.0) || std::isinf(load)) continue;  // too few machines to tell
     found.curve_yield.push_back(yield);
-    found.curve_yield_cost.push_back(scale * search.cost_at(search.share() / load, 1.0));
+    found.curve_yield_cost.push_back(scale * predicted_cost(problem, search, share / load, 1.0));
   }
   for (const double factor : kFactors) {
     found.curve_factor.push_back(factor);
-    found.curve_factor_cost.push_back(scale * search.cost_at(search.share(), factor));
+    found.curve_factor_cost.push_back(scale * predicted_cost(problem, search, share, factor));
   }
 }
 
-AllocationResult result_of(const StudyRun& run, const ToleranceSearch& search, const Trial& trial,
+/// The result of a search and of the fresh machines of its certificate.
+AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& search, const MachineLoads& fresh,
                            const Study& certificate) {
-  const Study& study = run.study;
-  const AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
+  const Study& study = problem.run.study;
+  const Candidate& candidate = search.design.candidate;
+  const ToleranceLimits limits = limits_of(problem, search);
   AllocationResult found;
   found.responses = study.model().responses.size();
-  found.poses = run.poses.size();
-  add_parts(search, study, found);
-  add_limits(search, study, found);
-  add_curves(search, asked, found);
-  found.aim = asked.aim;
+  found.poses = problem.run.poses.size();
+  add_parts(problem, search, limits, found);
+  add_limits(problem, candidate, limits, found);
+  add_curves(problem, search, found);
+  found.aim = problem.options.aim;
   found.calibrated = study.mechanism.calibrated;
-  found.total_cost = search.found().cost;
-  found.lower_bound = search.chosen().lower_bound;  // NaN where nothing but the lowest tolerances was left
-  found.gap = search.chosen().cost - search.chosen().lower_bound;
-  found.wanted_yield = asked.yield;
-  found.confidence = asked.confidence;
-  found.stages = search.stages();
-  found.stage_tolerance = search.stage_tolerance();
-  found.design_machines = search.loads().size();
-  found.design_rejects = search.rejects();
-  found.design_most = search.allowed().design;
+  found.total_cost = candidate.point.cost;
+  found.lower_bound = candidate.chosen.lower_bound;  // NaN where nothing but the lowest tolerances was left
+  found.gap = candidate.chosen.cost - candidate.chosen.lower_bound;
+  found.wanted_yield = problem.options.yield;
+  found.confidence = problem.options.confidence;
+  found.stages = search.log.stages;
+  found.stage_tolerance = search.log.tolerance;
+  found.design_machines = search.design.load.size();
+  found.design_rejects = rejects_of(search.design.load);
+  found.design_most = problem.allowed.design;
   found.certificate_seed = certificate.seed;
-  found.certificate_most = search.allowed().certificate;
-  found.certificate = verdict_of(trial, asked.yield, asked.confidence);
+  found.certificate_most = problem.allowed.certificate;
+  found.certificate = verdict_of(fresh, problem.options.yield, problem.options.confidence);
   found.certificate_study = resolved_text(certificate);
-  found.solves = trial.solves;
-  for (std::size_t m = 0; m < found.poses; ++m) append_failures(0, PoseIndex(m), trial.failed[m], found.failures);
+  found.solves = fresh.solves;
+  for (std::size_t m = 0; m < found.poses; ++m) append_failures(0, PoseIndex(m), fresh.failed[m], found.failures);
   return found;
 }
 
-LimitVerdicts verdicts_of(const Study& study, const Trial& trial, const YieldVerdict& certificate) {
+LimitVerdicts verdicts_of(const Study& study, const MachineLoads& fresh, const YieldVerdict& certificate) {
   LimitVerdicts verdicts{.judge = Judge::yield, .limits = {}, .yield = certificate};
   for (std::size_t k = 0; k < study.analysis.limits.size(); ++k) {
     const ResponseLimit& limit = study.analysis.limits[k];
-    const std::uint64_t within = certificate.machines - trial.beyond[k];
+    const std::uint64_t within = certificate.machines - fresh.beyond[k];
     const double share = static_cast<double>(within) / static_cast<double>(certificate.machines);
     verdicts.limits.push_back({.response = limit.response,
                                .limit = limit.most,
@@ -194,13 +200,14 @@ LimitVerdicts verdicts_of(const Study& study, const Trial& trial, const YieldVer
 }
 
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
-  ToleranceSearch search(run);
-  if (!search.find()) return std::nullopt;
-  const Study certificate = certificate_study(search.programme(), search.found(), run.study);
-  const auto trial = try_machines(Plan(certificate, run.poses), run.model, certificate.analysis.limits, run.options);
-  if (!trial || !run.makes_result()) return std::nullopt;
-  AllocationResult found = result_of(run, search, *trial, certificate);
-  LimitVerdicts verdicts = verdicts_of(run.study, *trial, found.certificate);
+  const SearchProblem problem(run);
+  const auto search = find_tolerances(problem);
+  if (!search) return std::nullopt;
+  const Study certificate = certificate_study(problem, search->design.candidate.point.tolerance);
+  const auto fresh = machine_loads(Plan(certificate, run.poses), run.model, certificate.analysis.limits, run.options);
+  if (!fresh || !run.makes_result()) return std::nullopt;
+  AllocationResult found = result_of(problem, *search, *fresh, certificate);
+  LimitVerdicts verdicts = verdicts_of(run.study, *fresh, found.certificate);
   return StudyResult{std::move(found), std::move(verdicts), {}, certificate};
 }
 
@@ -234,10 +241,14 @@ Outlook allocation_outlook(const Study& study, const Model& model, const PoseSet
 }
 
 }  // namespace
+}  // namespace poesy::allocation
 
-constinit const Kind kAllocationKind{.study = kAllocationStudy,
-                                     .run = {run_study_of_kind, allocation_outlook, nullptr, true},
-                                     .file = kAllocationFile,
-                                     .report = kAllocationReport};
+namespace poesy {
+
+constinit const Kind kAllocationKind{
+    .study = kAllocationStudy,
+    .run = {allocation::run_study_of_kind, allocation::allocation_outlook, nullptr, true},
+    .file = kAllocationFile,
+    .report = kAllocationReport};
 
 }  // namespace poesy

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -8,19 +7,19 @@
 #include <vector>
 
 #include "engine/kinds/allocation/mean_squares.h"
-#include "engine/kinds/allocation/near_limit.h"
 #include "engine/kinds/allocation/programme.h"
 #include "engine/kinds/allocation/result.h"
-#include "engine/kinds/allocation/trial.h"
-#include "engine/kinds/allocation/variations.h"
 #include "engine/kinds/kind.h"
 
-namespace poesy {
+/// The search for the tolerances of a study: linearise, settle, scale, improve, then scale to other machines and use
+/// the remaining yield (search_stages.h). Each stage makes a value from that of the stage before and is a chain of
+/// runs, each with a checkpoint of its own. What a stage decides follows from the study alone.
+namespace poesy::allocation {
 
 /// How many rejects a certificate allows, and how many the design may have so that its certificate will hold.
 struct AllowedRejects {
-  std::uint64_t certificate;  ///< of so many fresh machines
-  std::uint64_t design;       ///< of as many others
+  std::uint64_t certificate;  ///< rejects of so many fresh machines
+  std::uint64_t design;       ///< rejects of as many machines of the design
 };
 
 /// For a share `yield` of good machines, shown with this confidence (Clopper and Pearson) by so many machines. The
@@ -32,127 +31,74 @@ AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t ma
 /// last scaling.
 std::uint64_t seed_of_others(const Study& study, SampleIndex set);
 
-/// Looks for the tolerances of a study, in stages; each stage is a run of its own, from its checkpoint on. What a stage
-/// decides follows from the study alone.
-class ToleranceSearch {
- public:
+/// What a search looks for, the same in all its stages.
+struct SearchProblem {
   /// Refers to the run.
-  explicit ToleranceSearch(const StudyRun& run);
+  explicit SearchProblem(const StudyRun& study_run);
 
-  /// Whether it came to its end; false when stopped. Throws InputError where no tolerances keep the limits, with the
-  /// limit, and by how much.
-  bool find();
-
-  const ToleranceProgramme& programme() const { return programme_; }               ///< The parts.
-  const TolerancePoint& found() const { return found_; }                           ///< The tolerances.
-  const std::vector<double>& stage_tolerance() const { return stage_tolerance_; }  ///< [stages x N].
-  const std::vector<AllocationStage>& stages() const { return stages_; }           ///< The way to them.
-  const AllowedRejects& allowed() const { return allowed_; }                       ///< With so many machines.
-  /// [n] Loads of the design's machines at found(); below kNear of the limit as they were before the last scaling.
-  std::span<const double> loads() const { return trial_.load; }
-  std::uint64_t rejects() const { return trial_.rejects(); }                   ///< Of these machines.
-  const std::vector<double>& coarser_yield() const { return coarser_yield_; }  ///< [N] as AllocationResult has it.
-  /// The last programme under limits on root mean squares, for what its prices say.
-  const ToleranceLimits& limits() const { return limits_; }
-  const ChosenTolerances& chosen() const { return chosen_; }  ///< Of that programme.
-  const MeanSquares& squares() const { return squares_; }     ///< By which these limits were found.
-  double share() const { return share_; }                     ///< Of each limit that its root mean square may take.
-  /// The cost of another share, or of wider limits, by the last programme; NaN where it has none.
-  double cost_at(double share, double wider) const;
-
- private:
-  bool measure(std::span<const double> tolerance, std::size_t draws);
-  bool choose(const TrustRegion& region);
-  bool choose_by_least_share(double low, double high, const TrustRegion& region);
-  bool linearise();
-  bool settle_effects();
-  bool rescale(double load);
-  bool come_near();
-  bool meet_yield();
-  bool improve_by_gradient();
-  bool scale_near(const std::vector<bool>& stays);
-  std::vector<bool> none_stays() const { return std::vector<bool>(programme_.size(), false); }
-  std::optional<bool> left_out() const;
-  bool scale_to_others();
-  bool leave_none_idle();
-
-  /// Machines of the design that were tried at some tolerances.
-  struct Tried {
-    std::vector<std::uint32_t> machines;  ///< their numbers
-    Trial trial;                          ///< of these
-  };
-
-  /// Tolerances by a programme.
-  struct Programmed {
-    TolerancePoint point;
-    ChosenTolerances chosen;
-    double share;
-  };
-
-  std::size_t trial_machines() const { return run_.study.analysis.samples; }
-  Study tried_at(std::span<const double> tolerance) const;
-  std::optional<Trial> try_all() const;
-  std::optional<Tried> try_some(const TolerancePoint& point, std::vector<std::uint32_t> machines) const;
-  std::vector<std::uint32_t> near_machines() const;
-  std::optional<Tried> try_near(const TolerancePoint& point) const;
-  bool try_found();
-
-  /// A part that is made coarser.
-  struct CoarserPart {
-    std::size_t part;
-    double step;   ///< its errors are so many times as large
-    double steps;  ///< to the next tolerance that can be had, in T^2
-  };
-
-  bool try_coarser(std::span<const std::size_t> parts);
-  bool try_small(std::span<const CoarserPart> parts);
-  Variation varied(std::size_t part, double factor) const;
-  std::optional<std::vector<double>> try_varied(const NearLimit& near, std::span<const Variation> variations) const;
-  void set_coarser_yield(const CoarserPart& of, double come);
-  std::vector<std::size_t> idle_parts(std::span<const std::size_t> parts) const;
-  std::optional<bool> loosen(std::vector<std::size_t> idle);
-  void take(const Programmed& of);
-  std::optional<bool> lower_what_rejects();
-  bool lower_to_least();
-
-  /// Scores of errors among some machines.
-  struct Scores {
-    std::vector<double> of_part;  ///< [N] sums over its errors and the machines
-    double machines = 0.0;        ///< how many
-  };
-
-  std::vector<double> shares_by_price() const;
-  std::vector<std::uint32_t> machines_of_largest_load() const;
-  Scores scores(std::span<const std::uint32_t> machines) const;
-  bool is_sure(const Scores& of, std::size_t part) const;
-  std::vector<bool> rejecting_parts() const;
-  ToleranceLimits gradient_limits() const;
-  std::optional<bool> fit_gradient(ToleranceLimits direction);
-
-  void add_stage(std::string name, std::uint64_t machines, std::uint64_t rejects);
-  std::string row_text(std::size_t row) const;
-  [[noreturn]] void refuse(const Infeasible& broken) const;
-  [[noreturn]] void refuse_lowest() const;
-  [[noreturn]] void refuse_unbounded(std::uint64_t rejects) const;
-  [[noreturn]] void refuse_endless(const Unbounded& endless) const;
-
-  const StudyRun& run_;
-  const AllocationOptions& asked_;
-  ToleranceProgramme programme_;
-  AllowedRejects allowed_;
-  std::uint64_t seed_;                 ///< of the machines that are tried
-  double share_;                       ///< of a limit, for root mean squares
-  MeanSquares squares_;                ///< at measured_
-  std::vector<double> measured_;       ///< [N] tolerances at which squares_ hold
-  ToleranceLimits limits_;             ///< of the last programme
-  ChosenTolerances chosen_;            ///< by it
-  Programmed settled_;                 ///< the last one before machines were tried
-  TolerancePoint found_;               ///< the best so far
-  Trial trial_;                        ///< of all machines of the design, the last one
-  Tried near_;                         ///< machines that may decide, at found_
-  std::vector<double> coarser_yield_;  ///< [N]
-  std::vector<AllocationStage> stages_;
-  std::vector<double> stage_tolerance_;  ///< [stages x N]
+  const StudyRun& run;               ///< the study, its model and how it is run
+  const AllocationOptions& options;  ///< of the study
+  ToleranceProgramme programme;      ///< the parts
+  AllowedRejects allowed;            ///< with as many machines as the study has samples
 };
 
-}  // namespace poesy
+/// Mean squares of limited responses and the tolerances at which they were measured. Around these, limits on root mean
+/// squares are linear in T^2.
+struct Linearisation {
+  std::vector<double> at;  ///< [N] tolerances
+  MeanSquares squares;     ///< mean squares at these, and their slopes
+};
+
+/// Tolerances on the way, and the last programme.
+struct Candidate {
+  TolerancePoint point;     ///< the tolerances
+  ChosenTolerances chosen;  ///< those of the last programme, to which its bound and its multipliers belong
+  double share = 0.0;       ///< of each limit: what that programme allowed its root mean square
+};
+
+/// Machines that may decide, those with the largest loads.
+struct ScreenedMachines {
+  std::vector<std::uint32_t> numbers;  ///< [n] ascending
+  std::vector<double> load;            ///< [n]
+};
+
+/// Tolerances at which the design's machines were tried.
+struct ToleranceDesign {
+  Candidate candidate;        ///< the tolerances
+  std::uint64_t seed = 0;     ///< of the machines
+  std::vector<double> load;   ///< [machines] loads; of those that were screened out as they were when all were tried
+  ScreenedMachines screened;  ///< with loads at the candidate's tolerances; empty where these are the lowest ones
+};
+
+/// The way to the tolerances.
+struct StageLog {
+  std::vector<AllocationStage> stages;  ///< in their order
+  std::vector<double> tolerance;        ///< [stages x N]
+
+  /// Adds a stage that ended with this candidate, and with so many rejects of so many machines.
+  void add(std::string name, const Candidate& candidate, std::uint64_t machines, std::uint64_t rejects);
+};
+
+/// What a search found.
+struct FoundTolerances {
+  Linearisation linearisation;        ///< of the last programme under limits on root mean squares
+  ToleranceDesign design;             ///< the tolerances and the loads of the design's machines
+  std::vector<double> coarser_yield;  ///< [N] as AllocationResult has it
+  StageLog log;                       ///< the way to them
+};
+
+/// Runs the search. Empty when stopped. Throws InputError where no tolerances keep the limits, with the limit, and by
+/// how much.
+std::optional<FoundTolerances> find_tolerances(const SearchProblem& problem);
+
+/// The limits of the last programme.
+ToleranceLimits limits_of(const SearchProblem& problem, const FoundTolerances& found);
+
+/// The cost of another share, or of limits that are so many times as wide, by the last programme; NaN where it has
+/// none.
+double predicted_cost(const SearchProblem& problem, const FoundTolerances& found, double share, double wider);
+
+/// The number of machines with a load above 1.
+std::uint64_t rejects_of(std::span<const double> load);
+
+}  // namespace poesy::allocation

@@ -12,14 +12,14 @@
 namespace poesy {
 namespace {
 
-constexpr std::uint64_t kKind = 73;  ///< no other state begins with this number
-/// Machines that are varied together: few, so that a piece of work ends soon however many variations there are.
+constexpr std::uint64_t kKind = 73;  ///< the first number of a state, which no other stage has
+/// Machines that are varied together. They are few so that a piece of work ends soon however many variations there are.
 constexpr std::size_t kVariedAtOnce = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// About so many of the poses decide, for a guess of the solves to come.
+/// About one of so many poses decides, for a guess of the solves that are left.
 constexpr std::size_t kOfPosesDecide = 4;
 
-/// Variations of some machines: pieces of all variations of some of these.
+/// Machines and their variations. A piece of work has all variations of some of the machines.
 struct VariedMachines {
   std::span<const std::uint32_t> machines;  ///< [n]
   std::span<const Variation> variations;    ///< [V]
@@ -30,13 +30,13 @@ struct VariedMachines {
     return machines.subspan(first, std::min(kVariedAtOnce, machines.size() - first));
   }
   std::size_t loads_of(std::size_t piece) const { return variations.size() * machines_of(piece).size(); }
-  /// At most.
+  /// The largest number of solves.
   std::uint64_t solves_of(std::size_t piece, std::size_t poses) const {
     return std::uint64_t{loads_of(piece) + machines_of(piece).size()} * poses;
   }
 };
 
-/// Some machines with all variations.
+/// The loads of a piece of work.
 struct VariedPiece {
   std::vector<double> load;  ///< [V x B]
   std::uint64_t solves = 0;
@@ -65,7 +65,7 @@ class VariationEvaluator : private LoadSolver {
   }
 
  private:
-  /// The machines as they are.
+  /// Solves the machines without variations.
   void solve_without(VariedPiece& found) {
     at_pose_.assign(plan_->poses().size() * count_, 0.0);
     load_.assign(count_, 0.0);
@@ -76,8 +76,8 @@ class VariationEvaluator : private LoadSolver {
     found.solves += at_pose_.size();
   }
 
-  /// Variations of machines at a pose: where it decides; or where it does not, those that change much for any of the
-  /// machines, because what hardly acts at the pose that decides for one may act at another.
+  /// Solves variations at a pose, for machines that it decides. Or for the other machines the variations that change
+  /// much in any of the machines, because what hardly acts at the pose that decides for one may act at another.
   void solve_at(std::size_t m, bool deciding, VariedPiece& found) {
     pairs_.clear();
     for (std::size_t pair = 0; pair < found.load.size(); ++pair) {
@@ -90,7 +90,7 @@ class VariationEvaluator : private LoadSolver {
     if (!pairs_.empty()) solve_pairs(m, found);
   }
 
-  /// The pairs of a variation and a machine that are waiting.
+  /// Solves the pairs of a variation and a machine that are waiting.
   void solve_pairs(std::size_t m, VariedPiece& found) {
     const std::size_t count = pairs_.size();
     for (std::size_t p = 0; p < plan_->factors().size(); ++p) {
@@ -112,7 +112,7 @@ class VariationEvaluator : private LoadSolver {
     pairs_.clear();
   }
 
-  /// Loads at a pose of the first columns of values_; infinite where it is not solved.
+  /// Finds the loads at a pose of the first columns of values_; infinite where a machine is not solved.
   void solve(std::size_t m, std::span<double> loads) {
     missing_.assign(loads.size(), 0);
     beyond_.assign(limits_.size() * loads.size(), 0);
@@ -123,14 +123,14 @@ class VariationEvaluator : private LoadSolver {
   }
 
   const VariedMachines& varied_;
-  std::size_t count_ = 0;             ///< B, of the piece
+  std::size_t count_ = 0;             ///< B, machines of the piece
   std::vector<std::size_t> numbers_;  ///< [B]
   std::vector<double> drawn_;         ///< [P x B] errors
-  std::vector<double> at_pose_;       ///< [M x B] loads as they are
+  std::vector<double> at_pose_;       ///< [M x B] loads without variations
   std::vector<double> load_;          ///< [B] the largest of them
   std::vector<double> change_;        ///< [V] the largest change of a load at a pose
-  std::vector<std::size_t> pairs_;    ///< positions among [V x B]
-  std::vector<double> of_pairs_;      ///< loads of these at a pose
+  std::vector<std::size_t> pairs_;    ///< waiting pairs, as positions in [V x B]
+  std::vector<double> of_pairs_;      ///< their loads at a pose
   std::vector<std::uint8_t> missing_;
   std::vector<std::uint8_t> beyond_;
 };

@@ -13,24 +13,23 @@
 
 namespace poesy {
 
-/// Errors of these positions in a plan that are all times one factor: a tolerance that is changed, or errors that are
-/// mirrored.
+/// Errors that are all multiplied by one factor: a tolerance that is changed, or errors that are mirrored.
 struct Variation {
   std::vector<std::size_t> errors;  ///< positions among the plan's factors
-  double factor;                    ///< finite; below 0 errors are mirrored
+  double factor;                    ///< finite; a negative one mirrors the errors
 };
 
-/// Loads (Trial) [V x n] of the listed machines, ascending numbers below plan.samples(), with one variation after the
-/// other. Each machine is tried at the poses that decide: those where its load is within kDeciding of its largest. A
-/// variation that changes a load there by more than half of that, for one of some forty machines, may bring other
-/// poses up: these machines are tried with it at all poses. On all ranks of a team, the same bits for any number of
-/// threads. Empty when stopped. Precondition: Draws::per_machine.
+/// Loads (MachineLoads) [V x n] of the listed machines, ascending numbers below plan.samples(), with each variation
+/// alone. A machine is solved at the poses that decide, where its load is within kDeciding of its largest. If a
+/// variation changes a load there by more than half of that, in any of some forty machines, other poses may come to
+/// decide, and these machines are solved at all poses. On all ranks of a team, the same bits for any number of threads.
+/// Empty when stopped. Precondition: Draws::per_machine.
 std::optional<std::vector<double>> try_variations(const Plan& plan, const Model& model,
                                                   std::span<const ResponseLimit> limits,
                                                   std::span<const std::uint32_t> machines,
                                                   std::span<const Variation> variations, const RunOptions& options);
 
-/// Of a load, the limit being 1.
+/// Loads at a pose that are this near to the largest one decide; the limit is 1.
 inline constexpr double kDeciding = 0.1;
 
 }  // namespace poesy

@@ -85,8 +85,8 @@ TEST(HostileStatesOfToleranceSearches, HaveNoImpossibleNumbers) {
   const auto small = std::ranges::find(test::small_studies(), "allocation", &test::SmallStudy::name);
   const States sound = test::states_of(*small).back();
   ASSERT_TRUE(accepted(*small, sound));
-  // How many numbers stand before the reals, by the number with which the state begins: mean_squares.cpp, trial.cpp and
-  // variations.cpp.
+  // How many numbers stand before the reals, by the number with which the state begins: mean_squares.cpp,
+  // machine_loads.cpp and variations.cpp.
   const auto numbers = [](std::uint64_t kind) { return kind == 71 ? 7U : kind == 72 ? 5U : 6U; };
   std::set<std::uint64_t> tried;
   for (std::size_t stage = 0; stage < sound.size(); ++stage) {

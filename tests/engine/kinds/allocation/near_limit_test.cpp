@@ -41,10 +41,10 @@ class NormalMachines {
     for (const std::uint32_t s : machines) loads.push_back(std::abs(others_[s] + factor * part_[s]));
     return loads;
   }
-  double plain(const NearLimit& near) const { return near.rejects_to_come(loads(near.machines(), kStep)); }
+  double plain(const NearLimit& near) const { return near.added_rejects(loads(near.machines(), kStep)); }
   double mirrored(const NearLimit& near) const {
     const auto& machines = near.machines();
-    return near.rejects_to_come(loads(machines, kStep), loads(machines, -1.0), loads(machines, -kStep));
+    return near.added_rejects(loads(machines, kStep), loads(machines, -1.0), loads(machines, -kStep));
   }
 
  private:
@@ -132,14 +132,14 @@ TEST(NearLimit, CountsByDegrees) {
   const NearLimit near(numbers, loads, 10);
   EXPECT_EQ(near.machines(), (std::vector<std::uint32_t>{3}));
   const double scale = 2.0 / 2.5;  // two rejects, of which the machine at the limit is a half
-  EXPECT_DOUBLE_EQ(near.rejects_to_come(std::vector{1.2}), 0.5 * scale);
-  EXPECT_DOUBLE_EQ(near.rejects_to_come(std::vector{HUGE_VAL}), 0.5 * scale);
-  EXPECT_DOUBLE_EQ(near.rejects_to_come(std::vector{0.0}), -0.5 * scale);
+  EXPECT_DOUBLE_EQ(near.added_rejects(std::vector{1.2}), 0.5 * scale);
+  EXPECT_DOUBLE_EQ(near.added_rejects(std::vector{HUGE_VAL}), 0.5 * scale);
+  EXPECT_DOUBLE_EQ(near.added_rejects(std::vector{0.0}), -0.5 * scale);
   const double half = 0.5 * (15.0 - 0.25 * (10.0 - 0.75)) / 16.0;  // of the way to the window's end
-  EXPECT_DOUBLE_EQ(near.rejects_to_come(std::vector{1.1}), half * scale);
+  EXPECT_DOUBLE_EQ(near.added_rejects(std::vector{1.1}), half * scale);
   // A mirrored machine that is far from the limit is drawn by nothing else, and counts whole.
-  EXPECT_DOUBLE_EQ(near.rejects_to_come(std::vector{1.1}, std::vector{0.5}, std::vector{0.5}), half * scale);
-  EXPECT_NEAR(near.rejects_to_come(std::vector{1.1}, std::vector{1.0}, std::vector{0.9}), 0.0, 1e-15);
+  EXPECT_DOUBLE_EQ(near.added_rejects(std::vector{1.1}, std::vector{0.5}, std::vector{0.5}), half * scale);
+  EXPECT_NEAR(near.added_rejects(std::vector{1.1}, std::vector{1.0}, std::vector{0.9}), 0.0, 1e-15);
   EXPECT_DOUBLE_EQ(near.change(std::vector{1.1}), 1.1 - 1.0);
   EXPECT_EQ(near.change(std::vector{HUGE_VAL}), 0.0);
 }
@@ -147,7 +147,7 @@ TEST(NearLimit, CountsByDegrees) {
 TEST(NearLimit, NeedsNoMachines) {
   const NearLimit near({}, {}, 700);
   EXPECT_TRUE(near.machines().empty());
-  EXPECT_EQ(near.rejects_to_come({}), 0.0);
+  EXPECT_EQ(near.added_rejects({}), 0.0);
   EXPECT_EQ(near.change({}), 0.0);
 }
 

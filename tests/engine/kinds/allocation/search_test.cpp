@@ -13,52 +13,10 @@
 #include "engine/kinds/allocation/search.h"
 #include "engine/kinds/study_run.h"
 #include "engine/stats/proportion.h"
-#include "tests/engine/optimise/overrunning_clutch.h"
-#include "tests/support/function_model.h"
+#include "tests/engine/kinds/allocation/function_allocation.h"
 
 namespace poesy::test {
 namespace {
-
-/// The share of a normal within three standard deviations: with it a limit on values is three times that on root mean
-/// squares, as the literature takes it.
-const double kThreeSigma = std::erf(3.0 / std::sqrt(2.0));
-
-AllocatedPart part_of(std::size_t factor, const StatedCost& cost) {
-  AllocatedPart part;
-  part.name = "part " + std::to_string(factor + 1);
-  part.factors = {FactorIndex(factor)};
-  part.cost = cost;
-  return part;
-}
-
-StatedCost reciprocal(double a, double b) {
-  StatedCost cost;
-  cost.law = StatedCost::Law::reciprocal;
-  cost.a = a;
-  cost.b = b;
-  return cost;
-}
-
-/// A study of a function's tolerances: response 0 within `limit`.
-struct FunctionStudy {
-  FunctionStudy(std::size_t errors, ErrorFunction function, double limit, std::size_t machines)
-      : model(errors, {"y"}, std::move(function)), entry{model.description(), nullptr} {
-    study = function_study(entry, kAllocationStudy, Distribution::normal(0.05), machines);
-    study.analysis.draws = Draws::per_machine;
-    study.poses.workspace = {{0.0, 1.0}};  // its text is kept
-    study.analysis.limits = {{0, limit}};
-    asked().yield = kThreeSigma;
-  }
-  AllocationOptions& asked() { return asked_of<AllocationOptions>(study.analysis); }
-  StudyResult run(std::size_t threads = 2, std::vector<double> places = {0.5}) const {
-    return *run_study(study, model, PoseSet(1, std::move(places)), {.threads = threads});
-  }
-  AllocationResult find(std::size_t threads = 2) const { return run(threads).as<AllocationResult>(); }
-
-  FunctionModel model;
-  CatalogEntry entry;
-  Study study;
-};
 
 /// The clutch's angle less its nominal value; a metre here is a millimetre there.
 void clutch(std::span<const double> x, double, std::span<double> y) {
@@ -168,21 +126,6 @@ TEST(OverrunningClutch, AnyPartMadeCoarserAloneBreaksTheYield) {
     ++judged;
   }
   EXPECT_GE(judged, 2u);
-}
-
-const std::vector<double> kCoefficients{3.0, 1.0, 0.5};
-const std::vector<double> kPrices{1.0, 2.0, 0.2};
-
-void weighted_sum(std::span<const double> x, double, std::span<double> y) {
-  y[0] = 0.0;
-  for (std::size_t i = 0; i < kCoefficients.size(); ++i) y[0] += kCoefficients[i] * x[i];
-}
-
-FunctionStudy weighted_sum_study(std::size_t machines = 200'000) {
-  FunctionStudy study(3, weighted_sum, 1.0, machines);
-  study.asked().yield = 0.99;
-  for (std::size_t i = 0; i < 3; ++i) study.asked().parts.push_back(part_of(i, reciprocal(0.0, kPrices[i])));
-  return study;
 }
 
 // min of sum b_i / t_i with sum g_i^2 t_i^2 = L^2 has t_i proportional to (b_i / g_i^2)^(1/3). One response that is
@@ -455,7 +398,7 @@ class Allowed : public ::testing::TestWithParam<Promise> {};
 
 TEST_P(Allowed, RejectsAreWhatClopperAndPearsonAllow) {
   const auto [yield, confidence, machines] = GetParam();
-  const AllowedRejects allowed = allowed_rejects(yield, confidence, machines);
+  const allocation::AllowedRejects allowed = allocation::allowed_rejects(yield, confidence, machines);
   EXPECT_GE(proportion_at_least(machines - allowed.certificate, machines, confidence), yield);
   EXPECT_LT(proportion_at_least(machines - allowed.certificate - 1, machines, confidence), yield);
   EXPECT_LE(allowed.design, allowed.certificate);

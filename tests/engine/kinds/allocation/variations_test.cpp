@@ -8,8 +8,8 @@
 #include <numeric>
 #include <vector>
 
+#include "engine/kinds/allocation/machine_loads.h"
 #include "engine/kinds/allocation/result.h"
-#include "engine/kinds/allocation/trial.h"
 #include "engine/study/poses/pose_selection.h"
 #include "tests/support/function_model.h"
 
@@ -63,9 +63,9 @@ TEST(TryVariations, ChangesErrorsAsATolerance) {
     for (const std::size_t p : list[v].errors) {
       other.study.errors.by_factor[p] = Distribution::normal(0.3 * std::abs(list[v].factor));
     }
-    const auto trial = try_machines(other.plan(), other.model, other.study.analysis.limits, {.threads = 1});
+    const auto whole = machine_loads(other.plan(), other.model, other.study.analysis.limits, {.threads = 1});
     // Without signs: the function has none where all errors are mirrored.
-    for (std::size_t k = 0; k < 225; ++k) EXPECT_NEAR(found[v * 225 + k], trial->load[2 * k], 1e-9) << v;
+    for (std::size_t k = 0; k < 225; ++k) EXPECT_NEAR(found[v * 225 + k], whole->load[2 * k], 1e-9) << v;
   }
 }
 

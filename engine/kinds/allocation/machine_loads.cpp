@@ -1,4 +1,4 @@
-#include "engine/kinds/allocation/trial.h"
+#include "engine/kinds/allocation/machine_loads.h"
 
 #include <algorithm>
 #include <array>
@@ -12,12 +12,12 @@
 namespace poesy {
 namespace {
 
-constexpr std::uint64_t kKind = 72;  ///< no other state begins with this number
+constexpr std::uint64_t kKind = 72;  ///< the first number of a state, which no other stage has
 
-/// Which machines are tried.
+/// The machines of a run.
 struct Machines {
   std::size_t count;                      ///< n
-  std::span<const std::uint32_t> listed;  ///< their numbers; empty: 0 .. n - 1
+  std::span<const std::uint32_t> listed;  ///< [n] numbers; empty means 0 .. n - 1
 
   std::size_t pieces() const { return (count + kMachinesOfPiece - 1) / kMachinesOfPiece; }
   std::size_t first(std::size_t piece) const { return piece * kMachinesOfPiece; }
@@ -26,9 +26,8 @@ struct Machines {
 };
 
 /// Some machines at all poses.
-struct TriedPiece {
+struct LoadPiece {
   std::vector<double> load;           ///< [B]
-  std::vector<double> pose_load;      ///< [M]
   std::vector<SolveCounts> solves;    ///< [M]
   std::vector<FailedSamples> failed;  ///< [M]
   std::vector<std::uint64_t> beyond;  ///< [K]
@@ -36,23 +35,19 @@ struct TriedPiece {
 };
 
 /// Owns the scratch of one thread.
-class TrialEvaluator : private LoadSolver {
+class LoadEvaluator : private LoadSolver {
  public:
-  TrialEvaluator(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, const Machines& machines)
+  LoadEvaluator(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, const Machines& machines)
       : LoadSolver(plan, model, limits), machines_(machines) {}
 
-  TriedPiece operator()(std::size_t piece) {
+  LoadPiece operator()(std::size_t piece) {
     const std::size_t count = machines_.count_of(piece);
     const std::size_t poses = plan_->poses().size();
     numbers_.clear();
     for (std::size_t b = 0; b < count; ++b) numbers_.push_back(machines_.number(machines_.first(piece) + b));
     draw(numbers_);
-    TriedPiece found{std::vector<double>(count),
-                     std::vector<double>(poses),
-                     std::vector<SolveCounts>(poses),
-                     std::vector<FailedSamples>(poses),
-                     std::vector<std::uint64_t>(limits_.size()),
-                     0};
+    LoadPiece found{std::vector<double>(count), std::vector<SolveCounts>(poses), std::vector<FailedSamples>(poses),
+                    std::vector<std::uint64_t>(limits_.size()), 0};
     missing_.assign(count, 0);
     beyond_.assign(limits_.size() * count, 0);
     for (std::size_t m = 0; m < poses; ++m) add(m, found);
@@ -70,12 +65,11 @@ class TrialEvaluator : private LoadSolver {
   }
 
  private:
-  void add(std::size_t m, TriedPiece& found) {
+  void add(std::size_t m, LoadPiece& found) {
     at_pose_.assign(found.load.size(), 0.0);
     const UnitOutcomes outcomes = add_pose(PoseIndex(m), at_pose_, missing_, beyond_);
     for (std::size_t b = 0; b < at_pose_.size(); ++b) {
       found.load[b] = std::max(found.load[b], at_pose_[b]);
-      found.pose_load[m] = std::max(found.pose_load[m], at_pose_[b]);
       found.solves[m].add(outcomes.status[b], outcomes.iterations[b]);
       found.failed[m].add(SampleIndex(numbers_[b]), outcomes.status[b]);
     }
@@ -89,65 +83,62 @@ class TrialEvaluator : private LoadSolver {
 };
 
 /// All pieces in their order: the work of fold().
-class TrialWork {
+class LoadWork {
  public:
-  TrialWork(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, Machines machines)
+  LoadWork(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, Machines machines)
       : plan_(plan), model_(model), limits_(limits), machines_(machines) {
-    trial_.pose_load.resize(plan.poses().size());
-    trial_.solves.resize(plan.poses().size());
-    trial_.failed.resize(plan.poses().size());
-    trial_.beyond.resize(limits.size());
+    found_.solves.resize(plan.poses().size());
+    found_.failed.resize(plan.poses().size());
+    found_.beyond.resize(limits.size());
   }
-  TrialWork(const TrialWork&) = delete;
-  TrialWork& operator=(const TrialWork&) = delete;
+  LoadWork(const LoadWork&) = delete;
+  LoadWork& operator=(const LoadWork&) = delete;
 
   std::size_t begin_round() {
     begun_ = next_;
     return machines_.pieces() - next_;
   }
-  TrialEvaluator worker() const { return {plan_, model_, limits_, machines_}; }
-  TriedPiece solve(TrialEvaluator& evaluate, std::size_t n) const { return evaluate(begun_ + n); }
-  SolveCounts merge(std::size_t, const TriedPiece& found) {
-    trial_.load.insert(trial_.load.end(), found.load.begin(), found.load.end());
+  LoadEvaluator worker() const { return {plan_, model_, limits_, machines_}; }
+  LoadPiece solve(LoadEvaluator& evaluate, std::size_t n) const { return evaluate(begun_ + n); }
+  SolveCounts merge(std::size_t, const LoadPiece& found) {
+    found_.load.insert(found_.load.end(), found.load.begin(), found.load.end());
     for (std::size_t m = 0; m < found.solves.size(); ++m) {
-      trial_.pose_load[m] = std::max(trial_.pose_load[m], found.pose_load[m]);
-      trial_.solves[m].merge(found.solves[m]);
-      trial_.failed[m].merge(found.failed[m]);
+      found_.solves[m].merge(found.solves[m]);
+      found_.failed[m].merge(found.failed[m]);
     }
-    for (std::size_t k = 0; k < limits_.size(); ++k) trial_.beyond[k] += found.beyond[k];
-    trial_.unsolved += found.unsolved;
+    for (std::size_t k = 0; k < limits_.size(); ++k) found_.beyond[k] += found.beyond[k];
+    found_.unsolved += found.unsolved;
     ++next_;
     return total_of(found.solves);
   }
-  static void write(std::size_t, const TriedPiece& found, ByteWriter& to) {
-    for (const auto* list : {&found.load, &found.pose_load}) to.reals(*list);
+  static void write(std::size_t, const LoadPiece& found, ByteWriter& to) {
+    to.reals(found.load);
     for (const SolveCounts& solves : found.solves) solves.write(to);
     for (const FailedSamples& failed : found.failed) failed.write(to);
     for (const std::uint64_t beyond : found.beyond) to.number(beyond);
     to.number(found.unsolved);
   }
-  TriedPiece read(std::size_t n, ByteReader& from) const {
-    TriedPiece found;
+  LoadPiece read(std::size_t n, ByteReader& from) const {
+    LoadPiece found;
     const std::size_t piece = begun_ + n;
     const std::size_t count = machines_.count_of(piece);
     found.load = read_loads(from, count);
-    found.pose_load = read_loads(from, plan_.poses().size());
     read_poses(from, count, machines_.number(machines_.first(piece)), end_of(machines_.first(piece) + count),
                found.solves, found.failed);
     for (std::size_t k = 0; k < limits_.size(); ++k) found.beyond.push_back(from.number_up_to(count));
     found.unsolved = from.number_up_to(count);
     return found;
   }
-  SolveCounts solved() const { return total_of(trial_.solves); }
-  std::uint64_t left() const { return std::uint64_t{machines_.count - trial_.load.size()} * plan_.poses().size(); }
+  SolveCounts solved() const { return total_of(found_.solves); }
+  std::uint64_t left() const { return std::uint64_t{machines_.count - found_.load.size()} * plan_.poses().size(); }
   void write_state(ByteWriter& to) const {
     for (const std::uint64_t size : sizes()) to.number(size);
     to.number(next_);
-    for (const auto* list : {&trial_.load, &trial_.pose_load}) to.reals(*list);
-    for (const SolveCounts& solves : trial_.solves) solves.write(to);
-    for (const FailedSamples& failed : trial_.failed) failed.write(to);
-    for (const std::uint64_t beyond : trial_.beyond) to.number(beyond);
-    to.number(trial_.unsolved);
+    to.reals(found_.load);
+    for (const SolveCounts& solves : found_.solves) solves.write(to);
+    for (const FailedSamples& failed : found_.failed) failed.write(to);
+    for (const std::uint64_t beyond : found_.beyond) to.number(beyond);
+    to.number(found_.unsolved);
   }
   void restore(std::span<const std::byte> state) {
     ByteReader from(state);
@@ -156,24 +147,23 @@ class TrialWork {
     }
     next_ = static_cast<std::size_t>(from.number_up_to(machines_.pieces()));
     const std::size_t count = std::min(machines_.count, machines_.first(next_));
-    trial_.load = read_loads(from, count);
-    trial_.pose_load = read_loads(from, plan_.poses().size());
-    trial_.solves.clear();
-    trial_.failed.clear();
-    read_poses(from, count, count == 0 ? 0 : machines_.number(0), end_of(count), trial_.solves, trial_.failed);
-    for (std::uint64_t& beyond : trial_.beyond) beyond = from.number_up_to(count);
-    trial_.unsolved = from.number_up_to(count);
+    found_.load = read_loads(from, count);
+    found_.solves.clear();
+    found_.failed.clear();
+    read_poses(from, count, count == 0 ? 0 : machines_.number(0), end_of(count), found_.solves, found_.failed);
+    for (std::uint64_t& beyond : found_.beyond) beyond = from.number_up_to(count);
+    found_.unsolved = from.number_up_to(count);
     from.expect_end();
   }
   static bool next_round() { return false; }
 
-  Trial result() && { return std::move(trial_); }
+  MachineLoads result() && { return std::move(found_); }
 
  private:
   std::array<std::uint64_t, 4> sizes() const { return {kKind, machines_.count, plan_.poses().size(), limits_.size()}; }
-  /// The number after that of the last of so many machines.
+  /// One past the number of the last of so many machines.
   std::uint64_t end_of(std::size_t count) const { return count == 0 ? 0 : machines_.number(count - 1) + 1; }
-  /// Of `count` machines, with numbers first .. end - 1.
+  /// Reads how the solves of `count` machines ended, with numbers first .. end - 1.
   void read_poses(ByteReader& from, std::size_t count, std::uint64_t first, std::uint64_t end,
                   std::vector<SolveCounts>& solves, std::vector<FailedSamples>& failed) const {
     for (std::size_t m = 0; m < plan_.poses().size(); ++m) solves.push_back(SolveCounts::read(from));
@@ -187,31 +177,27 @@ class TrialWork {
   const Model& model_;
   std::span<const ResponseLimit> limits_;
   Machines machines_;
-  Trial trial_;
+  MachineLoads found_;
   std::size_t next_ = 0;
   std::size_t begun_ = 0;
 };
 
-std::optional<Trial> run(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
-                         const Machines& machines, const RunOptions& options) {
-  TrialWork work(plan, model, limits, machines);
+std::optional<MachineLoads> run(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
+                                const Machines& machines, const RunOptions& options) {
+  LoadWork work(plan, model, limits, machines);
   if (!fold(work, options)) return std::nullopt;
   return std::move(work).result();
 }
 
 }  // namespace
 
-std::uint64_t Trial::rejects() const {
-  return static_cast<std::uint64_t>(std::ranges::count_if(load, [](double one) { return one > 1.0; }));
-}
-
-std::optional<Trial> try_machines(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
-                                  const RunOptions& options) {
+std::optional<MachineLoads> machine_loads(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
+                                          const RunOptions& options) {
   return run(plan, model, limits, {plan.samples(), {}}, options);
 }
 
-std::optional<Trial> try_machines(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
-                                  std::span<const std::uint32_t> machines, const RunOptions& options) {
+std::optional<MachineLoads> machine_loads(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
+                                          std::span<const std::uint32_t> machines, const RunOptions& options) {
   return run(plan, model, limits, {machines.size(), machines}, options);
 }
 

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/kinds/allocation/search.h"
+#include "engine/run/result.h"
+
+/// The stages of the search for tolerances. A function makes its value from those that it is given, adds what users see
+/// to a log, and throws SearchStopped where a run of machines was stopped.
+namespace poesy::allocation {
+
+/// Thrown by the stages and caught by find_tolerances().
+struct SearchStopped {};
+
+/// The value of a run; throws SearchStopped for none.
+template <class Value>
+Value unless_stopped(std::optional<Value> value) {
+  if (!value) throw SearchStopped();
+  return *std::move(value);
+}
+
+/// @name Parts of several stages
+/// @{
+
+/// Measures mean squares at these tolerances [N], among so many draws of the other errors.
+Linearisation measure(const SearchProblem& problem, std::span<const double> tolerance, std::size_t draws);
+/// The tolerances of a programme that allows root mean squares this share of each limit; none where it is infeasible.
+/// Throws InputError where it is unbounded.
+std::optional<Candidate> choose(const SearchProblem& problem, const Linearisation& linearisation, double share,
+                                const TrustRegion& region);
+/// The same by the least share between these two that is feasible, to a thousandth.
+std::optional<Candidate> choose_by_least_share(const SearchProblem& problem, const Linearisation& linearisation,
+                                               double low, double high, const TrustRegion& region);
+/// The largest a_i / b_i or b_i / a_i.
+double largest_ratio(std::span<const double> a, std::span<const double> b);
+
+/// The study that draws machines of this seed with these tolerances [N].
+Study machine_study(const SearchProblem& problem, std::uint64_t seed, std::span<const double> tolerance);
+/// Loads of the first `machines` of them; of all where it is not given.
+std::vector<double> loads_of(const SearchProblem& problem, std::uint64_t seed, std::span<const double> tolerance,
+                             std::optional<std::size_t> machines = std::nullopt);
+/// What a response's limit would have to be for so many rejects: the largest load but `rejects`.
+double deciding_load(std::vector<double> load, std::uint64_t rejects);
+/// The machines that may decide by loads of all: those with a load of kScreeningLoad or more of the deciding one.
+std::vector<std::uint32_t> screen(const SearchProblem& problem, std::span<const double> load);
+/// Tries the design's screened machines at other tolerances.
+ScreenedMachines try_screened(const SearchProblem& problem, const ToleranceDesign& design, const TolerancePoint& point);
+/// Tries all machines of a seed with the candidate's tolerances.
+ToleranceDesign try_all(const SearchProblem& problem, Candidate candidate, std::uint64_t seed);
+/// The design with the loads of its screened machines among those of all.
+ToleranceDesign with_screened_loads(ToleranceDesign design);
+/// Whether a pilot of all machines has rejects that were screened out.
+bool misses_rejects(const SearchProblem& problem, const ToleranceDesign& design);
+/// Multiplies all tolerances but those that stay [N] by one factor, at which the screened machines use up what the
+/// design allows. Where not even the lowest tolerances keep the yield of these machines, although those of other
+/// machines did, the design stays as it is, and the certificate decides.
+ToleranceDesign scale_screened(const SearchProblem& problem, const ToleranceDesign& from,
+                               const std::vector<bool>& stays);
+
+/// Sums over some machines of the scores x^2 - 1 of errors x in units of their standard deviation.
+struct PartScores {
+  std::vector<double> of_part;  ///< [N] sums over the errors of each part
+  std::vector<bool> is_sure;    ///< [N] whether the score is more than noise (kSignificance)
+};
+
+/// The scores of these machines of a design.
+PartScores part_scores(const SearchProblem& problem, const ToleranceDesign& design,
+                       std::span<const std::uint32_t> machines);
+/// @}
+
+/// A candidate and the linearisation that its programme used.
+struct Linearised {
+  Linearisation linearisation;  ///< by which limits are linear
+  Candidate candidate;          ///< chosen under these limits
+};
+
+/// The tolerances as if every effect were linear. Where root mean squares cannot be as small as a normal response needs
+/// for the yield, they are as small as can be.
+Linearised linearise(const SearchProblem& problem, StageLog& log);
+
+/// Tolerances at which effects have settled.
+struct Settled {
+  Linearisation linearisation;  ///< the last one
+  Candidate candidate;          ///< the settled tolerances; the lowest ones where the last programme was infeasible
+  Candidate feasible;           ///< the last tolerances by a programme
+};
+
+/// Measures effects at the tolerances and chooses tolerances by them, until these stay.
+Settled settle(const SearchProblem& problem, Linearised from, StageLog& log);
+
+/// A design and the linearisation that its programme used.
+struct Scaled {
+  Linearisation linearisation;  ///< by which limits are linear
+  ToleranceDesign design;       ///< with no more rejects than allowed
+};
+
+/// Scales the limits on root mean squares until the design has as many rejects as it may, and no more.
+Scaled scale_to_yield(const SearchProblem& problem, Settled from, StageLog& log);
+
+/// Corrects the shares of the parts by the gradient of the yield, which machines of largest load give, where that saves
+/// cost.
+ToleranceDesign improve(const SearchProblem& problem, const Linearisation& linearisation, ToleranceDesign from,
+                        StageLog& log);
+
+/// Scales all tolerances to machines by which nothing was chosen, because those by which the shares of the parts were
+/// chosen make them look better than they are.
+ToleranceDesign scale_to_other_machines(const SearchProblem& problem, const ToleranceDesign& from, StageLog& log);
+
+/// A design and the yield that it would have with each part coarser alone.
+struct Probed {
+  ToleranceDesign design;             ///< the tolerances
+  std::vector<double> coarser_yield;  ///< [N] as AllocationResult has it
+};
+
+/// Finds what each part would do if it alone were coarser, and makes those coarser that would do nothing: at the least
+/// cost there are none.
+Probed use_remaining_yield(const SearchProblem& problem, ToleranceDesign from, StageLog& log);
+
+/// @name Refusals, which throw InputError
+/// @{
+[[noreturn]] void refuse_infeasible(const SearchProblem& problem, const Infeasible& infeasible);
+[[noreturn]] void refuse_unbounded(const SearchProblem& problem, const Unbounded& unbounded);
+/// The lowest tolerances have too many rejects.
+[[noreturn]] void refuse_lowest(const SearchProblem& problem, std::uint64_t rejects);
+/// The lowest tolerances are perfect parts; the finest others had so many rejects.
+[[noreturn]] void refuse_perfect(const SearchProblem& problem, std::uint64_t rejects);
+/// @}
+
+}  // namespace poesy::allocation
