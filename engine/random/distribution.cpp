@@ -377,8 +377,20 @@ void Distribution::transform_scores(std::span<double> scores) const {
 }
 
 std::string_view name(Distribution::Shape shape) {
-  constexpr std::array<std::string_view, 5> kNames{"normal", "truncated-normal", "uniform", "triangular", "measured"};
-  return kNames.at(static_cast<std::size_t>(shape));
+  using enum Distribution::Shape;
+  switch (shape) {
+    case normal:
+      return "normal";
+    case truncated_normal:
+      return "truncated-normal";
+    case uniform:
+      return "uniform";
+    case triangular:
+      return "triangular";
+    case measured:
+      return "measured";
+  }
+  throw std::logic_error("unknown shape of distribution");
 }
 
 }  // namespace poesy

@@ -1,9 +1,7 @@
 #include "engine/random/weighted_points.h"
 
 #include <boost/math/quadrature/gauss.hpp>
-#include <span>
-
-#include "engine/base/contract.h"
+#include <stdexcept>
 
 namespace poesy {
 namespace {
@@ -26,26 +24,35 @@ void add_piece(double low, double high, double share, double slope, WeightedPoin
   }
 }
 
+void add_parts(const SmoothedValues& parts, WeightedPoints& found) {
+  for (std::size_t k = 1; k < parts.knots().size(); ++k) {
+    const double share = parts.shares()[k] - parts.shares()[k - 1];
+    if (share > 0.0) add_piece(parts.knots()[k - 1], parts.knots()[k], share, 0.0, found);
+  }
+}
+
 }  // namespace
 
 WeightedPoints weighted_points(const Distribution& distribution) {
   using enum Distribution::Shape;
-  POESY_EXPECTS(distribution.shape() == uniform || distribution.shape() == triangular ||
-                distribution.shape() == measured);
   const double w = distribution.half_width();
   WeightedPoints found;
-  if (distribution.shape() == uniform) add_piece(-w, w, 1.0, 0.0, found);
-  if (distribution.shape() == triangular) {
-    add_piece(-w, 0.0, 0.5, 1.0, found);
-    add_piece(0.0, w, 0.5, -1.0, found);
+  switch (distribution.shape()) {
+    case uniform:
+      add_piece(-w, w, 1.0, 0.0, found);
+      return found;
+    case triangular:
+      add_piece(-w, 0.0, 0.5, 1.0, found);
+      add_piece(0.0, w, 0.5, -1.0, found);
+      return found;
+    case measured:
+      add_parts(*distribution.parts(), found);
+      return found;
+    case normal:
+    case truncated_normal:
+      break;
   }
-  if (const auto& parts = distribution.parts()) {
-    for (std::size_t k = 1; k < parts->knots().size(); ++k) {
-      const double share = parts->shares()[k] - parts->shares()[k - 1];
-      if (share > 0.0) add_piece(parts->knots()[k - 1], parts->knots()[k], share, 0.0, found);
-    }
-  }
-  return found;
+  throw std::logic_error("weighted points of a density that is not linear in pieces");
 }
 
 }  // namespace poesy

@@ -18,7 +18,7 @@ struct WeightedPoints {
 
 /// Gauss and Legendre's ten points in each piece of the range over which the density is constant or linear: one piece
 /// of the uniform, two of the triangular, and those of SmoothedValues, where values that are not spread make a piece
-/// without length. Exact for polynomials up to kExactDegree. Precondition: one of these three shapes.
+/// without length. Exact for polynomials up to kExactDegree. Throws std::logic_error for another shape.
 WeightedPoints weighted_points(const Distribution& distribution);
 
 }  // namespace poesy

@@ -222,14 +222,24 @@ std::string values_text(std::span<const double> values, Dimension dimension, Val
 }
 
 std::string distribution_text(const Distribution& distribution, Dimension dimension, ValueText value) {
-  const Shape shape = distribution.shape();
-  std::string text = fmt::format("{{ distribution = {}", in_quotes(name(shape)));
-  if (shape == Shape::measured)
-    return text + ", values = " + values_text(distribution.parts()->values(), dimension, value) + " }";
-  if (shape == Shape::normal || shape == Shape::truncated_normal) {
-    text += ", sigma = " + value(distribution.sigma(), dimension);
+  const auto sigma = [&] { return ", sigma = " + value(distribution.sigma(), dimension); };
+  const auto half_width = [&] { return ", half_width = " + value(distribution.half_width(), dimension); };
+  std::string text = fmt::format("{{ distribution = {}", in_quotes(name(distribution.shape())));
+  switch (distribution.shape()) {
+    case Shape::normal:
+      text += sigma();
+      break;
+    case Shape::truncated_normal:
+      text += sigma() + half_width();
+      break;
+    case Shape::uniform:
+    case Shape::triangular:
+      text += half_width();
+      break;
+    case Shape::measured:
+      text += ", values = " + values_text(distribution.parts()->values(), dimension, value);
+      break;
   }
-  if (shape != Shape::normal) text += ", half_width = " + value(distribution.half_width(), dimension);
   if (distribution.shift() > 0.0) text += ", shift = " + value(distribution.shift(), dimension);
   return text + " }";
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "engine/base/contract.h"
 #include "engine/base/text.h"
@@ -47,9 +48,12 @@ Motion motion_of(JointKind kind, std::size_t position) {
       return Motion::helical;
     case JointKind::cylindrical:
       return position == 0 ? Motion::revolute : Motion::prismatic;
-    default:
+    case JointKind::revolute:
+    case JointKind::universal:
+    case JointKind::spherical:
       return Motion::revolute;
   }
+  throw std::logic_error("unknown kind of joint");
 }
 
 /// A drive's name in the n-th copy of a limb.
@@ -285,6 +289,7 @@ class Builder {
           element.motion != Motion::fixed && lines.kind != JointKind::spherical && lines.actuated[element.position];
       joints.push_back({lines.name,
                         lines.place,
+                        lines.kind,
                         element.motion,
                         actuated,
                         pitch_of(lines),

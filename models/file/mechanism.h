@@ -26,6 +26,7 @@ enum class Motion { fixed, revolute, prismatic, helical };
 struct Joint {
   std::string name;        ///< of the joint that it belongs to
   Place place;             ///< of that joint in the file
+  JointKind kind;          ///< of that joint
   Motion motion;           ///< fixed: it has a frame and errors, and no displacement
   bool actuated;           ///< a drive holds it
   double pitch;            ///< of a helical one, m/rad; positive is right-handed

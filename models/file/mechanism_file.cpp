@@ -1,6 +1,7 @@
 #include "models/file/mechanism_file.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <tuple>
 
 #include "engine/base/text.h"
@@ -701,17 +702,40 @@ StudyTable of_names(std::vector<std::string_view> paths, std::string_view name, 
                     .meaning = meaning}}};
 }
 
+/// How a kind of joint is written, drawn and made.
+struct JointTraits {
+  std::string_view name;
+  char letter;
+  std::size_t elements;  ///< elementary joints
+};
+
+JointTraits traits_of(JointKind kind) {
+  switch (kind) {
+    case JointKind::fixed:
+      return {"fixed", 'F', 1};
+    case JointKind::revolute:
+      return {"R", 'R', 1};
+    case JointKind::prismatic:
+      return {"P", 'P', 1};
+    case JointKind::helical:
+      return {"H", 'H', 1};
+    case JointKind::cylindrical:
+      return {"C", 'C', 2};
+    case JointKind::universal:
+      return {"U", 'U', 2};
+    case JointKind::spherical:
+      return {"S", 'S', 3};
+  }
+  throw std::logic_error("unknown kind of joint");
+}
+
 }  // namespace
 
-std::string_view name(JointKind kind) {
-  constexpr std::array<std::string_view, 7> kNames{"fixed", "R", "P", "H", "C", "U", "S"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
+std::string_view name(JointKind kind) { return traits_of(kind).name; }
 
-std::size_t elements(JointKind kind) {
-  constexpr std::array<std::size_t, 7> kElements{1, 1, 1, 1, 2, 2, 3};
-  return kElements[static_cast<std::size_t>(kind)];
-}
+char letter(JointKind kind) { return traits_of(kind).letter; }
+
+std::size_t elements(JointKind kind) { return traits_of(kind).elements; }
 
 std::string_view name(Rotation rotation) {
   constexpr std::array<std::string_view, 7> kNames{"vector", "xyz", "xzy", "yxz", "yzx", "zxy", "zyx"};

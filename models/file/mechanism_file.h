@@ -41,6 +41,7 @@ struct NamedPoint {
 enum class JointKind { fixed, revolute, prismatic, helical, cylindrical, universal, spherical };
 /// "fixed", "R", "P", "H", "C", "U", "S".
 std::string_view name(JointKind kind);
+char letter(JointKind kind);  ///< 'F', 'R', ..., by which sketches know it (SketchedJoint::type).
 /// Of how many elementary joints or fixed frames it consists.
 std::size_t elements(JointKind kind);
 

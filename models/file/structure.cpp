@@ -74,15 +74,6 @@ std::string drive_lines(const Mechanism& mechanism) {
   return text;
 }
 
-/// Of elementary joints that make one.
-char type_of(std::span<const Joint> joints) {
-  const auto count = [&](Motion motion) { return std::ranges::count(joints, motion, &Joint::motion); };
-  if (joints.front().motion == Motion::fixed) return 'F';
-  if (count(Motion::helical) > 0) return 'H';
-  if (count(Motion::prismatic) > 0) return joints.size() == 1 ? 'P' : 'C';
-  return joints.size() == 1 ? 'R' : joints.size() == 2 ? 'U' : 'S';
-}
-
 /// Whether the mechanism has errors of these frames of a limb.
 bool has_errors(const Mechanism& mechanism, std::size_t limb, std::size_t first, std::size_t last) {
   return std::ranges::any_of(mechanism.slots, [&](const ErrorSlot& slot) {
@@ -118,7 +109,7 @@ Sketch sketch_of(const Mechanism& mechanism) {
       while (end < joints.size() && joints[end].name == joints[j].name) ++end;
       const std::span<const Joint> one = joints.subspan(j, end - j);
       const bool actuated = std::ranges::any_of(one, &Joint::actuated);
-      limb.push_back({one.front().name, type_of(one), actuated, sketched(one.front().at_home.p),
+      limb.push_back({one.front().name, letter(one.front().kind), actuated, sketched(one.front().at_home.p),
                       sketched(one.front().at_home.R.col(2)), has_errors(mechanism, i, j == 0 ? 0 : end, end), j + 1,
                       j + 1, one.front().drive});
       j = end;

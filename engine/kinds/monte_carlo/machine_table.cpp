@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <stdexcept>
 
 #include "engine/base/contract.h"
 #include "engine/random/weighted_points.h"
@@ -13,11 +14,18 @@ namespace {
 
 ErrorScore score_of(const Distribution& distribution) {
   using enum Distribution::Shape;
-  if (distribution.shape() == normal || distribution.shape() == truncated_normal) {
-    return NormalScore{distribution.sigma(), distribution.half_width()};
+  switch (distribution.shape()) {
+    case normal:
+    case truncated_normal:
+      return NormalScore{distribution.sigma(), distribution.half_width()};
+    case uniform:
+    case triangular:
+    case measured: {
+      const WeightedPoints points = weighted_points(distribution);
+      return PolynomialScore(points.points, points.weights);
+    }
   }
-  const WeightedPoints points = weighted_points(distribution);
-  return PolynomialScore(points.points, points.weights);
+  throw std::logic_error("unknown shape of distribution");
 }
 
 ErrorScores scores_of(const Plan& plan) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 
 namespace poesy {
 namespace {
@@ -42,6 +43,11 @@ TEST(WeightedPoints, HaveTheMomentsOfMeasuredValuesWithTies) {
     }
     return sum / static_cast<double>(values.size());
   });
+}
+
+TEST(WeightedPoints, AreRefusedForADensityThatIsNotLinearInPieces) {
+  EXPECT_THROW(weighted_points(Distribution::normal(1e-4)), std::logic_error);
+  EXPECT_THROW(weighted_points(Distribution::truncated_normal(1e-4, 3e-4)), std::logic_error);
 }
 
 }  // namespace
