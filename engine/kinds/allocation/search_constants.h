@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-/// The constants of the search for tolerances. Each comment says what the constant is and when to change it; THEORY.md
+/// The constants of the search for tolerances. Each comment says what the constant is and when to change it; theory.md
 /// ("From root mean squares to a certificate") has the method. They change what a study finds, so no study sets them.
 namespace poesy::allocation {
 
