@@ -44,11 +44,11 @@ std::string svg_text(Pixel at, std::string_view text, std::string_view attribute
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", at.x, at.y, attributes, escaped(text));
 }
 
-std::string svg_glyph(char type, bool actuated, Pixel at, const GlyphColours& colours) {
-  const std::string style = fmt::format("fill=\"{}\" stroke=\"{}\" stroke-width=\"1.6\"",
-                                        actuated ? colours.line : colours.paper, colours.line);
+std::string svg_glyph(char type, bool actuated, Pixel at, std::string_view paper) {
+  const std::string style =
+      fmt::format("fill=\"{}\" stroke=\"currentColor\" stroke-width=\"1.6\"", actuated ? "currentColor" : paper);
   const std::string inner =
-      fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"", actuated ? colours.paper : colours.line);
+      fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"", actuated ? paper : "currentColor");
   constexpr double kArm = 0.7 * kGlyph;
   switch (type) {
     case 'P':

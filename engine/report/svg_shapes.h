@@ -21,14 +21,9 @@ std::string svg_text(Pixel at, std::string_view text, std::string_view attribute
 
 inline constexpr double kGlyph = 6.0;  ///< Half of a joint's glyph, pixels.
 
-/// What a glyph is drawn in, as values of attributes.
-struct GlyphColours {
-  std::string_view line;               ///< and of what is filled
-  std::string_view paper = "#ffffff";  ///< and of what is not
-};
-
 /// R: circle; P: square; H: diamond; C: circle in a square; U: circle with a cross; S: circle in a circle; F: a dot.
-/// Filled where a drive holds the joint.
-std::string svg_glyph(char type, bool actuated, Pixel at, const GlyphColours& colours);
+/// Filled where a drive holds the joint. Lines are in the colour (CSS) of what it is in. paper: the colour of what is
+/// not filled.
+std::string svg_glyph(char type, bool actuated, Pixel at, std::string_view paper);
 
 }  // namespace poesy

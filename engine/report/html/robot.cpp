@@ -11,7 +11,7 @@
 
 #include "engine/base/nan.h"
 #include "engine/report/display.h"
-#include "engine/report/html/robot_picture.h"
+#include "engine/report/sketch_picture.h"
 #include "engine/report/sketch_words.h"
 
 namespace poesy {
@@ -222,12 +222,6 @@ double displacement(const Sketch& sketch, const SketchTwist& motion) {
   return largest;
 }
 
-/// 1, 2 or 5 times a power of ten, at most this.
-double rounded_down(double value) {
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  return power * (value / power < 2 ? 1 : value / power < 5 ? 2 : 5);
-}
-
 /// Motions of the limbs' platforms by each error at one sigma, and by how much they are to be exaggerated.
 void add_motions(const StoredResult& result, const std::vector<RobotPose>& poses, const std::vector<RobotError>& errors,
                  Robot& robot, ArrayPool& pool) {
@@ -252,11 +246,11 @@ void add_motions(const StoredResult& result, const std::vector<RobotPose>& poses
   if (!(largest > 0.0)) return;
   robot.limbs = limbs;
   robot.motions = pool.add("robot_motions", numbers);
-  robot.exaggeration = rounded_down(kShownMotion * kRobotHeight / (robot.scale * kMillimetres) / largest);
+  robot.exaggeration = rounded_down(kShownMotion * kSketchHeight / (robot.scale * kMillimetres) / largest);
 }
 
 Robot robot_figure(const StoredResult& result, const Model& model, const std::vector<RobotPose>& poses,
-                   const std::vector<RobotError>& errors, const RobotView& view, ArrayPool& pool) {
+                   const std::vector<RobotError>& errors, const SketchView& view, ArrayPool& pool) {
   Robot robot{.yaw = view.yaw,
               .pitch = view.pitch,
               .scale = view.scale / kMillimetres,
@@ -327,9 +321,19 @@ std::string legend(const PartShares& parts, const std::string& what) {
       escaped("Colour and thickness, " + what), escaped(percent_text(parts.largest)));
 }
 
+/// What is drawn as one SVG element. id: of the element, unique on the page.
+std::string picture(const std::string& id, const std::string& title, const std::string& description,
+                    const std::string& drawn) {
+  return fmt::format(
+      "<svg id=\"{0}\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {1:g} {2:g}\" role=\"img\" "
+      "aria-labelledby=\"{0}-title {0}-desc\">\n{3}\n{4}\n{5}</svg>\n",
+      id, kSketchWidth, kSketchHeight, element("title", title, fmt::format("id=\"{}-title\"", id)),
+      element("desc", description, fmt::format("id=\"{}-desc\"", id)), drawn);
+}
+
 /// All poses, of which the first ones are seen without a script.
 std::string pictures(const StoredResult& result, const std::vector<RobotPose>& poses,
-                     const std::vector<RobotError>& errors, const RobotView& view, const PartShares& parts,
+                     const std::vector<RobotError>& errors, const SketchView& view, const PartShares& parts,
                      const std::string& what) {
   std::string html = "<div class=\"robot-poses\">\n";
   const std::size_t none = poses.front().sketch.errors.size();
@@ -338,8 +342,8 @@ std::string pictures(const StoredResult& result, const std::vector<RobotPose>& p
     const std::size_t mark = has_shares(errors) ? errors.front().factor : none;
     html += fmt::format("<div class=\"robot-pose\"{}>{}\n{}</div>\n", k < kShownAtOnce ? "" : " hidden",
                         element("p", title, "class=\"plot-title\""),
-                        robot_svg(poses[k].sketch, view, parts, fmt::format("robot-{}", k), title,
-                                  description(poses[k].sketch, parts, what), mark));
+                        picture(fmt::format("robot-{}", k), title, description(poses[k].sketch, parts, what),
+                                turnable_sketch(poses[k].sketch, view, parts, mark)));
   }
   return html + "</div>\n";
 }
@@ -391,7 +395,7 @@ void add_robot(const ReportedResult& reported, const ErrorShares& shares, Page& 
   const std::vector<RobotError> errors = errors_of(result, model, shares);
   std::vector<Sketch> sketches;
   for (const RobotPose& pose : poses) sketches.push_back(pose.sketch);
-  const RobotView view = robot_view(sketches);
+  const SketchView view = sketch_view(sketches, kSketchYaw, kSketchPitch);
   const PartShares parts = part_shares(home, errors);
   page.figures.figures["robot"] = robot_figure(result, model, poses, errors, view, page.figures.pool);
   section.figure("robot", caption(result, errors, shares),

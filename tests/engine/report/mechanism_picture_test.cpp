@@ -31,36 +31,27 @@ std::size_t count(const std::string& text, const std::string& part) {
 }
 
 TEST(MechanismPicture, HasEveryJointInFourViews) {
-  const std::string svg = mechanism_picture(sketch(), "A & B");
-  EXPECT_NE(svg.find("<title>A &amp; B</title>"), std::string::npos);
+  const std::string svg = mechanism_picture(sketch(), "X & Y");
+  EXPECT_NE(svg.find("<title>X &amp; Y</title>"), std::string::npos);
   EXPECT_NE(svg.find(kPictureMark), std::string::npos);
   for (const char* name : {"jR", "jP", "jH", "jC", "jU", "jS", "jF", "q&lt;", "B"}) {
-    EXPECT_EQ(count(svg, "<title>" + std::string(name) + "</title>"), 4u) << name;
+    EXPECT_EQ(count(svg, " " + std::string(name) + "</title>"), 4u) << name;
   }
   EXPECT_EQ(svg.find("nan"), std::string::npos);
-  EXPECT_EQ(count(svg, "<g>"), count(svg, "</g>"));
+  EXPECT_EQ(count(svg, "<g "), count(svg, "</g>"));
+}
+
+/// Of a joint's glyph in the first view, from the front.
+std::pair<double, double> place_of(const std::string& svg, const std::string& name) {
+  std::smatch match;
+  const std::regex joint(R"re(translate\(([\d.]+) ([\d.]+)\)"[^>]*><title>[^<]* )re" + name + "</title>");
+  EXPECT_TRUE(std::regex_search(svg, match, joint)) << name;
+  return {std::stod(match[1]), std::stod(match[2])};
 }
 
 TEST(MechanismPicture, ShowsASlideBetweenTheJointsThatItConnects) {
-  // From the front, with P (the smaller of the joint's two rectangles) halfway between A and B.
   const std::string svg = mechanism_picture(sketch(), "slide");
-  const auto height_of = [&](const std::string& name) {
-    const std::size_t at = svg.find("<title>" + name + "</title>");
-    std::smatch match;
-    const std::string rest = svg.substr(at);
-    EXPECT_TRUE(std::regex_search(rest, match, std::regex(R"re((?:cy="|<path d="M\S+ )([\d.]+))re"))) << name;
-    return std::stod(match[1]);
-  };
-  const double half_a_glyph = 6.0;
-  EXPECT_NEAR(height_of("q&lt;") + half_a_glyph, (height_of("A") + height_of("B")) / 2, 0.11);
-}
-
-/// Of a hinge's or a frame's glyph in the first view.
-std::pair<double, double> place_of(const std::string& svg, const std::string& name) {
-  std::smatch match;
-  const std::string rest = svg.substr(svg.find("<title>" + name + "</title>"));
-  EXPECT_TRUE(std::regex_search(rest, match, std::regex(R"re(cx="([\d.]+)" cy="([\d.]+)")re"))) << name;
-  return {std::stod(match[1]), std::stod(match[2])};
+  EXPECT_NEAR(place_of(svg, "q&lt;").second, (place_of(svg, "A").second + place_of(svg, "B").second) / 2, 0.11);
 }
 
 /// Glyphs have a radius of 6: as joints at one point, at the base, and as those on the platform.
@@ -85,8 +76,22 @@ TEST(MechanismPicture, ShowsJointsAtOnePointSideBySide) {
   }
 }
 
+/// A base that hangs: its z axis points to the ground.
+TEST(MechanismPicture, ShowsWhatHangsAsItHangs) {
+  Sketch hanging = sketch();
+  hanging.z_is_down = true;
+  const std::string stands = mechanism_picture(sketch(), "stands");
+  const std::string hangs = mechanism_picture(hanging, "hangs");
+  EXPECT_LT(place_of(stands, "B").second, place_of(stands, "A").second);
+  EXPECT_GT(place_of(hangs, "B").second, place_of(hangs, "A").second);
+  EXPECT_NE(stands.find("front: x to the right, z up"), std::string::npos);
+  EXPECT_NE(hangs.find("front: x to the right, z down"), std::string::npos);
+}
+
 TEST(MechanismPicture, BreaksLongTitles) {
-  const std::string words = "a title of many words that is longer than any picture is wide, so it takes two lines";
+  const std::string words =
+      "a title of many words that is longer than any picture of a mechanism is wide in characters, so it takes two "
+      "lines";
   const std::string svg = mechanism_picture(sketch(), words);
   EXPECT_EQ(count(svg, "font-size=\"14\""), 2u);
   EXPECT_NE(svg.find("<title>" + words + "</title>"), std::string::npos);
@@ -105,10 +110,14 @@ TEST(MechanismPicture, StaysInsideItsFrameWhateverTheSize) {
       for (SketchedJoint& joint : limb) grow(joint.point);
     }
     const std::string svg = mechanism_picture(scaled, "size");
-    const std::regex places(R"re(c[xy]="(-?[\d.]+)")re");
-    for (auto at = std::sregex_iterator(svg.begin(), svg.end(), places); at != std::sregex_iterator(); ++at) {
+    const std::regex joints(R"re(translate\((-?[\d.]+) (-?[\d.]+)\)"[^>]*><title>)re");
+    const auto begin = std::sregex_iterator(svg.begin(), svg.end(), joints);
+    EXPECT_EQ(std::distance(begin, std::sregex_iterator()), 4 * 10);
+    for (auto at = begin; at != std::sregex_iterator(); ++at) {
       EXPECT_GE(std::stod((*at)[1]), 0.0);
-      EXPECT_LE(std::stod((*at)[1]), 720.0);
+      EXPECT_LE(std::stod((*at)[1]), 460.0);
+      EXPECT_GE(std::stod((*at)[2]), 0.0);
+      EXPECT_LE(std::stod((*at)[2]), 340.0);
     }
   }
 }

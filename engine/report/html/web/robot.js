@@ -3,7 +3,7 @@
 const NO_ERROR = "none";
 const DISPLACEMENTS = { none: 0, same: 1, own: 2 }; // by which factor they are exaggerated
 const SHOWN_MOTION = 0.15; // of the picture's height, at most, by a factor of its own
-const FRAME_AXIS = 36; // pixels, as in robot_picture.cpp
+const FRAME_AXIS = 36; // pixels, as in sketch_picture.cpp
 const NAME_WIDTH = 150; // pixels
 const ARC = 18; // pixels, radius of the arrow of a rotation
 
@@ -16,7 +16,7 @@ function robotPoints(part, name = "p") {
   return part.dataset[name].split(" ").map((point) => point.split(",").map(Number));
 }
 
-/// Where a point stands in a picture: as RobotView has it.
+/// Where a point stands in a picture: as SketchView has it.
 function robotProjection(data, { yaw, pitch }, { width, height }) {
   const [sinYaw, cosYaw, sinPitch, cosPitch] = [yaw, pitch].flatMap((angle) => [
     Math.sin((angle * Math.PI) / 180),
