@@ -10,7 +10,7 @@ inline double sorted_quantile(std::vector<double> values, double q) {
   std::ranges::sort(values);
   std::size_t k = 1;
   while (static_cast<double>(k) / static_cast<double>(values.size()) < q) ++k;
-  return values[k - 1];
+  return values.at(k - 1);
 }
 
 }  // namespace poesy::test

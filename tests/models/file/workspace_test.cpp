@@ -207,10 +207,10 @@ double first_out_of_reach(const Mechanism& mechanism, std::span<const double> wa
       for (const Joint& joint : limb.joints) {
         if (joint.motion == Motion::revolute) hinges.push_back(joint.at_home);
       }
-      const Vector3 axis = hinges[0].R.col(2);
+      const Vector3 axis = hinges.at(0).R.col(2);
       const auto apart = [&](const Vector3& a, const Vector3& b) { return axis.cross(b - a).norm(); };
-      const double first = apart(hinges[0].p, hinges[1].p), second = apart(hinges[1].p, hinges[2].p);
-      const double now = apart(hinges[0].p, motion.R * hinges[2].p + motion.p);
+      const double first = apart(hinges.at(0).p, hinges.at(1).p), second = apart(hinges.at(1).p, hinges.at(2).p);
+      const double now = apart(hinges.at(0).p, motion.R * hinges.at(2).p + motion.p);
       return now <= first + second && now >= std::abs(first - second);
     });
   };
