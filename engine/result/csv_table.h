@@ -109,7 +109,23 @@ CsvPoseColumns pose_columns(const StoredResult& result, const FieldRow<Found>& f
 template <class Found>
 CsvTable cell_table(const StoredResult& result, std::string name, const FieldRow<Found>& field, const Found& found) {
   CsvTable table = lines_of_factors(result, std::move(name));
-  table.at_poses = pose_columns(result, field, found, 0, csv_unit(field.unit, result));
+  table.at_poses = {
+      result.poses.size(), csv_unit(field.unit, result),
+      [&field, &found](std::size_t line, std::size_t pose) { return field.member->number_in_row(found, line, pose); }};
+  return table;
+}
+
+/// The same of a row along [response x factor x pose], for one of the responses.
+template <class Found>
+CsvTable response_table(const StoredResult& result, std::size_t response, const FieldRow<Found>& field,
+                        const Found& found) {
+  const NamedUnit& named = result.responses[response];
+  const std::size_t poses = result.poses.size();
+  CsvTable table = lines_of_factors(result, field.name + "_" + named.name);
+  table.at_poses = {poses, csv_unit(field.unit, result, &named),
+                    [&field, &found, response, poses](std::size_t line, std::size_t pose) {
+                      return field.member->number_in_row(found, response, line * poses + pose);
+                    }};
   return table;
 }
 

@@ -174,12 +174,6 @@ AnArray read_array(const h5::File& file, const std::string& path) {
   return {lengths_in<AnArray>(file), read_along<typename AnArray::Element>(file, path, AnArray::axis_names())};
 }
 
-/// How a list of numbers is stored.
-enum class Stored {
-  as_it_is,
-  as_whole_numbers,  ///< doubles as 64-bit unsigned integers
-};
-
 /// Whether each file of its kind has a dataset.
 enum class Presence {
   always,
@@ -253,7 +247,6 @@ struct Place {
   const std::string& path;
   const Axes& axes;
   const Label& label;
-  Stored stored;
   Presence presence;
 };
 
@@ -266,8 +259,8 @@ class Member {
   virtual bool write(ResultBuilder& result, const Place& place, std::span<const Found> things) const = 0;
   /// Fills the member in. Throws h5::Error where the dataset is missing or has another shape.
   virtual void read(const h5::File& file, const std::string& path, const Axes& axes, std::span<Found> things) const = 0;
-  virtual void clear(Found& found) const = 0;  ///< Frees the memory of its elements.
-  virtual Number number(const Found& found, std::size_t at, Stored as) const = 0;  ///< Its element at this position.
+  virtual void clear(Found& found) const = 0;                           ///< Frees the memory of its elements.
+  virtual Number number(const Found& found, std::size_t at) const = 0;  ///< Its element at this position.
   /// Its element `within` the row of elements at a position on the first axis.
   virtual Number number_in_row(const Found& found, std::size_t row, std::size_t within) const = 0;
   virtual std::size_t element_bytes() const = 0;  ///< Of an element, in memory and in a file alike.
@@ -283,7 +276,7 @@ class MemberOf final : public Member<Found> {
       const Value& list = things.front().*member_;
       const bool computed = !list.empty() || h5::size(result.shape(place.axes)) == 0;
       if (place.presence == Presence::where_computed && !computed) return false;
-      write_elements(result, place, std::span(list.begin(), list.end()));
+      result.add(place.path, place.axes, std::span(list.begin(), list.end()), place.label);
     } else {
       std::vector<StoredAs<Value>> column;
       for (const Found& thing : things) column.push_back(stored(thing.*member_));
@@ -304,14 +297,10 @@ class MemberOf final : public Member<Found> {
   void clear(Found& found) const override {
     if constexpr (kIsList<Value> || kIsArray<Value>) found.*member_ = Value();
   }
-  Number number(const Found& found, std::size_t at, Stored as) const override {
+  Number number(const Found& found, std::size_t at) const override {
     const Value& value = found.*member_;
     if constexpr (kIsList<Value> || kIsArray<Value>) {
-      const auto& element = *(value.begin() + static_cast<std::ptrdiff_t>(at));
-      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(element)>, double>) {
-        if (as == Stored::as_whole_numbers) return static_cast<std::uint64_t>(element);
-      }
-      return detail::number(element);
+      return detail::number(*(value.begin() + static_cast<std::ptrdiff_t>(at)));
     } else {
       return detail::number(value);
     }
@@ -321,7 +310,7 @@ class MemberOf final : public Member<Found> {
       if constexpr (Value::kAxes > 1) return detail::number((found.*member_).row(row)[within]);
     }
     POESY_EXPECTS(within == 0);
-    return number(found, row, Stored::as_it_is);
+    return number(found, row);
   }
   std::size_t element_bytes() const override {
     if constexpr (kIsArray<Value>) {
@@ -334,18 +323,6 @@ class MemberOf final : public Member<Found> {
   }
 
  private:
-  template <class T>
-  static void write_elements(ResultBuilder& result, const Place& place, std::span<const T> elements) {
-    if constexpr (std::is_same_v<T, double>) {
-      if (place.stored == Stored::as_whole_numbers) {
-        result.add_computed<std::uint64_t>(
-            place.path, place.axes, [&](std::size_t at) { return elements[at]; }, place.label);
-        return;
-      }
-    }
-    result.add(place.path, place.axes, elements, place.label);
-  }
-
   Value Found::*member_;
 };
 
@@ -379,13 +356,12 @@ struct FieldRow {
         unit(std::move(in)),
         description(std::move(meaning)),
         presence(when) {}
-  /// The same with attributes beside it, or in another form.
+  /// The same with attributes beside it.
   template <class Value>
   FieldRow(std::string dataset, Value Found::*elements, Axes along, std::string in, std::string meaning,
-           std::vector<Attribute<Found>> beside, Stored as = Stored::as_it_is)
+           std::vector<Attribute<Found>> beside)
       : FieldRow(std::move(dataset), elements, std::move(along), std::move(in), std::move(meaning)) {
     attributes = std::move(beside);
-    stored = as;
   }
 
   std::string name;                                     ///< in its group
@@ -394,7 +370,6 @@ struct FieldRow {
   std::string unit;                                     ///< "m", "1", or one of the texts above
   std::string description;                              ///< a sentence for people
   std::vector<Attribute<Found>> attributes;             ///< written beside it, not read
-  Stored stored = Stored::as_it_is;                     ///< in which form
   Presence presence = Presence::always;                 ///< in which files
 };
 
@@ -419,7 +394,7 @@ bool write_field(ResultBuilder& result, const std::string& group, const FieldRow
                  std::span<const Found> things) {
   const std::string path = group + "/" + field.name;
   const Label label{field.unit, field.description};
-  if (!field.member->write(result, {path, field.axes, label, field.stored, field.presence}, things)) return false;
+  if (!field.member->write(result, {path, field.axes, label, field.presence}, things)) return false;
   for (const Attribute<Found>& each : field.attributes) {
     result.file().set_attribute(path, each.name, things.front().*each.member);
   }
@@ -519,7 +494,7 @@ std::size_t bytes_of(const Fields<Found>& fields, const AxisLengths& lengths) {
 /// The element of a row at this position, as the file has it. Precondition: it is a number, and there.
 template <class Found>
 Number number_at(const FieldRow<Found>& field, const Found& found, std::size_t at) {
-  return field.member->number(found, at, field.stored);
+  return field.member->number(found, at);
 }
 
 }  // namespace poesy

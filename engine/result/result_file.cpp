@@ -195,7 +195,7 @@ bool may_be_replaced(const std::string& path) { return is_marked(path, kResultFi
 
 }  // namespace
 
-void check_names(const std::vector<std::string>& names, const std::string& path) {
+void check_names(std::span<const std::string> names, const std::string& path) {
   for (const std::string& name : names) {
     const bool fits = std::ranges::none_of(name, [](char c) { return c == '/' || c == ',' || (c >= 0 && c < ' '); });
     if (name.empty() || !fits) throw h5::Error("'" + name + "' in " + path + " is no name");

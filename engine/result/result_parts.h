@@ -48,7 +48,7 @@ std::string unit_of(const Thing& thing) {
 }
 
 /// Names become names of files and cells of tables. Throws h5::Error for one that cannot. path: of the dataset.
-void check_names(const std::vector<std::string>& names, const std::string& path);
+void check_names(std::span<const std::string> names, const std::string& path);
 
 /// Composes what every file has (what it is, /study, /poses, and /run with facts about the run), with compose(result)
 /// for the rest, and writes it. filetype, kind: attributes of the root. Throws FileError.

@@ -83,8 +83,8 @@ MeanSquare mean_square(const ResponseStudy& study) {
   MeanSquare response{mean_of_squares(study.background), {}};
   for (std::size_t p = 0; p < study.index.size(); ++p) {
     double growth = 0.0;
-    for (std::size_t cell = p * poses; cell < (p + 1) * poses; ++cell) {
-      growth += sample_mean_square(study.mean[cell], study.std[cell], study.count[cell]);
+    for (std::size_t m = 0; m < poses; ++m) {
+      growth += sample_mean_square(study.mean(p, m), study.std(p, m), static_cast<double>(study.count(p, m)));
     }
     growth = growth / static_cast<double>(poses) - response.background;
     const bool none = growth < 0.0 || study.index[p] < kIndexRounding;

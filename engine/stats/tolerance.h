@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "engine/base/array.h"
 #include "engine/base/units.h"
 #include "engine/stats/indices.h"
 
@@ -14,11 +16,15 @@ namespace poesy {
 
 /// One response of a sensitivity study of P errors at M poses, SI. Refers to the study's arrays.
 struct ResponseStudy {
+  /// A number of each error at each pose.
+  template <class T>
+  using Cells = ArrayView<const T, axis::Factor, axis::Pose>;
+
   std::vector<double> index;           ///< [P] global, as far as it can be told from rounding (stats/indices.h)
   std::span<const double> sigma;       ///< [P] of the errors, as the study sets them
-  std::span<const double> count;       ///< [P x M] samples
-  std::span<const double> mean;        ///< [P x M] of the response, one error varying
-  std::span<const double> std;         ///< [P x M]
+  Cells<std::uint64_t> count;          ///< samples
+  Cells<double> mean;                  ///< of the response, one error varying
+  Cells<double> std;                   ///< standard deviation, likewise
   std::span<const double> background;  ///< [M] the response with all varied errors zero
 };
 

@@ -37,23 +37,27 @@ void write_sensitivity_seed(const std::string& path) {
   example.study.mechanism.entry = &catalog()[0];
   example.study.mechanism.compared = 1;
   SensitivityResult result = example.sensitivity();
-  const std::vector<double> cells(2 * test::Example::kPoses, 0.25);
-  result.separation = {.drive = cells,
+  const auto& described = *catalog()[0].description.separation;
+  const SeparationResult::Cells cells({2, test::Example::kPoses}, 0.25);
+  result.separation = {.measure = described.measure,
+                       .drive = cells,
                        .constraint = cells,
                        .effect = cells,
                        .residual = cells,
                        .removable_local = cells,
-                       .drive_share = {0.25, 0.75},
-                       .removable = {0.125, 0.5},
-                       .removable_together = 0.375};
+                       .drive_share = {{2}, {0.25, 0.75}},
+                       .removable = {{2}, {0.125, 0.5}},
+                       .removable_together = 0.375,
+                       .published = {{2}, std::vector<std::string>{"", "compensable"}}};
   FidelityResult& fidelity = result.fidelity.emplace();
+  fidelity.fidelities = catalog()[0].description.fidelities;
   fidelity.linearity = 0.02;
-  fidelity.global = {1.0, 2.0, 3.0, 4.0};
-  fidelity.discrepancy = {0.5, 0.25, -0.125, 0.0};
-  fidelity.relative_discrepancy = {0.25, 0.125, -0.0625, std::numeric_limits<double>::infinity()};
-  fidelity.nonlinearity = {0.5, 0.0625, 0.03125, 0.75};
-  fidelity.linear = {1, 0};
-  fidelity.not_converged = {0, 1, 2, 3, 4, 5, 6, 7};
+  fidelity.global = {{2, 2}, {1.0, 2.0, 3.0, 4.0}};
+  fidelity.discrepancy = {{2, 2}, {0.5, 0.25, -0.125, 0.0}};
+  fidelity.relative_discrepancy = {{2, 2}, {0.25, 0.125, -0.0625, std::numeric_limits<double>::infinity()}};
+  fidelity.nonlinearity = {{2, 2}, {0.5, 0.0625, 0.03125, 0.75}};
+  fidelity.linear = {{2}, {1, 0}};
+  fidelity.not_converged = {{2, 4}, {0, 1, 2, 3, 4, 5, 6, 7}};
   result.failures = {{0, PoseIndex(1), {SampleIndex(7), SolveStatus::singular}}};
   write_result(path, example.study, example.poses, result, example.facts);
 }
@@ -68,12 +72,12 @@ void write_convergence_seed(const std::string& path) {
   convergence.relative_error = 0.05;
   convergence.course.conf_level = 0.95;
   convergence.course.samples = {1000, 2000};
-  const std::size_t indices = result.responses * result.factors;
+  const std::size_t indices = result.global.size();
   convergence.course.value.assign(2 * indices, 0.5);
   convergence.course.half_width.assign(2 * indices, 0.25);
   convergence.reached.assign(indices, 1);
   convergence.relative_half_width.assign(indices, 0.5);
-  convergence.samples.assign(result.factors, 2000);
+  convergence.samples.assign(result.factors(), 2000);
   write_result(path, example.study, example.poses, result, example.facts);
 }
 

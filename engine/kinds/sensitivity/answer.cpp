@@ -58,14 +58,15 @@ std::optional<FewMatter> few_matter(const StoredResult& result) {
 /// The error of the largest effect on the response that ranks, with its interval.
 std::string largest_text(const StoredResult& result, const RankedErrors& ranked) {
   const std::size_t p = ranked.rows.front();
-  const std::size_t at = ranked.response * result.factors.size() + p;
-  const NamedUnit& response = result.responses[ranked.response];
+  const std::size_t r = ranked.response;
+  const NamedUnit& response = result.responses[r];
   const GlobalIndices shown = shown_indices(result);
   const double sigma = result.factor_sigma[p];
   return fmt::format("{} scatters {} most, by {} at its sigma of {} ({} interval {} to {}).", result.factors[p].name,
-                     response.name, response_text(response, shown.value[at] * sigma),
+                     response.name, response_text(response, shown.value(r, p) * sigma),
                      response_text(result.factors[p], sigma), percent_text(sensitivity_of(result).conf_level),
-                     response_text(response, shown.low[at] * sigma), response_text(response, shown.high[at] * sigma));
+                     response_text(response, shown.low(r, p) * sigma),
+                     response_text(response, shown.high(r, p) * sigma));
 }
 
 /// How far the intervals of the errors that matter reach, and for which sizes the indices hold.
@@ -73,10 +74,7 @@ std::string sure_text(const StoredResult& result, const RankedErrors& ranked) {
   const GlobalIndices shown = shown_indices(result);
   double widest = 0.0;
   for (const std::size_t p : ranked.rows) {
-    const std::size_t at = ranked.response * result.factors.size() + p;
-    if (!has_effect(result, ranked.response, p)) continue;
-    const double reach = std::max(shown.high[at] - shown.value[at], shown.value[at] - shown.low[at]);
-    widest = std::max(widest, reach / shown.value[at]);
+    if (has_effect(result, ranked.response, p)) widest = std::max(widest, relative_reach(shown, ranked.response, p));
   }
   std::string text = fmt::format("Intervals reach at most {:.2g} % away from their index.", 100.0 * widest);
   const std::size_t changing = changing_errors(result, ranked.response).size();
@@ -115,8 +113,8 @@ std::string worst_place_text(const StoredResult& result) {
   const RankedErrors ranked = ranked_errors(result, default_ranking(result));
   if (ranked.rows.empty()) return {};
   const std::size_t error = ranked.rows.front();
-  const std::vector<double> all = local_effects(result, ranked.response);
-  const auto effects = std::span(all).subspan(error * result.poses.size(), result.poses.size());
+  const ErrorCells all = local_effects(result, ranked.response);
+  const std::span<const double> effects = all.row(error);
   std::size_t worst = 0;
   double sum = 0.0;
   for (std::size_t m = 0; m < effects.size(); ++m) {

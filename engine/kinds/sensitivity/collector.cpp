@@ -32,7 +32,7 @@ HistoryCollector::HistoryCollector(const Plan& plan, std::size_t responses, doub
       responses_(responses),
       conf_level_(conf_level),
       points_(history_points(plan)),
-      looks_(plan.slots() * points_.size()) {}
+      looks_({plan.slots(), points_.size()}) {}
 
 void HistoryCollector::add(const WorkUnit& unit, std::span<const LocalIndex> within, const UnitStats& cell) {
   const std::size_t number = unit.slot * poses() + unit.pose.value;
@@ -51,14 +51,12 @@ void HistoryCollector::add(const WorkUnit& unit, std::span<const LocalIndex> wit
 }
 
 void HistoryCollector::add(std::size_t cell, std::size_t point, std::span<const LocalIndex> indices) {
-  Look& at = look(cell / poses(), point);
-  if (at.local.empty()) at.local.resize(responses_ * poses());
-  for (std::size_t r = 0; r < responses_; ++r) at.local[r * poses() + cell % poses()] = indices[r];
+  Look& at = looks_(cell / poses(), point);
+  if (at.local.empty()) at.local = Array<LocalIndex, axis::Response, axis::Pose>({responses_, poses()});
+  for (std::size_t r = 0; r < responses_; ++r) at.local(r, cell % poses()) = indices[r];
   if (++at.reached < poses()) return;
-  const std::vector<LocalIndex> local = std::exchange(at.local, std::vector<LocalIndex>());
-  for (std::size_t r = 0; r < responses_; ++r) {
-    at.global.push_back(global_index(std::span(local).subspan(r * poses(), poses()), conf_level_));
-  }
+  const auto local = std::exchange(at.local, {});
+  for (std::size_t r = 0; r < responses_; ++r) at.global.push_back(global_index(local.row(r), conf_level_));
 }
 
 EstimateCourse HistoryCollector::history(const SensitivityResult& end) const {
@@ -69,9 +67,8 @@ EstimateCourse HistoryCollector::history(const SensitivityResult& end) const {
   if (!ends_at_a_point) history.samples.push_back(plan_->samples());
   for (std::size_t r = 0; r < responses_; ++r) {
     for (std::size_t slot = 0; slot < plan_->slots(); ++slot) {
-      for (std::size_t k = 0; k + 1 < history.samples.size(); ++k) append(look(slot, k).global.at(r), history);
-      const std::size_t at = r * plan_->slots() + slot;
-      append({end.global[at], {end.global_ci_low[at], end.global_ci_high[at]}}, history);
+      for (std::size_t k = 0; k + 1 < history.samples.size(); ++k) append(looks_(slot, k).global.at(r), history);
+      append({end.global(r, slot), {end.global_ci_low(r, slot), end.global_ci_high(r, slot)}}, history);
     }
   }
   return history;
@@ -89,14 +86,14 @@ std::vector<std::size_t> HistoryCollector::poses_at(std::size_t slot, std::size_
 void HistoryCollector::write(ByteWriter& to, std::span<const std::size_t> units_done) const {
   for (std::size_t slot = 0; slot < plan_->slots(); ++slot) {
     for (std::size_t k = 0; k < points_.size(); ++k) {
-      const Look& at = look(slot, k);
+      const Look& at = looks_(slot, k);
       for (const Estimate& index : at.global) {
         to.reals(std::array{index.value, index.interval.low, index.interval.high});
       }
       if (at.local.empty()) continue;
       for (const std::size_t m : poses_at(slot, k, units_done)) {
         for (std::size_t r = 0; r < responses_; ++r) {
-          const LocalIndex& index = at.local[r * poses() + m];
+          const LocalIndex& index = at.local(r, m);
           to.reals(std::array{index.value, index.standard_error});
         }
       }
@@ -119,7 +116,7 @@ void HistoryCollector::read(ByteReader& from, std::span<const std::size_t> units
           const double low = from.real();
           whole.global.push_back({value, {low, from.real()}});
         }
-        if (begins_longer) look(slot, k) = std::move(whole);
+        if (begins_longer) looks_(slot, k) = std::move(whole);
         continue;
       }
       for (const std::size_t m : reached) {

@@ -40,14 +40,15 @@ class HistoryCollector {
  private:
   /// One slot at one point.
   struct Look {
-    std::size_t reached = 0;             ///< poses
-    std::vector<LocalIndex> local = {};  ///< [R x M] while some poses have reached it, others not
-    std::vector<Estimate> global = {};   ///< [R] once all have
+    std::size_t reached = 0;                                   ///< poses
+    Array<LocalIndex, axis::Response, axis::Pose> local = {};  ///< while some poses have reached it, others not
+    std::vector<Estimate> global = {};                         ///< [R] once all have
+  };
+  struct Point {
+    static constexpr std::string_view kName = "samples";
   };
 
   std::size_t poses() const { return plan_->poses().size(); }
-  Look& look(std::size_t slot, std::size_t point) { return looks_[slot * points_.size() + point]; }
-  const Look& look(std::size_t slot, std::size_t point) const { return looks_[slot * points_.size() + point]; }
   /// indices: [R]
   void add(std::size_t cell, std::size_t point, std::span<const LocalIndex> indices);
   /// The slot's poses with the units that this point is in; units_done: [cells].
@@ -57,7 +58,7 @@ class HistoryCollector {
   std::size_t responses_;
   double conf_level_;
   std::vector<std::size_t> points_;  ///< [K]
-  std::vector<Look> looks_;          ///< [slots x K]
+  Array<Look, axis::Factor, Point> looks_;
 };
 
 /// Puts the units of a sensitivity study together, cell by cell. What a cell becomes depends on the order of its own

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "engine/base/contract.h"
@@ -33,8 +32,8 @@ struct BothFidelities {
   /// The error's largest index on a response of the same dimension; NaN when one is not known.
   double effect(const SensitivityResult& result, std::size_t response, std::size_t factor) const {
     double largest = 0.0;
-    for (std::size_t r = 0; r < result.responses; ++r) {
-      const double index = result.global[r * result.factors + factor];
+    for (std::size_t r = 0; r < result.responses(); ++r) {
+      const double index = result.global(r, factor);
       if (dimensions[r] != dimensions[response]) continue;
       if (std::isnan(index)) return kNaN;
       largest = std::max(largest, index);
@@ -43,30 +42,25 @@ struct BothFidelities {
   }
 
   /// Of the mean, over what the background alone gives.
-  static double growth(const SensitivityResult& result, std::size_t response, std::size_t pose, std::size_t cell) {
-    return result.mean[cell] - result.background[response * result.poses + pose];
+  static double growth(const SensitivityResult& result, std::size_t response, std::size_t factor, std::size_t pose) {
+    return result.mean(response, factor, pose) - result.background(response, pose);
   }
 
   /// Root mean square over the poses of the change of mean and spread, over sigma.
   double change(std::size_t response, std::size_t factor) const {
     double sum = 0.0;
-    for (std::size_t m = 0; m < first.poses; ++m) {
-      const std::size_t cell = (response * first.factors + factor) * first.poses + m;
-      const double of_mean = growth(first, response, m, cell) - growth(second, response, m, cell);
-      const double of_std = first.std[cell] - second.std[cell];
+    for (std::size_t m = 0; m < first.poses(); ++m) {
+      const double of_mean = growth(first, response, factor, m) - growth(second, response, factor, m);
+      const double of_std = first.std(response, factor, m) - second.std(response, factor, m);
       sum += of_mean * of_mean + of_std * of_std;
     }
-    return std::sqrt(sum / static_cast<double>(first.poses)) / sigma[factor];
+    return std::sqrt(sum / static_cast<double>(first.poses())) / sigma[factor];
   }
 
   /// Whether as many samples of an error count in both, at every pose.
   bool same_samples(std::size_t factor) const {
-    for (std::size_t r = 0; r < first.responses; ++r) {
-      const auto begin = static_cast<std::ptrdiff_t>((r * first.factors + factor) * first.poses);
-      const auto end = begin + static_cast<std::ptrdiff_t>(first.poses);
-      if (!std::equal(first.count.begin() + begin, first.count.begin() + end, second.count.begin() + begin)) {
-        return false;
-      }
+    for (std::size_t r = 0; r < first.responses(); ++r) {
+      if (!std::ranges::equal(first.count.row(r, factor), second.count.row(r, factor))) return false;
     }
     return true;
   }
@@ -87,37 +81,38 @@ const Group<Fidelity> kFidelity{
     "The model's second fidelity on the same draws, compared with the first, of which all other groups speak",
     {{"linearity", &Fidelity::linearity}},
     {},
-    {{"global", &Fidelity::global, kByResponseFactor, kIndexUnit, "Global index by the second fidelity"},
-     {"discrepancy", &Fidelity::discrepancy, kByResponseFactor, kIndexUnit,
+    {{"global", &Fidelity::global, kIndexUnit, "Global index by the second fidelity"},
+     {"discrepancy", &Fidelity::discrepancy, kIndexUnit,
       "Global index by the second fidelity - global index by the first (/sensitivity/global)"},
-     {"relative_discrepancy", &Fidelity::relative_discrepancy, kByResponseFactor, "1",
+     {"relative_discrepancy", &Fidelity::relative_discrepancy, "1",
       "discrepancy over the error's effect: its largest global index by the first fidelity on any response of the same "
       "dimension; infinity where only the second fidelity has an effect, NaN where neither has"},
-     {"nonlinearity", &Fidelity::nonlinearity, kByResponseFactor, "1",
+     {"nonlinearity", &Fidelity::nonlinearity, "1",
       "Root mean square over the poses of hypot(change of the mean over the background, change of the standard "
       "deviation) / sigma(error), over the error's effect as in relative_discrepancy"},
-     {"linear", &Fidelity::linear, kByFactor, "1",
+     {"linear", &Fidelity::linear, "1",
       "1: for errors of the study's size no response's nonlinearity or relative discrepancy is above the attribute "
       "linearity of /fidelity; 0: one is, or the comparison is incomplete"},
-     {"not_converged", &Fidelity::not_converged, kByFactorPose, "1",
-      "Samples that the second fidelity did not solve"}}};
+     {"not_converged", &Fidelity::not_converged, "1", "Samples that the second fidelity did not solve"}}};
 
-/// The response where a measure [R x P] of an error has its largest magnitude; none where it has no value.
-std::optional<std::size_t> largest(const std::vector<double>& measure, std::size_t factor, std::size_t factors) {
+using Measure = FidelityResult::Indices;
+
+/// The response where a measure of an error has its largest magnitude; none where it has no value.
+std::optional<std::size_t> largest(const Measure& measure, std::size_t factor) {
   std::optional<std::size_t> found;
-  for (std::size_t r = 0; r * factors < measure.size(); ++r) {
-    const double value = std::abs(measure[r * factors + factor]);
-    if (!std::isnan(value) && (!found || value > std::abs(measure[*found * factors + factor]))) found = r;
+  for (std::size_t r = 0; r < measure.length<axis::Response>(); ++r) {
+    const double value = std::abs(measure(r, factor));
+    if (!std::isnan(value) && (!found || value > std::abs(measure(*found, factor)))) found = r;
   }
   return found;
 }
 
 /// The largest value in percent, and the response where it is. Refers to the result and the measure.
-void add_largest(std::vector<FilledColumn>& columns, const StoredResult& result, const std::vector<double>& measure,
+void add_largest(std::vector<FilledColumn>& columns, const StoredResult& result, const Measure& measure,
                  const std::string& name, int dispensable) {
-  const auto value = [&result, &measure](std::size_t p) {
-    const auto at = largest(measure, p, sensitivity_of(result).factors);
-    return at ? measure[*at * sensitivity_of(result).factors + p] : kNaN;
+  const auto value = [&measure](std::size_t p) {
+    const auto at = largest(measure, p);
+    return at ? measure(*at, p) : kNaN;
   };
   columns.push_back({percent_column(name, name), [value](std::size_t p) {
                        return std::isinf(value(p)) ? text_cell("no effect") : percent_cell(value(p));
@@ -125,18 +120,17 @@ void add_largest(std::vector<FilledColumn>& columns, const StoredResult& result,
   columns.push_back(
       {text_column(name + "_response", "largest for", dispensable), [&result, &measure, value](std::size_t p) {
          if (std::isinf(value(p))) return text_cell("by the first");
-         const auto at = largest(measure, p, sensitivity_of(result).factors);
+         const auto at = largest(measure, p);
          return text_cell(at ? result.responses[*at].name : "");
        }});
 }
 
 std::string verdict(const FidelityResult& found, std::size_t factor) {
-  const std::size_t factors = found.linear.size();
-  if (found.linear[factor] == 0) return "not linear";
-  return largest(found.nonlinearity, factor, factors) ? "linear" : "no effect";
+  if (found.linear(factor) == 0) return "not linear";
+  return largest(found.nonlinearity, factor) ? "linear" : "no effect";
 }
 
-std::vector<std::string> fidelity_notes(const StoredResult& result, const FidelityResult& found) {
+std::vector<std::string> fidelity_notes(const FidelityResult& found) {
   const auto not_linear = std::ranges::count(found.linear, std::uint8_t{0});
   std::vector<std::string> list{
       fmt::format("{} of {} errors are not linear: they differ by more than {:.3g} %, at the size the study sets",
@@ -145,17 +139,18 @@ std::vector<std::string> fidelity_notes(const StoredResult& result, const Fideli
       "its largest effect"};
   const auto failed = std::accumulate(found.not_converged.begin(), found.not_converged.end(), std::uint64_t{0});
   if (failed > 0) {
-    list.push_back(fmt::format("{} at fidelity \"{}\" did not converge", counted(failed, "solve", "solves"),
-                               sensitivity_of(result).fidelities[1]));
+    list.push_back(
+        fmt::format("{} at fidelity \"{}\" did not converge", counted(failed, "solve", "solves"), found.fidelities[1]));
   }
   return list;
 }
 
-/// The largest magnitude over the responses of a measure [R x P] of each error; NaN where none is known.
-std::vector<double> largest_magnitudes(const std::vector<double>& measure, std::size_t factors) {
-  std::vector<double> list(factors, kNaN);
-  for (std::size_t at = 0; at < measure.size(); ++at) {
-    list[at % factors] = std::fmax(list[at % factors], std::abs(measure[at]));
+/// The largest magnitude over the responses of a measure of each error; NaN where none is known.
+std::vector<double> largest_magnitudes(const Measure& measure) {
+  std::vector<double> list;
+  for (std::size_t p = 0; p < measure.length<axis::Factor>(); ++p) {
+    const auto at = largest(measure, p);
+    list.push_back(at ? std::abs(measure(*at, p)) : kNaN);
   }
   return list;
 }
@@ -165,77 +160,80 @@ std::vector<double> largest_magnitudes(const std::vector<double>& measure, std::
 FidelityResult compare_fidelities(const SensitivityResult& first, const SensitivityResult& second,
                                   std::span<const Dimension> dimensions, std::span<const double> sigma,
                                   double linearity) {
-  POESY_EXPECTS(first.global.size() == second.global.size() && first.mean.size() == second.mean.size());
-  POESY_EXPECTS(dimensions.size() == first.responses && sigma.size() == first.factors);
+  POESY_EXPECTS(first.mean.lengths() == second.mean.lengths());
+  POESY_EXPECTS(dimensions.size() == first.responses() && sigma.size() == first.factors());
   const BothFidelities both{first, second, dimensions, sigma};
   FidelityResult result;
   result.linearity = linearity;
   result.global = second.global;
-  for (std::size_t p = 0; p < first.factors; ++p) result.linear.push_back(both.same_samples(p) ? 1 : 0);
-  for (std::size_t r = 0; r < first.responses; ++r) {
-    for (std::size_t p = 0; p < first.factors; ++p) {
-      const std::size_t at = r * first.factors + p;
+  for (Measure* measure : {&result.discrepancy, &result.relative_discrepancy, &result.nonlinearity}) {
+    *measure = Measure(first.global.lengths());
+  }
+  result.linear = Array<std::uint8_t, axis::Factor>({first.factors()});
+  for (std::size_t p = 0; p < first.factors(); ++p) result.linear(p) = both.same_samples(p) ? 1 : 0;
+  for (std::size_t r = 0; r < first.responses(); ++r) {
+    for (std::size_t p = 0; p < first.factors(); ++p) {
       const double base = ratio_base(both, r, p);
-      result.discrepancy.push_back(second.global[at] - first.global[at]);
-      result.relative_discrepancy.push_back(result.discrepancy.back() / base);
-      result.nonlinearity.push_back(both.change(r, p) / base);
-      const bool is_known = !std::isnan(result.discrepancy.back());
-      const bool is_small =
-          std::abs(result.relative_discrepancy.back()) <= linearity && result.nonlinearity.back() <= linearity;
-      if (!is_known || (!std::isnan(base) && !is_small)) result.linear[p] = 0;
+      const double discrepancy = second.global(r, p) - first.global(r, p);
+      const double relative = discrepancy / base;
+      const double nonlinearity = both.change(r, p) / base;
+      result.discrepancy(r, p) = discrepancy;
+      result.relative_discrepancy(r, p) = relative;
+      result.nonlinearity(r, p) = nonlinearity;
+      const bool is_small = std::abs(relative) <= linearity && nonlinearity <= linearity;
+      if (std::isnan(discrepancy) || (!std::isnan(base) && !is_small)) result.linear(p) = 0;
     }
   }
-  for (const SolveCounts& counts : second.solves) result.not_converged.push_back(counts.not_converged());
+  result.not_converged = Array<std::uint64_t, axis::Factor, axis::Pose>(second.solves.lengths());
+  std::ranges::transform(second.solves, result.not_converged.begin(), &SolveCounts::not_converged);
   return result;
 }
 
-void write_fidelity(ResultBuilder& result, const Study& study, const std::optional<FidelityResult>& found) {
+void write_fidelity(ResultBuilder& result, const std::optional<FidelityResult>& found) {
   if (!found) return;
   write_group(result, kFidelity, *found);
-  const MechanismChoice& choice = study.mechanism;
-  const std::array names{study.model().fidelities[choice.fidelity], study.model().fidelities[choice.compared.value()]};
-  result.file().set_attribute("/fidelity", "fidelities", std::span<const std::string>(names));
+  result.file().set_attribute("/fidelity", "fidelities", std::span(found->fidelities));
 }
 
-void read_fidelity(const h5::File& file, StoredSensitivity& found) {
-  if (!file.exists("/fidelity")) return;
+std::optional<FidelityResult> read_fidelity(const h5::File& file) {
+  if (!file.exists("/fidelity")) return std::nullopt;
+  FidelityResult found;
   found.fidelities = file.attribute<std::string>("/fidelity", "fidelities");
   if (found.fidelities.size() != 2) throw h5::Error("it does not compare two fidelities");
-  read_group(file, kFidelity, found.fidelity.emplace());
+  read_group(file, kFidelity, found);
+  return found;
 }
 
 void append_fidelity_tables(CsvTables& tables, const StoredResult& result) {
-  const StoredSensitivity& first = sensitivity_of(result);
+  const SensitivityResult& first = sensitivity_of(result);
   if (!first.fidelity) return;
   const Fidelity& found = *first.fidelity;
   CsvTable table = lines_of_factors(result, "fidelity");
   table.columns.push_back(list_column("linear", found.linear));
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const NamedUnit& response = result.responses[r];
-    const std::size_t begin = r * first.factors;
-    const std::string index_unit = csv_unit(kIndexUnit, result, &response);
-    table.columns.push_back(
-        list_column(with_unit(response.name + "_" + first.fidelities[0], index_unit), first.global, begin));
+    const auto heading = [&](const std::string& name, const std::string& unit) {
+      return with_unit(response.name + "_" + name, csv_unit(unit, result, &response));
+    };
+    table.columns.push_back(list_column(heading(found.fidelities[0], kIndexUnit), first.global.row(r)));
     for (const FieldRow<Fidelity>& field : kFidelity.fields) {
-      if (field.axes != kByResponseFactor) continue;
-      const std::string name = field.name == "global" ? first.fidelities[1] : field.name;
-      const std::string heading = with_unit(response.name + "_" + name, csv_unit(field.unit, result, &response));
-      table.columns.push_back(field_column(heading, field, found, begin));
+      if (field.axes != Measure::axis_names()) continue;
+      const std::string& name = field.name == "global" ? found.fidelities[1] : field.name;
+      table.columns.push_back(field_row_column(heading(name, field.unit), field, found, r));
     }
   }
   tables.push_back(std::move(table));
-  for (const FieldRow<Fidelity>& field : kFidelity.fields) {
-    if (field.axes == kByFactorPose) tables.push_back(cell_table(result, "fidelity_" + field.name, field, found));
-  }
+  const FieldRow<Fidelity>& failed = kFidelity.fields.back();
+  tables.push_back(cell_table(result, "fidelity_" + failed.name, failed, found));
 }
 
 Table fidelity_table(const StoredResult& result, const RankedErrors& ranked) {
   const FidelityResult& found = *sensitivity_of(result).fidelity;
   Table table{.name = "fidelity",
-              .caption = fmt::format("Fidelity \"{}\" against \"{}\" on the same draws",
-                                     sensitivity_of(result).fidelities[1], sensitivity_of(result).fidelities[0]),
+              .caption = fmt::format("Fidelity \"{}\" against \"{}\" on the same draws", found.fidelities[1],
+                                     found.fidelities[0]),
               .columns = {},
-              .notes = fidelity_notes(result, found),
+              .notes = fidelity_notes(found),
               .ranked = true};
   std::vector<FilledColumn> columns{rank_column(result, ranked, 3), name_column(result.factors, "error")};
   add_largest(columns, result, found.relative_discrepancy, "discrepancy", 1);
@@ -252,15 +250,14 @@ void add_fidelity_section(const StoredResult& result, std::span<const Table> tab
   section.paragraph(
       fmt::format("The study was solved at fidelity \"{}\" and, on the same draws, at \"{}\". An error is linear where "
                   "they differ by no more than {:.3g} % of its largest effect, at the size the study sets.",
-                  sensitivity_of(result).fidelities[0], sensitivity_of(result).fidelities[1], 100.0 * found.linearity));
+                  found.fidelities[0], found.fidelities[1], 100.0 * found.linearity));
   ArrayPool& pool = page.figures.pool;
-  const std::size_t factors = result.factors.size();
   add_figure(
       page, section, "fidelity",
       error_bars(result, {share_quantity("nonlinearity: change of mean and scatter", "nonlinearity",
-                                         largest_magnitudes(found.nonlinearity, factors), pool),
+                                         largest_magnitudes(found.nonlinearity), pool),
                           share_quantity("discrepancy of the indices", "discrepancy",
-                                         largest_magnitudes(found.relative_discrepancy, factors), pool)}),
+                                         largest_magnitudes(found.relative_discrepancy), pool)}),
       "How far the fidelities are apart, the largest of all responses, in percent of the error's largest effect.");
   section.table(tables, "fidelity");
 }

@@ -10,8 +10,8 @@
 
 namespace poesy {
 
-/// Compares two sensitivity results of the same draws at two fidelities of a model. dimensions: [R] of the responses.
-/// sigma: [P] standard deviations of the errors, SI. linearity: between 0 and 1.
+/// Compares two sensitivity results of the same draws at two fidelities of a model. dimensions: of the responses.
+/// sigma: standard deviations of the errors, SI. linearity: between 0 and 1.
 ///
 /// All ratios are of the error's effect: its largest global index, by the first fidelity, on any response of the same
 /// dimension. So a component in which the error hardly shows does not make it nonlinear.
@@ -27,15 +27,16 @@ namespace poesy {
 /// An effect below 1e-10 in SI, or which makes a spread below 1e-13 in SI, is rounding. Where the first fidelity has
 /// no more, the ratios are NaN and say nothing if the second has no more either, and are infinite if it has.
 /// An error with an index that is not known, or with different numbers of solved samples by each fidelity, is not
-/// linear: that was not shown. A verdict holds for errors of the study's size; larger ones may be nonlinear.
+/// linear: that was not shown. A verdict holds for errors of the study's size; larger ones may be nonlinear. The names
+/// of the fidelities are left out.
 FidelityResult compare_fidelities(const SensitivityResult& first, const SensitivityResult& second,
                                   std::span<const Dimension> dimensions, std::span<const double> sigma,
                                   double linearity);
 
 /// The second fidelity beside the first in result files: /fidelity, nothing where the study compares none.
 /// @{
-void write_fidelity(ResultBuilder& result, const Study& study, const std::optional<FidelityResult>& found);
-void read_fidelity(const h5::File& file, StoredSensitivity& found);
+void write_fidelity(ResultBuilder& result, const std::optional<FidelityResult>& found);
+std::optional<FidelityResult> read_fidelity(const h5::File& file);
 /// @}
 /// fidelity.csv and fidelity_not_converged.csv.
 void append_fidelity_tables(CsvTables& tables, const StoredResult& result);

@@ -21,37 +21,43 @@ const Group<Indices> kIndices{
     "Sensitivity of each response to each error: sigma(response) / sigma(error), one error varying at a time; NaN "
     "where undefined",
     kLevel,
-    {{"response", &Indices::responses}, {"factor", &Indices::factors}, {"pose", &Indices::poses}},
-    {{"global", &Indices::global, kByResponseFactor, kIndexUnit,
+    {},
+    {{"global", &Indices::global, kIndexUnit,
       "Global index: mean over the poses + standard deviation over the poses (Du et al. 2022, Eqs. 53-54)"},
-     {"global_ci_low", &Indices::global_ci_low, kByResponseFactor, kIndexUnit, "Lower end of the interval of global",
+     {"global_ci_low", &Indices::global_ci_low, kIndexUnit, "Lower end of the interval of global", Presence::always,
       kLevel},
-     {"global_ci_high", &Indices::global_ci_high, kByResponseFactor, kIndexUnit, "Upper end of the interval of global",
+     {"global_ci_high", &Indices::global_ci_high, kIndexUnit, "Upper end of the interval of global", Presence::always,
       kLevel},
-     {"global_corrected", &Indices::global_corrected, kByResponseFactor, kIndexUnit,
+     {"global_corrected", &Indices::global_corrected, kIndexUnit,
       "Global index without the sampling noise that 'global' counts as spread between poses; NaN: the error is too "
       "small for its effect to be told from rounding"},
-     {"global_corrected_ci_low", &Indices::global_corrected_ci_low, kByResponseFactor, kIndexUnit,
-      "Lower end of the interval of global_corrected", kLevel},
-     {"global_corrected_ci_high", &Indices::global_corrected_ci_high, kByResponseFactor, kIndexUnit,
-      "Upper end of the interval of global_corrected", kLevel},
-     {"rounding", &Indices::rounding, kByResponse, kResponseUnit,
+     {"global_corrected_ci_low", &Indices::global_corrected_ci_low, kIndexUnit,
+      "Lower end of the interval of global_corrected", Presence::always, kLevel},
+     {"global_corrected_ci_high", &Indices::global_corrected_ci_high, kIndexUnit,
+      "Upper end of the interval of global_corrected", Presence::always, kLevel},
+     {"rounding", &Indices::rounding, kResponseUnit,
       "Up to this an effect, index x sigma, cannot be told from the rounding of solves"},
-     {"index_change", &Indices::index_change, kByResponseFactor, "1",
+     {"index_change", &Indices::index_change, "1",
       "Change of 'global' where the error is a tenth as large, by the same few draws at up to 32 poses: index there / "
       "index here - 1; 0: the index holds at other sizes; NaN: not known, or no effect at either size"},
-     {"local", &Indices::local, kByResponseFactorPose, kIndexUnit,
+     {"local", &Indices::local, kIndexUnit,
       "Index at each pose: sigma(response) / sigma(error) (Du et al. 2022, Eqs. 51-52)"},
-     {"local_ci_low", &Indices::local_ci_low, kByResponseFactorPose, kIndexUnit, "Lower end of the interval of local",
+     {"local_ci_low", &Indices::local_ci_low, kIndexUnit, "Lower end of the interval of local", Presence::always,
       kLevel},
-     {"local_ci_high", &Indices::local_ci_high, kByResponseFactorPose, kIndexUnit, "Upper end of the interval of local",
+     {"local_ci_high", &Indices::local_ci_high, kIndexUnit, "Upper end of the interval of local", Presence::always,
       kLevel},
-     {"count", &Indices::count, kByResponseFactorPose, "1", "Samples behind the index", {}, Stored::as_whole_numbers},
-     {"mean", &Indices::mean, kByResponseFactorPose, kResponseUnit, "Mean of the response over the samples"},
-     {"std", &Indices::std, kByResponseFactorPose, kResponseUnit,
-      "Standard deviation of the response over the samples"},
-     {"background", &Indices::background, kByResponsePose, kResponseUnit,
+     {"count", &Indices::count, "1", "Samples behind the index"},
+     {"mean", &Indices::mean, kResponseUnit, "Mean of the response over the samples"},
+     {"std", &Indices::std, kResponseUnit, "Standard deviation of the response over the samples"},
+     {"background", &Indices::background, kResponseUnit,
       "The response with all varied errors zero; NaN where that was not solved"}}};
+
+/// What the ranking owes to the metric's points.
+const FieldRow<Indices> kRadiusTau{
+    "radius_tau", &Indices::radius_tau, "1",
+    "Kendall's tau of the errors' effects with the metric's points so far from their middle and as they are, to first "
+    "order, without the background's errors, at up to 32 of the poses",
+    Presence::where_computed};
 
 const Axes kHistoryAxes{"response", "factor", "samples"};
 
@@ -78,22 +84,17 @@ const CourseWords kConvergence = convergence_words(
     "relative_error of the index, or the index rounding (below 1e-10), or max was there",
     "factor");
 
-/// What the ranking owes to the metric's points, [2 x R]: /metric/radius_tau.
-void add_radius_tau(ResultBuilder& result, const std::vector<double>& tau) {
+void add_radius_tau(ResultBuilder& result, const Indices& found) {
+  if (found.radius_tau.empty()) return;
   result.add_axis("radius_multiple", std::vector<double>(kPointsRadii.begin(), kPointsRadii.end()),
                   {"1", "Distance of the metric's points from their middle, over that in /metric/points"});
-  result.add("/metric/radius_tau", {"radius_multiple", "response"}, tau,
-             {"1",
-              "Kendall's tau of the errors' effects with the metric's points so far from their middle and as they are, "
-              "to first order, without the background's errors, at up to 32 of the poses"});
+  write_fields(result, "/metric", {kRadiusTau}, found);
 }
 
-/// Empty where the mechanism has no such points.
-std::vector<double> read_radius_tau(const h5::File& file) {
-  if (!file.exists("/metric/radius_tau")) return {};
-  if (axis_length(file, "radius_multiple") != kPointsRadii.size())
-    throw h5::Error("/radius_multiple is of other radii");
-  return read_along<double>(file, "/metric/radius_tau", {"radius_multiple", "response"});
+void read_radius_tau(const h5::File& file, Indices& found) {
+  read_fields(file, "/metric", {kRadiusTau}, found);
+  const std::size_t radii = found.radius_tau.length<axis::RadiusMultiple>();
+  if (!found.radius_tau.empty() && radii != kPointsRadii.size()) throw h5::Error("/radius_multiple is of other radii");
 }
 
 /// The index by one estimator ("global", "global_corrected") with its interval, in SI or in the units people read.
@@ -106,7 +107,7 @@ void append_index_columns(CsvTable& table, const StoredResult& result, const std
     const auto field = std::ranges::find(kIndices.fields, estimator + end, &FieldRow<Indices>::name);
     const auto number = [&result, &response, field, displayed, r](std::size_t p) {
       const double scale = displayed ? display(result.factors[p]).si / display(response).si : 1.0;
-      return to_double(number_at<Indices>(*field, sensitivity_of(result), r * result.factors.size() + p)) * scale;
+      return to_double(field->member->number_in_row(sensitivity_of(result), r, p)) * scale;
     };
     const std::string name = response.name + estimator.substr(std::string_view("global").size()) + end;
     table.columns.push_back({with_unit(name, unit), number});
@@ -126,9 +127,8 @@ CsvTable global_table(const StoredResult& result) {
 
 CsvTable index_change_table(const StoredResult& result) {
   CsvTable table = lines_of_factors(result, "index_change");
-  const std::size_t factors = result.factors.size();
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
-    table.columns.push_back(list_column(result.responses[r].name, sensitivity_of(result).index_change, r * factors));
+    table.columns.push_back(list_column(result.responses[r].name, sensitivity_of(result).index_change.row(r)));
   }
   return table;
 }
@@ -136,25 +136,19 @@ CsvTable index_change_table(const StoredResult& result) {
 /// A table for each row along [response x factor x pose] and response.
 void append_local_tables(CsvTables& tables, const StoredResult& result) {
   for (const FieldRow<Indices>& field : kIndices.fields) {
-    if (field.axes != kByResponseFactorPose) continue;
+    if (field.axes != Indices::Cells<double>::axis_names()) continue;
     for (std::size_t r = 0; r < result.responses.size(); ++r) {
-      const NamedUnit& response = result.responses[r];
-      const std::size_t first = r * result.factors.size() * result.poses.size();
-      CsvTable table = lines_of_factors(result, field.name + "_" + response.name);
-      table.at_poses =
-          pose_columns<Indices>(result, field, sensitivity_of(result), first, csv_unit(field.unit, result, &response));
-      tables.push_back(std::move(table));
+      tables.push_back(response_table(result, r, field, sensitivity_of(result)));
     }
   }
 }
 
 void append_solver_tables(CsvTables& tables, const StoredResult& result) {
-  const std::size_t poses = result.poses.size();
-  for (const SolveNumber& number : solve_numbers(sensitivity_of(result).solves)) {
+  const auto& solves = sensitivity_of(result).solves;
+  for (const SolveNumber& number : solve_numbers(solves)) {
     CsvTable table = lines_of_factors(result, number.name);
-    table.at_poses = {poses, "1", [&result, poses, get = number.get](std::size_t p, std::size_t m) {
-                        return get(sensitivity_of(result).solves[p * poses + m]);
-                      }};
+    table.at_poses = {result.poses.size(), "1",
+                      [&solves, get = number.get](std::size_t p, std::size_t m) { return get(solves(p, m)); }};
     tables.push_back(std::move(table));
   }
 }
@@ -162,34 +156,34 @@ void append_solver_tables(CsvTables& tables, const StoredResult& result) {
 void write(ResultBuilder& result, const Study& study, std::any& any) {
   const auto& found = std::any_cast<const SensitivityResult&>(any);
   const std::vector<FactorIndex>& factors = study.analysis.factors;
-  POESY_EXPECTS(found.factors == factors.size());
+  POESY_EXPECTS(found.factors() == factors.size());
   add_names(result, study, factors);
   add_sigma(result, study);
   write_group(result, kIndices, found);
   if (found.history) add_course(result, kHistory, *found.history);
   write_tolerance_group(result, study, found);
-  write_separation(result, study, found.separation);
-  write_fidelity(result, study, found.fidelity);
+  write_separation(result, found.separation);
+  write_fidelity(result, found.fidelity);
   add_convergence(result, kConvergence, found.convergence);
-  if (!found.radius_tau.empty()) add_radius_tau(result, found.radius_tau);
-  add_solver(result, kByFactorPose, found.solves);
+  add_radius_tau(result, found);
+  add_solver(result, found.solves);
   const auto names = texts(factors, [&](FactorIndex factor) { return study.model().factors[factor.value].name; });
   add_failures(result, found.failures, names, found.total().not_converged());
 }
 
 void read(const h5::File& file, StoredResult& result) {
-  StoredSensitivity found;
+  SensitivityResult found;
   read_sigma(file, result);
-  read_group<Indices>(file, kIndices, found);
-  found.solves = read_solver(file, kByFactorPose);
-  found.radius_tau = read_radius_tau(file);
+  read_group(file, kIndices, found);
+  found.solves = read_solver<decltype(found.solves)>(file);
+  read_radius_tau(file, found);
   result.varied = texts(result.factors, &NamedUnit::name);
   result.failures = read_failures(file, result);
   result.convergence = read_convergence(file, kConvergence);
   if (!result.convergence) found.history = read_course(file, kHistory);
   read_tolerance_group(file, result.factors, found);
-  read_separation(file, found);
-  read_fidelity(file, found);
+  found.separation = read_separation(file);
+  found.fidelity = read_fidelity(file);
   result.found = std::move(found);
   result.constant = responses_without_effect(result);
 }
@@ -210,6 +204,8 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 }
 
 }  // namespace
+
+std::size_t sensitivity_bytes(const AxisLengths& lengths) { return bytes_of(kIndices.fields, lengths); }
 
 constinit const FileKind kSensitivityFile{.write = write, .read = read, .append_tables = append_tables};
 

@@ -24,21 +24,21 @@ bool same_poses(const StoredResult& a, const StoredResult& b) {
   return true;
 }
 
-/// Local index x sigma of B less that of A, of the errors that both have, [rows x M].
-std::vector<double> local_differences(const StoredResult& a, const StoredResult& b, const Common& factors,
-                                      std::pair<std::size_t, std::size_t> response) {
-  const std::vector<double> in_a = local_effects(a, response.first);
-  const std::vector<double> in_b = local_effects(b, response.second);
-  const std::size_t poses = a.poses.size();
-  std::vector<double> list;
-  for (const auto& [pa, pb] : factors) {
+/// Local index x sigma of B less that of A, of the errors that both have.
+ErrorCells local_differences(const StoredResult& a, const StoredResult& b, const Common& factors,
+                             std::pair<std::size_t, std::size_t> response) {
+  const ErrorCells in_a = local_effects(a, response.first);
+  const ErrorCells in_b = local_effects(b, response.second);
+  ErrorCells differences({factors.size(), a.poses.size()});
+  for (std::size_t n = 0; n < factors.size(); ++n) {
+    const auto& [pa, pb] = factors[n];
     const double sigma = std::max(a.factor_sigma[pa], b.factor_sigma[pb]);
-    for (std::size_t m = 0; m < poses; ++m) {
-      const double difference = in_b[pb * poses + m] - in_a[pa * poses + m];
-      list.push_back(std::abs(difference) < kIndexRounding * sigma ? 0.0 : difference);
+    for (std::size_t m = 0; m < a.poses.size(); ++m) {
+      const double difference = in_b(pb, m) - in_a(pa, m);
+      differences(n, m) = std::abs(difference) < kIndexRounding * sigma ? 0.0 : difference;
     }
   }
-  return list;
+  return differences;
 }
 
 /// The errors that both have, the one that is most important in A first.
@@ -66,7 +66,7 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
   for (const auto& both : common(names_of(a.responses, figures.responses()), names_of(b.responses))) {
     const std::size_t r = figures.responses()[both.first];
     const NamedUnit& response = a.responses[r];
-    const std::vector<double> values = local_differences(a, b, factors, {r, both.second});
+    const ErrorCells values = local_differences(a, b, factors, {r, both.second});
     if (layers.empty()) order = first_order(a, values);
     layers.push_back({"B - A, effect on " + response.name, unit_text(response),
                       figures.add(fmt::format("difference/{}", r), values, response), true});
@@ -109,17 +109,16 @@ double total_rms(const StoredResult& result, std::size_t response) {
 
 SolveTally sensitivity_tally(const StoredResult& result) {
   const SensitivityResult& found = sensitivity_of(result);
-  SolveTally made{"error", names_of(result.factors), result.poses.size(), found.solves};
+  SolveTally made{"error", names_of(result.factors), result.poses.size(), {found.solves.begin(), found.solves.end()}};
   if (!found.fidelity) return made;
-  const std::vector<std::uint64_t>& failed = found.fidelity->not_converged;
-  const std::vector<std::uint8_t>& linear = found.fidelity->linear;
-  const std::vector<std::string>& fidelities = sensitivity_of(result).fidelities;
-  made.second = {.first = fidelities[0],
-                 .second = fidelities[1],
+  const FidelityResult& compared = *found.fidelity;
+  const auto& failed = compared.not_converged;
+  made.second = {.first = compared.fidelities[0],
+                 .second = compared.fidelities[1],
                  .not_converged = std::accumulate(failed.begin(), failed.end(), std::uint64_t{0}),
                  .total = made.total().total(),
-                 .not_linear = static_cast<std::size_t>(std::ranges::count(linear, std::uint8_t{0})),
-                 .errors = linear.size()};
+                 .not_linear = static_cast<std::size_t>(std::ranges::count(compared.linear, std::uint8_t{0})),
+                 .errors = compared.linear.size()};
   return made;
 }
 
@@ -127,13 +126,13 @@ ShownCells sensitivity_cells(const StoredResult& result) {
   return shown_cells(result, result.factors.size() * (result.time.empty() ? 1 : 2));
 }
 
-std::vector<double> in_shown_units(const StoredResult& result, const std::vector<double>& indices, bool as_effect) {
+std::vector<double> in_shown_units(const StoredResult& result, const SensitivityResult::Indices& indices,
+                                   bool as_effect) {
   std::vector<double> list;
-  const std::size_t factors = result.factors.size();
   for (const std::size_t r : response_order(result)) {
-    for (std::size_t p = 0; p < factors; ++p) {
+    for (std::size_t p = 0; p < result.factors.size(); ++p) {
       const double scale = as_effect ? result.factor_sigma[p] : display(result.factors[p]).si;
-      const double index = without_rounding(result, indices[r * factors + p], r, p);
+      const double index = without_rounding(result, indices(r, p), r, p);
       list.push_back(index * scale / display(result.responses[r]).si);
     }
   }
@@ -152,14 +151,13 @@ std::vector<std::vector<std::string>> units_of_indices(const StoredResult& resul
   return units;
 }
 
-std::vector<double> local_effects(const StoredResult& result, std::size_t response) {
+ErrorCells local_effects(const StoredResult& result, std::size_t response) {
   const SensitivityResult& found = sensitivity_of(result);
-  const std::size_t cells = found.factors * found.poses;
-  std::vector<double> effects(cells);
-  for (std::size_t cell = 0; cell < cells; ++cell) {
-    const std::size_t p = cell / found.poses;
-    effects[cell] =
-        without_rounding(result, found.local[response * cells + cell], response, p) * result.factor_sigma[p];
+  ErrorCells effects({found.factors(), found.poses()});
+  for (std::size_t p = 0; p < found.factors(); ++p) {
+    for (std::size_t m = 0; m < found.poses(); ++m) {
+      effects(p, m) = without_rounding(result, found.local(response, p, m), response, p) * result.factor_sigma[p];
+    }
   }
   return effects;
 }
@@ -168,7 +166,7 @@ Bars error_bars(const StoredResult& result, std::vector<BarQuantity> quantities)
   return {{}, std::move(quantities), names_of(result.factors)};
 }
 
-BarQuantity share_quantity(std::string label, const std::string& array, const std::vector<double>& values,
+BarQuantity share_quantity(std::string label, const std::string& array, std::span<const double> values,
                            ArrayPool& pool) {
   return {std::move(label), {{"%"}}, pool.add(array, values, 0.01)};
 }
@@ -178,9 +176,11 @@ std::string PoseOrder::name(const StoredResult& result) const {
   return magnitude ? "|" + coordinate_name + "|" : coordinate_name;
 }
 
-std::vector<double> root_sum_squares(std::span<const double> values, std::size_t poses) {
-  std::vector<double> sums(poses, 0.0);
-  for (std::size_t at = 0; at < values.size(); ++at) sums[at % poses] += values[at] * values[at];
+std::vector<double> root_sum_squares(const ErrorCells& cells) {
+  std::vector<double> sums(cells.length<axis::Pose>(), 0.0);
+  for (std::size_t p = 0; p < cells.length<axis::Factor>(); ++p) {
+    for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += cells(p, m) * cells(p, m);
+  }
   for (double& sum : sums) sum = std::sqrt(sum);
   return sums;
 }
@@ -203,9 +203,9 @@ std::optional<PoseOrder> explaining_order(const StoredResult& result, std::span<
   return best;
 }
 
-std::string first_order(const StoredResult& result, std::span<const double> values) {
+std::string first_order(const StoredResult& result, const ErrorCells& cells) {
   if (!result.time.empty()) return {};
-  const auto order = explaining_order(result, root_sum_squares(values, result.poses.size()));
+  const auto order = explaining_order(result, root_sum_squares(cells));
   return order ? order->name(result) : std::string();
 }
 

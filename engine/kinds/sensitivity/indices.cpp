@@ -12,12 +12,6 @@
 namespace poesy {
 namespace {
 
-void append(const Estimate& estimate, std::vector<double>& value, std::vector<double>& low, std::vector<double>& high) {
-  value.push_back(estimate.value);
-  low.push_back(estimate.interval.low);
-  high.push_back(estimate.interval.high);
-}
-
 std::vector<LocalIndex> local_indices(std::span<const Moments> at_poses, double sigma) {
   std::vector<LocalIndex> indices;
   indices.reserve(at_poses.size());
@@ -31,45 +25,62 @@ Estimate told_index(std::span<const LocalIndex> poses, double rounding, double c
   return is_too_small_to_tell(index.value, rounding) ? Estimate{kNaN, {kNaN, kNaN}} : index;
 }
 
-/// Room for all numbers of the result, of which only those that are written take memory.
-void reserve(SensitivityResult& result) {
-  const std::size_t of_factors = result.responses * result.factors;
-  for (std::vector<double>* list :
-       {&result.local, &result.local_ci_low, &result.local_ci_high, &result.count, &result.mean, &result.std}) {
-    list->reserve(of_factors * result.poses);
+/// The numbers of all cells, appended one cell after the other: those that are not there yet take no memory.
+class CellNumbers {
+ public:
+  explicit CellNumbers(std::size_t cells) {
+    for (std::vector<double>& list : numbers_) list.reserve(cells);
+    count_.reserve(cells);
   }
-}
 
-/// One response of one factor: its indices at all poses and over them.
-void append_row(std::span<const Moments> at_poses, std::size_t response, double sigma, SensitivityResult& result) {
-  for (const Moments& moments : at_poses) {
-    append(local_index(moments, sigma, result.conf_level), result.local, result.local_ci_low, result.local_ci_high);
-    result.count.push_back(static_cast<double>(moments.count()));
-    result.mean.push_back(moments.mean());
-    result.std.push_back(moments.standard_deviation());
+  void add(const Moments& moments, const Estimate& index) {
+    const std::array values{index.value, index.interval.low, index.interval.high, moments.mean(),
+                            moments.standard_deviation()};
+    for (std::size_t k = 0; k < values.size(); ++k) numbers_[k].push_back(values[k]);
+    count_.push_back(moments.count());
   }
+
+  void move_to(SensitivityResult& result, const std::array<std::size_t, 3>& lengths) && {
+    std::size_t k = 0;
+    for (auto* cells : {&result.local, &result.local_ci_low, &result.local_ci_high, &result.mean, &result.std}) {
+      *cells = {lengths, std::move(numbers_[k++])};
+    }
+    result.count = {lengths, std::move(count_)};
+  }
+
+ private:
+  std::array<std::vector<double>, 5> numbers_;
+  std::vector<std::uint64_t> count_;
+};
+
+/// The indices of one error over the poses.
+void set_global(std::span<const Moments> at_poses, std::size_t r, std::size_t p, double sigma,
+                SensitivityResult& result) {
+  const auto set = [&](const Estimate& index, auto& value, auto& low, auto& high) {
+    value(r, p) = index.value;
+    low(r, p) = index.interval.low;
+    high(r, p) = index.interval.high;
+  };
   const std::vector<LocalIndex> indices = local_indices(at_poses, sigma);
-  append(global_index(indices, result.conf_level), result.global, result.global_ci_low, result.global_ci_high);
-  append(told_index(indices, index_rounding(result, response, sigma), result.conf_level), result.global_corrected,
-         result.global_corrected_ci_low, result.global_corrected_ci_high);
+  set(global_index(indices, result.conf_level), result.global, result.global_ci_low, result.global_ci_high);
+  set(told_index(indices, index_rounding(result, r, sigma), result.conf_level), result.global_corrected,
+      result.global_corrected_ci_low, result.global_corrected_ci_high);
 }
 
 }  // namespace
 
-std::vector<double> background_responses(const Plan& plan, const Model& model) {
-  const std::size_t responses = model.description().responses.size();
-  const std::size_t poses = plan.poses().size();
+Array<double, axis::Response, axis::Pose> background_responses(const Plan& plan, const Model& model) {
   const auto evaluator = model.evaluator(plan.solver());
   const std::array zero{0.0};
   std::array status{SolveStatus::converged};
   std::array iterations{std::uint32_t{0}};
-  std::vector<double> outcome(responses);
-  std::vector<double> background(responses * poses);
-  for (std::size_t m = 0; m < poses; ++m) {
+  std::vector<double> outcome(model.description().responses.size());
+  Array<double, axis::Response, axis::Pose> background({outcome.size(), plan.poses().size()});
+  for (std::size_t m = 0; m < plan.poses().size(); ++m) {
     evaluator->evaluate({plan.poses()[PoseIndex(m)], plan.background(), plan.factors().first(1), zero, 1},
                         {outcome, status, iterations, {}});
-    for (std::size_t r = 0; r < responses; ++r) {
-      background[r * poses + m] = counts(status[0], plan.not_converged()) ? outcome[r] : kNaN;
+    for (std::size_t r = 0; r < outcome.size(); ++r) {
+      background(r, m) = counts(status[0], plan.not_converged()) ? outcome[r] : kNaN;
     }
   }
   return background;
@@ -84,54 +95,57 @@ std::vector<Estimate> global_indices(const CellStats& at_poses, double sigma, do
   return indices;
 }
 
-SensitivityResult sensitivity_result(const Plan& plan, CellStats cells, std::vector<double> background,
-                                     std::vector<double> rounding, double conf_level) {
+SensitivityResult sensitivity_result(const Plan& plan, CellStats cells,
+                                     Array<double, axis::Response, axis::Pose> background, std::vector<double> rounding,
+                                     double conf_level) {
+  const std::size_t responses = cells.responses.size();
+  const std::size_t factors = plan.factors().size();
+  const std::size_t poses = plan.poses().size();
+  POESY_EXPECTS(cells.size() == factors * poses && cells.size() > 0);
   SensitivityResult result;
-  result.factors = plan.factors().size();
-  result.poses = plan.poses().size();
   result.conf_level = conf_level;
-  POESY_EXPECTS(cells.size() == result.factors * result.poses && cells.size() > 0);
-  result.responses = cells.responses.size();
-  POESY_EXPECTS(background.size() == result.responses * result.poses);
+  POESY_EXPECTS(background.lengths() == (std::array{responses, poses}));
   result.background = std::move(background);
-  POESY_EXPECTS(rounding.size() == result.responses);
-  result.rounding = std::move(rounding);
-  reserve(result);
-  for (std::size_t r = 0; r < result.responses; ++r) {
-    const std::vector<Moments> response = std::exchange(cells.responses[r], {});
-    for (std::size_t p = 0; p < result.factors; ++p) {
-      append_row(std::span(response).subspan(p * result.poses, result.poses), r,
-                 plan.distributions()[p].standard_deviation(), result);
+  result.rounding = {{responses}, std::move(rounding)};
+  for (auto* indices : {&result.global, &result.global_ci_low, &result.global_ci_high, &result.global_corrected,
+                        &result.global_corrected_ci_low, &result.global_corrected_ci_high}) {
+    *indices = SensitivityResult::Indices({responses, factors});
+  }
+  CellNumbers numbers(responses * cells.size());
+  for (std::size_t r = 0; r < responses; ++r) {
+    const Array<Moments, axis::Factor, axis::Pose> response({factors, poses}, std::exchange(cells.responses[r], {}));
+    for (std::size_t p = 0; p < factors; ++p) {
+      const double sigma = plan.distributions()[p].standard_deviation();
+      for (const Moments& moments : response.row(p)) numbers.add(moments, local_index(moments, sigma, conf_level));
+      set_global(response.row(p), r, p, sigma, result);
     }
   }
-  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-    append_failures(cell / result.poses, PoseIndex(cell % result.poses), cells.failed[cell], result.failures);
+  std::move(numbers).move_to(result, {responses, factors, poses});
+  result.solves = {{factors, poses}, std::move(cells.solves)};
+  for (std::size_t cell = 0; cell < cells.failed.size(); ++cell) {
+    const auto [factor, pose] = result.solves.positions(cell);
+    append_failures(factor, PoseIndex(pose), cells.failed[cell], result.failures);
   }
-  result.solves = std::move(cells.solves);
   return result;
 }
 
 double index_rounding(const SensitivityResult& result, std::size_t response, double sigma) {
-  return index_rounding(result.rounding[response], sigma);
+  return index_rounding(result.rounding(response), sigma);
 }
 
 ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma, std::size_t response) {
-  POESY_EXPECTS(sigma.size() == result.factors && result.background.size() == result.responses * result.poses);
-  const auto part = [&](const std::vector<double>& values, std::size_t length) {
-    return std::span(values).subspan(response * length, length);
-  };
-  const std::size_t cells = result.factors * result.poses;
+  const std::array lengths{result.factors(), result.poses()};
+  POESY_EXPECTS(sigma.size() == result.factors());
   std::vector<double> index;
-  for (std::size_t p = 0; p < result.factors; ++p) {
-    index.push_back(
-        told_from_rounding(result.global[response * result.factors + p], index_rounding(result, response, sigma[p])));
+  for (std::size_t p = 0; p < result.factors(); ++p) {
+    index.push_back(told_from_rounding(result.global(response, p), index_rounding(result, response, sigma[p])));
   }
   return {.index = std::move(index),
           .sigma = sigma,
-          .count = part(result.count, cells),
-          .mean = part(result.mean, cells),
-          .std = part(result.std, cells),
-          .background = part(result.background, result.poses)};
+          .count = {result.count.row(response), lengths},
+          .mean = {result.mean.row(response), lengths},
+          .std = {result.std.row(response), lengths},
+          .background = result.background.row(response)};
 }
 
 Tolerances response_tolerances(const SensitivityResult& result, std::span<const double> sigma, std::size_t response,

@@ -4,6 +4,7 @@
 
 #include "engine/kinds/kind.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/result/fields.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -13,6 +14,10 @@ namespace poesy {
 /// with fewer samples. Memory does not grow with the number of samples. Empty when stopped, and of a shard.
 std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
                                                  const RunOptions& options);
+
+/// Bytes of what a result of these lengths says of its responses and errors (/sensitivity), in memory and in a file
+/// alike.
+std::size_t sensitivity_bytes(const AxisLengths& lengths);
 
 /// Sensitivity studies: the effect of each error on its own.
 extern const Kind kSensitivityKind;

@@ -37,8 +37,12 @@ WorkUnit first_draws(const Plan& plan, std::size_t chosen_cell) {
           std::min(kLinearityDraws, plan.samples())};
 }
 
-/// The local indices of one cell, for each size those of all responses: [2 x R].
-using CellIndices = std::vector<LocalIndex>;
+struct ErrorSize {
+  static constexpr std::string_view kName = "size";
+};
+
+/// The local indices of one cell.
+using CellIndices = Array<LocalIndex, ErrorSize, axis::Response>;
 
 /// Solves the first draws of a cell and their mirror images at both sizes. Owns the scratch of one thread.
 class CellEvaluator {
@@ -50,27 +54,27 @@ class CellEvaluator {
     const WorkUnit unit = first_draws(*plan_, cell);
     const UnitOutcomes found = solve_.solve(unit, kScales);  // at once, because a model prepares for a pose
     const std::size_t draws = kSigns * unit.count;
+    const ArrayView<const double, axis::Response, ErrorSize, axis::Sample> responses(found.responses,
+                                                                                     {responses_, kSizes, draws});
+    const ArrayView<const SolveStatus, ErrorSize, axis::Sample> status(found.status, {kSizes, draws});
+    const auto counts_at = [&](std::size_t size, std::size_t n) {
+      return counts(status(size, n), plan_->not_converged());
+    };
     const double sigma = plan_->distributions()[unit.slot].standard_deviation();
-    CellIndices indices;
+    CellIndices indices({kSizes, responses_});
     for (std::size_t size = 0; size < kSizes; ++size) {
       for (std::size_t r = 0; r < responses_; ++r) {
         Moments moments;
         for (std::size_t n = 0; n < draws; ++n) {
-          if (counts_at_both(found, n)) moments.add(found.responses[(r * kSizes + size) * draws + n]);
+          if (counts_at(0, n) && counts_at(1, n)) moments.add(responses(r, size, n));
         }
-        indices.push_back(local_index_with_error(moments, kScales[size * kSigns] * sigma));
+        indices(size, r) = local_index_with_error(moments, kScales[size * kSigns] * sigma);
       }
     }
     return indices;
   }
 
  private:
-  bool counts_at_both(const UnitOutcomes& found, std::size_t draw) const {
-    const std::size_t draws = found.status.size() / kSizes;
-    return counts(found.status[draw], plan_->not_converged()) &&
-           counts(found.status[draws + draw], plan_->not_converged());
-  }
-
   const Plan* plan_;
   std::size_t responses_;
   UnitEvaluator solve_;
@@ -83,18 +87,20 @@ class ChangeWork {
       : plan_(plan),
         model_(model),
         rounding_(response_rounding(model)),
-        at_poses_(kSizes * rounding_.size()),
-        changes_(rounding_.size() * plan.slots(), kNaN) {}
+        at_poses_({kSizes, rounding_.size()}),
+        changes_({rounding_.size(), plan.slots()}, kNaN) {}
 
   std::size_t begin_round() const { return plan_.slots() * chosen_poses(plan_); }
   CellEvaluator worker() const { return {plan_, model_}; }
   static CellIndices solve(CellEvaluator& evaluate, std::size_t cell) { return evaluate(cell); }
   SolveCounts merge(std::size_t cell, const CellIndices& indices) {
     const std::size_t poses = chosen_poses(plan_);
-    for (std::size_t n = 0; n < at_poses_.size(); ++n) at_poses_[n].push_back(indices[n]);
+    for (std::size_t size = 0; size < kSizes; ++size) {
+      for (std::size_t r = 0; r < rounding_.size(); ++r) at_poses_(size, r).push_back(indices(size, r));
+    }
     if ((cell + 1) % poses != 0) return {};
     const std::size_t slot = cell / poses;
-    for (std::size_t r = 0; r < rounding_.size(); ++r) changes_[r * plan_.slots() + slot] = change(r, slot);
+    for (std::size_t r = 0; r < rounding_.size(); ++r) changes_(r, slot) = change(r, slot);
     for (std::vector<LocalIndex>& poses_of_one : at_poses_) poses_of_one.clear();
     return {};
   }
@@ -102,31 +108,31 @@ class ChangeWork {
     for (const LocalIndex& index : indices) to.reals(std::array{index.value, index.standard_error});
   }
   CellIndices read(std::size_t, ByteReader& from) const {
-    CellIndices indices;
-    for (std::size_t n = 0; n < at_poses_.size(); ++n) {
-      const double value = from.real();
-      indices.push_back({value, from.real()});
+    CellIndices indices(at_poses_.lengths());
+    for (LocalIndex& index : indices) {
+      index.value = from.real();
+      index.standard_error = from.real();
     }
     return indices;
   }
   static SolveCounts solved() { return {}; }
   static std::uint64_t left() { return 0; }
-  void write_state(ByteWriter& to) const { to.reals(changes_); }
+  void write_state(ByteWriter& to) const { to.reals(changes_.all()); }
   void restore(std::span<const std::byte> state) {
     ByteReader from(state);
-    from.reals(std::span(changes_));
+    from.reals(changes_.all());
     from.expect_end();
   }
   static bool next_round() { return false; }
 
-  std::vector<double> result() && { return std::move(changes_); }
+  SensitivityResult::Indices result() && { return std::move(changes_); }
 
  private:
   double change(std::size_t response, std::size_t slot) const {
     const double sigma = plan_.distributions()[slot].standard_deviation();
     std::array<double, kSizes> index{};
     for (std::size_t size = 0; size < kSizes; ++size) {
-      index[size] = told_from_rounding(published_index(at_poses_[size * rounding_.size() + response]),
+      index[size] = told_from_rounding(published_index(at_poses_(size, response)),
                                        index_rounding(rounding_[response], kScales[size * kSigns] * sigma));
     }
     return index[1] / index[0] - 1.0;
@@ -134,17 +140,17 @@ class ChangeWork {
 
   const Plan& plan_;
   const Model& model_;
-  std::vector<double> rounding_;                   ///< [R]
-  std::vector<std::vector<LocalIndex>> at_poses_;  ///< [2 x R] of the error that is being collected
-  std::vector<double> changes_;                    ///< [R x P]
+  std::vector<double> rounding_;  ///< of the responses
+  /// Of the error that is being collected.
+  Array<std::vector<LocalIndex>, ErrorSize, axis::Response> at_poses_;
+  SensitivityResult::Indices changes_;
 };
 
 /// Names in one sentence, at most.
 constexpr std::size_t kMostNames = 10;
 
 std::span<const double> changes_of(const StoredResult& result, std::size_t response) {
-  const SensitivityResult& found = sensitivity_of(result);
-  return std::span(found.index_change).subspan(response * found.factors, found.factors);
+  return sensitivity_of(result).index_change.row(response);
 }
 
 /// Of a change that is known: "-99.1 %".
@@ -174,7 +180,8 @@ std::optional<double> size_to_study(const ResponseTolerances& tolerances, std::s
 
 }  // namespace
 
-std::optional<std::vector<double>> index_changes(const Plan& plan, const Model& model, const RunOptions& options) {
+std::optional<SensitivityResult::Indices> index_changes(const Plan& plan, const Model& model,
+                                                        const RunOptions& options) {
   POESY_EXPECTS(plan.slots() == plan.factors().size());
   RunOptions without_state = options;
   without_state.checkpoints = nullptr;

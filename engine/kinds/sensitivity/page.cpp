@@ -34,7 +34,7 @@ constexpr std::string_view kCorrected =
 BarQuantity bar_quantity(const StoredResult& result, bool as_effect, ArrayPool& pool) {
   const GlobalIndices shown = shown_indices(result);
   const std::string name = as_effect ? "global_effect" : "global_index";
-  const auto add = [&](const std::string& suffix, const std::vector<double>& indices) {
+  const auto add = [&](const std::string& suffix, const SensitivityResult::Indices& indices) {
     return pool.add(name + suffix, in_shown_units(result, indices, as_effect));
   };
   return {as_effect ? "effect at the size the study sets (index x sigma)" : "global index",
@@ -57,15 +57,11 @@ void add_which_errors_matter(const StoredResult& result, std::span<const Table> 
   section.table(tables, "ranked");
 }
 
-/// Rows of values [P x M] in this order.
-std::vector<double> in_order(const std::vector<double>& values, std::span<const std::size_t> rows) {
-  const std::size_t columns = rows.empty() ? 0 : values.size() / rows.size();
+/// The rows of cells in this order, one behind the other.
+std::vector<double> in_order(const ErrorCells& cells, std::span<const std::size_t> rows) {
   std::vector<double> list;
-  list.reserve(values.size());
-  for (const std::size_t row : rows) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(row * columns);
-    list.insert(list.end(), begin, begin + static_cast<std::ptrdiff_t>(columns));
-  }
+  list.reserve(cells.size());
+  for (const std::size_t row : rows) std::ranges::copy(cells.row(row), std::back_inserter(list));
   return list;
 }
 
@@ -78,22 +74,21 @@ std::vector<HeatLayer> layers(const StoredResult& result, std::span<const std::s
     list.push_back({"effect on " + response.name, unit_text(response),
                     figures.add(fmt::format("effect/{}", r), in_order(local_effects(result, r), rows), response)});
   }
-  list.push_back(
-      {"not converged", "%", figures.add("not_converged", in_order(sensitivity_tally(result).shares(), rows), 0.01)});
+  const ErrorCells failed({result.factors.size(), result.poses.size()}, sensitivity_tally(result).shares());
+  list.push_back({"not converged", "%", figures.add("not_converged", in_order(failed, rows), 0.01)});
   return list;
 }
 
 /// Curves of the local effects over the time of a trajectory, those of the most important errors first.
 Lines along_trajectory(const StoredResult& result, const PoseFigures& figures) {
   Lines lines{.x = figures.axis(), .panels = {}};
-  const std::size_t poses = result.poses.size();
   for (const std::size_t r : figures.responses()) {
     const NamedUnit& response = result.responses[r];
     Panel panel{response.name, unit_text(response), {}};
-    const std::vector<double> effects = local_effects(result, r);
+    const ErrorCells effects = local_effects(result, r);
     for (const std::size_t p : ranked_errors(result, response.name).rows) {
-      const std::span<const double> curve = std::span(effects).subspan(p * poses, poses);
-      panel.series.push_back({result.factors[p].name, figures.add(fmt::format("curve/{}/{}", r, p), curve, response)});
+      panel.series.push_back(
+          {result.factors[p].name, figures.add(fmt::format("curve/{}/{}", r, p), effects.row(p), response)});
     }
     lines.panels.push_back(std::move(panel));
   }
@@ -103,7 +98,7 @@ Lines along_trajectory(const StoredResult& result, const PoseFigures& figures) {
 /// With which coordinate the effects of all errors grow or fall; empty where none is clear.
 std::string trend_text(const StoredResult& result) {
   const std::size_t r = response_named(result, default_ranking(result));
-  const auto order = explaining_order(result, root_sum_squares(local_effects(result, r), result.poses.size()));
+  const auto order = explaining_order(result, root_sum_squares(local_effects(result, r)));
   if (!order || !(std::abs(order->correlation) >= kClearCorrelation)) return {};
   return fmt::format(
       "The effect of all errors on {}, the root sum square of theirs, {} with {}: their rank correlation over the "
@@ -183,13 +178,12 @@ void add_how_sure(const StoredResult& result, std::span<const Table> tables, Pag
 void warn_of_unknown_indices(const StoredResult& result, std::vector<std::string>& list) {
   const SensitivityResult& found = sensitivity_of(result);
   std::vector<std::string> unknown;
-  for (std::size_t p = 0; p < found.factors; ++p) {
+  for (std::size_t p = 0; p < found.factors(); ++p) {
     bool known = true;
-    for (std::size_t r = 0; r < found.responses; ++r) known = known && !std::isnan(found.global[r * found.factors + p]);
+    for (std::size_t r = 0; r < found.responses(); ++r) known = known && !std::isnan(found.global(r, p));
     if (!known) unknown.push_back(result.factors[p].name);
   }
-  const auto cells = std::ranges::count_if(std::span(found.count).first(found.factors * found.poses),
-                                           [](double count) { return count < 2.0; });
+  const auto cells = std::ranges::count_if(found.count.row(0), [](std::uint64_t count) { return count < 2; });
   if (cells == 0 && unknown.empty()) return;
   std::string text =
       fmt::format("{} (an error at a pose) fewer than two samples that count, so no index is known there.",
@@ -203,7 +197,7 @@ void warn_of_small_errors(const StoredResult& result, std::vector<std::string>& 
   const GlobalIndices shown = shown_indices(result);
   for (std::size_t p = 0; p < result.factors.size(); ++p) {
     const auto is_small = [&](std::size_t r) {
-      return is_too_small_to_tell(shown.value[r * result.factors.size() + p], index_rounding(result, r, p));
+      return is_too_small_to_tell(shown.value(r, p), index_rounding(result, r, p));
     };
     if (std::ranges::any_of(result.headline, is_small)) small.push_back(result.factors[p].name);
   }
@@ -230,24 +224,28 @@ void warn_of_wide_intervals(const StoredResult& result, std::vector<std::string>
   const GlobalIndices shown = shown_indices(result);
   std::size_t wide = 0;
   std::size_t all = 0;
-  std::optional<std::pair<double, std::size_t>> widest;
+  double widest = 0.0;
+  std::size_t response = 0;
+  std::size_t factor = 0;
   for (const std::size_t r : result.headline) {
-    for (std::size_t at = r * found.factors; at < (r + 1) * found.factors; ++at) {
-      if (!has_effect(result, r, at % found.factors)) continue;
+    for (std::size_t p = 0; p < found.factors(); ++p) {
+      if (!has_effect(result, r, p)) continue;
       ++all;
-      const double reach = std::max(shown.high[at] - shown.value[at], shown.value[at] - shown.low[at]);
-      const double relative = reach / shown.value[at];
+      const double relative = relative_reach(shown, r, p);
       if (!(relative > kWideInterval)) continue;
       ++wide;
-      if (!widest || relative > widest->first) widest = {relative, at};
+      if (!(relative > widest)) continue;
+      widest = relative;
+      response = r;
+      factor = p;
     }
   }
-  if (!widest) return;
+  if (wide == 0) return;
   list.push_back(
       fmt::format("{} of {} indices have a {:.3g} % interval that reaches more than 10 % away from the index; the "
                   "widest is that of {} on {}, {}. More samples make them narrower.",
-                  wide, all, 100.0 * found.conf_level, result.factors[widest->second % found.factors].name,
-                  result.responses[widest->second / found.factors].name, percent_text(widest->first)));
+                  wide, all, 100.0 * found.conf_level, result.factors[factor].name, result.responses[response].name,
+                  percent_text(widest)));
 }
 
 /// What each error adds to the mean square, and the effect of all errors at each pose.
@@ -260,7 +258,7 @@ ErrorShares error_shares(const StoredResult& result) {
   return {.what = "share of the mean square of " + response,
           .values = mean_square_shares(found, result.factor_sigma),
           .pose_what = "the effect of all errors on " + response,
-          .at_poses = root_sum_squares(local_effects(result, r), result.poses.size())};
+          .at_poses = root_sum_squares(local_effects(result, r))};
 }
 
 Settling settling(const StoredResult& result) {

@@ -47,12 +47,11 @@ std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<Platfor
   }
 }
 
-/// Effects of all errors on all responses, [R x P], by the published estimator. Poses without a first order are left
-/// out.
-std::vector<double> effects_of(const Plan& plan, const Model& model) {
+/// Effects of all errors on all responses, by the published estimator. Poses without a first order are left out.
+SensitivityResult::Indices effects_of(const Plan& plan, const Model& model) {
   const std::vector<double> no_background(model.description().factors.size(), 0.0);
   std::vector<double> responses(model.description().responses.size());
-  std::vector<std::vector<LocalIndex>> local(responses.size() * plan.slots());  // [R x P] at the poses
+  Array<std::vector<LocalIndex>, axis::Response, axis::Factor> local({responses.size(), plan.slots()});  // at the poses
   const auto evaluator = model.evaluator(plan.solver());
   for (std::size_t n = 0; n < some_poses(plan.poses().size()); ++n) {
     const std::span<const double> pose = plan.poses()[some_pose(n, plan.poses().size())];
@@ -64,36 +63,36 @@ std::vector<double> effects_of(const Plan& plan, const Model& model) {
                           {responses, status, iterations, {}});
       if (status[0] != SolveStatus::converged) continue;
       for (std::size_t r = 0; r < responses.size(); ++r) {
-        local[r * plan.slots() + slot].push_back({responses[r] / error[0], 0.0});
+        local(r, slot).push_back({responses[r] / error[0], 0.0});
       }
     }
   }
-  std::vector<double> effects;
-  for (std::size_t n = 0; n < local.size(); ++n) {
-    const double sigma = plan.distributions()[n % plan.slots()].standard_deviation();
-    const double rounding = index_rounding(model.rounding(n / plan.slots()), sigma);
-    effects.push_back(sigma * told_from_rounding(published_index(local[n]), rounding));
+  SensitivityResult::Indices effects(local.lengths());
+  for (std::size_t r = 0; r < responses.size(); ++r) {
+    for (std::size_t slot = 0; slot < plan.slots(); ++slot) {
+      const double sigma = plan.distributions()[slot].standard_deviation();
+      const double rounding = index_rounding(model.rounding(r), sigma);
+      effects(r, slot) = sigma * told_from_rounding(published_index(local(r, slot)), rounding);
+    }
   }
   return effects;
 }
 
 }  // namespace
 
-std::vector<double> radius_rank_correlations(const Study& study, const Plan& plan) {
+Array<double, axis::RadiusMultiple, axis::Response> radius_rank_correlations(const Study& study, const Plan& plan) {
   POESY_EXPECTS(plan.slots() == plan.factors().size());
   const std::optional<MechanismChoice> mechanism = to_first_order(study.mechanism);
   if (!mechanism || !mechanism->entry->build_with_points) return {};
   const std::unique_ptr<Model> own = build_model(*mechanism);
-  const std::vector<double> effects = effects_of(plan, *own);
-  std::vector<double> correlations;
-  for (const double multiple : kPointsRadii) {
-    const std::unique_ptr<Model> other = model_with(*mechanism, at_radius(own->metric_points(), multiple));
-    const std::vector<double> others = other ? effects_of(plan, *other) : std::vector(effects.size(), kNaN);
-    for (std::size_t r = 0; r < own->description().responses.size(); ++r) {
-      const std::size_t from = r * plan.slots();
-      correlations.push_back(
-          kendall_tau(std::span(effects).subspan(from, plan.slots()), std::span(others).subspan(from, plan.slots())));
-    }
+  const SensitivityResult::Indices effects = effects_of(plan, *own);
+  const std::size_t responses = own->description().responses.size();
+  Array<double, axis::RadiusMultiple, axis::Response> correlations({kPointsRadii.size(), responses}, kNaN);
+  for (std::size_t k = 0; k < kPointsRadii.size(); ++k) {
+    const std::unique_ptr<Model> other = model_with(*mechanism, at_radius(own->metric_points(), kPointsRadii[k]));
+    if (!other) continue;
+    const SensitivityResult::Indices others = effects_of(plan, *other);
+    for (std::size_t r = 0; r < responses; ++r) correlations(k, r) = kendall_tau(effects.row(r), others.row(r));
   }
   return correlations;
 }

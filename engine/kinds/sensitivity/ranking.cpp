@@ -26,12 +26,11 @@ std::vector<std::size_t> ordered(const StoredResult& result, std::size_t respons
   const auto key = [&](std::size_t p) {
     double value = 0.0;
     if (order == RowOrder::effect) value = effect(result, response, p);
-    if (order == RowOrder::index)
-      value = shown_indices(result).value[response * found.factors + p] * display(result.factors[p]).si;
+    if (order == RowOrder::index) value = shown_indices(result).value(response, p) * display(result.factors[p]).si;
     if (order == RowOrder::not_converged) value = share_not_converged(found, p);
     return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value;
   };
-  std::vector<std::size_t> rows = positions(found.factors);
+  std::vector<std::size_t> rows = positions(found.factors());
   if (order == RowOrder::name) {
     std::ranges::stable_sort(rows, {}, [&](std::size_t p) { return result.factors[p].name; });
   } else {
@@ -53,7 +52,7 @@ Ranking ranking_of(const RankedResult& ranked, const std::vector<std::size_t>& f
   const GlobalIndices shown = shown_indices(result);
   Ranking ranking{{}, result.metric, result.responses[r]};
   for (const std::size_t p : factors) {
-    const double index = without_rounding(result, shown.value[r * result.factors.size() + p], r, p);
+    const double index = without_rounding(result, shown.value(r, p), r, p);
     ranking.effects.push_back(index * result.factor_sigma[p]);
   }
   return ranking;
@@ -155,8 +154,8 @@ Columns ranked_columns(const StoredResult& result, const RankedErrors& ranked) {
   const Unit& unit = display(result.responses[response]);
   Columns list{rank_column(result, ranked, kRank), name_column(result.factors, "error")};
   list.push_back({number_column("effect", "effect", unit.name), [&result, &unit, response](std::size_t p) {
-                    return index_cell(shown_indices(result).value[response * result.factors.size() + p],
-                                      result.factor_sigma[p] / unit.si, index_rounding(result, response, p));
+                    return index_cell(shown_indices(result).value(response, p), result.factor_sigma[p] / unit.si,
+                                      index_rounding(result, response, p));
                   }});
   add_index(list, result, response, "index", "index", 0);
   list.push_back({number_column("sigma", "sigma"),
@@ -168,7 +167,7 @@ Columns ranked_columns(const StoredResult& result, const RankedErrors& ranked) {
     add_index(list, result, r, "index_" + name, name, dispensable++);
   }
   list.push_back({percent_column("index_change", "at a tenth", kIndexChange), [&result, response](std::size_t p) {
-                    return change_cell(sensitivity_of(result).index_change[response * result.factors.size() + p]);
+                    return change_cell(sensitivity_of(result).index_change(response, p));
                   }});
   list.push_back({percent_column("not_converged", "not converged", kNotConverged),
                   [&](std::size_t p) { return percent_cell(share_not_converged(sensitivity_of(result), p)); }});
@@ -194,13 +193,12 @@ std::vector<std::string> ranked_notes(const StoredResult& result, const RankedEr
 
 /// How the ranking changes with the points of the platform's metric; empty where the result does not say it.
 std::string radius_note(const StoredResult& result, std::size_t response) {
-  const std::vector<double>& tau = sensitivity_of(result).radius_tau;
-  const std::size_t responses = result.responses.size();
-  if (tau.empty() || std::isnan(tau[response]) || std::isnan(tau[responses + response])) return {};
+  const auto& tau = sensitivity_of(result).radius_tau;
+  if (tau.empty() || std::isnan(tau(0, response)) || std::isnan(tau(1, response))) return {};
   return fmt::format(
       "ranked by {} to first order, with the metric's points as they are and at half and twice their distance from "
       "their middle: Kendall's tau of both rankings with the first is {:.2f} and {:.2f} (1: the same order)",
-      result.responses[response].name, tau[response], tau[responses + response]);
+      result.responses[response].name, tau(0, response), tau(1, response));
 }
 
 /// How often intervals of so few samples hold the index; empty where that is as often as they say. Of a norm, and of an
@@ -212,8 +210,8 @@ std::string few_samples_note(const StoredResult& result, std::size_t response) {
   const SensitivityResult& found = sensitivity_of(result);
   if (found.solves.empty()) return {};
   const std::uint64_t samples = std::ranges::min(found.solves, {}, &SolveCounts::total).total();
-  const auto changes = std::span(found.index_change).subspan(response * found.factors, found.factors);
-  const bool has_square = std::ranges::any_of(changes, [](double change) { return change < kSquare; });
+  const bool has_square =
+      std::ranges::any_of(found.index_change.row(response), [](double change) { return change < kSquare; });
   if (samples >= (has_square ? kEnoughOfSquares : kEnoughOfNorms)) return {};
   return fmt::format(
       "{} at each pose are few: intervals of 95 % of a norm hold the local index in 91 % of all cases with 20 samples, "
@@ -259,6 +257,11 @@ GlobalIndices shown_indices(const StoredResult& result) {
   return {found.global_corrected, found.global_corrected_ci_low, found.global_corrected_ci_high};
 }
 
+double relative_reach(const GlobalIndices& indices, std::size_t response, std::size_t factor) {
+  const double index = indices.value(response, factor);
+  return std::max(indices.high(response, factor) - index, index - indices.low(response, factor)) / index;
+}
+
 double index_rounding(const StoredResult& result, std::size_t response, std::size_t factor) {
   return index_rounding(sensitivity_of(result), response, result.factor_sigma[factor]);
 }
@@ -268,32 +271,30 @@ double without_rounding(const StoredResult& result, double index, std::size_t re
 }
 
 bool has_effect(const StoredResult& result, std::size_t response, std::size_t factor) {
-  return has_effect(shown_indices(result).value[response * sensitivity_of(result).factors + factor],
-                    index_rounding(result, response, factor));
+  return has_effect(shown_indices(result).value(response, factor), index_rounding(result, response, factor));
 }
 
 double effect(const StoredResult& result, std::size_t response, std::size_t factor) {
-  return shown_indices(result).value[response * sensitivity_of(result).factors + factor] * result.factor_sigma[factor];
+  return shown_indices(result).value(response, factor) * result.factor_sigma[factor];
 }
 
-FilledColumn index_column(const StoredResult& result, const std::vector<double>& values, std::size_t response,
+FilledColumn index_column(const StoredResult& result, const SensitivityResult::Indices& values, std::size_t response,
                           std::string name, std::string heading, int dispensable) {
   const Unit& unit = display(result.responses[response]);
   return {number_column(std::move(name), std::move(heading), fmt::format("{}/unit", unit.name), dispensable),
           [&result, &values, &unit, response](std::size_t p) {
-            return index_cell(values[response * result.factors.size() + p], display(result.factors[p]).si / unit.si,
+            return index_cell(values(response, p), display(result.factors[p]).si / unit.si,
                               index_rounding(result, response, p));
           }};
 }
 
 double share_not_converged(const SensitivityResult& result, std::size_t factor) {
-  SolveCounts solves;
-  for (std::size_t m = 0; m < result.poses; ++m) solves.merge(result.solves[factor * result.poses + m]);
+  const SolveCounts solves = total_of(result.solves.row(factor));
   return solves.total() == 0 ? 0.0 : static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
 }
 
 RankedErrors ranked_errors(const StoredResult& result, std::string_view response, RowOrder order) {
-  RankedErrors found{response_named(result, response), {}, std::vector<std::size_t>(sensitivity_of(result).factors)};
+  RankedErrors found{response_named(result, response), {}, std::vector<std::size_t>(sensitivity_of(result).factors())};
   const std::vector<std::size_t> by_effect = ordered(result, found.response, RowOrder::effect);
   for (std::size_t n = 0; n < by_effect.size(); ++n) found.ranks[by_effect[n]] = n + 1;
   found.rows = order == RowOrder::effect ? by_effect : ordered(result, found.response, order);
@@ -332,11 +333,11 @@ FilledColumn rank_column(const StoredResult& result, const RankedErrors& ranked,
 std::vector<std::size_t> responses_without_effect(const StoredResult& result) {
   const SensitivityResult& found = sensitivity_of(result);
   std::vector<std::size_t> list;
-  for (std::size_t r = 0; r < found.responses; ++r) {
+  for (std::size_t r = 0; r < found.responses(); ++r) {
     bool is_known = false;
     bool any = false;
-    for (std::size_t p = 0; p < found.factors; ++p) {
-      is_known = is_known || !std::isnan(found.global[r * found.factors + p]);
+    for (std::size_t p = 0; p < found.factors(); ++p) {
+      is_known = is_known || !std::isnan(found.global(r, p));
       any = any || has_effect(result, r, p);
     }
     if (is_known && !any) list.push_back(r);

@@ -17,21 +17,24 @@ namespace poesy {
 struct RankedErrors {
   std::size_t response;            ///< position among the result's
   std::vector<std::size_t> rows;   ///< positions of the errors in the order asked for
-  std::vector<std::size_t> ranks;  ///< [P] of each error by its effect, from 1
+  std::vector<std::size_t> ranks;  ///< of each error by its effect, from 1
 };
 
 /// Precondition: the result has the response.
 RankedErrors ranked_errors(const StoredResult& result, std::string_view response, RowOrder order = RowOrder::effect);
 
-/// Global indices with their intervals, [R x P], by one estimator (run/result.h). Refers to the result.
+/// Global indices with their intervals, by one estimator. Refers to the result.
 struct GlobalIndices {
-  const std::vector<double>& value;  ///< SI
-  const std::vector<double>& low;    ///< lower end of the interval
-  const std::vector<double>& high;   ///< upper end
+  const SensitivityResult::Indices& value;  ///< SI
+  const SensitivityResult::Indices& low;    ///< lower end of the interval
+  const SensitivityResult::Indices& high;   ///< upper end
 };
 
 /// Those that are shown and that rank: the corrected ones.
 GlobalIndices shown_indices(const StoredResult& result);
+
+/// How far an interval reaches away from its index, as a share of it.
+double relative_reach(const GlobalIndices& indices, std::size_t response, std::size_t factor);
 
 /// Below which a (global or local) index of the response and the error is rounding.
 double index_rounding(const StoredResult& result, std::size_t response, std::size_t factor);
@@ -49,9 +52,9 @@ std::vector<std::size_t> responses_without_effect(const StoredResult& result);
 /// index x sigma(error), SI: indices alone do not compare, for some are per m and some per rad.
 double effect(const StoredResult& result, std::size_t response, std::size_t factor);
 
-/// A column of global indices per unit of the error, or of ends of their intervals. values: [R x P], SI. Refers to the
-/// result and the values.
-FilledColumn index_column(const StoredResult& result, const std::vector<double>& values, std::size_t response,
+/// A column of global indices per unit of the error, or of ends of their intervals. values: SI. Refers to the result
+/// and the values.
+FilledColumn index_column(const StoredResult& result, const SensitivityResult::Indices& values, std::size_t response,
                           std::string name, std::string heading, int dispensable = 0);
 
 /// The rank of each error; none where the response does not vary. Refers to both.

@@ -142,6 +142,10 @@ std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const 
   first->fidelity =
       compare_fidelities(*first, *second, response_dimensions(run.study.model()), standard_deviations(run.study),
                          asked_of<SensitivityOptions>(analysis).linearity);
+  const MechanismChoice& choice = run.study.mechanism;
+  for (const std::size_t fidelity : {choice.fidelity, choice.compared.value()}) {
+    first->fidelity->fidelities.push_back(run.study.model().fidelities[fidelity]);
+  }
   return first;
 }
 
@@ -159,6 +163,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   if (!run.makes_result()) return std::nullopt;
   result->index_change = *std::move(changes);
   result->radius_tau = radius_rank_correlations(run.study, plan);
+  set_references(run.study, *result);
   if (run.model.description().separation) {
     result->separation = separate_errors(run.model, plan.poses(), plan.factors(), standard_deviations(run.study));
   }
@@ -180,20 +185,20 @@ WorkOutlook separating(const Study& study, const Model& model, const PoseSet& po
 /// The result takes up the room that accumulators give back, one response after the other.
 MemoryOutlook sensitivity_memory(const Study& study, const Plan& plan, std::size_t fidelities) {
   const std::size_t responses = study.model().responses.size();
-  const std::size_t numbers = 6 * responses * sizeof(double);  // local, its interval, count, mean, std
-  const std::size_t separated = study.model().separation ? 5 * sizeof(double) : 0;
-  const std::size_t result = numbers + sizeof(SolveCounts) + separated;
-  const std::size_t ends = sizeof(SolveCounts) + sizeof(FailedSamples);
-  const std::size_t kept = responses * sizeof(Moments) + ends;
+  const AxisLengths lengths{{"response", responses}, {"factor", plan.factors().size()}, {"pose", plan.poses().size()}};
+  const std::size_t numbers = sensitivity_bytes(lengths);
+  const std::size_t separated = study.model().separation ? separation_bytes(lengths) : 0;
+  const std::size_t result = numbers + plan.cells() * sizeof(SolveCounts);
+  const std::size_t ends = plan.cells() * (sizeof(SolveCounts) + sizeof(FailedSamples));
+  const std::size_t moments = plan.cells() * sizeof(Moments);  // of a response
   // A smaller last unit is kept apart from whole ones.
   const bool both = plan.samples() > Plan::kUnitSamples && plan.samples() % Plan::kUnitSamples != 0;
   const std::size_t parts = both ? 2 : 1;
-  const std::size_t at_once = parts * kept;
-  MemoryOutlook of_cell{at_once - std::min(at_once, result) + sizeof(Moments) + ends,
-                        fidelities * parts * (responses * kStoredMoments + kStoredSolves),
-                        fidelities * (numbers + sizeof(SolveCounts)) + separated,
-                        numbers + kSolverColumns + separated + (fidelities - 1) * sizeof(double)};
-  return times(plan.cells(), of_cell);
+  const std::size_t at_once = parts * (responses * moments + ends);
+  return {at_once - std::min(at_once, result + separated) + moments + ends,
+          fidelities * parts * plan.cells() * (responses * kStoredMoments + kStoredSolves),
+          fidelities * result + separated,
+          numbers + separated + plan.cells() * (kSolverColumns + (fidelities - 1) * sizeof(double))};
 }
 
 Outlook sensitivity_outlook(const Study& study, const Model& model, const PoseSet& poses) {

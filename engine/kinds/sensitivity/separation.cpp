@@ -32,23 +32,24 @@ double root_mean_square(std::span<const double> values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// All poses' values of the separated errors, [P x M].
+using Cells = SeparationResult::Cells;
+
+/// What the separated errors are at all poses.
 void fill_cells(const Model& model, const PoseSet& poses, std::span<const FactorIndex> factors,
                 SeparationResult& result) {
-  const std::size_t cells = factors.size() * poses.size();
-  for (auto* values : {&result.drive, &result.constraint, &result.effect, &result.residual}) values->resize(cells);
+  for (Cells* cells : {&result.drive, &result.constraint, &result.effect, &result.residual, &result.removable_local}) {
+    *cells = Cells({factors.size(), poses.size()});
+  }
   for (std::size_t m = 0; m < poses.size(); ++m) {
     const Separation at_pose = model.separation(poses[PoseIndex(m)]);
     for (std::size_t p = 0; p < factors.size(); ++p) {
-      const std::size_t cell = p * poses.size() + m;
-      result.drive[cell] = at_pose.drive[factors[p].value];
-      result.constraint[cell] = at_pose.constraint[factors[p].value];
-      result.effect[cell] = at_pose.effect[factors[p].value];
-      result.residual[cell] = at_pose.residual[factors[p].value];
+      const std::size_t factor = factors[p].value;
+      result.drive(p, m) = at_pose.drive[factor];
+      result.constraint(p, m) = at_pose.constraint[factor];
+      result.effect(p, m) = at_pose.effect[factor];
+      result.residual(p, m) = at_pose.residual[factor];
+      result.removable_local(p, m) = removable_share(result.residual(p, m), result.effect(p, m));
     }
-  }
-  for (std::size_t cell = 0; cell < cells; ++cell) {
-    result.removable_local.push_back(removable_share(result.residual[cell], result.effect[cell]));
   }
 }
 
@@ -57,28 +58,27 @@ const Group<SeparationResult> kSeparation{
     "What the actuators have to do with each error's effect, to first order; NaN where an error has no effect",
     {},
     {},
-    {{"drive", &SeparationResult::drive, kByFactorPose, kLengthPerFactorUnit,
+    {{"drive", &SeparationResult::drive, kLengthPerFactorUnit,
       "Part of the effect that enters through the actuated directions"},
-     {"constraint", &SeparationResult::constraint, kByFactorPose, kLengthPerFactorUnit,
+     {"constraint", &SeparationResult::constraint, kLengthPerFactorUnit,
       "Part of the effect that enters through the constrained directions"},
-     {"effect", &SeparationResult::effect, kByFactorPose, kLengthPerFactorUnit, "The effect: both parts together"},
-     {"residual", &SeparationResult::residual, kByFactorPose, kLengthPerFactorUnit,
+     {"effect", &SeparationResult::effect, kLengthPerFactorUnit, "The effect: both parts together"},
+     {"residual", &SeparationResult::residual, kLengthPerFactorUnit,
       "What the best correction of the actuators leaves of the effect"},
-     {"removable_local", &SeparationResult::removable_local, kByFactorPose, "1",
+     {"removable_local", &SeparationResult::removable_local, "1",
       "Share of the effect that calibration can remove at each pose: 1 - residual / effect"},
-     {"drive_share", &SeparationResult::drive_share, kByFactor, "1",
+     {"drive_share", &SeparationResult::drive_share, "1",
       "D / (D + C), with D and C the root mean squares of drive and constraint over the poses"},
-     {"removable", &SeparationResult::removable, kByFactor, "1",
+     {"removable", &SeparationResult::removable, "1",
       "Share that calibration can remove: 1 - residual / effect, both as root mean squares over the poses"},
-     {"removable_together",
-      &SeparationResult::removable_together,
-      {},
-      "1",
+     {"removable_together", &SeparationResult::removable_together, "1",
       "The same for all errors together, independent, with the standard deviations of /factors/sigma: "
-      "1 - root of the sum of (sigma x residual)^2 over root of the sum of (sigma x effect)^2"}}};
+      "1 - root of the sum of (sigma x residual)^2 over root of the sum of (sigma x effect)^2"},
+     {"published", &SeparationResult::published, "1",
+      "Class of the error in the literature; empty where it gives none"}}};
 
 /// The published classes that occur, in the order of their first errors.
-std::vector<std::string> classes_of(const std::vector<std::string>& of_errors) {
+std::vector<std::string> classes_of(std::span<const std::string> of_errors) {
   std::vector<std::string> classes;
   for (const std::string& published : of_errors) {
     if (!published.empty() && std::ranges::find(classes, published) == classes.end()) classes.push_back(published);
@@ -89,12 +89,13 @@ std::vector<std::string> classes_of(const std::vector<std::string>& of_errors) {
 CsvTable share_table(const StoredResult& result, const SeparationResult& found) {
   CsvTable table = lines_of_factors(result, "separation");
   for (const FieldRow<SeparationResult>& field : kSeparation.fields) {
-    if (field.axes == kByFactor) table.columns.push_back(field_column(field.name, field, found));
+    const bool number = field.name == "drive_share" || field.name == "removable";
+    if (number) table.columns.push_back(field_column(field.name, field, found));
   }
-  const std::vector<std::string>& of_errors = sensitivity_of(result).published_class;
-  for (const std::string& published : classes_of(of_errors)) {
-    table.columns.push_back({"published_" + published,
-                             [&of_errors, published](std::size_t p) { return of_errors[p] == published ? 1.0 : 0.0; }});
+  for (const std::string& published : classes_of(found.published)) {
+    table.columns.push_back({"published_" + published, [&found, published](std::size_t p) {
+                               return found.published(p) == published ? 1.0 : 0.0;
+                             }});
   }
   return table;
 }
@@ -104,20 +105,22 @@ CsvTable share_table(const StoredResult& result, const SeparationResult& found) 
 SeparationResult separate_errors(const Model& model, const PoseSet& poses, std::span<const FactorIndex> factors,
                                  std::span<const double> sigma) {
   POESY_EXPECTS(sigma.size() == factors.size());
+  const SeparationDescription& described = *model.description().separation;
   SeparationResult result;
+  result.measure = described.measure;
   fill_cells(model, poses, factors, result);
+  result.removable = result.drive_share = Array<double, axis::Factor>({factors.size()});
+  result.published = Array<std::string, axis::Factor>({factors.size()});
   double effects = 0.0;
   double residuals = 0.0;
   for (std::size_t p = 0; p < factors.size(); ++p) {
-    const auto over_poses = [&](const std::vector<double>& values) {
-      return root_mean_square(std::span(values).subspan(p * poses.size(), poses.size()));
-    };
-    const double effect = over_poses(result.effect);
-    const double residual = over_poses(result.residual);
-    const double drive = over_poses(result.drive);
-    result.removable.push_back(removable_share(residual, effect));
-    result.drive_share.push_back(std::isnan(result.removable.back()) ? kNaN
-                                                                     : drive / (drive + over_poses(result.constraint)));
+    const double effect = root_mean_square(result.effect.row(p));
+    const double residual = root_mean_square(result.residual.row(p));
+    const double drive = root_mean_square(result.drive.row(p));
+    const double removable = removable_share(residual, effect);
+    result.removable(p) = removable;
+    result.drive_share(p) = std::isnan(removable) ? kNaN : drive / (drive + root_mean_square(result.constraint.row(p)));
+    result.published(p) = described.published[factors[p].value];
     effects = std::hypot(effects, sigma[p] * effect);
     residuals = std::hypot(residuals, sigma[p] * residual);
   }
@@ -125,30 +128,28 @@ SeparationResult separate_errors(const Model& model, const PoseSet& poses, std::
   return result;
 }
 
-void write_separation(ResultBuilder& result, const Study& study, const std::optional<SeparationResult>& found) {
+void write_separation(ResultBuilder& result, const std::optional<SeparationResult>& found) {
   if (!found) return;
-  const auto& separation = study.model().separation;
   write_group(result, kSeparation, *found);
-  result.file().set_attribute("/separation", "measure", separation->measure);
-  const auto published =
-      texts(study.analysis.factors, [&](FactorIndex factor) { return separation->published[factor.value]; });
-  result.add("/separation/published", {"factor"}, published,
-             {"1", "Class of the error in the literature; empty where it gives none"});
+  result.file().set_attribute("/separation", "measure", found->measure);
 }
 
-void read_separation(const h5::File& file, StoredSensitivity& found) {
-  if (!file.exists("/separation")) return;
-  read_group(file, kSeparation, found.separation.emplace());
-  found.separation_measure = file.attribute<std::string>("/separation", "measure").at(0);
-  found.published_class = read_along<std::string>(file, "/separation/published", {"factor"});
+std::optional<SeparationResult> read_separation(const h5::File& file) {
+  if (!file.exists("/separation")) return std::nullopt;
+  SeparationResult found;
+  read_group(file, kSeparation, found);
+  found.measure = file.attribute<std::string>("/separation", "measure").at(0);
+  return found;
 }
+
+std::size_t separation_bytes(const AxisLengths& lengths) { return bytes_of(kSeparation.fields, lengths); }
 
 void append_separation_tables(CsvTables& tables, const StoredResult& result) {
   if (!sensitivity_of(result).separation) return;
   const SeparationResult& found = *sensitivity_of(result).separation;
   tables.push_back(share_table(result, found));
   for (const FieldRow<SeparationResult>& field : kSeparation.fields) {
-    if (field.axes != kByFactorPose) continue;
+    if (field.axes != Cells::axis_names()) continue;
     const bool share = field.name == "removable_local";
     tables.push_back(cell_table(result, "separation_" + (share ? "removable" : field.name), field, found));
   }
@@ -163,20 +164,19 @@ Table separation_table(const StoredResult& result, const RankedErrors& ranked) {
   Table table{.name = "separation",
               .caption = "What calibration can remove of each error's effect, to first order, over the poses",
               .columns = {},
-              .notes = {"effect: " + sensitivity_of(result).separation_measure,
+              .notes = {"effect: " + found.measure,
                         fmt::format("all errors together, at the size the study sets: {} of the effect is removable",
                                     percent_text(found.removable_together))},
               .ranked = true};
-  const std::vector<std::string>& of_errors = sensitivity_of(result).published_class;
   std::vector<FilledColumn> columns{rank_column(result, ranked, 2), name_column(result.factors, "error")};
-  if (!classes_of(of_errors).empty()) {
+  if (!classes_of(found.published).empty()) {
     columns.push_back({text_column("published_class", "published class", 1),
-                       [&of_errors](std::size_t p) { return text_cell(of_errors[p]); }});
+                       [&found](std::size_t p) { return text_cell(found.published(p)); }});
   }
   columns.push_back({percent_column("drive_share", "drive share"),
-                     [&found](std::size_t p) { return percent_cell(found.drive_share[p]); }});
+                     [&found](std::size_t p) { return percent_cell(found.drive_share(p)); }});
   columns.push_back({percent_column("removable", "removable by calibration"),
-                     [&found](std::size_t p) { return percent_cell(found.removable[p]); }});
+                     [&found](std::size_t p) { return percent_cell(found.removable(p)); }});
   fill(table, ranked.rows, columns);
   return table;
 }
@@ -189,7 +189,7 @@ void add_separation_section(const StoredResult& result, std::span<const Table> t
       "To first order, a part of each error's effect enters through the actuated directions, where a correction of the "
       "actuators can take it away. The removable share is what the best correction at each pose removes; what is left "
       "has to be prevented by tolerances. The effect is measured by {}. Of all errors together, {} is removable.",
-      sensitivity_of(result).separation_measure, percent_text(found.removable_together)));
+      found.measure, percent_text(found.removable_together)));
   ArrayPool& pool = page.figures.pool;
   add_figure(page, section, "separation",
              error_bars(result, {share_quantity("removable by calibration", "removable", found.removable, pool),

@@ -12,7 +12,7 @@
 
 namespace poesy {
 
-/// Separates these errors [P] at all poses. sigma: [P] their standard deviations, SI. An effect that is rounding has no
+/// Separates these errors at all poses. sigma: their standard deviations, SI. An effect that is rounding has no
 /// shares; over the poses, an effect that is not finite at one of them has none either.
 /// Precondition: the model separates its errors and reaches the poses.
 SeparationResult separate_errors(const Model& model, const PoseSet& poses, std::span<const FactorIndex> factors,
@@ -20,9 +20,11 @@ SeparationResult separate_errors(const Model& model, const PoseSet& poses, std::
 
 /// What calibration can remove in result files: /separation, nothing where the model does not separate its errors.
 /// @{
-void write_separation(ResultBuilder& result, const Study& study, const std::optional<SeparationResult>& found);
-void read_separation(const h5::File& file, StoredSensitivity& found);
+void write_separation(ResultBuilder& result, const std::optional<SeparationResult>& found);
+std::optional<SeparationResult> read_separation(const h5::File& file);
 /// @}
+/// Bytes of its datasets, in memory and in a file alike.
+std::size_t separation_bytes(const AxisLengths& lengths);
 /// separation.csv and its tables by pose.
 void append_separation_tables(CsvTables& tables, const StoredResult& result);
 

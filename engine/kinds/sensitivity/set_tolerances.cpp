@@ -41,7 +41,7 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   return as_confirming_study(std::move(study), kStem);
 }
 
-/// A quarter of the part that each of the study's errors is an error of, [P].
+/// A quarter of the part that each of the study's errors is an error of.
 std::vector<double> quarters_of_parts(const Study& study) {
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   std::vector<double> largest;
@@ -110,7 +110,7 @@ std::size_t chosen_response(const TolerancesOptions& options, const StoredResult
 
 std::optional<ReferenceError> reference_of(const TolerancesOptions& options, const StoredResult& result,
                                            std::size_t response) {
-  if (!options.reference) return sensitivity_of(result).tolerance_reference[response];
+  if (!options.reference) return stored_reference(result, response);
   const std::size_t equals = options.reference->find('=');
   const std::size_t factor = position(result.factors, options.reference->substr(0, equals), "--reference", "error");
   const NamedUnit& named = result.factors[factor];
@@ -120,7 +120,7 @@ std::optional<ReferenceError> reference_of(const TolerancesOptions& options, con
 
 void check_sizes(const TolerancesOptions& options, const StoredResult& result, std::size_t response) {
   for (std::size_t p = 0; p < result.factors.size(); ++p) {
-    const double index = sensitivity_of(result).global[response * result.factors.size() + p];
+    const double index = sensitivity_of(result).global(response, p);
     if (!is_too_small_to_tell(index, index_rounding(result, response, p))) continue;
     throw InputError(
         {options.result},

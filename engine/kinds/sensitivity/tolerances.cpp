@@ -15,64 +15,59 @@
 namespace poesy {
 namespace {
 
-/// /tolerances, for programs that know no other group.
+using Indices = SensitivityResult::Indices;
+
+/// What follows from other groups, for programs that know /tolerances alone.
 struct ToleranceGroup {
-  double conf_level = 0.0;
-  std::vector<std::string> kind;            ///< [P] "linear" or "angular"
-  std::vector<std::uint64_t> limb;          ///< [P]
-  std::vector<std::string> unit;            ///< [P]
-  std::vector<double> index;                ///< [R x P]
-  std::vector<double> index_ci_low;         ///< [R x P]
-  std::vector<double> index_ci_high;        ///< [R x P]
-  std::vector<double> equal_effect;         ///< [R x P]
-  std::vector<double> mean_square_share;    ///< [R x P]
-  std::vector<double> rms_effect;           ///< [R x P]
-  std::vector<double> background_rms;       ///< [R]
-  std::vector<std::string> reference;       ///< [R] names; empty where there is none
-  std::vector<double> reference_tolerance;  ///< [R] NaN where there is none
-  std::vector<double> mean_square_bound;    ///< [R] Response::mean_square_bound
+  Array<std::string, axis::Factor> kind;  ///< "linear" or "angular"
+  Array<std::string, axis::Factor> unit;
+  Indices equal_effect;
+  Indices mean_square_share;
+  Indices rms_effect;
+  Array<double, axis::Response> background_rms;
 };
 
-const std::vector<Attribute<ToleranceGroup>> kIndexLevel{{"conf_level", &ToleranceGroup::conf_level}};
-
-/// What is read back.
-const Fields<ToleranceGroup> kReadFields{
-    {"limb", &ToleranceGroup::limb, kByFactor, "1", "Limb of the error, from 1"},
-    {"reference_factor", &ToleranceGroup::reference, kByResponse, "1",
-     "The error from which equal_effect is counted; empty when no error has an effect"},
-    {"reference_tolerance", &ToleranceGroup::reference_tolerance, kByResponse, "SI: unit of reference_factor",
-     "Tolerance of reference_factor"},
-    {"mean_square_bound", &ToleranceGroup::mean_square_bound, kByResponse, "1",
-     "To first order, the mean square of all errors together is at most this times the sum of those of each error "
-     "alone; 1: they add exactly"}};
-
-/// What follows from other groups, and is for other programs alone.
 const Group<ToleranceGroup> kToleranceGroup{
     "/tolerances",
     "Tolerances from the indices; a tolerance is the standard deviation of a normal error",
     {},
     {},
-    {{"kind", &ToleranceGroup::kind, kByFactor, "1", "Kind of the error: linear or angular"},
-     {"unit", &ToleranceGroup::unit, kByFactor, "1", "SI unit of the error and of its tolerance"},
-     {"index", &ToleranceGroup::index, kByResponseFactor, kIndexUnit,
-      "Global sensitivity index as published, /sensitivity/global: tolerances are counted from it"},
-     {"index_ci_low", &ToleranceGroup::index_ci_low, kByResponseFactor, kIndexUnit,
-      "Lower end of the interval of index", kIndexLevel},
-     {"index_ci_high", &ToleranceGroup::index_ci_high, kByResponseFactor, kIndexUnit,
-      "Upper end of the interval of index", kIndexLevel},
-     {"equal_effect", &ToleranceGroup::equal_effect, kByResponseFactor, "SI: factor unit, see /tolerances/unit",
+    {{"kind", &ToleranceGroup::kind, "1", "Kind of the error: linear or angular"},
+     {"unit", &ToleranceGroup::unit, "1", "SI unit of the error and of its tolerance"},
+     {"equal_effect", &ToleranceGroup::equal_effect, "SI: factor unit, see /tolerances/unit",
       "Tolerance that gives every error the reference's effect: index(reference) / index x reference_tolerance (Du et "
       "al. 2022, Section 6.3, Table 10); infinity: no effect on its own; NaN: unknown"},
-     {"mean_square_share", &ToleranceGroup::mean_square_share, kByResponseFactor, "1",
+     {"mean_square_share", &ToleranceGroup::mean_square_share, "1",
       "Share of what all errors add to the response's mean square over samples and poses, with sigma as set in the "
       "study: (rms_effect x sigma)^2 over its sum; NaN: unknown"},
-     {"rms_effect", &ToleranceGroup::rms_effect, kByResponseFactor, kIndexUnit,
+     {"rms_effect", &ToleranceGroup::rms_effect, kIndexUnit,
       "Growth of the response's mean square over samples and poses per tolerance^2, square root of it: mean square = "
       "background_rms^2 + sum of (rms_effect x tolerance)^2"},
-     {"background_rms", &ToleranceGroup::background_rms, kByResponse, kResponseUnit,
+     {"background_rms", &ToleranceGroup::background_rms, kResponseUnit,
       "Root mean square over the poses of the response with all varied errors zero"}}};
 
-/// The study's reference, or the error of smallest effect at one unit of those in which people read it.
+const std::vector<Attribute<SensitivityResult>> kIndexLevel{{"conf_level", &SensitivityResult::conf_level}};
+
+/// Beside them the indices once more.
+const Fields<SensitivityResult> kIndexFields{
+    {"index", &SensitivityResult::global, kIndexUnit,
+     "Global sensitivity index as published, /sensitivity/global: tolerances are counted from it"},
+    {"index_ci_low", &SensitivityResult::global_ci_low, kIndexUnit, "Lower end of the interval of index",
+     Presence::always, kIndexLevel},
+    {"index_ci_high", &SensitivityResult::global_ci_high, kIndexUnit, "Upper end of the interval of index",
+     Presence::always, kIndexLevel}};
+
+/// What set_references says, which alone is read back.
+const Fields<SensitivityResult> kReferenceFields{
+    {"limb", &SensitivityResult::limb, "1", "Limb of the error, from 1"},
+    {"reference_factor", &SensitivityResult::reference, "1",
+     "The error from which equal_effect is counted; empty when no error has an effect"},
+    {"reference_tolerance", &SensitivityResult::reference_tolerance, "SI: unit of reference_factor",
+     "Tolerance of reference_factor"},
+    {"mean_square_bound", &SensitivityResult::mean_square_bound, "1",
+     "To first order, the mean square of all errors together is at most this times the sum of those of each error "
+     "alone; 1: they add exactly"}};
+
 std::optional<ReferenceError> reference_for(const Study& study, const SensitivityResult& found, std::size_t response) {
   const std::vector<FactorIndex>& factors = study.analysis.factors;
   if (const auto& chosen = asked_of<SensitivityOptions>(study.analysis).reference) {
@@ -85,21 +80,13 @@ std::optional<ReferenceError> reference_for(const Study& study, const Sensitivit
   return ReferenceError{*smallest, display_unit(study.model().factors[factors[*smallest].value].dimension).si};
 }
 
-void append_response(ToleranceGroup& group, const Study& study, const SensitivityResult& found, std::size_t r) {
-  const std::vector<double> sigma = standard_deviations(study);
-  const Tolerances all = response_tolerances(found, sigma, r, reference_for(study, found, r));
-  const auto append = [](std::vector<double>& list, const std::vector<double>& more) {
-    list.insert(list.end(), more.begin(), more.end());
-  };
-  append(group.equal_effect, all.equal_effect);
-  append(group.mean_square_share, all.mean_square_share);
-  for (const double effect : all.mean_square.effects) group.rms_effect.push_back(std::sqrt(effect));
-  group.background_rms.push_back(std::sqrt(all.mean_square.background));
-  const auto& reference = all.reference;
-  const auto& factors = study.analysis.factors;
-  group.reference.push_back(reference ? study.model().factors[factors[reference->factor].value].name : "");
-  group.reference_tolerance.push_back(reference ? reference->tolerance : kNaN);
-  group.mean_square_bound.push_back(study.model().responses[r].mean_square_bound);
+/// The reference of a response, with its position among the errors of these names.
+std::optional<ReferenceError> reference_among(const std::vector<std::string>& names, const SensitivityResult& found,
+                                              std::size_t response) {
+  const std::string& name = found.reference(response);
+  if (name.empty()) return std::nullopt;
+  return ReferenceError{position_in(names, name, "its reference error is none of its factors"),
+                        found.reference_tolerance(response)};
 }
 
 /// The numbers of each error. heading(name, unit, suffix): of a column; the suffix is "_display" for the units people
@@ -108,14 +95,14 @@ template <class Heading>
 void append_tolerance_columns(CsvTable& table, const StoredResult& result, const ResponseTolerances& tolerances,
                               const Heading& heading) {
   const SensitivityResult& found = sensitivity_of(result);
-  const std::size_t first = tolerances.response * found.factors;
-  const std::string index_unit = csv_unit(kIndexUnit, result, &result.responses[tolerances.response]);
-  table.columns.push_back(list_column(heading("index", index_unit, ""), found.global, first));
-  table.columns.push_back(list_column(heading("index_ci_low", index_unit, ""), found.global_ci_low, first));
-  table.columns.push_back(list_column(heading("index_ci_high", index_unit, ""), found.global_ci_high, first));
+  const std::size_t r = tolerances.response;
+  const std::string index_unit = csv_unit(kIndexUnit, result, &result.responses[r]);
+  table.columns.push_back(list_column(heading("index", index_unit, ""), found.global.row(r)));
+  table.columns.push_back(list_column(heading("index_ci_low", index_unit, ""), found.global_ci_low.row(r)));
+  table.columns.push_back(list_column(heading("index_ci_high", index_unit, ""), found.global_ci_high.row(r)));
   table.columns.push_back(
       {"mean_square_share", [shares = tolerances.all.mean_square_share](std::size_t p) { return shares[p]; }});
-  table.columns.push_back(list_column("index_change", found.index_change, first));
+  table.columns.push_back(list_column("index_change", found.index_change.row(r)));
   std::vector<std::pair<std::string, std::vector<double>>> lists;
   if (tolerances.limit) {
     lists.emplace_back("limit_equal_effect", tolerances.limit->equal_effect);
@@ -174,7 +161,7 @@ void add_limit_notes(std::vector<std::string>& notes, const StoredResult& result
 /// How much the limit may be exceeded although the study was made at small errors.
 void add_bound_note(std::vector<std::string>& notes, const StoredResult& result, const ResponseTolerances& tolerances) {
   if (!tolerances.limit) return;
-  const double bound = std::sqrt(sensitivity_of(result).mean_square_bound[tolerances.response]);
+  const double bound = std::sqrt(sensitivity_of(result).mean_square_bound(tolerances.response));
   if (bound == 1.0) return;
   const NamedUnit& response = result.responses[tolerances.response];
   notes.push_back(
@@ -255,8 +242,7 @@ std::vector<FilledColumn> columns(const StoredResult& result, const ResponseTole
       name_column(result.factors, "error"),
       {text_column("kind", "kind", 4),
        [&](std::size_t p) { return text_cell(error_kind(dimension_of(result.factors[p].unit))); }},
-      {number_column("limb", "limb", "", 3),
-       [&](std::size_t p) { return count_cell(sensitivity_of(result).factor_limb[p]); }}};
+      {number_column("limb", "limb", "", 3), [&](std::size_t p) { return count_cell(found.limb(p)); }}};
   if (!tolerances.limit) {
     list.push_back(tolerance("equal_effect", "equal effect", tolerances.all.equal_effect));
   } else {
@@ -286,51 +272,73 @@ Bars tolerance_bars(const StoredResult& result, const Tolerances& found, ArrayPo
 
 }  // namespace
 
-void write_tolerance_group(ResultBuilder& result, const Study& study, const SensitivityResult& found) {
-  ToleranceGroup group;
-  group.conf_level = found.conf_level;
-  group.index = found.global;
-  group.index_ci_low = found.global_ci_low;
-  group.index_ci_high = found.global_ci_high;
-  for (const FactorIndex index : study.analysis.factors) {
-    const Factor& factor = study.model().factors[index.value];
-    group.kind.emplace_back(error_kind(factor.dimension));
-    group.unit.push_back(unit_of(factor));
-    group.limb.push_back(factor.limb);
+void set_references(const Study& study, SensitivityResult& found) {
+  const ModelDescription& model = study.model();
+  found.limb = Array<std::uint64_t, axis::Factor>({found.factors()});
+  for (std::size_t p = 0; p < found.factors(); ++p) {
+    found.limb(p) = model.factors[study.analysis.factors[p].value].limb;
   }
-  for (std::size_t r = 0; r < found.responses; ++r) append_response(group, study, found, r);
-  write_group(result, kToleranceGroup, group);
-  write_fields(result, "/tolerances", kReadFields, group);
+  found.reference = Array<std::string, axis::Response>({found.responses()});
+  found.reference_tolerance = found.mean_square_bound = Array<double, axis::Response>({found.responses()}, kNaN);
+  for (std::size_t r = 0; r < found.responses(); ++r) {
+    found.mean_square_bound(r) = model.responses[r].mean_square_bound;
+    const std::optional<ReferenceError> reference = reference_for(study, found, r);
+    if (!reference) continue;
+    found.reference(r) = model.factors[study.analysis.factors[reference->factor].value].name;
+    found.reference_tolerance(r) = reference->tolerance;
+  }
 }
 
-void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, StoredSensitivity& found) {
+void write_tolerance_group(ResultBuilder& result, const Study& study, const SensitivityResult& found) {
+  const std::vector<double> sigma = standard_deviations(study);
   ToleranceGroup group;
-  read_fields(file, "/tolerances", kReadFields, group);
-  found.factor_limb = group.limb;
-  found.mean_square_bound = group.mean_square_bound;
-  for (std::size_t r = 0; r < group.reference.size(); ++r) {
-    const std::string& name = group.reference[r];
-    const auto at = std::ranges::find(factors, name, &NamedUnit::name);
-    const auto factor = static_cast<std::size_t>(at - factors.begin());
-    if (at == factors.end() && !name.empty()) throw h5::Error("its reference error is none of its factors");
-    const ReferenceError reference{factor, group.reference_tolerance[r]};
-    found.tolerance_reference.push_back(name.empty() ? std::nullopt : std::optional(reference));
+  group.kind = group.unit = Array<std::string, axis::Factor>({found.factors()});
+  std::vector<std::string> names;
+  for (std::size_t p = 0; p < found.factors(); ++p) {
+    const Factor& factor = study.model().factors[study.analysis.factors[p].value];
+    group.kind(p) = error_kind(factor.dimension);
+    group.unit(p) = unit_of(factor);
+    names.push_back(factor.name);
   }
+  group.equal_effect = group.mean_square_share = group.rms_effect = Indices(found.global.lengths());
+  group.background_rms = Array<double, axis::Response>({found.responses()});
+  for (std::size_t r = 0; r < found.responses(); ++r) {
+    const Tolerances all = response_tolerances(found, sigma, r, reference_among(names, found, r));
+    std::ranges::copy(all.equal_effect, group.equal_effect.row(r).begin());
+    std::ranges::copy(all.mean_square_share, group.mean_square_share.row(r).begin());
+    std::ranges::transform(all.mean_square.effects, group.rms_effect.row(r).begin(),
+                           [](double effect) { return std::sqrt(effect); });
+    group.background_rms(r) = std::sqrt(all.mean_square.background);
+  }
+  write_group(result, kToleranceGroup, group);
+  write_fields(result, "/tolerances", kIndexFields, found);
+  write_fields(result, "/tolerances", kReferenceFields, found);
+}
+
+void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, SensitivityResult& found) {
+  read_fields(file, "/tolerances", kReferenceFields, found);
+  const std::vector<std::string> names = names_of(factors);
+  for (std::size_t r = 0; r < found.reference.size(); ++r) reference_among(names, found, r);
+}
+
+std::optional<ReferenceError> stored_reference(const StoredResult& result, std::size_t response) {
+  return reference_among(names_of(result.factors), sensitivity_of(result), response);
 }
 
 ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t response) {
-  const StoredSensitivity& found = sensitivity_of(result);
-  return {response, response_tolerances(found, result.factor_sigma, response, found.tolerance_reference[response]),
-          std::nullopt};
+  return {
+      response,
+      response_tolerances(sensitivity_of(result), result.factor_sigma, response, stored_reference(result, response)),
+      std::nullopt};
 }
 
 void append_tolerance_tables(CsvTables& tables, const StoredResult& result) {
-  for (std::size_t r = 0; r < sensitivity_of(result).tolerance_reference.size(); ++r) {
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
     CsvTable table = lines_of_factors(result, "tolerances_" + result.responses[r].name);
     table.columns.push_back({"angular", [&](std::size_t p) {
                                return to_number(dimension_of(result.factors[p].unit) == Dimension::angle);
                              }});
-    table.columns.push_back(list_column("limb", sensitivity_of(result).factor_limb));
+    table.columns.push_back(list_column("limb", sensitivity_of(result).limb));
     const auto heading = [](const std::string& name, const std::string& unit, const char*) {
       return with_unit(name, unit);
     };
@@ -346,7 +354,7 @@ std::string write_tolerances(const std::string& folder, const StoredResult& resu
   const std::string& response_unit = result.responses[tolerances.response].unit;
   const auto unit = [&](std::size_t p) { return result.factors[p].unit; };
   table.more = {{"kind", [&](std::size_t p) { return std::string(error_kind(dimension_of(unit(p)))); }},
-                {"limb", [&](std::size_t p) { return std::to_string(sensitivity_of(result).factor_limb[p]); }},
+                {"limb", [&](std::size_t p) { return std::to_string(sensitivity_of(result).limb(p)); }},
                 {"unit", unit},
                 {"display_unit", [&](std::size_t p) { return std::string(display(result.factors[p]).name); }},
                 {"index_unit", [&](std::size_t p) { return response_unit + "/" + unit(p); }},
@@ -370,8 +378,7 @@ void add_tolerance_section(const StoredResult& result, Page& page) {
   Section& section = page.add_section("tolerances", "How tight must each be");
   const std::size_t response = response_named(result, default_ranking(result));
   const std::string& name = result.responses[response].name;
-  const std::optional<ReferenceError>& reference = sensitivity_of(result).tolerance_reference[response];
-  if (!reference) {
+  if (!stored_reference(result, response)) {
     section.paragraph(fmt::format("No error has an effect on {}, so nothing can be said about tolerances.", name));
     return;
   }

@@ -27,21 +27,29 @@ struct ResponseTolerances {
   std::string caveat = {};  ///< why they may not hold, for tables and studies; empty: no known reason
 };
 
+/// Fills in what the study says for tolerances: limb, reference, reference_tolerance and mean_square_bound. The
+/// reference of each response is the study's, or the error of smallest effect at one unit of those in which people read
+/// it.
+void set_references(const Study& study, SensitivityResult& found);
+
 /// What a program that sets tolerances needs, without the rest: /tolerances.
 /// @{
 void write_tolerance_group(ResultBuilder& result, const Study& study, const SensitivityResult& found);
-void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, StoredSensitivity& found);
+/// Throws h5::Error where a reference is none of these factors.
+void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, SensitivityResult& found);
 /// @}
+/// The error from which tolerances for this response are counted; none where no error has an effect on it.
+std::optional<ReferenceError> stored_reference(const StoredResult& result, std::size_t response);
 /// tolerances_RESPONSE.csv.
 void append_tolerance_tables(CsvTables& tables, const StoredResult& result);
 /// The section of a report.
 void add_tolerance_section(const StoredResult& result, Page& page);
 
-/// The lists of tolerances [P] that are to be used: within the limit by either way to share it, without one those of
+/// The lists of tolerances that are to be used: within the limit by either way to share it, without one those of
 /// equal effect. Refers to the tolerances.
 std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerances& tolerances);
 
-/// The largest tolerance that makes sense for each error of a sensitivity result, [P], SI: a quarter of the part that
+/// The largest tolerance that makes sense for each error of a sensitivity result, SI: a quarter of the part that
 /// it is an error of (Model::error_bound). Throws InputError when the stored study cannot be read with this catalog.
 std::vector<double> largest_tolerances(const StoredResult& result, const Catalog& catalog);
 

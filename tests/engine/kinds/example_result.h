@@ -12,6 +12,7 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/kinds/sobol/result.h"
 #include "engine/result/result_file.h"
 #include "engine/run/evaluation.h"
@@ -67,32 +68,31 @@ class Example {
 
   SensitivityResult sensitivity() const {
     SensitivityResult result;
-    result.responses = 2;
-    result.factors = 2;
-    result.poses = kPoses;
     result.conf_level = 0.95;
     std::size_t array = 0;
     for (auto* values : {&result.local, &result.local_ci_low, &result.local_ci_high, &result.mean, &result.std}) {
-      *values = numbered(array++, kPoses);
-      values->back() = std::numeric_limits<double>::quiet_NaN();
+      *values = {{2, 2, kPoses}, nan_at_end(numbered(array++, kPoses))};
     }
     for (auto* values : {&result.global, &result.global_ci_low, &result.global_ci_high}) {
-      *values = numbered(array++, 1);
-      values->back() = std::numeric_limits<double>::quiet_NaN();
+      *values = {{2, 2}, nan_at_end(numbered(array++, 1))};
     }
     std::size_t after_history = array + 3;
     for (auto* values : {&result.global_corrected, &result.global_corrected_ci_low, &result.global_corrected_ci_high}) {
-      *values = numbered(after_history++, 1);
-      values->back() = std::numeric_limits<double>::quiet_NaN();
+      *values = {{2, 2}, nan_at_end(numbered(after_history++, 1))};
     }
-    result.rounding = {1e-15, 2e-15};
-    result.index_change = {-0.25, 0.125, 0.0, std::numeric_limits<double>::quiet_NaN()};
-    result.count.assign(result.local.size(), 97.0);
-    for (std::size_t k = 0; k < 2 * kPoses; ++k) result.background.push_back(static_cast<double>(k) / 16.0);
-    for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) {
-      result.solves.push_back(
-          {.by_status = {90 - cell, 7, 2, 1, cell}, .iterations = 700 + cell, .most_iterations = 50});
+    result.rounding = {{2}, {1e-15, 2e-15}};
+    result.index_change = {{2, 2}, {-0.25, 0.125, 0.0, std::numeric_limits<double>::quiet_NaN()}};
+    result.count = SensitivityResult::Cells<std::uint64_t>({2, 2, kPoses}, 97);
+    result.background = Array<double, axis::Response, axis::Pose>({2, kPoses});
+    double next = 0.0;
+    for (double& value : result.background) value = next++ / 16.0;
+    result.solves = Array<SolveCounts, axis::Factor, axis::Pose>({2, kPoses});
+    std::uint64_t cell = 0;
+    for (SolveCounts& solves : result.solves) {
+      solves = {.by_status = {90 - cell, 7, 2, 1, cell}, .iterations = 700 + cell, .most_iterations = 50};
+      ++cell;
     }
+    set_references(study, result);
     if (!study.analysis.adaptive) {
       result.history = {{50, 100}, numbered(array, 2), numbered(array + 1, 2), numbered(array + 2, 2)};
       result.history->ci_high.back() = std::numeric_limits<double>::quiet_NaN();
@@ -521,6 +521,11 @@ class Example {
         }
       }
     }
+    return values;
+  }
+
+  static std::vector<double> nan_at_end(std::vector<double> values) {
+    values.back() = std::numeric_limits<double>::quiet_NaN();
     return values;
   }
 

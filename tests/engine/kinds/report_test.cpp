@@ -266,9 +266,9 @@ TEST_F(HtmlReport, ShowsTheNumbersOfTheResult) {
     for (std::size_t p = 0; p < 2; ++p) {
       const double scale = result.stored.factor_sigma[p] / unit;
       const std::vector<float> global = array(page, ranking["value"]);
-      expect_shown(global[shown * 2 + p], found.global_corrected[r * 2 + p] * scale);
+      expect_shown(global[shown * 2 + p], found.global_corrected(r, p) * scale);
       const std::size_t row = heat["rows"][0] == result.stored.factors[p].name ? 0 : 1;
-      for (std::size_t m = 0; m < 4; ++m) expect_shown(local[row * 4 + m], found.local[(r * 2 + p) * 4 + m] * scale);
+      for (std::size_t m = 0; m < 4; ++m) expect_shown(local[row * 4 + m], found.local(r, p, m) * scale);
     }
   }
   for (std::size_t c = 0; c < 3; ++c) {
@@ -337,14 +337,20 @@ TEST_F(HtmlReport, DrawsShapleyEffectsWithTheirIntervals) {
   EXPECT_NE(html.find("Shapley effect of each error"), std::string::npos);
 }
 
+/// Every response to every error is like this at the poses.
+void fill_poses(SensitivityResult::Cells<double>& cells, const std::vector<double>& at_poses) {
+  for (const std::size_t r : {0U, 1U}) {
+    for (const std::size_t p : {0U, 1U}) std::ranges::copy(at_poses, cells.row(r, p).begin());
+  }
+}
+
 TEST_F(HtmlReport, PutsTheMostImportantErrorFirst) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
   stored.factor_sigma = {1.0, 1.0};
-  sensitivity_in(stored).global = sensitivity_in(stored).global_corrected = {0.1, 1.0, 0.1, 1.0};
-  for (std::size_t at = 0; at < sensitivity_in(stored).local.size(); ++at) {
-    sensitivity_in(stored).local[at] = at % 4 == 3 ? 5.0 : 1.0;  // the last pose is the worst, 2.5 times the mean
-  }
+  SensitivityResult& found = sensitivity_in(stored);
+  found.global = found.global_corrected = SensitivityResult::Indices({2, 2}, {0.1, 1.0, 0.1, 1.0});
+  fill_poses(found.local, {1.0, 1.0, 1.0, 5.0});  // the last is the worst, 2.5 times the mean
   const std::string html = report(result);
   const Json page = data(html);
   const Json order{stored.factors[1].name, stored.factors[0].name};
@@ -358,15 +364,15 @@ TEST_F(HtmlReport, PutsPosesInTheOrderThatExplainsTheEffects) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
   stored.poses = PoseSet(3, {-0.2, 0.1, -0.6, -0.3, 0.3, 0.1, -0.1, -0.2, 0.4, -0.4, 0.5, -0.3});
-  for (std::size_t at = 0; at < sensitivity_in(stored).local.size(); ++at) {
-    sensitivity_in(stored).local[at] = std::exp(std::abs(stored.poses[PoseIndex(at % 4)][2]));
-  }
+  std::vector<double> grown;
+  for (const double gamma : stored.poses.column(2)) grown.push_back(std::exp(std::abs(gamma)));
+  fill_poses(sensitivity_in(stored).local, grown);
   const std::string html = report(result);
   EXPECT_EQ(data(html)["figures"]["heat"]["columns"]["order"], "|gamma|");
   EXPECT_NE(html.find("grows with |gamma|: their rank correlation over the poses is 1.00."), std::string::npos);
   for (double& value : sensitivity_in(stored).local) value = 1.0 / value;
   EXPECT_NE(report(result).find("falls with |gamma|"), std::string::npos);
-  sensitivity_in(stored).local = {2.0, 3.0, 1.0, 2.5, 2.0, 3.0, 1.0, 2.5, 2.0, 3.0, 1.0, 2.5, 2.0, 3.0, 1.0, 2.5};
+  fill_poses(sensitivity_in(stored).local, {2.0, 3.0, 1.0, 2.5});
   EXPECT_EQ(report(result).find("with |gamma|:"), std::string::npos);
   stored.time = {0.0, 1.0, 2.0, 3.0};
   EXPECT_FALSE(data(report(result))["figures"]["heat"]["columns"].contains("order"));
@@ -375,7 +381,7 @@ TEST_F(HtmlReport, PutsPosesInTheOrderThatExplainsTheEffects) {
 /// Of so many solves in each of 8 cells, one does not converge.
 ReportedResult with_one_failure(ReportedResult result, std::uint64_t solves) {
   for (SolveCounts& cell : sensitivity_in(result.stored).solves) cell.by_status = {solves, 0, 0, 0, 0};
-  sensitivity_in(result.stored).solves[5].by_status = {solves - 1, 0, 1, 0, 0};
+  sensitivity_in(result.stored).solves(1, 1).by_status = {solves - 1, 0, 1, 0, 0};
   return result;
 }
 
@@ -427,10 +433,14 @@ TEST_F(HtmlReport, SaysWhichErrorsMakeTheMeanSquare) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
   stored.factor_sigma = {1.0, 1.0};
-  sensitivity_in(stored).global = {5.0, 4.0, 5.0, 4.0};
-  sensitivity_in(stored).background.assign(8, 0.0);
-  sensitivity_in(stored).std.assign(16, 0.0);
-  for (std::size_t cell = 0; cell < 16; ++cell) sensitivity_in(stored).mean[cell] = cell / 4 % 2 == 0 ? 0.3 : 4.0;
+  SensitivityResult& found = sensitivity_in(stored);
+  found.global = {{2, 2}, {5.0, 4.0, 5.0, 4.0}};
+  std::ranges::fill(found.background, 0.0);
+  std::ranges::fill(found.std, 0.0);
+  for (const std::size_t r : {0U, 1U}) {
+    std::ranges::fill(found.mean.row(r, 0), 0.3);
+    std::ranges::fill(found.mean.row(r, 1), 4.0);
+  }
   const std::string html = report(result);
   const std::string response = default_ranking(stored);
   EXPECT_NE(html.find("1 of 2 errors makes 99 % of what the study&#39;s sizes add to the mean square of " + response +
@@ -442,15 +452,14 @@ TEST_F(HtmlReport, SaysWhichErrorsMakeTheMeanSquare) {
 TEST_F(HtmlReport, CountsWhatTheSecondFidelityDidNotSolve) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
-  sensitivity_in(stored).fidelities = {"one", "two"};
   FidelityResult& compared = sensitivity_in(stored).fidelity.emplace();
+  compared.fidelities = {"one", "two"};
   for (auto* values :
        {&compared.global, &compared.discrepancy, &compared.relative_discrepancy, &compared.nonlinearity}) {
-    values->assign(4, 0.0);
+    *values = FidelityResult::Indices({2, 2});
   }
-  compared.linear = {1, 1};
-  compared.not_converged.assign(8, 0);
-  compared.not_converged[5] = 7;
+  compared.linear = {{2}, {1, 1}};
+  compared.not_converged = {{2, 4}, {0, 0, 0, 0, 0, 7, 0, 0}};
   for (SolveCounts& solves : sensitivity_in(stored).solves) solves.by_status = {100, 0, 0, 0, 0};
   const std::string page = body(report(result));
   EXPECT_NE(page.find("All 800 solves at fidelity &quot;one&quot; converged."), std::string::npos);
@@ -476,12 +485,12 @@ TEST_F(HtmlReport, TakesRoundingForNoDifference) {
 TEST_F(HtmlReport, OfTwoHasTheirRankingsBesideEachOther) {
   ReportedResult a = sensitivity();
   a.stored.factor_sigma = {1.0, 1.0};
-  sensitivity_in(a.stored).global_corrected = {1.0, 2.0, 1.0, 2.0};
+  sensitivity_in(a.stored).global_corrected = {{2, 2}, {1.0, 2.0, 1.0, 2.0}};
   ReportedResult b = a;
   EXPECT_NE(body(report(a, b)).find("Kendall&#39;s tau of the two rankings is 1, over 2 errors"), std::string::npos);
   a.stored.metric = "published";
   b.stored.metric = "platform";
-  sensitivity_in(b.stored).global_corrected = {2.0, 1.0, 2.0, 1.0};
+  sensitivity_in(b.stored).global_corrected = {{2, 2}, {2.0, 1.0, 2.0, 1.0}};
   const std::string page = body(report(a, b));
   check_page(report(a, b));
   EXPECT_NE(page.find("Kendall&#39;s tau of the two rankings is -1, over 2 errors"), std::string::npos);
@@ -502,7 +511,7 @@ TEST_F(HtmlReport, HoldsTheHistoryOfItsIndices) {
   EstimateCourse history{
       {10, 100}, std::vector<double>(8, 0.5), std::vector<double>(8, 0.25), std::vector<double>(8, 1.0)};
   sensitivity_in(result.stored).history = history;
-  sensitivity_in(result.stored).global_corrected.assign(4, 0.5);
+  std::ranges::fill(sensitivity_in(result.stored).global_corrected, 0.5);
   const std::string html = report(result);
   check_page(html);
   const Json page = data(html);
@@ -537,7 +546,7 @@ TEST_F(HtmlReport, WarnsOfWhatAReaderMustNotMiss) {
   ReportedResult result = sensitivity();
   result.stored.changed = true;
   result.stored.git_commit = "abc-dirty";
-  sensitivity_in(result.stored).count.assign(16, 1.0);
+  std::ranges::fill(sensitivity_in(result.stored).count, 1);
   const std::string page = body(report(result));
   for (const char* text : {"was changed since it was written", "(abc-dirty)", "did not converge",
                            "That is more than 1 %", "fewer than two samples", "close to singular"}) {
@@ -549,7 +558,7 @@ TEST_F(HtmlReport, WarnsOfIndicesThatHoldAtNoOtherSize) {
   ReportedResult result = sensitivity();
   constexpr const char* kWarning = "Some indices say something about the size of the errors in this study and no other";
   EXPECT_EQ(body(report(result)).find(kWarning), std::string::npos);
-  sensitivity_in(result.stored).index_change = {0.0, 0.0, -0.9, 0.0};
+  sensitivity_in(result.stored).index_change = {{2, 2}, {0.0, 0.0, -0.9, 0.0}};
   const std::string page = body(report(result));
   EXPECT_NE(page.find(kWarning), std::string::npos);
   EXPECT_NE(page.find("not for epsilon_1 (-90.0 %)"), std::string::npos);
@@ -561,7 +570,7 @@ TEST_F(HtmlReport, HasNoSectionOfWarningsWithoutAny) {
   stored.git_commit = "abc";
   stored.condition = {1.0, 1.0, 1.0, 1.0};
   SensitivityResult& found = sensitivity_in(stored);
-  found.global = {1.0, 1.0, 1.0, 1.0};
+  std::ranges::fill(found.global, 1.0);
   found.global_corrected = found.global_corrected_ci_low = found.global_corrected_ci_high = found.global;
   for (SolveCounts& solves : found.solves) solves.by_status = {100, 0, 0, 0, 0};
   stored.failures.clear();
@@ -573,13 +582,12 @@ TEST_F(HtmlReport, ThinsPosesOfALargeResultAndSaysSo) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
   SensitivityResult& found = sensitivity_in(stored);
-  found.poses = kPoses;
-  for (auto* values :
-       {&found.local, &found.local_ci_low, &found.local_ci_high, &found.count, &found.mean, &found.std}) {
-    values->assign(4 * kPoses, 1.0);
+  for (auto* values : {&found.local, &found.local_ci_low, &found.local_ci_high, &found.mean, &found.std}) {
+    *values = SensitivityResult::Cells<double>({2, 2, kPoses}, 1.0);
   }
-  found.background.assign(2 * kPoses, 0.0);
-  found.solves.assign(2 * kPoses, {});
+  found.count = SensitivityResult::Cells<std::uint64_t>({2, 2, kPoses}, 1);
+  found.background = Array<double, axis::Response, axis::Pose>({2, kPoses});
+  found.solves = Array<SolveCounts, axis::Factor, axis::Pose>({2, kPoses});
   stored.poses = PoseSet(3, std::vector<double>(3 * kPoses, 0.5));
   stored.condition.assign(kPoses, 1.0);
   const std::string html = report(result);
@@ -598,7 +606,7 @@ TEST_F(HtmlReport, OfTwoResultsShowsWhatDiffers) {
   const ReportedResult a = sensitivity();
   ReportedResult b = a;
   b.path = "b.h5";
-  sensitivity_in(b.stored).global_corrected[0] += 10.0;
+  sensitivity_in(b.stored).global_corrected(0, 0) += 10.0;
   b.stored.factors[1].name = "another";
   const std::string html = report(a, b);
   check_page(html);
@@ -608,8 +616,8 @@ TEST_F(HtmlReport, OfTwoResultsShowsWhatDiffers) {
   const double scale = a.stored.factor_sigma[0] / display(a.stored.responses[0]).si;
   const std::vector<std::string> responses = page["figures"]["side-by-side"]["choices"][0]["options"];
   const std::size_t r = responses[0] == a.stored.responses[0].name ? 0 : 1;
-  EXPECT_FLOAT_EQ(effects[r], static_cast<float>(sensitivity_of(a.stored).global_corrected[0] * scale));
-  EXPECT_FLOAT_EQ(effects[2 + r], static_cast<float>(sensitivity_of(b.stored).global_corrected[0] * scale));
+  EXPECT_FLOAT_EQ(effects[r], static_cast<float>(sensitivity_of(a.stored).global_corrected(0, 0) * scale));
+  EXPECT_FLOAT_EQ(effects[2 + r], static_cast<float>(sensitivity_of(b.stored).global_corrected(0, 0) * scale));
   EXPECT_NE(html.find("Only in B: another."), std::string::npos);
   for (const Json& layer : page["figures"]["heat"]["layers"]) EXPECT_TRUE(layer["signed"]);
 }
@@ -647,14 +655,15 @@ TEST_F(HtmlReport, OfTwoResultsSaysFirstHowTheStudiesDiffer) {
 
 TEST_F(HtmlReport, OfTwoResultsHasTheTotals) {
   ReportedResult a = sensitivity();
-  sensitivity_in(a.stored).global.assign(4, 1.0);  // every error is known to have an effect
-  sensitivity_in(a.stored).count.assign(16, 1000.0);
-  sensitivity_in(a.stored).background.assign(8, 0.0);
-  sensitivity_in(a.stored).mean.assign(16, 3e-3);
-  sensitivity_in(a.stored).std.assign(16, 4e-3);
+  SensitivityResult& found = sensitivity_in(a.stored);
+  std::ranges::fill(found.global, 1.0);  // every error is known to have an effect
+  std::ranges::fill(found.count, 1000);
+  std::ranges::fill(found.background, 0.0);
+  std::ranges::fill(found.mean, 3e-3);
+  std::ranges::fill(found.std, 4e-3);
   ReportedResult b = a;
-  for (auto* values : {&sensitivity_in(b.stored).mean, &sensitivity_in(b.stored).std}) values->assign(16, 0.0);
-  sensitivity_in(b.stored).mean.assign(16, 0.5e-3);
+  std::ranges::fill(sensitivity_in(b.stored).mean, 0.5e-3);
+  std::ranges::fill(sensitivity_in(b.stored).std, 0.0);
   const std::string rows = table(report(a, b), "totals");
   // Two errors: sqrt(2 (3^2 + 4^2 999 / 1000)) = 7.069 mm, and sqrt(2) 0.5 mm.
   EXPECT_NE(rows.find("<th scope=\"row\">linear_deformation</th><td class=\"n\" style=\"--room:1\">7.069</td>"),
@@ -668,7 +677,7 @@ TEST_F(HtmlReport, WarnsOfErrorsTooSmallToTell) {
   EXPECT_EQ(report(result).find("so small in this study"), std::string::npos);
   StoredResult& stored = result.stored;
   stored.factor_sigma[1] = 1e-12;
-  sensitivity_in(stored).global_corrected[1] = sensitivity_in(stored).global_corrected[3] = std::nan("");
+  for (const std::size_t r : {0U, 1U}) sensitivity_in(stored).global_corrected(r, 1) = std::nan("");
   EXPECT_NE(report(result).find("1 error is so small in this study that an effect cannot be told from the rounding of "
                                 "the solves: " +
                                 stored.factors[1].name + ". Study larger errors."),

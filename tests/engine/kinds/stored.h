@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -18,22 +19,21 @@ Found& found_in(StoredResult& result) {
   return std::any_cast<Found&>(result.found);
 }
 
-inline StoredSensitivity& sensitivity_in(StoredResult& result) { return found_in<StoredSensitivity>(result); }
+inline SensitivityResult& sensitivity_in(StoredResult& result) { return found_in<SensitivityResult>(result); }
 inline MonteCarloResult& monte_carlo_in(StoredResult& result) { return found_in<MonteCarloResult>(result); }
 inline CouplingResult& coupling_in(StoredResult& result) { return found_in<CouplingResult>(result); }
 
-/// Gives a sensitivity result these global indices [R x P], which hold at a tenth of the sizes, with intervals of no
-/// width. Precondition: it has its errors and responses.
+/// Gives a sensitivity result these global indices, row-major by response and error, which hold at a tenth of the
+/// sizes, with intervals of no width. Precondition: it has its errors and responses.
 inline void set_indices(StoredResult& result, const std::vector<double>& indices) {
-  StoredSensitivity& found = sensitivity_in(result);
-  found.responses = result.responses.size();
-  found.factors = result.factors.size();
+  SensitivityResult& found = sensitivity_in(result);
+  const std::array lengths{result.responses.size(), result.factors.size()};
   for (auto* values : {&found.global, &found.global_ci_low, &found.global_ci_high, &found.global_corrected,
                        &found.global_corrected_ci_low, &found.global_corrected_ci_high}) {
-    *values = indices;
+    *values = {lengths, indices};
   }
-  found.rounding.assign(found.responses, 0.0);
-  found.index_change.assign(indices.size(), 0.0);
+  found.rounding = Array<double, axis::Response>({lengths[0]});
+  found.index_change = SensitivityResult::Indices(lengths);
 }
 
 /// The tables that the result's kind has, its errors ranked by this response.

@@ -40,7 +40,7 @@ inline Study study_of(KindOfStudy kind, std::size_t samples) {
 /// All numbers of a result, bit by bit.
 using Bits = std::vector<std::uint64_t>;
 
-inline void append(Bits& bits, const std::vector<double>& values) {
+inline void append(Bits& bits, std::span<const double> values) {
   for (const double value : values) bits.push_back(std::bit_cast<std::uint64_t>(value));
 }
 
@@ -58,10 +58,12 @@ inline void append(Bits& bits, const std::vector<Failure>& failures) {
 
 inline Bits bits_of(const SensitivityResult& result) {
   Bits bits;
-  for (const auto* values : {&result.local, &result.local_ci_low, &result.global, &result.global_ci_high, &result.mean,
-                             &result.std, &result.count, &result.background}) {
-    append(bits, *values);
+  for (const auto values :
+       {result.local.all(), result.local_ci_low.all(), result.global.all(), result.global_ci_high.all(),
+        result.mean.all(), result.std.all(), result.background.all()}) {
+    append(bits, values);
   }
+  bits.insert(bits.end(), result.count.begin(), result.count.end());
   for (const SolveCounts& solves : result.solves) append(bits, solves);
   append(bits, result.failures);
   if (result.history) {

@@ -78,11 +78,11 @@ Tally sensitivity_tally(std::size_t poses, double relative_error) {
     const SensitivityResult found = run.sensitivity({1, {}, nullptr}).value();
     const ConvergenceResult& end = found.convergence.value();
     EXPECT_EQ(end.reached[0], 1);
-    EXPECT_LE(found.global_ci_high[0] - found.global[0], relative_error * found.global[0]);
-    EXPECT_LE(found.global[0] - found.global_ci_low[0], relative_error * found.global[0]);
-    tally.covered += inside(truth, found.global_ci_low[0], found.global_ci_high[0]) ? 1 : 0;
+    EXPECT_LE(found.global_ci_high(0, 0) - found.global(0, 0), relative_error * found.global(0, 0));
+    EXPECT_LE(found.global(0, 0) - found.global_ci_low(0, 0), relative_error * found.global(0, 0));
+    tally.covered += inside(truth, found.global_ci_low(0, 0), found.global_ci_high(0, 0)) ? 1 : 0;
     const double local = std::abs(weights(run.plan)[0]) * kFoldedStd;
-    tally.local_covered += inside(local, found.local_ci_low[0], found.local_ci_high[0]) ? 1 : 0;
+    tally.local_covered += inside(local, found.local_ci_low(0, 0, 0), found.local_ci_high(0, 0, 0)) ? 1 : 0;
     tally.samples += static_cast<double>(end.samples[0]);
   }
   return tally;

@@ -22,7 +22,7 @@ using test::AdaptiveRun;
 using Bits = std::vector<std::uint64_t>;
 using States = std::vector<Bytes>;
 
-void append(Bits& bits, const std::vector<double>& values) {
+void append(Bits& bits, std::span<const double> values) {
   for (const double value : values) bits.push_back(std::bit_cast<std::uint64_t>(value));
 }
 
@@ -39,9 +39,10 @@ Bits bits_of(const ConvergenceResult& found) {
 Bits bits_of(const SensitivityResult& found) {
   EXPECT_FALSE(found.history) << "what a history would say is in the convergence";
   Bits bits = bits_of(found.convergence.value());
-  for (const auto* values : {&found.local, &found.local_ci_high, &found.global, &found.global_ci_low, &found.count,
-                             &found.mean, &found.std}) {
-    append(bits, *values);
+  bits.insert(bits.end(), found.count.begin(), found.count.end());
+  for (const auto values : {found.local.all(), found.local_ci_high.all(), found.global.all(), found.global_ci_low.all(),
+                            found.mean.all(), found.std.all()}) {
+    append(bits, values);
   }
   return bits;
 }
@@ -79,20 +80,20 @@ TEST(AdaptiveSensitivity, EachErrorEndsAtItsOwnMilestone) {
   EXPECT_LT(end.samples[0], 100'000u);
   EXPECT_EQ(end.course.samples.back(), end.samples[0]);
   for (std::size_t cell = 0; cell < end.reached.size(); ++cell) {
-    const std::size_t factor = cell % 3;
+    const auto [r, factor] = found.global.positions(cell);
     EXPECT_EQ(end.reached[cell], 1);
-    EXPECT_EQ(found.count[cell * found.poses], static_cast<double>(end.samples[factor]));
-    const double half =
-        std::max(found.global[cell] - found.global_ci_low[cell], found.global_ci_high[cell] - found.global[cell]);
+    EXPECT_EQ(found.count(r, factor, 0), end.samples[factor]);
+    const double index = found.global(r, factor);
+    const double half = std::max(index - found.global_ci_low(r, factor), found.global_ci_high(r, factor) - index);
     for (std::size_t k = 0; k < milestones; ++k) {
       const double seen = end.course.half_width[cell * milestones + k];
       EXPECT_EQ(std::isnan(seen), end.course.samples[k] > end.samples[factor]);
       if (end.course.samples[k] != end.samples[factor]) continue;
       EXPECT_EQ(seen, half);
-      EXPECT_EQ(end.course.value[cell * milestones + k], found.global[cell]);
+      EXPECT_EQ(end.course.value[cell * milestones + k], index);
     }
     if (factor == 2) continue;
-    EXPECT_EQ(end.relative_half_width[cell], half / found.global[cell]);
+    EXPECT_EQ(end.relative_half_width[cell], half / index);
     EXPECT_LE(end.relative_half_width[cell], 0.015);
   }
   // At the milestone before, a response of the first error was not reached.
@@ -110,9 +111,9 @@ TEST(AdaptiveSensitivity, GivesTheBitsOfAsManyFixedSamples) {
   study.analysis.adaptive.reset();
   const SensitivityResult fixed = AdaptiveRun(study).sensitivity({}).value();
   EXPECT_FALSE(fixed.convergence);
-  EXPECT_EQ(fixed.global[0], found.global[0]);
-  EXPECT_EQ(fixed.local[0], found.local[0]);
-  EXPECT_EQ(fixed.global_ci_low[3], found.global_ci_low[3]);
+  EXPECT_EQ(fixed.global(0, 0), found.global(0, 0));
+  EXPECT_EQ(fixed.local(0, 0, 0), found.local(0, 0, 0));
+  EXPECT_EQ(fixed.global_ci_low(1, 0), found.global_ci_low(1, 0));
 }
 
 TEST(AdaptiveSensitivity, MaxEndsWhatDoesNotReachIt) {
@@ -122,7 +123,7 @@ TEST(AdaptiveSensitivity, MaxEndsWhatDoesNotReachIt) {
   EXPECT_EQ(end.course.samples, (std::vector<std::uint64_t>{1000, 2000, 3000, 4300}));
   EXPECT_EQ(end.samples, (std::vector<std::uint64_t>{4300, 4300, 1000}));
   EXPECT_EQ(end.reached, (std::vector<std::uint8_t>{0, 0, 1, 0, 0, 1}));
-  EXPECT_EQ(end.course.value[3], found.global[0]) << "the last milestone is max, with its unit that is not whole";
+  EXPECT_EQ(end.course.value[3], found.global(0, 0)) << "the last milestone is max, with its unit that is not whole";
   EXPECT_GT(end.relative_half_width[0], 0.001);
 }
 

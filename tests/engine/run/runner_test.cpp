@@ -71,13 +71,13 @@ TEST(RunSensitivity, FindsTheKnownIndices) {
   // Relative standard error of a standard deviation, sqrt((kurtosis - 1) / 4 n), with the folded normal's kurtosis
   // 3.87; 24 comparisons at alpha = 0.001 in all need 4.1 of them.
   const double tolerance = 4.1 * std::sqrt((3.87 - 1.0) / (4.0 * 20000.0));
-  for (std::size_t r = 0; r < result.responses; ++r) {
-    for (std::size_t p = 0; p < result.factors; ++p) {
-      for (std::size_t m = 0; m < result.poses; ++m) {
+  for (std::size_t r = 0; r < result.responses(); ++r) {
+    for (std::size_t p = 0; p < result.factors(); ++p) {
+      for (std::size_t m = 0; m < result.poses(); ++m) {
         const std::size_t factor = study.analysis.factors[p].value;
         const double truth = folded * std::abs(test::FakeModel::weight(test::FakeModel::kArm, r, factor,
                                                                        prepared.plan.poses()[PoseIndex(m)]));
-        EXPECT_NEAR(result.local[(r * result.factors + p) * result.poses + m], truth, tolerance * truth);
+        EXPECT_NEAR(result.local(r, p, m), truth, tolerance * truth);
       }
     }
   }
@@ -86,7 +86,7 @@ TEST(RunSensitivity, FindsTheKnownIndices) {
 TEST(RunSensitivity, CountsEverySample) {
   const SensitivityResult result = run(study_of(3, 2500), 2);
   EXPECT_EQ(result.total().total(), 3u * 3u * 2500u);
-  for (const double count : result.count) EXPECT_EQ(count, 2500.0);
+  for (const std::uint64_t count : result.count) EXPECT_EQ(count, 2500u);
 }
 
 TEST(RunSensitivity, FirstSamplesAreTheSameInALongerStudy) {

@@ -8,6 +8,7 @@
 #include "bench/published_study.h"
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/response_rounding.h"
 #include "tests/support/temp_folder.h"
@@ -29,7 +30,8 @@ std::string hash_of(const Study& study, const Model& model, const std::vector<st
   }
   SensitivityResult result =
       sensitivity_result(plan, std::move(cells), background_responses(plan, model), response_rounding(model), 0.95);
-  result.index_change.assign(result.responses * result.factors, 0.0);  // found by other solves, after these
+  result.index_change = SensitivityResult::Indices(result.global.lengths());  // found by other solves, after these
+  set_references(study, result);
   const test::TempFolder folder;
   write_result(folder / "r.h5", study, poses, std::move(result), {});
   return verify_result(folder / "r.h5").computed;

@@ -15,32 +15,37 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A response that is the norm of something linear: its mean square is b_m^2 + sum over p of (w_pm t_p)^2. Three errors
 /// at two poses; the third has no effect.
 struct LinearResponse {
-  static constexpr double kSamples = 100.0;
+  static constexpr std::uint64_t kSamples = 100;
+  using Cells = Array<double, axis::Factor, axis::Pose>;
 
   std::vector<double> sigma{1e-3, 2e-2, 1e-3};
   std::vector<double> background{3e-4, 4e-4};
-  std::vector<double> weight{0.5, 0.7, 0.02, 0.03, 0.0, 0.0};  ///< [P x M]
+  Cells weight{{3, 2}, {0.5, 0.7, 0.02, 0.03, 0.0, 0.0}};
   std::vector<double> index{0.4, 0.015, 1e-14};
-  std::vector<double> count = std::vector<double>(6, kSamples);
-  std::vector<double> mean;
-  std::vector<double> std;
+  std::vector<std::uint64_t> count = std::vector<std::uint64_t>(6, kSamples);
+  Cells mean{{3, 2}};
+  Cells std{{3, 2}};
 
   LinearResponse() {
-    for (std::size_t cell = 0; cell < weight.size(); ++cell) {
-      const double square = std::pow(background[cell % 2], 2) + std::pow(weight[cell] * sigma[cell / 2], 2);
-      mean.push_back(0.6 * std::sqrt(square));
-      std.push_back(0.8 * std::sqrt(square * kSamples / (kSamples - 1.0)));
+    for (std::size_t p = 0; p < 3; ++p) {
+      for (std::size_t m = 0; m < 2; ++m) {
+        const double square = std::pow(background[m], 2) + std::pow(weight(p, m) * sigma[p], 2);
+        mean(p, m) = 0.6 * std::sqrt(square);
+        std(p, m) = 0.8 * std::sqrt(square * kSamples / (kSamples - 1.0));
+      }
     }
   }
 
-  ResponseStudy study() const { return {index, sigma, count, mean, std, background}; }
+  ResponseStudy study() const {
+    return {index, sigma, {count, {3, 2}}, {mean.all(), {3, 2}}, {std.all(), {3, 2}}, background};
+  }
 
   /// The root mean square over both poses, by its definition.
   double rms(std::span<const double> tolerances) const {
     double sum = 0.0;
     for (std::size_t m = 0; m < 2; ++m) {
       sum += std::pow(background[m], 2);
-      for (std::size_t p = 0; p < 2; ++p) sum += std::pow(weight[2 * p + m] * tolerances[p], 2);
+      for (std::size_t p = 0; p < 2; ++p) sum += std::pow(weight(p, m) * tolerances[p], 2);
     }
     return std::sqrt(sum / 2.0);
   }
@@ -88,7 +93,7 @@ TEST(MeanSquareOfResponse, IsExactForALinearOne) {
 
 TEST(MeanSquareOfResponse, IsUnknownWithoutSamplesOrBackground) {
   LinearResponse few;
-  few.std[1] = kNaN;
+  few.std(0, 1) = kNaN;
   EXPECT_TRUE(std::isnan(mean_square(few.study()).effects[0]));
   EXPECT_FALSE(std::isnan(mean_square(few.study()).effects[1]));
   LinearResponse unsolved;
@@ -99,7 +104,7 @@ TEST(MeanSquareOfResponse, IsUnknownWithoutSamplesOrBackground) {
 
 TEST(MeanSquareOfResponse, CountsAnErrorThatOnlyTakesAwayAsNothing) {
   LinearResponse response;
-  for (std::size_t cell = 0; cell < 2; ++cell) response.mean[cell] = response.std[cell] = 0.0;
+  for (std::size_t m = 0; m < 2; ++m) response.mean(0, m) = response.std(0, m) = 0.0;
   EXPECT_EQ(mean_square(response.study()).effects[0], 0.0);
 }
 
@@ -121,12 +126,13 @@ TEST(MeanSquareShares, AreWhatEachErrorAddsOverWhatAllAdd) {
 // the mean square.
 TEST(MeanSquareShares, DoNotFollowTheIndex) {
   const std::vector<double> mean(4, 0.0);
-  const std::vector<double> count(4, 1e6);
+  const std::vector<std::uint64_t> count(4, 1'000'000);
   const std::vector<double> std{1.0, 3.0, 2.3, 2.3};
   const std::vector<double> index{2.0 + std::sqrt(2.0), 2.3};
   const std::vector<double> sigma{1.0, 1.0};
   const std::vector<double> background{0.0, 0.0};
-  const auto shares = mean_square_shares(mean_square({index, sigma, count, mean, std, background}), sigma);
+  const auto shares = mean_square_shares(
+      mean_square({index, sigma, {count, {2, 2}}, {mean, {2, 2}}, {std, {2, 2}}, background}), sigma);
   EXPECT_GT(index[0], index[1]);
   EXPECT_NEAR(shares[0], 5.0 / (5.0 + 2.3 * 2.3), 1e-6);
   EXPECT_LT(shares[0], shares[1]);

@@ -48,7 +48,7 @@ bool run_file(const std::string& path, const std::string& result_path) {
   if (!result) return false;
   poesy::write_result(result_path, study, poses, result->found, {});
   const auto& found = result->as<poesy::SensitivityResult>();
-  std::printf("%s: %zu errors at %zu poses\n", path.c_str(), found.factors, found.poses);
+  std::printf("%s: %zu errors at %zu poses\n", path.c_str(), found.factors(), found.poses());
   return some_index_is_positive(found);
 }
 

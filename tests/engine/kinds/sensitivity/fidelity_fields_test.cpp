@@ -26,13 +26,14 @@ class FidelityFile : public testing::Test {
     example_.study.mechanism.compared = 1;
     asked_of<SensitivityOptions>(example_.study.analysis).linearity = 0.02;
     FidelityResult& fidelity = result_.fidelity.emplace();
+    fidelity.fidelities = {"exact", "first-order"};
     fidelity.linearity = 0.02;
-    fidelity.global = {1.0, 2.0, 3.0, 4.0};
-    fidelity.discrepancy = {0.5, 0.25, -0.125, 0.0};
-    fidelity.relative_discrepancy = {0.25, 0.125, -0.0625, std::numeric_limits<double>::infinity()};
-    fidelity.nonlinearity = {0.5, 0.0625, 0.03125, 0.75};
-    fidelity.linear = {1, 0};
-    fidelity.not_converged = {0, 1, 2, 3, 4, 5, 6, 7};
+    fidelity.global = {{2, 2}, {1.0, 2.0, 3.0, 4.0}};
+    fidelity.discrepancy = {{2, 2}, {0.5, 0.25, -0.125, 0.0}};
+    fidelity.relative_discrepancy = {{2, 2}, {0.25, 0.125, -0.0625, std::numeric_limits<double>::infinity()}};
+    fidelity.nonlinearity = {{2, 2}, {0.5, 0.0625, 0.03125, 0.75}};
+    fidelity.linear = {{2}, {1, 0}};
+    fidelity.not_converged = {{2, 4}, {0, 1, 2, 3, 4, 5, 6, 7}};
     write_result(path_, example_.study, example_.poses, result_, example_.facts);
   }
 
@@ -54,7 +55,7 @@ TEST_F(FidelityFile, IsReadBackAsItWas) {
   EXPECT_EQ(found.nonlinearity, result_.fidelity->nonlinearity);
   EXPECT_EQ(found.linear, result_.fidelity->linear);
   EXPECT_EQ(found.not_converged, result_.fidelity->not_converged);
-  EXPECT_EQ(sensitivity_of(stored).fidelities, (std::vector<std::string>{"exact", "first-order"}));
+  EXPECT_EQ(found.fidelities, result_.fidelity->fidelities);
   EXPECT_EQ(sensitivity_of(stored).solves.size(), result_.solves.size());
   EXPECT_TRUE(verify_result(path_).matches());
 }
@@ -85,12 +86,13 @@ TEST_F(FidelityFile, IsExported) {
 
 TEST_F(FidelityFile, ConfirmationOfItsTolerancesIsAtTheFirstFidelity) {
   SensitivityResult solved = example_.sensitivity();
-  for (auto* values : {&solved.global, &solved.mean, &solved.std}) values->assign(values->size(), 1.0);
+  for (const auto values : {solved.global.all(), solved.mean.all(), solved.std.all()}) std::ranges::fill(values, 1.0);
+  set_references(example_.study, solved);
   solved.fidelity = result_.fidelity;
   write_result(path_, example_.study, example_.poses, solved, example_.facts);
   const StoredResult stored = read_result(path_);
   const ResponseStudy study = response_study(sensitivity_of(stored), stored.factor_sigma, 1);
-  ResponseTolerances found{1, tolerances(study, sensitivity_of(stored).tolerance_reference[1]), std::nullopt};
+  ResponseTolerances found{1, tolerances(study, stored_reference(stored, 1)), std::nullopt};
   found.limit =
       limit_tolerances(study, found.all.mean_square, stored.factor_sigma, 10.0, largest_tolerances(stored, catalog_));
   for (const std::string& path : write_confirmation(folder_.file("t"), stored, found, catalog_).paths) {

@@ -13,6 +13,7 @@ namespace poesy {
 namespace {
 
 using Model = test::TwoFidelitiesModel;
+using Verdicts = Array<std::uint8_t, axis::Factor>;
 
 /// Both fidelities on the same draws, every error with this standard deviation.
 FidelityResult compared(double sigma, std::size_t samples) {
@@ -44,18 +45,18 @@ TEST(FidelityOfAQuadraticModel, HasItsClosedForm) {
     const double weight = Model::kWeights[p];
     const double spread = std::sqrt(weight * weight + 2.0 * Model::kBend * Model::kBend * sigma * sigma);
     const double expected = std::hypot(Model::kBend * sigma, spread - weight) / spread;
-    EXPECT_NEAR(found.nonlinearity[p] / expected, 1.0, tolerance) << p;
+    EXPECT_NEAR(found.nonlinearity(0, p) / expected, 1.0, tolerance) << p;
     // The index itself hardly notices.
-    EXPECT_LT(std::abs(found.relative_discrepancy[p]), 0.1 * expected);
+    EXPECT_LT(std::abs(found.relative_discrepancy(0, p)), 0.1 * expected);
   }
-  EXPECT_TRUE(std::isnan(found.nonlinearity[2]));
+  EXPECT_TRUE(std::isnan(found.nonlinearity(0, 2)));
 }
 
 // Verdicts turn where bend sigma / weight is 1 %: at sigma = 0.04 for delta_1, at 0.02 for epsilon_1.
 TEST(FidelityOfAQuadraticModel, VerdictsTurnWithTheSize) {
-  EXPECT_EQ(compared(0.015, 20'000).linear, (std::vector<std::uint8_t>{1, 1, 1}));
-  EXPECT_EQ(compared(0.025, 20'000).linear, (std::vector<std::uint8_t>{1, 0, 1}));
-  EXPECT_EQ(compared(0.060, 20'000).linear, (std::vector<std::uint8_t>{0, 0, 1}));
+  EXPECT_EQ(compared(0.015, 20'000).linear, Verdicts({3}, {1, 1, 1}));
+  EXPECT_EQ(compared(0.025, 20'000).linear, Verdicts({3}, {1, 0, 1}));
+  EXPECT_EQ(compared(0.060, 20'000).linear, Verdicts({3}, {0, 0, 1}));
 }
 
 }  // namespace

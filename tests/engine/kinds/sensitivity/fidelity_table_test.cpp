@@ -19,13 +19,13 @@ StoredResult example() {
   result.factors = {{"q_1", "m"}, {"theta_1", "rad"}, {"b_1", "m"}, {"c_1", "m"}};
   result.factor_sigma = {1e-3, 1e-2, 1e-3, 1e-3};
   result.responses = {{"x", "m"}, {"y", "m"}};
-  sensitivity_in(result).fidelities = {"exact", "first-order"};
   set_indices(result, {1.0, 0.5, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0});
   FidelityResult& found = sensitivity_in(result).fidelity.emplace();
-  found.relative_discrepancy = {1e-4, 0.01, kNaN, kInfinity, 2e-5, -0.04, kNaN, kNaN};
-  found.nonlinearity = {5e-4, 0.07, kNaN, kInfinity, 6e-4, 0.03, kNaN, kNaN};
-  found.linear = {1, 0, 1, 0};
-  found.not_converged = {0, 2, 0, 1100};
+  found.fidelities = {"exact", "first-order"};
+  found.relative_discrepancy = {{2, 4}, {1e-4, 0.01, kNaN, kInfinity, 2e-5, -0.04, kNaN, kNaN}};
+  found.nonlinearity = {{2, 4}, {5e-4, 0.07, kNaN, kInfinity, 6e-4, 0.03, kNaN, kNaN}};
+  found.linear = {{4}, {1, 0, 1, 0}};
+  found.not_converged = {{4, 1}, {0, 2, 0, 1100}};
   return result;
 }
 

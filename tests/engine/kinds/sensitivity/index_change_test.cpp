@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "engine/kinds/sensitivity/tolerances.h"
@@ -14,10 +15,10 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Of delta_b, epsilon_a, delta_c, delta_a; the last has no index.
-StoredResult result(std::vector<double> changes) {
+StoredResult result(const std::vector<double>& changes) {
   StoredResult stored = ranked_result();
-  sensitivity_in(stored).index_change = std::move(changes);
-  sensitivity_in(stored).index_change.resize(12, kNaN);
+  std::ranges::fill(sensitivity_in(stored).index_change, kNaN);
+  std::ranges::copy(changes, sensitivity_in(stored).index_change.begin());
   return stored;
 }
 

@@ -68,7 +68,7 @@ double change_of(const CurveModel::Curve& curve, double rounding = 0.0, std::siz
   const Prepared prepared(study);
   const auto changes = index_changes(prepared.plan, CurveModel(curve, rounding), {});
   EXPECT_EQ(changes.value().size(), 1U);
-  return changes.value()[0];
+  return changes.value()(0, 0);
 }
 
 double linear(double error, SolveStatus&) { return 2.0 * error; }

@@ -74,7 +74,7 @@ CatalogEntry radius_entry(double own) {
   return entry;
 }
 
-std::vector<double> correlations(const CatalogEntry& entry) {
+Array<double, axis::RadiusMultiple, axis::Response> correlations(const CatalogEntry& entry) {
   Study study = study_of(&kSensitivityStudy, 10);
   study.mechanism.entry = &entry;
   study.analysis.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
@@ -84,16 +84,16 @@ std::vector<double> correlations(const CatalogEntry& entry) {
 // With own = 0.7 the effects are 1, 0.7, 0.98; at half 1, 0.35, 0.245; at twice 1, 1.4, 3.92. At half one of three
 // pairs changes its order, at twice two do.
 TEST(PointsRadius, IsComparedByTheOrderOfEffects) {
-  const std::vector<double> tau = correlations(radius_entry(0.7));
+  const auto tau = correlations(radius_entry(0.7));
   ASSERT_EQ(tau.size(), 4U);
-  EXPECT_DOUBLE_EQ(tau[0], 1.0 / 3.0);
-  EXPECT_DOUBLE_EQ(tau[2], -1.0 / 3.0);
+  EXPECT_DOUBLE_EQ(tau(0, 0), 1.0 / 3.0);
+  EXPECT_DOUBLE_EQ(tau(1, 0), -1.0 / 3.0);
 }
 
 TEST(PointsRadius, IsNothingToAResponseThatDoesNotDependOnIt) {
-  const std::vector<double> tau = correlations(radius_entry(0.7));
-  EXPECT_DOUBLE_EQ(tau[1], 1.0);
-  EXPECT_DOUBLE_EQ(tau[3], 1.0);
+  const auto tau = correlations(radius_entry(0.7));
+  EXPECT_DOUBLE_EQ(tau(0, 1), 1.0);
+  EXPECT_DOUBLE_EQ(tau(1, 1), 1.0);
 }
 
 // The run has its result by then, which must not be lost.
@@ -103,10 +103,10 @@ TEST(PointsRadius, IsNotKnownWhereTheMechanismRefusesThePoints) {
     if (radius_of(Points(points.begin(), points.end())) > 0.3) throw std::invalid_argument("too far apart");
     return std::make_unique<RadiusModel>(Points(points.begin(), points.end()), 0.7);
   };
-  const std::vector<double> tau = correlations(entry);
+  const auto tau = correlations(entry);
   ASSERT_EQ(tau.size(), 4U);
-  EXPECT_DOUBLE_EQ(tau[0], 1.0 / 3.0);
-  EXPECT_TRUE(std::isnan(tau[2]) && std::isnan(tau[3]));
+  EXPECT_DOUBLE_EQ(tau(0, 0), 1.0 / 3.0);
+  EXPECT_TRUE(std::isnan(tau(1, 0)) && std::isnan(tau(1, 1)));
 }
 
 TEST(PointsRadius, IsNothingToAMechanismWithoutPointsOrFirstOrder) {

@@ -22,24 +22,21 @@ inline StoredResult ranked_result() {
   result.factor_distribution.assign(4, "normal");
   result.responses = {{"x", "m"}, {"tilt", "rad"}, {"ratio", "1"}};
   result.headline = {0, 1, 2};
-  StoredSensitivity& found = sensitivity_in(result);
-  found.responses = 3;
-  found.factors = 4;
-  found.poses = 1;
-  found.global_corrected = {0.4, 0.1, 0.3, kNaN, 1e-13, 0.7, 0.0, kNaN, 1.0, 1.0, 1.0, kNaN};
-  found.global_corrected_ci_low = {0.3, 0.09, 0.2, kNaN, 0.0, 0.6, 0.0, kNaN, 1.0, 1.0, 1.0, kNaN};
-  found.global_corrected_ci_high = {0.5, 0.2, 0.35, kNaN, 1e-13, 0.8, 0.0, kNaN, 1.0, 1.0, 1.0, kNaN};
-  found.global = {0.6, 0.15, 0.8, kNaN, 1e-13, 0.9, 0.0, kNaN, 1.5, 1.5, 1.5, kNaN};
-  found.global_ci_low = {0.5, 0.14, 0.7, kNaN, 0.0, 0.8, 0.0, kNaN, 1.5, 1.5, 1.5, kNaN};
-  found.global_ci_high = {0.7, 0.25, 0.85, kNaN, 1e-13, 1.0, 0.0, kNaN, 1.5, 1.5, 1.5, kNaN};
-  found.rounding = {1e-15, 1e-15, 0.0};
-  found.index_change = {0.0, 0.0, 0.0, kNaN, 0.0, 0.0, 0.0, kNaN, 0.0, 0.0, 0.0, kNaN};
-  found.factor_limb = {1, 1, 2, 3};
-  found.mean_square_bound = {1.0, 1.0, 1.0};
-  found.solves.resize(4);
+  SensitivityResult& found = sensitivity_in(result);
+  found.global_corrected = {{3, 4}, {0.4, 0.1, 0.3, kNaN, 1e-13, 0.7, 0.0, kNaN, 1.0, 1.0, 1.0, kNaN}};
+  found.global_corrected_ci_low = {{3, 4}, {0.3, 0.09, 0.2, kNaN, 0.0, 0.6, 0.0, kNaN, 1.0, 1.0, 1.0, kNaN}};
+  found.global_corrected_ci_high = {{3, 4}, {0.5, 0.2, 0.35, kNaN, 1e-13, 0.8, 0.0, kNaN, 1.0, 1.0, 1.0, kNaN}};
+  found.global = {{3, 4}, {0.6, 0.15, 0.8, kNaN, 1e-13, 0.9, 0.0, kNaN, 1.5, 1.5, 1.5, kNaN}};
+  found.global_ci_low = {{3, 4}, {0.5, 0.14, 0.7, kNaN, 0.0, 0.8, 0.0, kNaN, 1.5, 1.5, 1.5, kNaN}};
+  found.global_ci_high = {{3, 4}, {0.7, 0.25, 0.85, kNaN, 1e-13, 1.0, 0.0, kNaN, 1.5, 1.5, 1.5, kNaN}};
+  found.rounding = {{3}, {1e-15, 1e-15, 0.0}};
+  found.index_change = {{3, 4}, {0.0, 0.0, 0.0, kNaN, 0.0, 0.0, 0.0, kNaN, 0.0, 0.0, 0.0, kNaN}};
+  found.limb = {{4}, {1, 1, 2, 3}};
+  found.mean_square_bound = {{3}, {1.0, 1.0, 1.0}};
+  found.solves = Array<SolveCounts, axis::Factor, axis::Pose>({4, 1});
   for (std::size_t p = 0; p < 4; ++p) {
-    found.solves[p].by_status[0] = 1000 - p;
-    found.solves[p].by_status[2] = p;
+    found.solves(p, 0).by_status[0] = 1000 - p;
+    found.solves(p, 0).by_status[2] = p;
   }
   return result;
 }

@@ -92,7 +92,7 @@ TEST(RankedTable, SaysHowOftenIntervalsOfFewSamplesHold) {
   };
   EXPECT_TRUE(note(50).starts_with("50 samples at each pose are few")) << note(50);
   EXPECT_EQ(note(200), "");
-  sensitivity_in(result).index_change[0] = -0.9;  // of the first response, by which the table ranks
+  sensitivity_in(result).index_change(0, 0) = -0.9;  // of the first response, by which the table ranks
   EXPECT_TRUE(note(200).starts_with("200 samples at each pose are few"));
   EXPECT_EQ(note(1000), "");
 }
@@ -121,17 +121,11 @@ TEST(RankedTable, PutsAnotherResponseFirst) {
 
 TEST(RankedTable, IsReadableAtEightyColumnsWithManyResponses) {
   StoredResult result = ranked_result();
-  SensitivityResult& found = sensitivity_in(result);
   for (std::size_t r = 3; r < 12; ++r) {
     result.headline.push_back(r);
     result.responses.push_back({"component_" + std::to_string(r), "m"});
-    for (auto* values : {&found.global, &found.global_corrected, &found.global_corrected_ci_low,
-                         &found.global_corrected_ci_high, &found.index_change}) {
-      values->insert(values->end(), 4, 0.125);
-    }
-    found.rounding.push_back(0.0);
   }
-  found.responses = 12;
+  set_indices(result, std::vector<double>(12 * 4, 0.125));
   const std::string text = text_of(result_tables(result, "x").front(), 80);
   std::size_t begin = 0;
   for (std::size_t end = text.find('\n'); end != std::string::npos; begin = end + 1, end = text.find('\n', begin)) {

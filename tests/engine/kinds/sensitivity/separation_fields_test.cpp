@@ -24,11 +24,14 @@ class SeparationFile : public testing::Test {
     SeparationResult& separation = result_.separation.emplace();
     for (auto* values : {&separation.drive, &separation.constraint, &separation.effect, &separation.residual,
                          &separation.removable_local}) {
-      for (std::size_t cell = 0; cell < 2 * test::Example::kPoses; ++cell) values->push_back(next += 0.125);
+      *values = SeparationResult::Cells({2, test::Example::kPoses});
+      for (double& value : *values) value = next += 0.125;
     }
-    separation.removable_local.back() = kNaN;
-    separation.drive_share = {0.25, 0.75};
-    separation.removable = {0.125, 0.5};
+    separation.measure = "how far the platform moves";
+    separation.removable_local(1, 3) = kNaN;
+    separation.drive_share = {{2}, {0.25, 0.75}};
+    separation.removable = {{2}, {0.125, 0.5}};
+    separation.published = {{2}, std::vector<std::string>{"non-compensable", "compensable"}};
     separation.removable_together = 0.375;
     write_result(path_, example_.study, example_.poses, result_, example_.facts);
   }
@@ -51,12 +54,12 @@ TEST_F(SeparationFile, IsReadBackAsItWas) {
   EXPECT_EQ(found.residual, result_.separation->residual);
   EXPECT_TRUE(std::equal(found.removable_local.begin(), found.removable_local.end() - 1,
                          result_.separation->removable_local.begin()));
-  EXPECT_TRUE(std::isnan(found.removable_local.back()));
+  EXPECT_TRUE(std::isnan(found.removable_local(1, 3)));
   EXPECT_EQ(found.drive_share, result_.separation->drive_share);
   EXPECT_EQ(found.removable, result_.separation->removable);
   EXPECT_EQ(found.removable_together, 0.375);
-  EXPECT_EQ(sensitivity_of(stored).separation_measure, "how far the platform moves");
-  EXPECT_EQ(sensitivity_of(stored).published_class, (std::vector<std::string>{"non-compensable", "compensable"}));
+  EXPECT_EQ(found.measure, "how far the platform moves");
+  EXPECT_EQ(found.published, result_.separation->published);
   EXPECT_TRUE(verify_result(path_).matches());
 }
 

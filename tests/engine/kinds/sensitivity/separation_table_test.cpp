@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "engine/kinds/sensitivity/result.h"
@@ -20,11 +21,11 @@ TEST(SeparationTable, IsInTheOrderOfTheRanking) {
   EXPECT_EQ(result_tables(result, "position").size(), 1U);
   SeparationResult& found = sensitivity_in(result).separation.emplace();
   const double none = std::numeric_limits<double>::quiet_NaN();
-  found.drive_share = {1.0, 0.25, none};
-  found.removable = {1.0, 0.0625, none};
+  found.drive_share = {{3}, {1.0, 0.25, none}};
+  found.removable = {{3}, {1.0, 0.0625, none}};
   found.removable_together = 0.4321;
-  sensitivity_in(result).separation_measure = "how far the platform moves";
-  sensitivity_in(result).published_class = {"compensable", "non-compensable", ""};
+  found.measure = "how far the platform moves";
+  found.published = {{3}, std::vector<std::string>{"compensable", "non-compensable", ""}};
   EXPECT_EQ(text_of(result_tables(result, "position").at(1), kUnlimitedWidth),
             "What calibration can remove of each error's effect, to first order, over the poses\n"
             "                                drive  removable by\n"
@@ -35,7 +36,7 @@ TEST(SeparationTable, IsInTheOrderOfTheRanking) {
             "   3  b_1      -                    -             -\n"
             "effect: how far the platform moves\n"
             "all errors together, at the size the study sets: 43.2 % of the effect is removable\n");
-  sensitivity_in(result).published_class = {"", "", ""};
+  std::ranges::fill(found.published, "");
   const std::string without_classes = text_of(result_tables(result, "position").at(1), kUnlimitedWidth);
   EXPECT_EQ(without_classes.find("published"), std::string::npos);
   EXPECT_NE(without_classes.find("   1  theta_1     25          6.25\n"), std::string::npos) << without_classes;

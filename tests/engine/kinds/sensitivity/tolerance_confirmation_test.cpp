@@ -64,7 +64,7 @@ TEST(ToleranceConfirmation, BackgroundActsAlone) {
   const Found found(study_with(2e-3));
   ASSERT_EQ(found.result.background.size(), 2 * kPoses);
   for (std::size_t m = 0; m < kPoses; ++m) {
-    EXPECT_DOUBLE_EQ(found.result.background[kResponse * kPoses + m], std::abs(found.weight(0, m)) * 2e-3);
+    EXPECT_DOUBLE_EQ(found.result.background(kResponse, m), std::abs(found.weight(0, m)) * 2e-3);
   }
 }
 

@@ -24,12 +24,13 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// The example's result with its indices replaced: [R x P].
+/// The example's result with its indices replaced, row-major by response and error.
 class ToleranceFiles : public testing::Test {
  protected:
   StoredResult written(const std::vector<double>& index) {
     SensitivityResult found = example_.sensitivity();
-    found.global = index;
+    found.global = {{2, 2}, index};
+    set_references(example_.study, found);
     write_result(path_, example_.study, example_.poses, found, example_.facts);
     return read_result(path_);
   }
@@ -52,9 +53,9 @@ class ToleranceFiles : public testing::Test {
 TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
   asked_of<SensitivityOptions>(example_.study.analysis).reference = ToleranceReference{FactorIndex(0), 3e-3};
   const StoredResult stored = written({1.0, 2.0, 3.0, 4.0});
-  EXPECT_EQ(sensitivity_of(stored).factor_limb, (std::vector<std::uint64_t>{1, 1}));
-  ASSERT_EQ(sensitivity_of(stored).tolerance_reference.size(), 2U);
-  for (const auto& reference : sensitivity_of(stored).tolerance_reference) {
+  for (const std::size_t p : {0U, 1U}) EXPECT_EQ(sensitivity_of(stored).limb(p), 1U);
+  for (const std::size_t r : {0U, 1U}) {
+    const auto reference = stored_reference(stored, r);
     ASSERT_TRUE(reference);
     EXPECT_EQ(reference->factor, 1U);  // delta_1 is the second that the study varies
     EXPECT_EQ(reference->tolerance, 3e-3);
@@ -63,9 +64,9 @@ TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
 
 TEST_F(ToleranceFiles, ReferenceIsTheSmallestEffectOrTheStudysOwn) {
   const StoredResult stored = written({1e-5, 2.0, 0.0, 0.0});  // times sigma: 2.9e-6 and 2e-3
-  EXPECT_EQ(sensitivity_of(stored).tolerance_reference[0]->factor, 0U);
-  EXPECT_EQ(sensitivity_of(stored).tolerance_reference[0]->tolerance, kDegree);
-  EXPECT_FALSE(sensitivity_of(stored).tolerance_reference[1]);
+  EXPECT_EQ(stored_reference(stored, 0)->factor, 0U);
+  EXPECT_EQ(stored_reference(stored, 0)->tolerance, kDegree);
+  EXPECT_FALSE(stored_reference(stored, 1));
 }
 
 TEST_F(ToleranceFiles, ReferenceWithoutEffectLeavesTolerancesUnknown) {

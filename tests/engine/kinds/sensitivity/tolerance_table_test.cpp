@@ -77,11 +77,11 @@ TEST(ToleranceTable, SaysByHowMuchALimitMayBeExceeded) {
   ResponseTolerances found = example();
   found.limit =
       LimitTolerances{.limit = 3e-4, .equal_effect = {1e-4, 2e-4, 3e-4, 4e-4}, .equal_tolerance = {1.0, 1.0, 1.0, 1.0}};
-  sensitivity_in(stored).mean_square_bound = {2.25, 1.0};
+  sensitivity_in(stored).mean_square_bound = {{2}, {2.25, 1.0}};
   const Table table = tolerance_table(stored, found);
   EXPECT_TRUE(says(table, "may come out up to 1.5 times as large, 0.45 mm"));
   EXPECT_TRUE(says(table, "give --limit \"0.2 mm\""));
-  sensitivity_in(stored).mean_square_bound = {1.0, 2.25};
+  sensitivity_in(stored).mean_square_bound = {{2}, {1.0, 2.25}};
   EXPECT_FALSE(says(tolerance_table(stored, found), "times as large"));
 }
 

@@ -22,7 +22,7 @@ StoredResult with_effects(const std::vector<double>& effects) {
   StoredResult result = ranked_result();
   result.factors[3].name = "delta_d";
   for (std::size_t p = 0; p < effects.size(); ++p) {
-    sensitivity_in(result).global_corrected[p] = effects[p] / result.factor_sigma[p];
+    sensitivity_in(result).global_corrected(0, p) = effects[p] / result.factor_sigma[p];
   }
   return result;
 }
