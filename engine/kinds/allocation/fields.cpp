@@ -14,9 +14,7 @@ namespace poesy {
 namespace {
 
 using Result = AllocationResult;
-using Decision = YieldVerdict::Decision;
 
-const Axes kByPart{"part"};
 const Axes kByStage{"stage"};
 constexpr const char* kPartUnit = "SI: part unit, see /allocation/unit";
 constexpr const char* kCostUnit = "cost, as the study states it";
@@ -35,37 +33,33 @@ const Group<Result> kAllocation{
      {"gap", &Result::gap},
      {"wanted_yield", &Result::wanted_yield},
      {"confidence", &Result::confidence}},
-    {{"response", &Result::responses}, {"pose", &Result::poses}},
-    {{"tolerance", &Result::tolerance, kByPart, kPartUnit, "T of each part: the drawing says +-T"},
-     {"sigma", &Result::sigma, kByPart, kPartUnit, "Standard deviation of the part's errors about their mean"},
-     {"sigmas", &Result::sigmas, kByPart, "1", "T = shift + sigmas x sigma"},
-     {"shift", &Result::shift, kByPart, kPartUnit, "By how much the mean is off, as often up as down"},
-     {"cost", &Result::cost, kByPart, kCostUnit, "Cost of the part; NaN for an aim without costs"},
-     {"share", &Result::share, kByPart, "1", "Share of the cost of all parts; NaN likewise"},
-     {"mean_square_share", &Result::mean_square_share, kByPart, "1",
+    {},
+    {{"tolerance", &Result::tolerance, kPartUnit, "T of each part: the drawing says +-T"},
+     {"sigma", &Result::sigma, kPartUnit, "Standard deviation of the part's errors about their mean"},
+     {"sigmas", &Result::sigmas, "1", "T = shift + sigmas x sigma"},
+     {"shift", &Result::shift, kPartUnit, "By how much the mean is off, as often up as down"},
+     {"cost", &Result::cost, kCostUnit, "Cost of the part; NaN for an aim without costs"},
+     {"share", &Result::share, "1", "Share of the cost of all parts; NaN likewise"},
+     {"mean_square_share", &Result::mean_square_share, "1",
       "Share of what all parts add to the mean square under the tightest limit"},
-     {"error_mean_square_share", &Result::error_mean_square_share, kByFactor, "1",
+     {"error_mean_square_share", &Result::error_mean_square_share, "1",
       "The same of each error, whose sum over a part is that of the part; NaN for an error of no part",
       Presence::where_computed},
-     {"bound", &Result::bound, kByPart, "1",
+     {"bound", &Result::bound, "1",
       "0: T is between its bounds; 1: at the lower one; 2: at the upper one; 3: there is no choice"},
-     {"chosen", &Result::chosen, kByPart, "1", "Process or grade of the part; empty where there is none"},
-     {"unit", &Result::part_unit, kByPart, "1", "SI unit of T"},
-     {"members", &Result::part_members, kByPart, "1", "Errors of the part, with blanks between"},
-     {"coarser_yield", &Result::coarser_yield, kByPart, "1",
+     {"chosen", &Result::chosen, "1", "Process or grade of the part; empty where there is none"},
+     {"unit", &Result::part_unit, "1", "SI unit of T"},
+     {"members", &Result::part_members, "1", "Errors of the part, with blanks between"},
+     {"coarser_yield", &Result::coarser_yield, "1",
       "Predicted share of the design's machines that are within all limits if this part alone gets a T 5 % larger, or "
       "the next larger one that can be had; NaN where nothing larger is allowed"},
-     {"stage_tolerance",
-      &Result::stage_tolerance,
-      {"stage", "part"},
-      kPartUnit,
-      "T of each part after each step on the way"},
-     {"multiplier", &Result::multiplier, kByResponsePose, kCostPerResponse,
+     {"stage_tolerance", &Result::stage_tolerance, kPartUnit, "T of each part after each step on the way"},
+     {"multiplier", &Result::multiplier, kCostPerResponse,
       "What one unit more of the limit at this pose alone would save; NaN for a response without a limit"},
-     {"limit_use", &Result::limit_use, kByResponsePose, "1",
+     {"limit_use", &Result::limit_use, "1",
       "Predicted root mean square over what the tightest limit allows it; NaN likewise"},
-     {"limit", &Result::limit, kByResponse, kResponseUnit, "Limit of the response; NaN for none"},
-     {"saving", &Result::saving, kByResponse, kCostUnit,
+     {"limit", &Result::limit, kResponseUnit, "Limit of the response; NaN for none"},
+     {"saving", &Result::saving, kCostUnit,
       "What a limit wider by one percent at all poses would save, to first order; NaN for a response without a "
       "limit"}}};
 
@@ -74,12 +68,8 @@ const Group<Result> kCurve{
     "Predicted cost over the yield that is asked for, and over a factor of all limits",
     {},
     {},
-    {{"yield_cost", &Result::curve_yield_cost, {"curve_yield"}, kCostUnit, "Predicted cost at this yield"},
-     {"factor_cost",
-      &Result::curve_factor_cost,
-      {"curve_factor"},
-      kCostUnit,
-      "Predicted cost with all limits times this factor"}}};
+    {{"yield_cost", &Result::curve_yield_cost, kCostUnit, "Predicted cost at this yield"},
+     {"factor_cost", &Result::curve_factor_cost, kCostUnit, "Predicted cost with all limits times this factor"}}};
 
 constexpr const char* kStages = "/allocation/stages";
 
@@ -91,52 +81,30 @@ const Fields<AllocationStage> kStageFields{
     {"machines", &AllocationStage::machines, kByStage, "1", "Machines tried at these tolerances; 0: none"},
     {"rejects", &AllocationStage::rejects, kByStage, "1", "Of them, machines that are not within all limits"}};
 
-/// The certificate as it is stored, with the machines of the design beside it.
-struct StoredCertificate {
-  std::uint64_t seed = 0;
-  std::uint64_t machines = 0;
-  std::uint64_t rejects = 0;
-  std::uint64_t unsolved = 0;
-  std::uint64_t most_rejects = 0;
-  double yield = 0.0;
-  double ci_low = 0.0;
-  double ci_high = 0.0;
-  double lower_bound = 0.0;
-  std::string decision = {};
-  std::uint64_t design_machines = 0;
-  std::uint64_t design_rejects = 0;
-  std::uint64_t design_most = 0;
-  double asked = 0.0;
-  double conf_level = 0.0;
-};
+constexpr const char* kCertificate = "/allocation/certificate";
 
-using Stored = StoredCertificate;
-
-const Group<Stored> kCertificate{
-    "/allocation/certificate",
+/// What the fresh machines show.
+const Group<YieldVerdict> kVerdict{
+    kCertificate,
     "What fresh machines show of the tolerances: their number is set beforehand, their seed serves nothing else, and "
     "they are looked at once. A machine that is not solved at a pose is rejected. asked: the yield; conf_level: of the "
     "bound and of the interval",
-    {{"asked", &Stored::asked}, {"conf_level", &Stored::conf_level}},
+    {{"asked", &YieldVerdict::asked}, {"conf_level", &YieldVerdict::conf_level}},
     {},
-    {{"seed", &Stored::seed, {}, "1", "Seed of the fresh machines"},
-     {"machines", &Stored::machines, {}, "1", "Fresh machines"},
-     {"rejects", &Stored::rejects, {}, "1", "Of them, machines that are not within all limits at all poses"},
-     {"unsolved", &Stored::unsolved, {}, "1", "Of the rejects, those that no solved pose rejects"},
-     {"most_rejects", &Stored::most_rejects, {}, "1", "The certificate holds with no more rejects than these"},
-     {"yield", &Stored::yield, {}, "1", "Share of the fresh machines that are no rejects"},
-     {"ci_low", &Stored::ci_low, {}, "1", "Lower end of its two-sided interval (Clopper and Pearson)"},
-     {"ci_high", &Stored::ci_high, {}, "1", "Upper end of its two-sided interval (Clopper and Pearson)"},
-     {"lower_bound", &Stored::lower_bound, {}, "1", "One-sided lower bound on the yield (Clopper and Pearson)"},
-     {"decision",
-      &Stored::decision,
-      {},
-      "1",
-      "kept: certified, the lower bound is at least the yield that is asked for; not_kept: the upper bound is below "
-      "it; undecided: neither"},
-     {"design_machines", &Stored::design_machines, {}, "1", "Machines with which the tolerances were found"},
-     {"design_rejects", &Stored::design_rejects, {}, "1", "Of them, rejects at these tolerances"},
-     {"design_most", &Stored::design_most, {}, "1", "With so many of them the certificate will probably hold"}}};
+    {{"machines", &YieldVerdict::machines, "1", "Fresh machines"},
+     {"rejects", &YieldVerdict::rejects, "1", "Of them, machines that are not within all limits at all poses"},
+     {"unsolved", &YieldVerdict::unsolved, "1", "Of the rejects, those that no solved pose rejects"},
+     {"yield", &YieldVerdict::value, "1", "Share of the fresh machines that are no rejects"},
+     {"ci_low", &YieldVerdict::ci_low, "1", "Lower end of its two-sided interval (Clopper and Pearson)"},
+     {"ci_high", &YieldVerdict::ci_high, "1", "Upper end of its two-sided interval (Clopper and Pearson)"}}};
+
+/// Which machines were drawn, and what was asked of them.
+const Fields<Result> kMachines{
+    {"seed", &Result::certificate_seed, "1", "Seed of the fresh machines"},
+    {"most_rejects", &Result::certificate_most, "1", "The certificate holds with no more rejects than these"},
+    {"design_machines", &Result::design_machines, "1", "Machines with which the tolerances were found"},
+    {"design_rejects", &Result::design_rejects, "1", "Of them, rejects at these tolerances"},
+    {"design_most", &Result::design_most, "1", "With so many of them the certificate will probably hold"}};
 
 constexpr const char* kCertificateStudy = "/allocation/certificate_study";
 
@@ -144,53 +112,43 @@ constexpr const char* kCertificateStudy = "/allocation/certificate_study";
 constexpr std::array<std::string_view, 4> kDecisions{"not_asked", "kept", "not_kept", "undecided"};
 constexpr std::array kAims{Aim::least_cost, Aim::equal_effect, Aim::equal_tolerance, Aim::common_factor};
 
-Stored stored(const Result& found) {
+std::string decision_of(const YieldVerdict& shown) {
+  return std::string(kDecisions[static_cast<std::size_t>(shown.decision)]);
+}
+
+/// One-sided lower bound on the yield.
+double lower_bound(const YieldVerdict& shown) {
+  return proportion_at_least(shown.machines - shown.rejects, shown.machines, shown.conf_level);
+}
+
+void write_certificate(ResultBuilder& result, const Result& found) {
   const YieldVerdict& shown = found.certificate;
-  return {.seed = found.certificate_seed,
-          .machines = shown.machines,
-          .rejects = shown.rejects,
-          .unsolved = shown.unsolved,
-          .most_rejects = found.certificate_most,
-          .yield = shown.value,
-          .ci_low = shown.ci_low,
-          .ci_high = shown.ci_high,
-          .lower_bound = proportion_at_least(shown.machines - shown.rejects, shown.machines, shown.conf_level),
-          .decision = std::string(kDecisions[static_cast<std::size_t>(shown.decision)]),
-          .design_machines = found.design_machines,
-          .design_rejects = found.design_rejects,
-          .design_most = found.design_most,
-          .asked = shown.asked,
-          .conf_level = shown.conf_level};
+  write_group(result, kVerdict, shown);
+  write_fields(result, kCertificate, kMachines, found);
+  const std::string group(kCertificate);
+  result.add_scalar(group + "/lower_bound", lower_bound(shown),
+                    {"1", "One-sided lower bound on the yield (Clopper and Pearson)"});
+  result.add_scalar(group + "/decision", decision_of(shown),
+                    {"1",
+                     "kept: certified, the lower bound is at least the yield that is asked for; not_kept: the upper "
+                     "bound is below it; undecided: neither"});
 }
 
 /// Throws h5::Error for counts that no machines give.
-YieldVerdict verdict_of(const Stored& certificate) {
-  const auto* const decision = std::ranges::find(kDecisions, certificate.decision);
-  if (decision == kDecisions.end()) {
-    throw h5::Error("/allocation/certificate has the unknown decision '" + certificate.decision + "'");
+void read_certificate(const h5::File& file, Result& found) {
+  YieldVerdict& shown = found.certificate;
+  read_group(file, kVerdict, shown);
+  read_fields(file, kCertificate, kMachines, found);
+  const std::string group(kCertificate);
+  check_shape(file, group + "/lower_bound", {});
+  const std::string word = read_shaped<std::string>(file, group + "/decision", {}).at(0);
+  const auto* const decision = std::ranges::find(kDecisions, word);
+  if (decision == kDecisions.end()) throw h5::Error(group + " has the unknown decision '" + word + "'");
+  shown.decision = static_cast<YieldVerdict::Decision>(decision - kDecisions.begin());
+  const bool level = shown.conf_level > 0.0 && shown.conf_level < 1.0;
+  if (!level || shown.rejects > shown.machines || shown.unsolved > shown.rejects) {
+    throw h5::Error(group + " has counts or a level that no certificate has");
   }
-  const bool level = certificate.conf_level > 0.0 && certificate.conf_level < 1.0;
-  if (!level || certificate.rejects > certificate.machines || certificate.unsolved > certificate.rejects) {
-    throw h5::Error("/allocation/certificate has counts or a level that no certificate has");
-  }
-  return {.decision = static_cast<Decision>(decision - kDecisions.begin()),
-          .asked = certificate.asked,
-          .conf_level = certificate.conf_level,
-          .value = certificate.yield,
-          .ci_low = certificate.ci_low,
-          .ci_high = certificate.ci_high,
-          .machines = certificate.machines,
-          .rejects = certificate.rejects,
-          .unsolved = certificate.unsolved};
-}
-
-void restore(const Stored& certificate, Result& found) {
-  found.certificate = verdict_of(certificate);
-  found.certificate_seed = certificate.seed;
-  found.certificate_most = certificate.most_rejects;
-  found.design_machines = certificate.design_machines;
-  found.design_rejects = certificate.design_rejects;
-  found.design_most = certificate.design_most;
 }
 
 /// What follows from the rest, for those who read the file without this program, and what is no number.
@@ -227,9 +185,9 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   write_columns(result, kStages, kStageFields, found.stages);
   result.show_axes(kStages, kByStage);
   write_group(result, kCurve, found);
-  write_group(result, kCertificate, stored(found));
+  write_certificate(result, found);
   result.add_scalar(kCertificateStudy, found.certificate_study, {"1", "The study that repeats the certificate"});
-  add_solver(result, kByPose, found.solves);
+  add_solver(result, found.solves);
   add_failures(result, found.failures, {std::string(kAllFactors)}, found.total().not_converged());
 }
 
@@ -256,12 +214,10 @@ void read(const h5::File& file, StoredResult& result) {
   const auto names = file.read<std::string>("/stage");
   for (std::size_t k = 0; k < names.size(); ++k) found.stages[k].name = names[k];
   read_group(file, kCurve, found);
-  Stored certificate;
-  read_group(file, kCertificate, certificate);
-  restore(certificate, found);
+  read_certificate(file, found);
   found.certificate_study = read_shaped<std::string>(file, kCertificateStudy, {}).at(0);
   check(found);
-  found.solves = read_solver(file, kByPose);
+  found.solves = read_solver<decltype(found.solves)>(file);
   found.certificate.solves = found.total();
   // The certificate's samples have other addresses than the study's: the study that repeats it can replay them.
   result.varied = {std::string(kAllFactors)};
@@ -279,7 +235,7 @@ const FieldRow<Result>& row(std::string_view name) {
 /// Units of the parts, as of things with names.
 std::vector<NamedUnit> named_parts(const Result& found) {
   std::vector<NamedUnit> parts;
-  for (std::size_t n = 0; n < found.parts(); ++n) parts.push_back({found.part_names[n], found.part_unit[n]});
+  for (std::size_t n = 0; n < found.parts(); ++n) parts.push_back({found.part_names[n], found.part_unit(n)});
   return parts;
 }
 
@@ -289,15 +245,15 @@ CsvTable part_table(const Result& found) {
                  {"part", [&found](std::size_t n) { return found.part_names[n]; }},
                  found.parts(),
                  {},
-                 {"unit", [&found](std::size_t n) { return found.part_unit[n]; }}};
-  table.rest = {{"chosen", [&found](std::size_t n) { return found.chosen[n].empty() ? "none" : found.chosen[n]; }},
-                {"errors", [&found](std::size_t n) { return found.part_members[n]; }}};
+                 {"unit", [&found](std::size_t n) { return found.part_unit(n); }}};
+  table.rest = {{"chosen", [&found](std::size_t n) { return found.chosen(n).empty() ? "none" : found.chosen(n); }},
+                {"errors", [&found](std::size_t n) { return found.part_members(n); }}};
   const std::vector<NamedUnit> parts = named_parts(found);
   for (const char* name : {"tolerance", "sigma", "shift"}) {
     const FieldRow<Result>& field = row(name);
     table.columns.push_back(field_column(with_unit(name, si_units(parts)), field, found));
     table.columns.push_back({with_unit(name, display_units(parts)), [&found, &field](std::size_t n) {
-                               const Unit& unit = display_unit(dimension_of(found.part_unit[n]));
+                               const Unit& unit = display_unit(dimension_of(found.part_unit(n)));
                                return to_double(number_at(field, found, n)) / unit.si;
                              }});
   }
@@ -320,19 +276,19 @@ CsvTable limit_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   CsvTable table{"allocation_limits",
                  {"response", [&result](std::size_t r) { return result.responses[r].name; }},
-                 found.responses,
+                 found.limit.size(),
                  {},
                  {"unit", [&result](std::size_t r) { return result.responses[r].unit; }},
-                 [&found](std::size_t r) { return !std::isnan(found.limit[r]); }};
+                 [&found](std::size_t r) { return !std::isnan(found.limit(r)); }};
   table.columns.push_back(field_column("limit", row("limit"), found));
   table.columns.push_back(field_column("saving", row("saving"), found));
-  const auto add_largest = [&](const std::string& name, const std::vector<double>& values) {
-    table.columns.push_back({"largest_" + name, [&found, &values](std::size_t r) {
-                               const std::optional<std::size_t> pose = worst_pose(found, values, r);
-                               return pose ? values[r * found.poses + *pose] : kNaN;
+  const auto add_largest = [&](const std::string& name, const Result::AtPoses& values) {
+    table.columns.push_back({"largest_" + name, [&values](std::size_t r) {
+                               const std::optional<std::size_t> pose = worst_pose(values.row(r));
+                               return pose ? values(r, *pose) : kNaN;
                              }});
-    table.columns.push_back({"largest_" + name + "_pose", [&found, &values](std::size_t r) {
-                               const std::optional<std::size_t> pose = worst_pose(found, values, r);
+    table.columns.push_back({"largest_" + name + "_pose", [&values](std::size_t r) {
+                               const std::optional<std::size_t> pose = worst_pose(values.row(r));
                                return pose ? static_cast<std::int64_t>(*pose) : -1;
                              }});
   };
@@ -347,9 +303,9 @@ CsvTable pose_use_table(const StoredResult& result) {
   CsvTable table = lines_of_poses(result, "allocation_poses");
   for (const std::size_t r : limited_responses(found)) {
     const NamedUnit& response = result.responses[r];
-    table.columns.push_back(field_column("limit_use_" + response.name, row("limit_use"), found, r * found.poses));
-    table.columns.push_back(field_column(with_unit("multiplier_" + response.name, "cost/" + response.unit),
-                                         row("multiplier"), found, r * found.poses));
+    table.columns.push_back(list_column("limit_use_" + response.name, found.limit_use.row(r)));
+    table.columns.push_back(
+        list_column(with_unit("multiplier_" + response.name, "cost/" + response.unit), found.multiplier.row(r)));
   }
   return table;
 }
@@ -367,8 +323,8 @@ CsvTable stage_table(const Result& found) {
 /// Both curves, one below the other.
 CsvTable curve_table(const Result& found) {
   const std::size_t yields = found.curve_yield.size();
-  const auto of = [yields](const std::vector<double>& by_yield, const std::vector<double>& by_factor) {
-    return [yields, &by_yield, &by_factor](std::size_t line) {
+  const auto of = [yields](std::span<const double> by_yield, std::span<const double> by_factor) {
+    return [yields, by_yield, by_factor](std::size_t line) {
       return line < yields ? by_yield[line] : by_factor[line - yields];
     };
   };
@@ -381,15 +337,25 @@ CsvTable curve_table(const Result& found) {
 
 /// What the fresh machines show, on one line.
 CsvTable certificate_table(const Result& found) {
-  const Stored certificate = stored(found);
-  CsvTable table{
-      "allocation_certificate", {"decision", [text = certificate.decision](std::size_t) { return text; }}, 1};
-  table.columns.push_back({"asked", [&found](std::size_t) { return found.certificate.asked; }});
-  table.columns.push_back({"conf_level", [&found](std::size_t) { return found.certificate.conf_level; }});
-  for (const FieldRow<Stored>& field : kCertificate.fields) {
-    if (field.name == "decision") continue;
-    table.columns.push_back({field.name, [value = number_at(field, certificate, 0)](std::size_t) { return value; }});
-  }
+  const YieldVerdict& shown = found.certificate;
+  CsvTable table{"allocation_certificate", {"decision", [&shown](std::size_t) { return decision_of(shown); }}, 1};
+  const auto add = [&](const char* name, Number number) {
+    table.columns.push_back({name, [number](std::size_t) { return number; }});
+  };
+  add("asked", shown.asked);
+  add("conf_level", shown.conf_level);
+  add("seed", found.certificate_seed);
+  add("machines", shown.machines);
+  add("rejects", shown.rejects);
+  add("unsolved", shown.unsolved);
+  add("most_rejects", found.certificate_most);
+  add("yield", shown.value);
+  add("ci_low", shown.ci_low);
+  add("ci_high", shown.ci_high);
+  add("lower_bound", lower_bound(shown));
+  add("design_machines", found.design_machines);
+  add("design_rejects", found.design_rejects);
+  add("design_most", found.design_most);
   return table;
 }
 

@@ -19,7 +19,8 @@ namespace {
 using Result = AllocationResult;
 
 SolveTally tally(const StoredResult& result) {
-  return {"", {"all errors"}, result.poses.size(), allocation_of(result).solves};
+  const auto& solves = allocation_of(result).solves;
+  return {"", {"all errors"}, result.poses.size(), {solves.begin(), solves.end()}};
 }
 
 /// The use of each limit at each pose and its multiplier there.
@@ -46,9 +47,9 @@ void add_certificate(const StoredResult& result, std::span<const Table> tables, 
 std::pair<std::vector<std::string>, std::vector<double>> shown_tolerances(const Result& found) {
   std::pair<std::vector<std::string>, std::vector<double>> shown;
   for (std::size_t n = 0; n < found.parts(); ++n) {
-    const Unit& unit = display_unit(dimension_of(found.part_unit[n]));
+    const Unit& unit = display_unit(dimension_of(found.part_unit(n)));
     shown.first.emplace_back(unit.name);
-    shown.second.push_back(found.tolerance[n] / unit.si);
+    shown.second.push_back(found.tolerance(n) / unit.si);
   }
   return shown;
 }
@@ -69,14 +70,14 @@ void add_drawing(const StoredResult& result, std::span<const Table> tables, Page
   Section& section = page.add_section("drawing", "What goes on the drawing");
   section.table(tables, "drawing");
   for (std::size_t n = 0; n < found.parts(); ++n) {
-    page.figures.about.emplace(found.part_names[n], found.part_members[n]);
+    page.figures.about.emplace(found.part_names[n], found.part_members(n));
   }
   add_figure(page, section, "parts", part_bars(found, page.figures.pool),
              has_costs(found) ? "What the tolerance of each part costs." : "Which parts use the tightest limit.");
 }
 
 /// A panel of costs over x.
-Lines cost_lines(const std::string& key, Coordinate x, const std::vector<double>& costs, Mark mark, ArrayPool& pool) {
+Lines cost_lines(const std::string& key, Coordinate x, std::span<const double> costs, Mark mark, ArrayPool& pool) {
   return {.x = std::move(x),
           .panels = {{"predicted cost", "", {{"cost", pool.add(key, costs)}}}},
           .marks = {std::move(mark)}};
@@ -104,14 +105,10 @@ void add_costs(const StoredResult& result, std::span<const Table> tables, Page& 
   }
 }
 
-/// Numbers [R x M] of the responses shown, one row each.
-std::vector<double> rows_of(const Result& found, const std::vector<double>& values,
-                            const std::vector<std::size_t>& responses) {
+/// Numbers of these responses at the poses, one row behind the other.
+std::vector<double> rows_of(const Result::AtPoses& values, std::span<const std::size_t> responses) {
   std::vector<double> list;
-  for (const std::size_t r : responses) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(r * found.poses);
-    list.insert(list.end(), begin, begin + static_cast<std::ptrdiff_t>(found.poses));
-  }
+  for (const std::size_t r : responses) std::ranges::copy(values.row(r), std::back_inserter(list));
   return list;
 }
 
@@ -126,14 +123,16 @@ void add_where(const StoredResult& result, Page& page) {
       "The use of a limit: the predicted root mean square over what the tightest limit allows it. Where it is 100 %, "
       "the pose sets the tolerances.");
   figures.add_note(section);
-  const auto add = [&](const std::string& name, const std::vector<double>& values, double unit) {
-    return figures.add(name, rows_of(found, values, figures.responses()), unit);
+  const auto add = [&](const std::string& name, const Result::AtPoses& values, double unit) {
+    return figures.add(name, rows_of(values, figures.responses()), unit);
   };
   std::vector<HeatLayer> layers{{"use of the limit", "%", add("limit_use", found.limit_use, 0.01)}};
   std::vector<Field> fields{{"use of the limit", "%", layers.front().value, names}};
   if (has_costs(found)) {
-    std::vector<double> price = found.multiplier;  // per unit that people read
-    for (std::size_t at = 0; at < price.size(); ++at) price[at] *= display(result.responses[at / found.poses]).si;
+    Result::AtPoses price = found.multiplier;  // per unit that people read
+    for (std::size_t r = 0; r < result.responses.size(); ++r) {
+      for (double& one : price.row(r)) one *= display(result.responses[r]).si;
+    }
     layers.push_back({"saved if the limit is one unit wider", "", add("price", price, 1.0)});
     fields.push_back({layers.back().label, "", layers.back().value, names});
   }
@@ -145,7 +144,7 @@ void add_where(const StoredResult& result, Page& page) {
 }
 
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  if (allocation_of(result).poses == 0 || allocation_of(result).parts() == 0) return;
+  if (allocation_of(result).poses() == 0 || allocation_of(result).parts() == 0) return;
   add_certificate(result, tables, page);
   add_drawing(result, tables, page);
   add_costs(result, tables, page);
@@ -170,11 +169,11 @@ std::string sentence(std::string text) {
 /// Which parts cost most, or use most of the limits.
 std::string largest_parts(const Result& found) {
   constexpr std::size_t kMost = 3;
-  const std::vector<double>& shares = has_costs(found) ? found.share : found.mean_square_share;
+  const Result::Parts<double>& shares = shown_shares(found);
   const std::vector<std::size_t> order = ordered_parts(found, RowOrder::effect);
   std::string text;
   for (const std::size_t n : std::span(order).first(std::min(kMost, order.size()))) {
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", found.part_names[n], percent_text(shares[n]));
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", found.part_names[n], percent_text(shares(n)));
   }
   return text;
 }
@@ -184,20 +183,20 @@ std::string tightest_text(const StoredResult& result) {
   const Result& found = allocation_of(result);
   std::optional<std::size_t> most;
   for (const std::size_t r : limited_responses(found)) {
-    if (!std::isnan(found.saving[r]) && (!most || found.saving[r] > found.saving[*most])) most = r;
+    if (!std::isnan(found.saving(r)) && (!most || found.saving(r) > found.saving(*most))) most = r;
   }
   if (!most) return {};
   const NamedUnit& response = result.responses[*most];
-  const std::optional<std::size_t> pose = worst_pose(found, found.limit_use, *most);
+  const std::optional<std::size_t> pose = worst_pose(found.limit_use.row(*most));
   const std::string where = pose ? fmt::format(", used most at {}", place_text(result, *pose)) : std::string();
   return fmt::format("The limit of {} on {}{}. 1 % wider it saves {} of {}.",
-                     response_text(response, found.limit[*most]), response.name, where,
-                     number_text(found.saving[*most], 3), number_text(found.total_cost));
+                     response_text(response, found.limit(*most)), response.name, where,
+                     number_text(found.saving(*most), 3), number_text(found.total_cost));
 }
 
 Answer answer(const StoredResult& result) {
   const Result& found = allocation_of(result);
-  if (found.poses == 0 || found.parts() == 0) return {};
+  if (found.poses() == 0 || found.parts() == 0) return {};
   const YieldVerdict& shown = found.certificate;
   const std::string parts = counted(found.parts(), "part", "parts");
   const std::string largest = largest_parts(found);
@@ -228,16 +227,20 @@ StudyWords words(const StoredResult& result) {
 /// Of each part its share of the mean square, and at each pose the use of the limit that is used most.
 ErrorShares error_shares(const StoredResult& result) {
   const Result& found = allocation_of(result);
-  if (found.parts() == 0 || found.poses == 0) return {};
-  const bool by_error = !found.error_mean_square_share.empty();
+  if (found.parts() == 0 || found.poses() == 0) return {};
   ErrorShares shares{.what = "share of the mean square under the tightest limit",
-                     .values = by_error ? found.error_mean_square_share
-                                        : divided_shares(result, found.part_members, found.mean_square_share),
-                     .joined = by_error ? "" : "part",
+                     .values = {found.error_mean_square_share.begin(), found.error_mean_square_share.end()},
                      .pose_what = "the use of the limits",
-                     .at_poses = std::vector<double>(found.poses, kNaN)};
-  for (std::size_t at = 0; at < found.limit_use.size(); ++at) {
-    shares.at_poses[at % found.poses] = std::fmax(shares.at_poses[at % found.poses], found.limit_use[at]);
+                     .at_poses = std::vector<double>(found.poses(), kNaN)};
+  if (shares.values.empty()) {
+    shares.values =
+        divided_shares(result, {found.part_members.begin(), found.part_members.end()}, found.mean_square_share);
+    shares.joined = "part";
+  }
+  for (std::size_t r = 0; r < found.limit.size(); ++r) {
+    for (std::size_t m = 0; m < found.poses(); ++m) {
+      shares.at_poses[m] = std::fmax(shares.at_poses[m], found.limit_use(r, m));
+    }
   }
   return shares;
 }
@@ -247,7 +250,7 @@ Comparable comparable(const StoredResult& result, const StoredResult& other) {
   const Result& found = allocation_of(result);
   Comparable all{"tolerances", {"all limits"}, "part", found.part_names};
   if (has_costs(found) && has_costs(allocation_of(other))) {
-    all.quantities.push_back({"cost", "cost", {{""}}, found.cost});
+    all.quantities.push_back({"cost", "cost", {{""}}, {found.cost.begin(), found.cost.end()}});
     all.total_label = "Cost of all parts";
     all.totals = {found.total_cost};
   }

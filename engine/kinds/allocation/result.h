@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/array.h"
 #include "engine/base/index.h"
 #include "engine/kinds/allocation/it_grade.h"
 #include "engine/optimise/cost_law.h"
@@ -103,34 +104,55 @@ struct AllocationStage {
   std::uint64_t rejects = 0;   ///< of them
 };
 
-/// What a study of tolerances found: N parts, R responses, M poses. SI; NaN where undefined. A response without a limit
+/// Axes of what a study of tolerances finds.
+namespace axis {
+/// @{
+struct Part {
+  static constexpr std::string_view kName = "part";
+};
+struct Stage {
+  static constexpr std::string_view kName = "stage";
+};
+struct CurveYield {
+  static constexpr std::string_view kName = "curve_yield";
+};
+struct CurveFactor {
+  static constexpr std::string_view kName = "curve_factor";
+};
+/// @}
+}  // namespace axis
+
+/// What a study of tolerances found of the parts of its drawing; SI; NaN where undefined. A response without a limit
 /// has no multiplier, no use and no saving: NaN.
 struct AllocationResult {
-  std::size_t responses = 0;  ///< R
-  std::size_t poses = 0;      ///< M
+  /// One of each part.
+  template <class T>
+  using Parts = Array<T, axis::Part>;
+  /// A number of each response at each pose.
+  using AtPoses = Array<double, axis::Response, axis::Pose>;
 
-  std::vector<std::string> part_names;    ///< [N]
-  std::vector<std::string> part_members;  ///< [N] names of a part's errors, with blanks between
-  std::vector<std::string> part_unit;     ///< [N] "m" or "rad"
-  std::vector<double> tolerance;          ///< [N] T, the drawing says +-T
-  std::vector<double> sigma;              ///< [N] standard deviation about the mean
-  std::vector<double> sigmas;             ///< [N] T = shift + sigmas x sigma
-  std::vector<double> shift;              ///< [N] by how much the mean is off, as often up as down
-  std::vector<double> cost;               ///< [N] of each part; NaN for an aim without costs
-  std::vector<double> share;              ///< [N] of the cost of all
-  std::vector<double> mean_square_share;  ///< [N] of what all parts add to the mean square under the tightest limit
-  /// [P] The same of each error, whose sum over a part is that of the part; NaN for an error of no part.
-  std::vector<double> error_mean_square_share;
-  std::vector<std::uint8_t> bound;  ///< [N] AtBound: 0 between its bounds, 1 at the lower, 2 at the upper, 3 no choice
-  std::vector<std::string> chosen;  ///< [N] name of the process or grade; empty where there is none
-  /// [N] predicted share of the design's machines that are good if this part alone is made 5 % coarser, or the next
-  /// coarser value that can be had; NaN where nothing coarser is allowed.
-  std::vector<double> coarser_yield;
+  std::vector<std::string> part_names;  ///< of the parts
+  Parts<std::string> part_members;      ///< names of a part's errors, with blanks between
+  Parts<std::string> part_unit;         ///< "m" or "rad"
+  Parts<double> tolerance;              ///< T, the drawing says +-T
+  Parts<double> sigma;                  ///< standard deviation about the mean
+  Parts<double> sigmas;                 ///< T = shift + sigmas x sigma
+  Parts<double> shift;                  ///< by how much the mean is off, as often up as down
+  Parts<double> cost;                   ///< NaN for an aim without costs
+  Parts<double> share;                  ///< of the cost of all
+  Parts<double> mean_square_share;      ///< of what all parts add to the mean square under the tightest limit
+  /// The same of each error, whose sum over a part is that of the part; NaN for an error of no part.
+  Array<double, axis::Factor> error_mean_square_share;
+  Parts<std::uint8_t> bound;  ///< AtBound: 0 between its bounds, 1 at the lower, 2 at the upper, 3 no choice
+  Parts<std::string> chosen;  ///< name of the process or grade; empty where there is none
+  /// Predicted share of the design's machines that are good if this part alone is made 5 % coarser, or the next coarser
+  /// value that can be had; NaN where nothing coarser is allowed.
+  Parts<double> coarser_yield;
 
-  std::vector<double> multiplier;  ///< [R x M] what one unit more of the limit at this pose alone would save
-  std::vector<double> limit_use;   ///< [R x M] predicted root mean square over what the tightest limit allows it
-  std::vector<double> limit;       ///< [R] SI
-  std::vector<double> saving;      ///< [R] what a limit wider by one percent at all poses would save, to first order
+  AtPoses multiplier;                    ///< what one unit more of the limit at this pose alone would save
+  AtPoses limit_use;                     ///< predicted root mean square over what the tightest limit allows it
+  Array<double, axis::Response> limit;   ///< SI
+  Array<double, axis::Response> saving;  ///< what a limit wider by one percent at all poses would save, to first order
 
   Aim aim = Aim::least_cost;  ///< that was asked for
   double total_cost = 0.0;    ///< of all parts; NaN for an aim without costs
@@ -139,28 +161,29 @@ struct AllocationResult {
   double wanted_yield = 0.0;  ///< that was asked for
   double confidence = 0.95;   ///< that was asked for
 
-  std::vector<AllocationStage> stages;  ///< in their order
-  std::vector<double> stage_tolerance;  ///< [stages x N] T at the end of each
-  std::uint64_t design_machines = 0;    ///< with which the tolerances were found
-  std::uint64_t design_rejects = 0;     ///< of them
-  std::uint64_t design_most = 0;        ///< with so many of them the certificate will probably hold
+  std::vector<AllocationStage> stages;                     ///< in their order
+  Array<double, axis::Stage, axis::Part> stage_tolerance;  ///< T at the end of each
+  std::uint64_t design_machines = 0;                       ///< with which the tolerances were found
+  std::uint64_t design_rejects = 0;                        ///< of them
+  std::uint64_t design_most = 0;                           ///< with so many of them the certificate will probably hold
 
   std::uint64_t certificate_seed = 0;  ///< of the fresh machines
   std::uint64_t certificate_most = 0;  ///< rejects with which the certificate would hold
   YieldVerdict certificate;            ///< what the fresh machines show; kept: it is certified
   bool calibrated = false;             ///< whether responses are what the best correction of the actuators leaves
 
-  std::vector<double> curve_yield;        ///< [Y] ascending
-  std::vector<double> curve_yield_cost;   ///< [Y] predicted cost at these yields
-  std::vector<double> curve_factor;       ///< [K] ascending, of all limits
-  std::vector<double> curve_factor_cost;  ///< [K] predicted cost with limits wider by this factor
+  std::vector<double> curve_yield;                     ///< ascending
+  Array<double, axis::CurveYield> curve_yield_cost;    ///< predicted cost at these yields
+  std::vector<double> curve_factor;                    ///< ascending, of all limits
+  Array<double, axis::CurveFactor> curve_factor_cost;  ///< predicted cost with limits wider by this factor
 
-  std::string certificate_study;    ///< text of the study that repeats the certificate
-  std::vector<SolveCounts> solves;  ///< [M] of the certificate's machines
-  std::vector<Failure> failures;    ///< the first of these machines that are not solved
+  std::string certificate_study;          ///< text of the study that repeats the certificate
+  Array<SolveCounts, axis::Pose> solves;  ///< of the certificate's machines
+  std::vector<Failure> failures;          ///< the first of these machines that are not solved
 
-  std::size_t parts() const { return part_names.size(); }                                  ///< N
-  SolveCounts total() const { return total_of(solves); }                                   ///< Of the certificate.
+  std::size_t parts() const { return part_names.size(); }                                  ///< Of the drawing.
+  std::size_t poses() const { return limit_use.length<axis::Pose>(); }                     ///< Of the study.
+  SolveCounts total() const { return total_of(solves.all()); }                             ///< Of the certificate.
   bool certified() const { return certificate.decision == YieldVerdict::Decision::kept; }  ///< Whether it holds.
 };
 

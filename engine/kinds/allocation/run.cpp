@@ -51,15 +51,14 @@ YieldVerdict verdict_of(const MachineLoads& fresh, double yield, double confiden
   return verdict;
 }
 
-/// Divides a part's share of the mean square among its errors, which have one variance, in proportion to their slopes
-/// [P].
+/// Divides a part's share of the mean square among its errors, which have one variance, in proportion to their slopes.
 void divide_share(std::span<const double> slopes, std::span<const std::size_t> errors, double of_part,
-                  std::vector<double>& shares) {
+                  Array<double, axis::Factor>& shares) {
   double sum = 0.0;
   for (const std::size_t p : errors) sum += slopes[p];
   for (const std::size_t p : errors) {
     const double within = sum > 0.0 ? slopes[p] / sum : 1.0 / static_cast<double>(errors.size());
-    shares[p] = within * of_part;
+    shares(p) = within * of_part;
   }
 }
 
@@ -70,11 +69,20 @@ void add_parts(const SearchProblem& problem, const FoundTolerances& search, cons
   const ToleranceProgramme& programme = problem.programme;
   const TolerancePoint& point = search.design.candidate.point;
   const std::size_t errors = study.analysis.factors.size();
-  found.error_mean_square_share.assign(errors, kNaN);
+  const std::size_t parts = programme.size();
+  found.error_mean_square_share = Array<double, axis::Factor>({errors}, kNaN);
+  for (auto* numbers : {&found.tolerance, &found.sigma, &found.sigmas, &found.shift, &found.cost, &found.share,
+                        &found.mean_square_share}) {
+    *numbers = AllocationResult::Parts<double>({parts});
+  }
+  for (auto* texts : {&found.part_members, &found.part_unit, &found.chosen}) {
+    *texts = AllocationResult::Parts<std::string>({parts});
+  }
+  found.bound = AllocationResult::Parts<std::uint8_t>({parts});
   const std::size_t tightest = worst_use(limits, point.tolerance).limit;
   const double need = limits.need(tightest, point.tolerance);
   const auto slopes = std::span(search.linearisation.squares.slope).subspan(tightest * errors, errors);
-  for (std::size_t i = 0; i < programme.size(); ++i) {
+  for (std::size_t i = 0; i < parts; ++i) {
     const AllocatedPart& part = programme.parts()[i];
     const Spread spread{part.sigmas, part.shift};
     const double tolerance = point.tolerance[i];
@@ -83,20 +91,20 @@ void add_parts(const SearchProblem& problem, const FoundTolerances& search, cons
       members += (members.empty() ? "" : " ") + study.model().factors[factor.value].name;
     }
     found.part_names.push_back(part.name);
-    found.part_members.push_back(std::move(members));
-    found.part_unit.emplace_back(si_unit(study.model().factors[part.factors.front().value].dimension));
-    found.tolerance.push_back(tolerance);
-    found.sigma.push_back(sigma_per_tolerance(spread) * tolerance);
-    found.sigmas.push_back(part.sigmas);
-    found.shift.push_back(part.shift * tolerance);
-    found.cost.push_back(std::isnan(point.cost) ? kNaN : programme.cost(i, tolerance, point.process[i]));
-    found.share.push_back(found.cost.back() / point.cost);
-    found.mean_square_share.push_back(limits.row(tightest)[i] * tolerance * tolerance / need);
-    divide_share(slopes, programme.errors(i), found.mean_square_share[i], found.error_mean_square_share);
-    found.bound.push_back(static_cast<std::uint8_t>(programme.at_bound(i, tolerance, point.process[i])));
-    found.chosen.push_back(programme.chosen_name(i, point.process[i]));
+    found.part_members(i) = std::move(members);
+    found.part_unit(i) = si_unit(study.model().factors[part.factors.front().value].dimension);
+    found.tolerance(i) = tolerance;
+    found.sigma(i) = sigma_per_tolerance(spread) * tolerance;
+    found.sigmas(i) = part.sigmas;
+    found.shift(i) = part.shift * tolerance;
+    found.cost(i) = std::isnan(point.cost) ? kNaN : programme.cost(i, tolerance, point.process[i]);
+    found.share(i) = found.cost(i) / point.cost;
+    found.mean_square_share(i) = limits.row(tightest)[i] * tolerance * tolerance / need;
+    divide_share(slopes, programme.errors(i), found.mean_square_share(i), found.error_mean_square_share);
+    found.bound(i) = static_cast<std::uint8_t>(programme.at_bound(i, tolerance, point.process[i]));
+    found.chosen(i) = programme.chosen_name(i, point.process[i]);
   }
-  found.coarser_yield = search.coarser_yield;
+  found.coarser_yield = {{parts}, search.coarser_yield};
 }
 
 /// Fills in what is found of each limit.
@@ -104,27 +112,25 @@ void add_limits(const SearchProblem& problem, const Candidate& candidate, const 
                 AllocationResult& found) {
   const std::vector<ResponseLimit>& stated = problem.run.study.analysis.limits;
   const std::vector<double>& multiplier = candidate.chosen.multiplier;
-  const std::size_t cells = found.responses * found.poses;
-  found.limit.assign(found.responses, kNaN);
-  found.saving.assign(found.responses, kNaN);
-  found.multiplier.assign(cells, kNaN);
-  found.limit_use.assign(cells, kNaN);
+  const std::size_t responses = problem.run.study.model().responses.size();
+  const std::size_t poses = problem.run.poses.size();
+  found.limit = found.saving = Array<double, axis::Response>({responses}, kNaN);
+  found.multiplier = found.limit_use = AllocationResult::AtPoses({responses, poses}, kNaN);
   for (std::size_t k = 0; k < stated.size(); ++k) {
-    const auto [response, most] = std::pair(stated[k].response, stated[k].most);
-    found.limit[response] = most;
+    const auto [r, most] = std::pair(stated[k].response, stated[k].most);
+    found.limit(r) = most;
     const double allowed = candidate.share * most;
     double sum = 0.0;
-    for (std::size_t m = 0; m < found.poses; ++m) {
-      const std::size_t row = k * found.poses + m;
-      const std::size_t cell = response * found.poses + m;
+    for (std::size_t m = 0; m < poses; ++m) {
+      const std::size_t row = k * poses + m;
       const double square = allowed * allowed - limits.room[row] + limits.need(row, candidate.point.tolerance);
-      found.limit_use[cell] = std::sqrt(std::max(0.0, square)) / allowed;
+      found.limit_use(r, m) = std::sqrt(std::max(0.0, square)) / allowed;
       if (multiplier.empty()) continue;
       // The room is (share x limit)^2 less what is fixed.
-      found.multiplier[cell] = multiplier[row] * 2.0 * candidate.share * allowed;
-      sum += found.multiplier[cell];
+      found.multiplier(r, m) = multiplier[row] * 2.0 * candidate.share * allowed;
+      sum += found.multiplier(r, m);
     }
-    if (!multiplier.empty()) found.saving[response] = 0.01 * most * sum;
+    if (!multiplier.empty()) found.saving(r) = 0.01 * most * sum;
   }
 }
 
@@ -136,18 +142,22 @@ void add_curves(const SearchProblem& problem, const FoundTolerances& search, All
   const double scale = point.cost / predicted_cost(problem, search, share, 1.0);
   std::vector<double> loads = search.design.load;
   std::ranges::sort(loads, std::ranges::greater());
+  std::vector<double> costs;
   for (const double yield : kYields) {
     if (loads.size() < trials_without_failure(yield, confidence)) continue;
     const std::uint64_t rejects = allowed_rejects(yield, confidence, loads.size()).design;
     const double load = loads[rejects];
     if (rejects == 0 || !(load > 0.0) || std::isinf(load)) continue;  // too few machines to tell
     found.curve_yield.push_back(yield);
-    found.curve_yield_cost.push_back(scale * predicted_cost(problem, search, share / load, 1.0));
+    costs.push_back(scale * predicted_cost(problem, search, share / load, 1.0));
   }
+  found.curve_yield_cost = {{costs.size()}, costs};
+  costs.clear();
   for (const double factor : kFactors) {
     found.curve_factor.push_back(factor);
-    found.curve_factor_cost.push_back(scale * predicted_cost(problem, search, share, factor));
+    costs.push_back(scale * predicted_cost(problem, search, share, factor));
   }
+  found.curve_factor_cost = {{costs.size()}, costs};
 }
 
 /// The result of a search and of the fresh machines of its certificate.
@@ -157,8 +167,6 @@ AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& 
   const Candidate& candidate = search.design.candidate;
   const ToleranceLimits limits = limits_of(problem, search);
   AllocationResult found;
-  found.responses = study.model().responses.size();
-  found.poses = problem.run.poses.size();
   add_parts(problem, search, limits, found);
   add_limits(problem, candidate, limits, found);
   add_curves(problem, search, found);
@@ -170,7 +178,7 @@ AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& 
   found.wanted_yield = problem.options.yield;
   found.confidence = problem.options.confidence;
   found.stages = search.log.stages;
-  found.stage_tolerance = search.log.tolerance;
+  found.stage_tolerance = {{found.stages.size(), found.parts()}, search.log.tolerance};
   found.design_machines = search.design.load.size();
   found.design_rejects = rejects_of(search.design.load);
   found.design_most = problem.allowed.design;
@@ -178,8 +186,9 @@ AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& 
   found.certificate_most = problem.allowed.certificate;
   found.certificate = verdict_of(fresh, problem.options.yield, problem.options.confidence);
   found.certificate_study = resolved_text(certificate);
-  found.solves = fresh.solves;
-  for (std::size_t m = 0; m < found.poses; ++m) append_failures(0, PoseIndex(m), fresh.failed[m], found.failures);
+  found.solves = {{fresh.solves.size()}, fresh.solves};
+  for (std::size_t m = 0; m < fresh.failed.size(); ++m)
+    append_failures(0, PoseIndex(m), fresh.failed[m], found.failures);
   return found;
 }
 

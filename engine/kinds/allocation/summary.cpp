@@ -23,23 +23,25 @@ double rounded_down(double value, int digits) {
 
 std::vector<std::size_t> limited_responses(const AllocationResult& found) {
   std::vector<std::size_t> list;
-  for (std::size_t r = 0; r < found.responses; ++r) {
-    if (!std::isnan(found.limit[r])) list.push_back(r);
+  for (std::size_t r = 0; r < found.limit.size(); ++r) {
+    if (!std::isnan(found.limit(r))) list.push_back(r);
   }
   return list;
 }
 
-std::optional<std::size_t> worst_pose(const AllocationResult& found, const std::vector<double>& values,
-                                      std::size_t response) {
+std::optional<std::size_t> worst_pose(std::span<const double> at_poses) {
   std::optional<std::size_t> worst;
   double largest = 0.0;
-  for (std::size_t m = 0; m < found.poses; ++m) {
-    const double value = values[response * found.poses + m];
-    if (!(value > largest)) continue;
-    largest = value;
+  for (std::size_t m = 0; m < at_poses.size(); ++m) {
+    if (!(at_poses[m] > largest)) continue;
+    largest = at_poses[m];
     worst = m;
   }
   return worst;
+}
+
+const AllocationResult::Parts<double>& shown_shares(const AllocationResult& found) {
+  return has_costs(found) ? found.share : found.mean_square_share;
 }
 
 std::vector<std::size_t> ordered_parts(const AllocationResult& found, RowOrder order) {
@@ -49,9 +51,9 @@ std::vector<std::size_t> ordered_parts(const AllocationResult& found, RowOrder o
     std::ranges::stable_sort(list, {}, [&](std::size_t n) { return found.part_names[n]; });
     return list;
   }
-  const std::vector<double>& shares = has_costs(found) ? found.share : found.mean_square_share;
+  const AllocationResult::Parts<double>& shares = shown_shares(found);
   std::ranges::stable_sort(list, std::ranges::greater(),
-                           [&](std::size_t n) { return std::isnan(shares[n]) ? -HUGE_VAL : shares[n]; });
+                           [&](std::size_t n) { return std::isnan(shares(n)) ? -HUGE_VAL : shares(n); });
   return list;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,12 +19,13 @@ inline bool has_costs(const AllocationResult& found) { return !std::isnan(found.
 /// Positions of the responses that have a limit, in their order.
 std::vector<std::size_t> limited_responses(const AllocationResult& found);
 
-/// The pose at which the numbers [R x M] of this response are largest; none where none is above zero.
-std::optional<std::size_t> worst_pose(const AllocationResult& found, const std::vector<double>& values,
-                                      std::size_t response);
+/// The pose at which these numbers of a response are largest; none where none is above zero.
+std::optional<std::size_t> worst_pose(std::span<const double> at_poses);
 
-/// Positions of the parts in this order: by their share of the cost, or without costs of the mean square, the largest
-/// first; or by name, or as the study has them.
+/// By which parts are ordered: their shares of the cost, or without costs of the mean square.
+const AllocationResult::Parts<double>& shown_shares(const AllocationResult& found);
+
+/// Positions of the parts in this order: by shown_shares, the largest first; or by name, or as the study has them.
 std::vector<std::size_t> ordered_parts(const AllocationResult& found, RowOrder order);
 
 /// "certified: at least 99.73 % of the machines are within all limits at all poses, ...", or why it is not.

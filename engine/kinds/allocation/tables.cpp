@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "engine/base/units.h"
@@ -36,8 +37,8 @@ Table certificate_table(const StoredResult& result) {
 
 /// "3 sigma + 10 % of T": what T is made of.
 std::string made_of(const Result& found, std::size_t n) {
-  const std::string text = number_text(found.sigmas[n], kCostDigits) + " sigma";
-  const double share = found.shift[n] / found.tolerance[n];
+  const std::string text = number_text(found.sigmas(n), kCostDigits) + " sigma";
+  const double share = found.shift(n) / found.tolerance(n);
   return share > 0.0 ? text + " + " + percent_text(share) + " of T" : text;
 }
 
@@ -69,37 +70,34 @@ void add_bound_note(const Result& found, Table& table) {
   table.notes.push_back(cheaper ? least + "; these cost less, because they keep the yield with other shares" : least);
 }
 
-FilledColumn cost_column(std::string name, std::string heading, const std::vector<double>& values,
-                         int dispensable = 0) {
+FilledColumn cost_column(std::string name, std::string heading, std::span<const double> values, int dispensable = 0) {
   return {number_column(std::move(name), std::move(heading), "", dispensable),
-          [&values](std::size_t at) { return number_cell(values[at], kCostDigits); }};
+          [values](std::size_t at) { return number_cell(values[at], kCostDigits); }};
 }
 
-FilledColumn share_column(std::string name, std::string heading, const std::vector<double>& values,
-                          int dispensable = 0) {
+FilledColumn share_column(std::string name, std::string heading, std::span<const double> values, int dispensable = 0) {
   return {percent_column(std::move(name), std::move(heading), dispensable),
-          [&values](std::size_t at) { return percent_cell(values[at]); }};
+          [values](std::size_t at) { return percent_cell(values[at]); }};
 }
 
-FilledColumn words_column(std::string name, std::string heading, const std::vector<std::string>& values,
+FilledColumn words_column(std::string name, std::string heading, std::span<const std::string> values,
                           int dispensable = 0) {
   return {text_column(std::move(name), std::move(heading), dispensable),
-          [&values](std::size_t at) { return text_cell(values[at]); }};
+          [values](std::size_t at) { return text_cell(values[at]); }};
 }
 
 /// T in full and what it means, for those who have the room.
 void add_details(const Result& found, std::vector<FilledColumn>& columns) {
   constexpr int kFirstToGo = 3;
-  const auto length = [&](std::string name, std::string heading, const std::vector<double>& values) {
-    return FilledColumn{number_column(std::move(name), std::move(heading), "", kFirstToGo), [&](std::size_t n) {
-                          return number_cell(values[n] / display_unit(dimension_of(found.part_unit[n])).si,
-                                             kCostDigits);
-                        }};
+  const auto unit = [&](std::size_t n) { return display_unit(dimension_of(found.part_unit(n))); };
+  const auto length = [&](std::string name, std::string heading, const Result::Parts<double>& values) {
+    return FilledColumn{number_column(std::move(name), std::move(heading), "", kFirstToGo),
+                        [&values, unit](std::size_t n) { return number_cell(values(n) / unit(n).si, kCostDigits); }};
   };
   columns.push_back(length("tolerance", "T", found.tolerance));
   columns.push_back(length("sigma", "sigma", found.sigma));
-  columns.push_back({text_column("unit", "unit", kFirstToGo),
-                     [&](std::size_t n) { return text_cell(display_unit(dimension_of(found.part_unit[n])).name); }});
+  columns.push_back(
+      {text_column("unit", "unit", kFirstToGo), [unit](std::size_t n) { return text_cell(unit(n).name); }});
   columns.push_back(words_column("errors", "errors", found.part_members, kFirstToGo + 1));
 }
 
@@ -107,7 +105,7 @@ std::vector<FilledColumn> drawing_columns(const Result& found, bool alike) {
   static constexpr std::array<std::string_view, 4> kBounds{"", "lower", "upper", "no choice"};
   std::vector<FilledColumn> columns{words_column("part", "part", found.part_names),
                                     {text_column("drawing", "drawing"), [&](std::size_t n) {
-                                       return text_cell(drawing_text(found.tolerance[n], found.part_unit[n]));
+                                       return text_cell(drawing_text(found.tolerance(n), found.part_unit(n)));
                                      }}};
   if (std::ranges::any_of(found.chosen, [](const std::string& one) { return !one.empty(); })) {
     columns.push_back(words_column("chosen", "grade or process", found.chosen));
@@ -121,10 +119,10 @@ std::vector<FilledColumn> drawing_columns(const Result& found, bool alike) {
   }
   columns.push_back(share_column("mean_square_share", "share of mean square", found.mean_square_share));
   columns.push_back(
-      {text_column("bound", "at bound"), [&](std::size_t n) { return text_cell(kBounds.at(found.bound[n])); }});
+      {text_column("bound", "at bound"), [&](std::size_t n) { return text_cell(kBounds.at(found.bound(n))); }});
   columns.push_back({number_column("coarser_rejects", "rejects if coarser", "", 2), [&](std::size_t n) {
                        const double machines = static_cast<double>(found.design_machines);
-                       return number_cell(std::round(10.0 * machines * (1.0 - found.coarser_yield[n])) / 10.0);
+                       return number_cell(std::round(10.0 * machines * (1.0 - found.coarser_yield(n))) / 10.0);
                      }});
   add_details(found, columns);
   return columns;
@@ -153,34 +151,32 @@ Table drawing_table(const Result& found, RowOrder order) {
 
 /// A pose, with the cell of its number and that of its coordinates.
 std::vector<FilledColumn> pose_columns(const StoredResult& result, const std::string& name,
-                                       const std::vector<double>& values, int dispensable) {
-  const Result& found = allocation_of(result);
-  const auto worst = [&](std::size_t r) { return worst_pose(found, values, r); };
+                                       const Result::AtPoses& values, int dispensable) {
   return {{number_column(name + "_pose", "at pose", "", dispensable),
-           [worst](std::size_t r) {
-             const std::optional<std::size_t> pose = worst(r);
+           [&values](std::size_t r) {
+             const std::optional<std::size_t> pose = worst_pose(values.row(r));
              return pose ? count_cell(*pose) : text_cell("");
            }},
-          {text_column(name + "_place", "where", 2), [&result, worst](std::size_t r) {
-             const std::optional<std::size_t> pose = worst(r);
+          {text_column(name + "_place", "where", 2), [&result, &values](std::size_t r) {
+             const std::optional<std::size_t> pose = worst_pose(values.row(r));
              return text_cell(pose ? coordinates_text(result, *pose) : std::string());
            }}};
 }
 
 /// The largest of numbers at poses, 0 where none is above zero.
-double largest(const Result& found, const std::vector<double>& values, std::size_t r) {
-  const std::optional<std::size_t> pose = worst_pose(found, values, r);
-  return pose ? values[r * found.poses + *pose] : 0.0;
+double largest(std::span<const double> at_poses) {
+  const std::optional<std::size_t> pose = worst_pose(at_poses);
+  return pose ? at_poses[*pose] : 0.0;
 }
 
 Table use_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   std::vector<FilledColumn> columns{name_column(result.responses, "response"),
                                     {number_column("limit", "limit"),
-                                     [&](std::size_t r) { return value_cell(found.limit[r], result.responses[r], 6); }},
+                                     [&](std::size_t r) { return value_cell(found.limit(r), result.responses[r], 6); }},
                                     unit_column(result.responses),
                                     {percent_column("used", "used"), [&](std::size_t r) {
-                                       return percent_cell(std::round(1e4 * largest(found, found.limit_use, r)) / 1e4);
+                                       return percent_cell(std::round(1e4 * largest(found.limit_use.row(r))) / 1e4);
                                      }}};
   std::ranges::move(pose_columns(result, "used", found.limit_use, 0), std::back_inserter(columns));
   Table table{
@@ -192,7 +188,7 @@ Table use_table(const StoredResult& result) {
   if (has_costs(found)) {
     columns.push_back(cost_column("saving", "1 % wider saves", found.saving));
     columns.push_back({number_column("price", "saved per unit", "", 1), [&](std::size_t r) {
-                         return number_cell(largest(found, found.multiplier, r) * display(result.responses[r]).si);
+                         return number_cell(largest(found.multiplier.row(r)) * display(result.responses[r]).si);
                        }});
     std::ranges::move(pose_columns(result, "price", found.multiplier, 1), std::back_inserter(columns));
     table.notes.emplace_back(
@@ -240,7 +236,7 @@ Table stages_table(const Result& found) {
 }
 
 /// A predicted cost beside that of the tolerances found.
-void add_costs(const Result& found, const std::vector<double>& costs, FilledColumn at, Table& table) {
+void add_costs(const Result& found, std::span<const double> costs, FilledColumn at, Table& table) {
   table.notes.emplace_back("predicted, not certified; change: from the cost of the tolerances found");
   fill(table, positions(costs.size()),
        {std::move(at), cost_column("cost", "cost", costs), {percent_column("change", "change"), [&](std::size_t k) {

@@ -42,11 +42,10 @@ class AllocationReport : public testing::Test {
   void drop_costs() {
     found().aim = Aim::equal_effect;
     found().total_cost = found().lower_bound = std::nan("");
-    for (auto* list : {&found().cost, &found().share}) list->assign(3, std::nan(""));
-    found().curve_yield_cost.assign(3, std::nan(""));
-    found().curve_factor_cost.assign(2, std::nan(""));
-    found().multiplier.assign(8, std::nan(""));
-    found().saving.assign(2, std::nan(""));
+    for (const auto numbers : {found().cost.all(), found().share.all(), found().curve_yield_cost.all(),
+                               found().curve_factor_cost.all(), found().multiplier.all(), found().saving.all()}) {
+      std::ranges::fill(numbers, std::nan(""));
+    }
     for (AllocationStage& stage : found().stages) stage.cost = stage.lower_bound = std::nan("");
   }
 
@@ -144,7 +143,7 @@ TEST_F(AllocationReport, SaysWhatEachLimitAsksForAndWhere) {
             "(no room for where: a wider terminal shows more)\n");
   EXPECT_EQ(column(table("allocation_limits"), "used_place"), Texts{"z -203 mm, beta 21.5 deg, gamma -43 deg"});
   EXPECT_EQ(column(table("allocation_limits"), "price_place"), Texts{"z -219 mm, beta 14.3 deg, gamma -28.6 deg"});
-  found().multiplier.assign(8, 0.0);
+  std::ranges::fill(found().multiplier, 0.0);
   EXPECT_EQ(column(table("allocation_limits"), "price_pose"), Texts{"-"});
 }
 
@@ -180,8 +179,8 @@ TEST_F(AllocationReport, TellsTheWayAndWhatElseWouldCost) {
 
 TEST_F(AllocationReport, StatesSigmasOnceWhereAllAreAlike) {
   EXPECT_EQ(column(table("drawing"), "made_of"), (Texts{"3 sigma", "3 sigma", "3 sigma + 10 % of T"}));
-  found().shift = {0.0, 0.0, 0.0};
-  found().sigmas = {3.99, 3.99, 3.99};
+  std::ranges::fill(found().shift, 0.0);
+  std::ranges::fill(found().sigmas, 3.99);
   EXPECT_TRUE(column(table("drawing"), "made_of").empty());
   EXPECT_TRUE(table("drawing").notes.front().starts_with("T = 3.99 sigma; sigma: standard deviation about the mean;"));
   found().shift = found().tolerance;
@@ -282,7 +281,7 @@ TEST_F(AllocationReport, WarnsOfWhatIsNotCertified) {
 
 TEST_F(AllocationReport, EscapesNames) {
   found().part_names[0] = "<b>bars</b>";
-  found().chosen[1] = "\"<i>\"";
+  found().chosen(1) = "\"<i>\"";
   found().stages[0].name = "<u>";
   const std::string page = html();
   for (const char* tag : {"<b>", "<i>", "<u>"}) EXPECT_EQ(page.find(tag), std::string::npos) << tag;
