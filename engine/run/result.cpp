@@ -38,20 +38,14 @@ void SolveCounts::merge(const SolveCounts& other) {
   most_iterations = std::max(most_iterations, other.most_iterations);
 }
 
-void SolveCounts::write(ByteWriter& to) const {
-  for (const std::uint64_t count : by_status) to.number(count);
-  to.number(iterations);
-  to.number(most_iterations);
-}
-
-SolveCounts SolveCounts::read(ByteReader& from) {
-  SolveCounts solves;
-  for (std::uint64_t& count : solves.by_status) {
-    count = from.number_up_to(std::numeric_limits<std::uint64_t>::max() - solves.total());
+void SolveCounts::state(Archive& archive) {
+  std::uint64_t left = std::numeric_limits<std::uint64_t>::max();
+  for (std::uint64_t& count : by_status) {
+    archive.number(count, left);
+    left -= count;
   }
-  solves.iterations = from.number();
-  solves.most_iterations = static_cast<std::uint32_t>(from.number_up_to(std::numeric_limits<std::uint32_t>::max()));
-  return solves;
+  archive.number(iterations);
+  archive.number(most_iterations);
 }
 
 void FailedSamples::merge(const FailedSamples& later) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/base/index.h"
 #include "engine/model/status.h"
 #include "engine/stats/moments.h"
@@ -41,10 +41,9 @@ struct SolveCounts {
   /// The order changes nothing.
   void merge(const SolveCounts& other);
 
-  /// For a state or a message.
-  void write(ByteWriter& to) const;
-  /// Throws BytesError.
-  static SolveCounts read(ByteReader& from);
+  void state(Archive& archive);                                                        ///< Every count.
+  void write(ByteWriter& to) const { write_state(*this, to); }                         ///< Its state.
+  static SolveCounts read(ByteReader& from) { return read_state<SolveCounts>(from); }  ///< Throws BytesError.
 };
 
 /// Of all cells.

@@ -101,23 +101,15 @@ void Extremes::merge(const Extremes& other) {
   least_below = std::min(least_below, other.least_below);
 }
 
-void Extremes::write(ByteWriter& to) const {
-  for (const double value : {min, max, least_above, least_below}) to.real(value);
-}
-
-Extremes Extremes::read(ByteReader& from, std::uint64_t count) {
-  Extremes found{.count = count};
-  for (double* value : {&found.min, &found.max, &found.least_above, &found.least_below}) *value = from.real();
-  const bool finite = std::isfinite(found.min) && std::isfinite(found.max);
-  if (!finite || !(found.min <= found.max) || count == 0) throw BytesError("numbers have no range");
+void Extremes::state(Archive& archive) {
+  archive.real(min, max, least_above, least_below);
+  const bool finite = std::isfinite(min) && std::isfinite(max);
+  archive.expect(finite && min <= max && count > 0, "numbers have no range");
   constexpr double kNormal = std::numeric_limits<double>::min();
   const auto possible = [&](double least, double most) {
     return most < kNormal ? least == std::numeric_limits<double>::infinity() : least >= kNormal && least <= most;
   };
-  if (!possible(found.least_above, found.max) || !possible(found.least_below, -found.min)) {
-    throw BytesError("numbers have a range without its ends");
-  }
-  return found;
+  archive.expect(possible(least_above, max) && possible(least_below, -min), "numbers have a range without its ends");
 }
 
 void BucketScale::keys(std::span<const double> values, std::span<std::uint64_t> keys) const {

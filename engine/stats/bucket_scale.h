@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 
 /// Which numbers a quantile sketch counts together.
 namespace poesy {
@@ -29,9 +29,8 @@ struct Extremes {
   bool has_above() const { return least_above <= max; }   ///< Whether there is a number above zero.
   bool has_below() const { return least_below <= -min; }  ///< Whether there is one below.
 
-  /// All but the count, and back. read() throws BytesError for what no `count` numbers have.
-  void write(ByteWriter& to) const;
-  static Extremes read(ByteReader& from, std::uint64_t count);  ///< The opposite of write().
+  /// All but the count. Throws BytesError for what no `count` numbers have.
+  void state(Archive& archive);
 };
 
 /// Consecutive buckets of one sign are counted in pages of this many.

@@ -111,21 +111,13 @@ std::optional<LinearFit> LinearFitSums::fit() const {
   return found;
 }
 
-void LinearFitSums::write(ByteWriter& to) const {
-  to.number(machines_);
-  for (const auto* sums : {&x_, &xx_, &shift_, &y_, &yy_, &xy_}) to.reals(*sums);
-}
-
-LinearFitSums LinearFitSums::read(ByteReader& from, std::size_t errors, std::size_t rows) {
-  LinearFitSums sums(errors, rows);
-  sums.machines_ = from.number();
-  for (auto* list : {&sums.x_, &sums.xx_, &sums.shift_, &sums.y_, &sums.yy_, &sums.xy_}) {
-    from.reals(std::span(*list));
-    if (!std::ranges::all_of(*list, [](double one) { return std::isfinite(one); })) {
-      throw BytesError("has sums of a fit that no machines give");
-    }
+void LinearFitSums::state(Archive& archive) {
+  archive.number(machines_);
+  for (std::vector<double>* sums : {&x_, &xx_, &shift_, &y_, &yy_, &xy_}) {
+    archive.reals(*sums);
+    const bool finite = std::ranges::all_of(*sums, [](double one) { return std::isfinite(one); });
+    archive.expect(finite, "has sums of a fit that no machines give");
   }
-  return sums;
 }
 
 }  // namespace poesy

@@ -21,18 +21,11 @@ void add(std::vector<Rejects>& to, const std::vector<Rejects>& rejects) {
   for (std::size_t k = 0; k < to.size(); ++k) add(to[k], rejects[k]);
 }
 
-void write_rejects(ByteWriter& to, const Rejects& rejects) {
-  to.number(rejects.strict);
-  to.number(rejects.lenient);
-}
-
 /// Rejects among these; a strict reject that is no lenient one has a sample that does not count.
-Rejects read_rejects(ByteReader& from, const Rejects& among, std::uint64_t unsolved) {
-  Rejects rejects;
-  rejects.strict = from.number_up_to(among.strict);
-  rejects.lenient = from.number_up_to(std::min(among.lenient, rejects.strict));
-  if (rejects.strict - rejects.lenient > unsolved) throw BytesError("has rejects without a reason");
-  return rejects;
+void rejects_state(Archive& archive, Rejects& rejects, const Rejects& among, std::uint64_t unsolved) {
+  archive.number(rejects.strict, among.strict);
+  archive.number(rejects.lenient, std::min(among.lenient, rejects.strict));
+  archive.expect(rejects.strict - rejects.lenient <= unsolved, "has rejects without a reason");
 }
 
 /// What one response of B machines does at a pose: which keep its limit, and what it adds to their largest magnitudes
@@ -72,27 +65,25 @@ void MachineCounts::merge(const MachineCounts& other) {
   add(at_pose, other.at_pose);
 }
 
-void MachineCounts::write(ByteWriter& to) const {
-  to.number(machines);
-  to.number(unsolved);
-  write_rejects(to, all);
-  for (const Rejects& rejects : by_limit) write_rejects(to, rejects);
-  for (const Rejects& rejects : at_pose) write_rejects(to, rejects);
+void MachineCounts::state(Archive& archive) {
+  archive.number(machines);
+  archive.number(unsolved, machines);
+  rejects_state(archive, all, {machines, machines}, unsolved);
+  archive.expect(all.strict >= unsolved, "has machines that are neither solved nor rejected");
+  for (Rejects& rejects : by_limit) {
+    rejects_state(archive, rejects, all, unsolved);
+    archive.expect(rejects.strict >= unsolved, "has machines that keep a limit unsolved");
+  }
+  const std::size_t poses = by_limit.empty() ? 0 : at_pose.size() / by_limit.size();
+  for (std::size_t k = 0; k < at_pose.size(); ++k) rejects_state(archive, at_pose[k], by_limit[k / poses], unsolved);
 }
 
 MachineCounts MachineCounts::read(ByteReader& from, std::size_t responses, std::size_t poses) {
   MachineCounts counts;
-  counts.machines = from.number();
-  counts.unsolved = from.number_up_to(counts.machines);
-  counts.all = read_rejects(from, {counts.machines, counts.machines}, counts.unsolved);
-  if (counts.all.strict < counts.unsolved) throw BytesError("has machines that are neither solved nor rejected");
-  for (std::size_t r = 0; r < responses; ++r) {
-    counts.by_limit.push_back(read_rejects(from, counts.all, counts.unsolved));
-    if (counts.by_limit.back().strict < counts.unsolved) throw BytesError("has machines that keep a limit unsolved");
-  }
-  for (std::size_t k = 0; k < responses * poses; ++k) {
-    counts.at_pose.push_back(read_rejects(from, counts.by_limit[k / poses], counts.unsolved));
-  }
+  counts.by_limit.resize(responses);
+  counts.at_pose.resize(responses * poses);
+  Archive archive(from);
+  counts.state(archive);
   return counts;
 }
 

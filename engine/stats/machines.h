@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 
 /// Machines that are built once and used at all poses: a machine is one set of errors, and it is good if it keeps every
 /// limit at every pose. B machines, R responses, M poses.
@@ -31,9 +31,10 @@ struct MachineCounts {
   /// Both together; exact, so in any order. One of no machines has no sizes and takes those of the other one.
   void merge(const MachineCounts& other);
 
-  /// Every count, and back: read() throws BytesError for counts that no machines give.
-  void write(ByteWriter& to) const;
-  static MachineCounts read(ByteReader& from, std::size_t responses, std::size_t poses);  ///< The opposite of write().
+  void state(Archive& archive);                                 ///< Every count, of lists that have their lengths.
+  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Its state.
+  /// Its state. Throws BytesError for counts that no machines give.
+  static MachineCounts read(ByteReader& from, std::size_t responses, std::size_t poses);
 
   friend bool operator==(const MachineCounts&, const MachineCounts&) = default;  ///< All counts.
 };

@@ -176,41 +176,32 @@ std::array<Estimate, kEffectBins> MainEffectSums::curve(std::size_t response, st
   return curve;
 }
 
-void MainEffectSums::write(ByteWriter& to) const {
-  for (const std::uint64_t count : counts_) to.number(count);
+void MainEffectSums::state(Archive& archive) {
+  for (std::uint64_t& count : counts_) archive.number(count);
   for (std::size_t r = 0; r < moments_.size(); ++r) {
-    moments_[r].write(to);
-    to.real(shift_[r]);
+    archive.object(moments_[r]);
+    archive.real(shift_[r]);
     for (std::size_t k = 0; k < counts_.size(); ++k) {
-      to.reals(std::span(sums_[first_row(r, 0) + k]).subspan(place(r), 2));
+      archive.reals(std::span(sums_[first_row(r, 0) + k]).subspan(place(r), 2));
     }
   }
+  if (archive.reads()) check();
 }
 
-MainEffectSums MainEffectSums::read(ByteReader& from, std::size_t errors, std::size_t responses) {
-  MainEffectSums sums(errors, responses);
-  for (std::uint64_t& count : sums.counts_) count = from.number();
-  for (std::size_t r = 0; r < responses; ++r) {
-    sums.moments_[r] = Moments::read(from);
-    sums.shift_[r] = from.real();
-    for (std::size_t k = 0; k < sums.counts_.size(); ++k) {
-      from.reals(std::span(sums.sums_[sums.first_row(r, 0) + k]).subspan(place(r), 2));
-    }
-  }
-  for (std::size_t r = 0; r < responses; ++r) {
-    if (sums.moments_[r].count() != sums.samples() || !std::isfinite(sums.shift_[r])) {
+void MainEffectSums::check() const {
+  for (std::size_t r = 0; r < moments_.size(); ++r) {
+    if (moments_[r].count() != samples() || !std::isfinite(shift_[r])) {
       throw BytesError("has responses of different samples");
     }
-    for (std::size_t p = 0; p < errors; ++p) {
-      double samples = 0.0;
-      for (const BinSums& bin : sums.bins_of(r, p)) {
+    for (std::size_t p = 0; p < errors_; ++p) {
+      double count = 0.0;
+      for (const BinSums& bin : bins_of(r, p)) {
         if (!possible(bin)) throw BytesError("has sums that no samples in a bin give");
-        samples += bin.count;
+        count += bin.count;
       }
-      if (samples != static_cast<double>(sums.samples())) throw BytesError("has errors of different samples");
+      if (count != static_cast<double>(samples())) throw BytesError("has errors of different samples");
     }
   }
-  return sums;
 }
 
 }  // namespace poesy

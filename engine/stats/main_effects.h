@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/stats/first_order.h"
 #include "engine/stats/moments.h"
 
@@ -62,10 +62,12 @@ class MainEffectSums {
   /// and 89 to 93 %. NaN without samples; NaN at both ends below two. Precondition: 0 < conf_level < 1.
   std::array<Estimate, kEffectBins> curve(std::size_t response, std::size_t error, double conf_level) const;
 
-  /// Every bit of the sums, and back.
-  void write(ByteWriter& to) const;
+  void state(Archive& archive);                                 ///< Every bit of the sums.
+  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Their state.
   /// Of P errors and R responses. Throws BytesError for what no samples give.
-  static MainEffectSums read(ByteReader& from, std::size_t errors, std::size_t responses);
+  static MainEffectSums read(ByteReader& from, std::size_t errors, std::size_t responses) {
+    return read_state<MainEffectSums>(from, errors, responses);
+  }
 
  private:
   void add_counts(const EffectBins& bins, std::span<const std::uint8_t> counts);
@@ -74,6 +76,7 @@ class MainEffectSums {
   /// Where the sums of a response for an error begin, and the place of its own ones in a row.
   std::size_t first_row(std::size_t response, std::size_t error) const;
   static std::size_t place(std::size_t response);
+  void check() const;  ///< Throws BytesError for sums that no samples give.
 
   std::size_t errors_;
   std::vector<std::uint64_t> counts_;  ///< [P x bins] samples

@@ -124,16 +124,9 @@ double Moments::kurtosis() const {
   return static_cast<double>(count_) * (m4_ / m2_) / m2_;
 }
 
-void Moments::write(ByteWriter& to) const {
-  to.number(count_);
-  to.reals(std::array{mean_, m2_, m3_, m4_});
-}
-
-Moments Moments::read(ByteReader& from) {
-  Moments moments;
-  moments.count_ = from.number();
-  for (double* value : {&moments.mean_, &moments.m2_, &moments.m3_, &moments.m4_}) *value = from.real();
-  return moments;
+void Moments::state(Archive& archive) {
+  archive.number(count_);
+  archive.real(mean_, m2_, m3_, m4_);
 }
 
 double sample_mean_square(double mean, double standard_deviation, double count) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 
 namespace poesy {
 
@@ -38,8 +38,9 @@ class Moments {
   /// Kurtosis m4 / m2^2 of the sample (3 for a normal); NaN when the variance is zero or undefined.
   double kurtosis() const;
 
-  void write(ByteWriter& to) const;       ///< Every bit of it, and back.
-  static Moments read(ByteReader& from);  ///< Throws BytesError for what no values give.
+  void state(Archive& archive);                                                ///< Every bit of it.
+  void write(ByteWriter& to) const { write_state(*this, to); }                 ///< Its state.
+  static Moments read(ByteReader& from) { return read_state<Moments>(from); }  ///< Its state.
 
  private:
   std::uint64_t count_ = 0;

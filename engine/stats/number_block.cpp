@@ -78,7 +78,7 @@ void NumberBlock::write(ByteWriter& to) const {
     to.reals(values);
     return;
   }
-  extremes.write(to);
+  write_state(extremes, to);
   const Codes codes(extremes);
   std::vector<std::uint64_t> keys(values.size());
   codes.scale.keys(values, keys);
@@ -99,7 +99,9 @@ NumberBlock NumberBlock::read(ByteReader& from) {
     return NumberBlock(few);
   }
   NumberBlock block;
-  block.extremes = Extremes::read(from, count);
+  block.extremes.count = count;
+  Archive archive(from);
+  block.extremes.state(archive);
   const Codes codes(block.extremes);
   std::vector<std::uint32_t> each(count);
   from_planes(from.raw(count * codes.bytes()), each);

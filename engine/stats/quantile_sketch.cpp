@@ -197,30 +197,24 @@ QuantileSketch QuantileSketch::magnitudes() const {
   return folded;
 }
 
-void QuantileSketch::write(ByteWriter& to) const {
-  to.number(count());
-  if (keeps_all()) {
-    to.reals(sorted());
+void QuantileSketch::state(Archive& archive) {
+  std::uint64_t values = count();
+  archive.number(values);
+  if (values <= kMostExact) {
+    std::vector<double> kept = archive.reads() ? std::vector<double>() : sorted();
+    archive.list(kept, static_cast<std::size_t>(values));
+    const bool finite = std::ranges::all_of(kept, [](double value) { return std::isfinite(value); });
+    archive.expect(finite, "a number is not finite");
+    if (archive.reads()) add(kept);
     return;
   }
-  extremes_.write(to);
-  counts_.write(to);
-}
-
-QuantileSketch QuantileSketch::read(ByteReader& from) {
-  QuantileSketch sketch;
-  const std::uint64_t count = from.number();
-  if (count <= kMostExact) {
-    const std::vector<double> values = from.reals(static_cast<std::size_t>(count));
-    if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
-      throw BytesError("a number is not finite");
-    }
-    sketch.add(values);
-    return sketch;
+  extremes_.count = values;
+  archive.object(extremes_);
+  if (archive.reads()) {
+    counts_ = BucketCounts::read(archive.reader(), extremes_);
+  } else {
+    counts_.write(archive.writer());
   }
-  sketch.extremes_ = Extremes::read(from, count);
-  sketch.counts_ = BucketCounts::read(from, sketch.extremes_);
-  return sketch;
 }
 
 }  // namespace poesy

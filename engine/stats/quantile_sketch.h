@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/stats/bucket_counts.h"
 #include "engine/stats/bucket_scale.h"
 #include "engine/stats/number_block.h"
@@ -60,10 +60,11 @@ class QuantileSketch {
   /// A sketch of the values' magnitudes, on a scale that is not finer.
   QuantileSketch magnitudes() const;
 
-  /// Every count of it, and back: up to two bytes for each bucket. read() throws BytesError for counts that no stream
-  /// of numbers gives.
-  void write(ByteWriter& to) const;
-  static QuantileSketch read(ByteReader& from);  ///< The opposite of write().
+  /// Every count of it: up to two bytes for each bucket.
+  void state(Archive& archive);
+  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Its state.
+  /// Its state. Throws BytesError for counts that no stream of numbers gives.
+  static QuantileSketch read(ByteReader& from) { return read_state<QuantileSketch>(from); }
 
  private:
   bool keeps_all() const { return count() <= kMostExact; }

@@ -87,28 +87,14 @@ Estimate RatioSums::estimate(double conf_level) const {
   return {ratio, {std::min(ratio, (b - half) / a), std::max(ratio, (b + half) / a)}};
 }
 
-void RatioSums::write(ByteWriter& to) const {
-  to.number(count_);
-  to.reals(std::array{x_, w_, xx_, xw_, ww_});
-}
-
-RatioSums RatioSums::read(ByteReader& from) {
-  RatioSums sums;
-  sums.count_ = from.number();
-  std::array<double, 5> reals{};
-  from.reals(reals);
-  const auto [x, w, xx, xw, ww] = reals;
-  const bool finite = std::ranges::all_of(reals, [](double sum) { return std::isfinite(sum); });
-  const bool empty = std::ranges::all_of(reals, [](double sum) { return sum == 0.0; });
-  if (!finite || w < 0.0 || xx < 0.0 || ww < 0.0 || (sums.count_ == 0 && !empty)) {
-    throw BytesError("has sums that no pairs give");
-  }
-  sums.x_ = x;
-  sums.w_ = w;
-  sums.xx_ = xx;
-  sums.xw_ = xw;
-  sums.ww_ = ww;
-  return sums;
+void RatioSums::state(Archive& archive) {
+  archive.number(count_);
+  archive.real(x_, w_, xx_, xw_, ww_);
+  const std::array sums{x_, w_, xx_, xw_, ww_};
+  const bool finite = std::ranges::all_of(sums, [](double sum) { return std::isfinite(sum); });
+  const bool empty = std::ranges::all_of(sums, [](double sum) { return sum == 0.0; });
+  const bool possible = finite && w_ >= 0.0 && xx_ >= 0.0 && ww_ >= 0.0 && (count_ > 0 || empty);
+  archive.expect(possible, "has sums that no pairs give");
 }
 
 }  // namespace poesy

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/stats/moments.h"
 
 /// Sobol' indices from squared differences of pairs of samples. A and B are two independent samples of all errors, and
@@ -38,8 +38,9 @@ class RatioSums {
   /// Precondition: 0 < conf_level < 1.
   Estimate estimate(double conf_level) const;
 
-  void write(ByteWriter& to) const;         ///< Every bit of it, and back.
-  static RatioSums read(ByteReader& from);  ///< Throws BytesError for what no pairs give.
+  void state(Archive& archive);                                                    ///< Every bit of it.
+  void write(ByteWriter& to) const { write_state(*this, to); }                     ///< Its state.
+  static RatioSums read(ByteReader& from) { return read_state<RatioSums>(from); }  ///< Throws BytesError.
 
  private:
   std::uint64_t count_ = 0;

@@ -60,21 +60,15 @@ bool is_below_zero(const PowerSums& powers, std::uint64_t rejects) {
   return mean + two_sided_student_quantile(k - 1.0, kLevel) * std::sqrt(variance) < 0.0;
 }
 
-void write_sums(ByteWriter& to, const std::vector<PowerSums>& sums) {
-  for (const auto member : {&PowerSums::sum, &PowerSums::square, &PowerSums::cube}) {
-    for (const PowerSums& one : sums) to.real(one.*member);
-  }
-}
-
-void read_sums(ByteReader& from, double rejects, std::vector<PowerSums>& sums) {
+void sums_state(Archive& archive, std::uint64_t rejects, std::vector<PowerSums>& sums) {
   constexpr double kRounding = 1.0 + 1e-9;
   for (const auto member : {&PowerSums::sum, &PowerSums::square, &PowerSums::cube}) {
-    for (PowerSums& one : sums) one.*member = from.real();
+    for (PowerSums& one : sums) archive.real(one.*member);
   }
   for (const PowerSums& one : sums) {
     const bool possible = std::isfinite(one.square) && std::isfinite(one.cube) && one.square >= 0.0 &&
-                          one.sum * one.sum <= rejects * one.square * kRounding;
-    if (!possible) throw BytesError("has sums of scores that no machines give");
+                          one.sum * one.sum <= static_cast<double>(rejects) * one.square * kRounding;
+    archive.expect(possible, "has sums of scores that no machines give");
   }
 }
 
@@ -226,19 +220,10 @@ Estimate ScoreSums::mean_growth(std::size_t error, double conf_level) const {
   return skewed_mean(growth_[error], machines_, added, static_cast<double>(rejects_) - 1.0, conf_level);
 }
 
-void ScoreSums::write(ByteWriter& to) const {
-  to.number(machines_);
-  to.number(rejects_);
-  for (const auto* sums : {&slope_, &growth_, &less_, &more_}) write_sums(to, *sums);
-}
-
-ScoreSums ScoreSums::read(ByteReader& from, const ErrorScores& scores) {
-  ScoreSums sums(scores);
-  sums.machines_ = from.number();
-  sums.rejects_ = from.number_up_to(sums.machines_);
-  const auto rejects = static_cast<double>(sums.rejects_);
-  for (auto* list : {&sums.slope_, &sums.growth_, &sums.less_, &sums.more_}) read_sums(from, rejects, *list);
-  return sums;
+void ScoreSums::state(Archive& archive) {
+  archive.number(machines_);
+  archive.number(rejects_, machines_);
+  for (auto* sums : {&slope_, &growth_, &less_, &more_}) sums_state(archive, rejects_, *sums);
 }
 
 }  // namespace poesy
