@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the pages that people read: links lead to files and headings that exist, headers in the theory are there, and
-each decision has a short page of its own that the index lists.
+"""Checks the pages that people read: links lead to files and headings that exist, headers that the pages of engine/docs
+name are there, and each decision has a short page of its own that the index lists.
 
 Usage: page_links.py ROOT
 """
@@ -42,9 +42,10 @@ def problems(root):
                 yield f"{name}: there is no {link}"
             elif anchor and anchor not in anchors(target):
                 yield f"{name}: no heading for {link}"
-    for header in HEADER.findall((root / "engine/docs/theory.md").read_text(encoding="utf-8")):
-        if not any((root / folder / header).exists() for folder in (".", "engine")):
-            yield f"engine/docs/theory.md: there is no header {header}"
+    for page in sorted((root / "engine/docs").rglob("*.md")):
+        for header in HEADER.findall(page.read_text(encoding="utf-8")):
+            if not any((root / folder / header).exists() for folder in (".", "engine")):
+                yield f"{page.relative_to(root)}: there is no header {header}"
 
 
 def decision_problems(root):
