@@ -16,35 +16,36 @@
 
 namespace poesy {
 
-/// The axes that many arrays have. A kind of study adds its own in the same way.
-namespace axis {
-/// @{
-struct Response {
-  static constexpr std::string_view kName = "response";
-};
-struct Factor {
-  static constexpr std::string_view kName = "factor";
-};
-struct Pose {
-  static constexpr std::string_view kName = "pose";
-};
-struct Sample {
-  static constexpr std::string_view kName = "sample";
-};
-struct Component {
-  static constexpr std::string_view kName = "component";
-};
-struct Joint {
-  static constexpr std::string_view kName = "joint";
-};
-/// @}
-}  // namespace axis
+/// A text as a parameter of a template.
+template <std::size_t kSize>
+struct AxisName {
+  /// Of a literal.
+  constexpr AxisName(const char (&literal)[kSize]) { std::ranges::copy(literal, text); }  // NOLINT: implicit
 
-/// A type that names an axis, as result files do.
-template <class Axis>
-concept NamedAxis = requires {
-  { Axis::kName } -> std::convertible_to<std::string_view>;
+  char text[kSize]{};  ///< its characters and a zero
 };
+
+/// An axis, as result files name it. Axes of one name are the same axis.
+template <AxisName kText>
+struct Axis {
+  static constexpr std::string_view kName{kText.text, sizeof(kText.text) - 1};  ///< Its name.
+};
+
+/// A type that names an axis.
+template <class T>
+concept NamedAxis = requires {
+  { T::kName } -> std::convertible_to<std::string_view>;
+};
+
+// The axes that many arrays have. A kind of study adds its own in the same way.
+namespace axis {
+using Response = Axis<"response">;    ///< Responses of the model.
+using Factor = Axis<"factor">;        ///< Errors of the study.
+using Pose = Axis<"pose">;            ///< Poses of the study.
+using Sample = Axis<"sample">;        ///< Samples at a pose.
+using Component = Axis<"component">;  ///< Components of a vector.
+using Joint = Axis<"joint">;          ///< Joints that have a displacement.
+}  // namespace axis
 
 /// Lengths of axes, the slowest first, and where an element lies (row-major).
 template <NamedAxis... Axes>
@@ -70,9 +71,9 @@ class AxisLayout {
     return at;
   }
   /// Positions along this axis, the first of that name.
-  template <class Axis>
+  template <NamedAxis A>
   std::size_t length() const {
-    constexpr std::array<bool, kAxes> kIsIt{std::same_as<Axis, Axes>...};
+    constexpr std::array<bool, kAxes> kIsIt{std::same_as<A, Axes>...};
     constexpr auto kPlace = static_cast<std::size_t>(std::ranges::find(kIsIt, true) - kIsIt.begin());
     static_assert(kPlace < kAxes, "the array has no such axis");
     return lengths_[kPlace];
@@ -93,11 +94,12 @@ class AxisLayout {
     const std::size_t count = product(std::span(lengths_).subspan(kFixed));
     return {place * count, count};
   }
+  /// Of lengths.
   static std::size_t product(std::span<const std::size_t> lengths) {
     return std::accumulate(lengths.begin(), lengths.end(), std::size_t{1}, std::multiplies());
   }
 
-  Lengths lengths_{};
+  Lengths lengths_{};  ///< Of all axes.
 };
 
 /// Elements that are elsewhere, along axes that have names. See Array.

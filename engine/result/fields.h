@@ -244,10 +244,10 @@ Number number(const Value& value) {
 
 /// Where a dataset is, and what it says about itself.
 struct Place {
-  const std::string& path;
-  const Axes& axes;
-  const Label& label;
-  Presence presence;
+  const std::string& path;  ///< absolute
+  const Axes& axes;         ///< at the root
+  const Label& label;       ///< unit and meaning
+  Presence presence;        ///< whether it may be missing
 };
 
 /// A member of `Found`, whatever its type.
@@ -266,10 +266,11 @@ class Member {
   virtual std::size_t element_bytes() const = 0;  ///< Of an element, in memory and in a file alike.
 };
 
+/// A member of this type.
 template <class Found, class Value>
 class MemberOf final : public Member<Found> {
  public:
-  explicit MemberOf(Value Found::*member) : member_(member) {}
+  explicit MemberOf(Value Found::*member) : member_(member) {}  ///< This one.
 
   bool write(ResultBuilder& result, const Place& place, std::span<const Found> things) const override {
     if constexpr (kIsList<Value> || kIsArray<Value>) {

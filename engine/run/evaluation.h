@@ -31,12 +31,12 @@ enum class Outcomes {
 
 /// What a table of errors does at each pose, in SI units. When paired, a pose has one sample.
 struct EvaluationResult {
-  Array<double, axis::Response, axis::Pose, axis::Sample> response;
-  Array<double, axis::Pose, axis::Sample, axis::Component> detail;  ///< components of all details
-  Array<SolveStatus, axis::Pose, axis::Sample> status;
-  Array<std::uint32_t, axis::Pose, axis::Sample> iterations;
-  Array<double, axis::Pose, axis::Joint> joint_displacement;  ///< of the perfect mechanism
-  std::optional<LimitVerdicts> verdicts;                      ///< where the study states limits
+  Array<double, axis::Response, axis::Pose, axis::Sample> response;  ///< of the model
+  Array<double, axis::Pose, axis::Sample, axis::Component> detail;   ///< components of all details
+  Array<SolveStatus, axis::Pose, axis::Sample> status;               ///< how each solve ended
+  Array<std::uint32_t, axis::Pose, axis::Sample> iterations;         ///< that each took
+  Array<double, axis::Pose, axis::Joint> joint_displacement;         ///< of the perfect mechanism
+  std::optional<LimitVerdicts> verdicts;                             ///< where the study states limits
 
   std::size_t poses() const { return status.length<axis::Pose>(); }            ///< Of the table.
   std::size_t samples() const { return status.length<axis::Sample>(); }        ///< At each pose.

@@ -104,22 +104,11 @@ struct AllocationStage {
   std::uint64_t rejects = 0;   ///< of them
 };
 
-/// Axes of what a study of tolerances finds.
 namespace axis {
-/// @{
-struct Part {
-  static constexpr std::string_view kName = "part";
-};
-struct Stage {
-  static constexpr std::string_view kName = "stage";
-};
-struct CurveYield {
-  static constexpr std::string_view kName = "curve_yield";
-};
-struct CurveFactor {
-  static constexpr std::string_view kName = "curve_factor";
-};
-/// @}
+using Part = Axis<"part">;                 ///< Parts of the machine.
+using Stage = Axis<"stage">;               ///< Stages of the search.
+using CurveYield = Axis<"curve_yield">;    ///< Yields of a curve.
+using CurveFactor = Axis<"curve_factor">;  ///< Factors of all tolerances of a curve.
 }  // namespace axis
 
 /// What a study of tolerances found of the parts of its drawing; SI; NaN where undefined. A response without a limit

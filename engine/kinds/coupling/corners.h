@@ -20,10 +20,7 @@
 namespace poesy {
 
 namespace axis {
-/// Blocks of errors that move together.
-struct Block {
-  static constexpr std::string_view kName = "block";
-};
+using Block = Axis<"block">;  ///< Blocks of errors that move together.
 }  // namespace axis
 
 /// Of each block of a subset '+' or '-'.

@@ -96,19 +96,10 @@ std::vector<FactorIndex> coupling_factors(const CouplingStudy& study, const Mode
 /// coupling_factors.
 ErrorTable coupling_table(const CouplingStudy& study, const ModelDescription& model);
 
-/// Axes of what a coupling study finds.
 namespace axis {
-/// @{
-struct Size {
-  static constexpr std::string_view kName = "size";
-};
-struct Source {
-  static constexpr std::string_view kName = "source";
-};
-struct Subset {
-  static constexpr std::string_view kName = "subset";
-};
-/// @}
+using Size = Axis<"size">;      ///< Sizes of the errors.
+using Source = Axis<"source">;  ///< Sources of errors.
+using Subset = Axis<"subset">;  ///< Sets of sources that act at once.
 }  // namespace axis
 
 /// What error sources do one by one and together, in SI units. NaN where a solve that a number rests on does not count.
@@ -126,25 +117,25 @@ struct CouplingResult {
   Array<double, axis::Size> linear;     ///< m; NaN where no error is a length
   Array<double, axis::Size> angular;    ///< rad; NaN where no error is an angle
 
-  Curves effect;
-  Curves sum;
-  Curves interaction;
-  Curves first_order_sum;
-  Curves worst_case;  ///< NaN where no corner is solved
-  Curves root_sum_square;
+  Curves effect;                                       ///< all errors of the subset at once
+  Curves sum;                                          ///< of what each source does alone
+  Curves interaction;                                  ///< effect - sum
+  Curves first_order_sum;                              ///< of the magnitudes of what each block does alone
+  Curves worst_case;                                   ///< NaN where no corner is solved
+  Curves root_sum_square;                              ///< of what each block does alone
   Curves cancellation;                                 ///< from 0 to 1
   Array<double, axis::Response, axis::Size> rounding;  ///< up to this a response to errors of the size is rounding
 
   // Over the poses where all of these are known; where there is none, NaN and pose -1.
-  Summary<std::uint64_t> count;           ///< such poses
-  Summary<double> effect_max;             ///< largest |effect|
-  Summary<std::int64_t> effect_max_pose;  ///< the first pose that has it
-  Summary<double> interaction_max;        ///< largest |interaction|
-  Summary<double> first_order_sum_max;
-  Summary<double> root_sum_square_max;
-  Summary<double> opposed_share;  ///< share of the poses where sources oppose each other
-  Summary<double> cancellation_max;
-  Summary<std::int64_t> cancellation_max_pose;
+  Summary<std::uint64_t> count;                 ///< such poses
+  Summary<double> effect_max;                   ///< largest |effect|
+  Summary<std::int64_t> effect_max_pose;        ///< the first pose that has it
+  Summary<double> interaction_max;              ///< largest |interaction|
+  Summary<double> first_order_sum_max;          ///< largest first-order sum
+  Summary<double> root_sum_square_max;          ///< largest root sum square
+  Summary<double> opposed_share;                ///< share of the poses where sources oppose each other
+  Summary<double> cancellation_max;             ///< largest cancellation
+  Summary<std::int64_t> cancellation_max_pose;  ///< the first pose that has it
 
   // The search for worst cases. Maxima are over all poses: where there is none, NaN, pose -1, and signs 0.
   Array<std::uint64_t, axis::Size, axis::Subset, axis::Pose> corners;  ///< corners behind the worst cases

@@ -31,13 +31,8 @@ struct CaseOptions {
 extern const StudyKind kEvaluateStudy;
 
 namespace axis {
-struct Case {
-  static constexpr std::string_view kName = "case";
-};
-/// Rows of a table of errors.
-struct Row {
-  static constexpr std::string_view kName = "row";
-};
+using Case = Axis<"case">;  ///< Named cases of errors.
+using Row = Axis<"row">;    ///< Rows of a table of errors.
 }  // namespace axis
 
 /// What given errors do: named cases, or the rows of a table. Its verdicts are those of StoredResult.

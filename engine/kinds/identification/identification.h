@@ -37,10 +37,7 @@ struct Coupling {
 };
 
 namespace axis {
-/// Groups of sizes.
-struct SizeGroup {
-  static constexpr std::string_view kName = "group";
-};
+using SizeGroup = Axis<"group">;  ///< Groups of sizes.
 }  // namespace axis
 
 /// Which errors deform the mechanism, tried at groups of sizes and at poses.

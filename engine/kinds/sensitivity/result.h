@@ -30,13 +30,8 @@ struct SensitivityOptions {
 /// The kind of study that tells what each error does on its own.
 extern const StudyKind kSensitivityStudy;
 
-/// Axes of what a sensitivity study finds.
 namespace axis {
-/// @{
-struct RadiusMultiple {
-  static constexpr std::string_view kName = "radius_multiple";
-};
-/// @}
+using RadiusMultiple = Axis<"radius_multiple">;  ///< Multiples of the points' radius.
 }  // namespace axis
 
 /// Which part of each error's effect the actuators can take away, to first order. Effects are those of model/model.h,

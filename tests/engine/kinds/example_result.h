@@ -278,8 +278,8 @@ class Example {
     for (const CouplingCurves member : kCurves) fill(result.*member, all);
     for (const CouplingSummary member : kSummaries) fill(result.*member, over_poses);
     result.count = CouplingResult::Summary<std::uint64_t>(over_poses);
-    for (auto* poses : {&result.effect_max_pose, &result.cancellation_max_pose, &result.worst_case_max_pose}) {
-      *poses = CouplingResult::Summary<std::int64_t>(over_poses);
+    for (auto* places : {&result.effect_max_pose, &result.cancellation_max_pose, &result.worst_case_max_pose}) {
+      *places = CouplingResult::Summary<std::int64_t>(over_poses);
     }
     result.worst_case_signs = decltype(result.worst_case_signs)({2, 2, 3, 2});
     for (std::size_t cell = 0; cell < 12; ++cell) {
