@@ -126,15 +126,15 @@ TEST(RunEvaluation, PairsRowsWithPoses) {
   const ErrorTable errors{{FactorIndex(1)}, {1e-3, -2e-3}, 2};
   const auto paired = run_evaluation(*model, {}, poses, errors, Pairing::row_by_row, {}).value();
   const auto crossed = run_evaluation(*model, {}, poses, errors, Pairing::every_pose_with_every_row, {}).value();
-  EXPECT_EQ(paired.samples, 1u);
-  EXPECT_EQ(crossed.samples, 2u);
+  EXPECT_EQ(paired.samples(), 1u);
+  EXPECT_EQ(crossed.samples(), 2u);
   for (std::size_t m = 0; m < 2; ++m) {
     for (std::size_t s = 0; s < 2; ++s) {
       const double sum = test::FakeModel::weight(test::FakeModel::kArm, 1, 1, poses[PoseIndex(m)]) * errors.values[s];
-      EXPECT_EQ(crossed.response[(2 + m) * 2 + s], std::abs(sum));
-      EXPECT_EQ(crossed.detail[(2 * m + s) * 2 + 1], sum);
+      EXPECT_EQ(crossed.response(1, m, s), std::abs(sum));
+      EXPECT_EQ(crossed.detail(m, s, 1), sum);
       if (s == m) {
-        EXPECT_EQ(paired.response[2 + m], std::abs(sum));
+        EXPECT_EQ(paired.response(1, m, 0), std::abs(sum));
       }
     }
   }

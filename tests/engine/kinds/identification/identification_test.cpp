@@ -96,8 +96,8 @@ TEST(Identify, FindsOverlappingPairs) {
 }
 
 TEST(Identify, CallsRoundingZeroAndAnythingAboveDeformed) {
-  EXPECT_EQ(identified([](auto e, std::size_t) { return e[0] != 0.0 ? kRounding : 0.0; }).single[0], 0);
-  EXPECT_EQ(identified([](auto e, std::size_t) { return e[0] != 0.0 ? 1.01 * kRounding : 0.0; }).single[0], 1);
+  EXPECT_EQ(identified([](auto e, std::size_t) { return e[0] != 0.0 ? kRounding : 0.0; }).single(0), 0);
+  EXPECT_EQ(identified([](auto e, std::size_t) { return e[0] != 0.0 ? 1.01 * kRounding : 0.0; }).single(0), 1);
 }
 
 TEST(Identify, AsksForAShareOfThePoses) {
@@ -106,9 +106,9 @@ TEST(Identify, AsksForAShareOfThePoses) {
     return [poses](auto e, std::size_t pose) { return pose < poses ? std::abs(e[0]) : 0.0; };
   };
   EXPECT_EQ(identified(deformed_at(1)).required_poses, 19u);
-  EXPECT_EQ(identified(deformed_at(1)).single[0], 0);
-  EXPECT_EQ(identified(deformed_at(2)).single[0], 1);
-  EXPECT_EQ(identified(deformed_at(2)).single_below[0], 18u);
+  EXPECT_EQ(identified(deformed_at(1)).single(0), 0);
+  EXPECT_EQ(identified(deformed_at(2)).single(0), 1);
+  EXPECT_EQ(identified(deformed_at(2)).single_below(0, 0), 18u);
 }
 
 TEST(Identify, AsksForOnePoseAtLeast) {
