@@ -14,7 +14,6 @@
 namespace poesy {
 namespace {
 
-constexpr double kStep = 14.0;        // pixels between glyphs that share a point
 constexpr double kTick = 15.0;        // pixels, half of a joint's axis
 constexpr double kAxis = 36.0;        // pixels, axes of a frame
 constexpr double kThinnest = 2.0;     // pixels of a link without share
@@ -27,6 +26,9 @@ constexpr std::array<std::string_view, 6> kLimbs{"#2563a8", "#b4541a", "#2f7d4f"
 double distance(const SketchVector& a, const SketchVector& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
+
+/// Half of the room of a glyph in a row, pixels.
+double half_space(const SketchedJoint& joint) { return joint.type == 'F' ? kGlyph / 3 + 2 : kGlyph + 1; }
 
 /// "12.500,-3.000,0.000 ...", mm.
 std::string numbers_of(std::span<const SketchVector> points) {
@@ -131,13 +133,14 @@ class Drawing {
     if (is_still()) text_ += "</g>\n";
   }
 
-  /// A limb's number beside its first joint, away from the next place and from numbers of limbs that begin there too.
+  /// A limb's number below its first joint, above it where the limb goes downwards; to the right of the numbers of
+  /// other limbs that begin there.
   void number(std::size_t i, const SketchVector& place, const SketchVector& next) {
     const std::span others(sketch_->limbs.data(), i);
     const auto is_here = [&](const auto& limb) { return view_->distance(limb.front().point, place) < kDigit; };
-    const double away = kDigit * static_cast<double>(std::ranges::count_if(others, is_here));
-    const double aside = view_->at(next).x < view_->at(place).x ? 13.0 + away : -20.0 - away;
-    add_text(place, {aside, 5}, std::to_string(i + 1), "class=\"limb-name\"");
+    const double right = kDigit * static_cast<double>(std::ranges::count_if(others, is_here));
+    const Pixel way{view_->at(next).x - view_->at(place).x, view_->at(next).y - view_->at(place).y};
+    add_text(place, {right - 4, way.y > std::abs(way.x) ? -13.0 : 20.0}, std::to_string(i + 1), "class=\"limb-name\"");
   }
 
   void joint(std::size_t i, std::size_t j, const SketchVector& place) {
@@ -169,7 +172,7 @@ class Drawing {
 
   /// Where the joints' glyphs are: at their points. Several at one point are in a row from there; a slide that begins
   /// at another joint is between the two that it connects.
-  std::vector<SketchVector> places_of(const std::vector<SketchedJoint>& joints) const {
+  std::vector<SketchVector> places_of(std::span<const SketchedJoint> joints) const {
     std::vector<SketchVector> places;
     while (places.size() < joints.size()) {
       const std::size_t begin = places.size();
@@ -178,20 +181,24 @@ class Drawing {
       const SketchVector& here = joints[begin].point;
       const SketchVector& next = end < joints.size() ? joints[end].point : sketch_->platform;
       const bool slides = end - begin > 1 && end < joints.size() && joints[end - 1].type == 'P';
-      const std::size_t row = end - begin - (slides ? 1 : 0);
-      const SketchVector step = row_step(here, next, row);
-      for (std::size_t k = 0; k < row; ++k) places.push_back(plus(here, static_cast<double>(k), step));
+      add_row(joints.subspan(begin, end - begin - (slides ? 1 : 0)), next, places);
       if (slides) places.push_back(middle(here, next));
     }
     return places;
   }
 
-  /// Between the glyphs of a row: towards the next joint where the row is seen to be shorter than the way there, else
-  /// to the right.
-  SketchVector row_step(const SketchVector& here, const SketchVector& next, std::size_t row) const {
+  /// The places of joints at one point: towards the next one where the row is seen to be shorter than the way there,
+  /// else to the right.
+  void add_row(std::span<const SketchedJoint> row, const SketchVector& next, std::vector<SketchVector>& places) const {
+    const SketchVector& here = row.front().point;
+    std::vector<double> offsets{0.0};
+    for (std::size_t j = 1; j < row.size(); ++j) {
+      offsets.push_back(offsets.back() + half_space(row[j - 1]) + half_space(row[j]));
+    }
     const double way = view_->distance(here, next);
-    if (kStep * static_cast<double>(row) < way) return plus({}, kStep / way, plus(next, -1.0, here));
-    return plus({}, view_->metres(kStep), view_->right());
+    const SketchVector pixel = offsets.back() < way ? plus({}, 1.0 / way, plus(next, -1.0, here))
+                                                    : plus({}, view_->metres(1.0), view_->right());
+    for (const double offset : offsets) places.push_back(plus(here, offset, pixel));
   }
 
   /// The frame of an error, its axis stronger than the others.

@@ -29,8 +29,8 @@ struct PartShares {
 /// as CSS variable --share from 0 % to 100 % of the largest. mark: position of an error whose frame is drawn; beyond
 /// the errors: none.
 std::string turnable_sketch(const Sketch& sketch, const SketchView& view, const PartShares& shares, std::size_t mark);
-/// For a picture of its own, in which kSketchStyle stands: limbs in colours of their own, a ring around joints whose
-/// frames have errors, the names of drives.
+/// For a picture of its own, with the style sheet kSketchStyle: limbs in colours of their own, a ring around joints
+/// whose frames have errors, the names of drives.
 std::string still_sketch(const Sketch& sketch, const SketchView& view);
 /// @}
 
