@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -11,18 +12,14 @@
 
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
-#include "engine/base/text.h"
 #include "engine/storage/file_writer.h"
 
 namespace poesy::app {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::string_view kPdfMark = "% poesy report\n";  ///< after a PDF's end, where it is a comment
 constexpr const char* kOtherWay = "write the report as REPORT.html, open it in a browser and print it to a PDF there";
-constexpr int kNoBrowser = 127;  ///< as shells say that a command is not found
-/// What a shell does in a folder with the page.
+/// What a shell does in a folder with the page; it ends with 127 where no browser is on PATH.
 constexpr const char* kPrint = R"sh(
   cd "$POESY_PRINTED" && exec 2>&1 </dev/null || exit 1
   [ "$(id -u)" = 0 ] && sandbox=--no-sandbox  # Chromium refuses to have one as root
@@ -34,11 +31,11 @@ constexpr const char* kPrint = R"sh(
 
 /// A new folder for temporary files, removed with all that is in it.
 struct TemporaryFolder {
-  std::string path = (fs::temp_directory_path() / "poesy-report-XXXXXX").string();
-  bool made = ::mkdtemp(path.data()) != nullptr;
+  std::error_code error;
+  std::string path = (std::filesystem::temp_directory_path(error) / "poesy-report-XXXXXX").string();
+  bool made = !error && ::mkdtemp(path.data()) != nullptr;
   ~TemporaryFolder() {
-    std::error_code ignored;
-    if (made) fs::remove_all(path, ignored);
+    if (made) std::filesystem::remove_all(path, error);
   }
 };
 
@@ -54,7 +51,7 @@ bool is_pdf(const std::string& path) { return path.ends_with(".pdf") || path.end
 
 bool is_pdf_report(const std::string& path) {
   std::error_code unknown;
-  return fs::is_empty(path, unknown) || contents(path).ends_with(kPdfMark);
+  return std::filesystem::is_empty(path, unknown) || contents(path).ends_with(kPdfMark);
 }
 
 bool write_pdf(const std::string& path, std::string_view page) {
@@ -65,18 +62,16 @@ bool write_pdf(const std::string& path, std::string_view page) {
   ::setenv("POESY_PRINTED", folder.path.c_str(), 1);
   std::FILE* browser = ::popen(kPrint, "r");
   if (browser == nullptr) throw FileError(path, "was not printed: no process can be started", kOtherWay);
-  std::string said;
-  for (int c = std::fgetc(browser); c != EOF; c = std::fgetc(browser)) said += static_cast<char>(c);
+  std::string said = "nothing";
+  for (std::array<char, 300> line; std::fgets(line.data(), line.size(), browser) != nullptr;) said = line.data();
   const int status = ::pclose(browser);
   if (interrupted) return false;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == kNoBrowser) {
-    throw InputError({.file = path}, "neither chromium nor chromium-browser nor google-chrome is on PATH", kOtherWay);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
+    throw InputError({.file = path}, "cannot be printed: neither Chromium nor Chrome is on PATH", kOtherWay);
   }
   const std::string pdf = contents(folder.path + "/report.pdf");
   if (status != 0 || pdf.find("%%EOF") == std::string::npos) {
-    said.resize(said.find_last_not_of(" \n") + 1);
-    const std::string last = said.empty() ? "nothing" : printable(said.substr(said.rfind('\n') + 1), 300);
-    throw FileError(path, "was not printed: the browser said: " + last, kOtherWay);
+    throw FileError(path, "was not printed: the browser said: " + said.substr(0, said.find('\n')), kOtherWay);
   }
   write_text(path, pdf + std::string(kPdfMark));
   return true;

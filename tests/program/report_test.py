@@ -178,7 +178,8 @@ class Report(ProgramTest):
     def test_is_not_written_where_the_browser_fails(self):
         temporary = self.folder / "tmp"
         temporary.mkdir()
-        for script, said in (("echo no display >&2; exit 1", b"no display"), ("exit 0", b"said: nothing"), ("kill -9 $$", b"said: nothing"),
+        for script, said in (("echo no display >&2; exit 1", b"no display"), ("exit 0", b"said: nothing"),
+                             ("echo one; echo two; kill -9 $$", b"said: two"),
                              ('for a; do case $a in --print-to-pdf=*) echo %PDF-1.4 > "${a#*=}";; esac; done', b"was not")):
             with self.subTest(script):
                 done = self.printed(self.browser(script) | {"TMPDIR": str(temporary)}, "r.h5", "-o", "r.pdf")
@@ -186,6 +187,9 @@ class Report(ProgramTest):
                 self.assertIn(said, done.stderr)
                 self.assertFalse((self.folder / "r.pdf").exists())
                 self.assertEqual(list(temporary.iterdir()), [])
+        done = self.printed({"TMPDIR": str(self.folder / "nowhere")}, "r.h5", "-o", "r.pdf")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn(b"r.pdf: was not printed: no temporary folder can be made; set TMPDIR", done.stderr)
 
     def test_ends_the_browser_when_interrupted(self):
         temporary = self.folder / "tmp"
