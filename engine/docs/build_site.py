@@ -32,6 +32,7 @@ SECTIONS = {
                ("Add a mechanism", "models/README.md"), ("Add a response", "engine/docs/adding-a-response.md"),
                ("Contribute", "CONTRIBUTING.md")],
     "Reference": [("Study files", "engine/docs/study-file.md"), ("Result files", "engine/docs/result-file.md"),
+                  ("Security", "engine/docs/security.md"),
                   ("C++ library", f"{LIBRARY}/index.html"), ("Changes", "CHANGELOG.md")],
     "Theory": [("Equations and sources", "engine/docs/theory.md"), ("Rankings of one study", "results/2upr-rpu-sensitivity/README.md"),
                ("2UPR-RPU, published", "results/2upr-rpu-paper/README.md"), ("3-PRS, published", "results/3prs-paper/README.md"),
