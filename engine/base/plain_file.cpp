@@ -6,14 +6,13 @@
 
 #include <array>
 #include <cerrno>
-#include <utility>
 
 namespace poesy {
-namespace {
 
-/// What a mode says; empty for a plain file.
-std::string_view other_of(mode_t mode) {
-  switch (mode & S_IFMT) {
+std::string_view other_than_file(const std::string& path) {
+  struct stat there {};
+  if (::stat(path.c_str(), &there) != 0) return {};
+  switch (there.st_mode & S_IFMT) {
     case S_IFDIR:
       return "a folder";
     case S_IFIFO:
@@ -28,31 +27,10 @@ std::string_view other_of(mode_t mode) {
   }
 }
 
-}  // namespace
-
-std::string_view other_than_file(const std::string& path) {
-  struct stat there {};
-  return ::stat(path.c_str(), &there) == 0 ? other_of(there.st_mode) : std::string_view();
-}
-
-PlainFile::PlainFile(const std::string& path) : other_(other_than_file(path)) {
-  if (other_.empty()) {
-    descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-    struct stat opened {};
-    error_ = is_open() && ::fstat(descriptor_, &opened) == 0 ? 0 : errno;
-    if (error_ == 0) other_ = other_of(opened.st_mode);
-  }
-  if (!other_.empty()) error_ = EINVAL;
-  if (error_ != 0 && is_open()) ::close(std::exchange(descriptor_, -1));
-}
-
-PlainFile::PlainFile(PlainFile&& other) noexcept { *this = std::move(other); }
-
-PlainFile& PlainFile::operator=(PlainFile&& other) noexcept {
-  std::swap(descriptor_, other.descriptor_);
-  std::swap(error_, other.error_);
-  std::swap(other_, other.other_);
-  return *this;
+PlainFile::PlainFile(const std::string& path) : error_(EINVAL), other_(other_than_file(path)) {
+  if (!other_.empty()) return;
+  descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  error_ = is_open() ? 0 : errno;
 }
 
 PlainFile::~PlainFile() {

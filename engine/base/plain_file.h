@@ -14,14 +14,12 @@ namespace poesy {
 /// file, and where nothing can be looked at. Opens nothing: to open a FIFO is to wait for whoever writes to it.
 std::string_view other_than_file(const std::string& path);
 
-/// A plain file that is open for reading. Opening never waits. The opened file is checked once more, because another
-/// one may have taken the name since the first check: a PlainFile is never a FIFO or a device.
+/// A plain file that is open for reading. Opening never waits.
 class PlainFile {
  public:
-  PlainFile() = default;                             ///< Has no file open.
-  explicit PlainFile(const std::string& path);       ///< Opens the file there if it is a plain one; see is_open().
-  PlainFile(PlainFile&& other) noexcept;             ///< `other` has no file open afterwards.
-  PlainFile& operator=(PlainFile&& other) noexcept;  ///< `other` gets the file that this one had.
+  explicit PlainFile(const std::string& path);  ///< Opens the file there if it is a plain one; see is_open().
+  PlainFile(const PlainFile&) = delete;
+  PlainFile& operator=(const PlainFile&) = delete;
   ~PlainFile();
 
   bool is_open() const { return descriptor_ >= 0; }  ///< Whether it has a file open.

@@ -273,13 +273,9 @@ std::optional<FoundCheckpoint> CheckpointFiles::find() {
   FoundCheckpoint found =
       newer_is_sound_ ? FoundCheckpoint{std::get<Checkpoint>(std::move(newer)), newer_, ""}
                       : FoundCheckpoint{std::get<Checkpoint>(std::move(older)), older_, std::get<std::string>(newer)};
-  hold(found.path, found.checkpoint.stored);
+  held_.emplace(found.path);
+  states_ = found.checkpoint.stored;
   return found;
-}
-
-void CheckpointFiles::hold(const std::string& path, std::vector<StoredState> states) {
-  held_ = PlainFile(path);
-  states_ = std::move(states);
 }
 
 void CheckpointFiles::write(const CheckpointIdentity& identity, const RunTime& time,
@@ -296,7 +292,8 @@ void CheckpointFiles::write(const CheckpointIdentity& identity, const RunTime& t
   if (newer_is_sound_) put_at_second_name(newer_, older_);
   writer.commit();
   newer_is_sound_ = true;
-  hold(newer_, std::move(states));
+  held_.emplace(newer_);
+  states_ = std::move(states);
 }
 
 void CheckpointFiles::write_state(std::size_t stage, ByteWriter& to) {
@@ -305,7 +302,7 @@ void CheckpointFiles::write_state(std::size_t stage, ByteWriter& to) {
   Sha256 sha;
   try {
     Bytes block;
-    for (read_block(held_, at, block); !block.empty(); read_block(held_, at, block)) {
+    for (read_block(*held_, at, block); !block.empty(); read_block(*held_, at, block)) {
       sha.bytes(block);
       to.raw(block);
     }
@@ -316,7 +313,7 @@ void CheckpointFiles::write_state(std::size_t stage, ByteWriter& to) {
 }
 
 void CheckpointFiles::remove() {
-  held_ = PlainFile();  // an open file would take room still
+  held_.reset();  // an open file would take room still
   states_.clear();
   // The newest last, so that what is left of a removal that was cut short is the newest.
   for (const std::string* path : {&older_, &newer_}) {

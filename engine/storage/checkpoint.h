@@ -115,15 +115,12 @@ class CheckpointFiles {
   void remove();  ///< Removes all of them. Throws FileError.
 
  private:
-  /// Opens the file of these states, to read them again.
-  void hold(const std::string& path, std::vector<StoredState> states);
-
   std::string result_;
   std::string newer_;
   std::string older_;
-  bool newer_is_sound_ = false;  ///< only then it may replace the older one
-  PlainFile held_;               ///< what was found or written last, if it could be opened
-  std::vector<StoredState> states_;
+  bool newer_is_sound_ = false;      ///< only then it may replace the older one
+  std::optional<PlainFile> held_;    ///< what was found or written last
+  std::vector<StoredState> states_;  ///< of that
 };
 
 /// Keeps other runs from the same result, and so from its checkpoints, while it lives: an advisory lock on

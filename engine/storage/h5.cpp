@@ -419,23 +419,19 @@ File File::on_disk(FileWriter& disk) {
 
 File File::open(const std::string& path) {
   silence();
-  PlainFile plain(path);
-  if (!plain.is_open()) {
+  if (const PlainFile plain(path); !plain.is_open()) {
     const std::string reason = std::generic_category().message(plain.error());
     throw Error("cannot open " + path + " (" + (plain.other().empty() ? reason : "is " + std::string(plain.other())) +
                 ")");
   }
-  // The driver has no lock: result files are replaced, never changed in place, and some file systems have none.
-  auto driver = std::make_unique<Input>(std::move(plain));
   const Handle access = property_list(H5P_FILE_ACCESS);
-  checked(driver->choose_for(access.get()), "prepare", path);
-  File file(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), "open", path));
-  file.input_ = std::move(driver);
-  return file;
+  // Result files are replaced, never changed in place, and some file systems have no locks.
+  checked(H5Pset_file_locking(access.get(), false, true), "prepare", path);
+  checked(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG), "prepare", path);
+  return File(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), "open", path));
 }
 
-File::File(File&& other) noexcept
-    : disk_(std::move(other.disk_)), input_(std::move(other.input_)), id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
+File::File(File&& other) noexcept : disk_(std::move(other.disk_)), id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
 
 File::~File() {
   if (id_ != H5I_INVALID_HID) H5Fclose(id_);
@@ -444,7 +440,6 @@ File::~File() {
 void File::close() {
   checked(H5Fclose(std::exchange(id_, H5I_INVALID_HID)), "close", "the file");
   disk_.reset();
-  input_.reset();
 }
 
 void File::make_group(const std::string& path) {

@@ -19,7 +19,6 @@ class FileWriter;
 namespace poesy::h5 {
 
 class Disk;
-class Input;
 
 /// A call into HDF5 failed. what() is a clause: what was tried on which object, and HDF5's own reason.
 class Error : public std::runtime_error {
@@ -127,8 +126,7 @@ class File {
  private:
   explicit File(std::int64_t id);
 
-  std::unique_ptr<Disk> disk_;    // of a new file on one
-  std::unique_ptr<Input> input_;  // of an existing file
+  std::unique_ptr<Disk> disk_;  // of a new file on one
   std::int64_t id_;
 };
 

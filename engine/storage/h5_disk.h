@@ -3,8 +3,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "engine/base/plain_file.h"
-
 namespace poesy {
 
 class FileWriter;
@@ -27,23 +25,6 @@ class Disk {
 
  private:
   std::shared_ptr<FileWriter*> writer_;  // shared with the files that HDF5 has open
-  std::int64_t driver_;
-};
-
-/// A file driver that lets HDF5 read a file that is already open. By name, HDF5 would open whatever has that name by
-/// then, and wait if that is a FIFO.
-class Input {
- public:
-  explicit Input(PlainFile file);  ///< Throws Error when HDF5 does not take the driver. Precondition: it is open.
-  Input(const Input&) = delete;
-  Input& operator=(const Input&) = delete;
-  ~Input();
-
-  /// Makes HDF5 read this file when it opens one with this access property list. Negative when HDF5 refuses.
-  int choose_for(std::int64_t access) const;
-
- private:
-  std::shared_ptr<const PlainFile> file_;  // shared with the files that HDF5 has open
   std::int64_t driver_;
 };
 

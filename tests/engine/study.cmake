@@ -1,4 +1,4 @@
-poesy_test(study_test LABELS unit SOURCES engine/run/history_points_test.cpp engine/study/milestones_test.cpp engine/study/plan_test.cpp engine/study/study_test.cpp engine/study/text_file_test.cpp
+poesy_test(study_test LABELS unit SOURCES engine/run/history_points_test.cpp engine/study/milestones_test.cpp engine/study/plan_test.cpp engine/study/study_test.cpp
            LINKS poesy_kinds)
 poesy_test(pose_selection_test LABELS property SOURCES engine/study/pose_selection_test.cpp
            engine/study/boundary_test.cpp engine/study/trajectory_test.cpp LINKS poesy_kinds)

@@ -1,7 +1,10 @@
 #include "engine/storage/h5_disk.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -213,6 +216,41 @@ TEST(FileOnDisk, IsHashedInSlicesAsAWhole) {
   all.append(reinterpret_cast<const char*>(values.data()), kCount * sizeof(double));
   number(0);
   EXPECT_EQ(content_sha256(file), hex(sha256(std::as_bytes(std::span(all)))));
+}
+
+TEST(H5File, LeavesNothingOpen) {
+  const TempFolder folder;
+  const std::string path = folder / "f.h5";
+  FileWriter writer(path);
+  h5::File::on_disk(writer).close();
+  writer.commit();
+  const std::size_t open = files_in("/proc/self/fd");
+  { const h5::File file = h5::File::open(path); }
+  EXPECT_THROW(h5::File::open(folder.write("text", "no HDF5")), h5::Error);
+  EXPECT_THROW(h5::File::open(folder.path()), h5::Error);
+  EXPECT_EQ(files_in("/proc/self/fd"), open);
+}
+
+TEST(H5File, SaysWhenTheDiskFails) {
+  try {
+    h5::File::open("/proc/self/mem");  // a plain file of which nothing can be read at 0
+    ADD_FAILURE() << "was opened";
+  } catch (const h5::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("Input/output error"), std::string::npos) << error.what();
+  }
+}
+
+/// Some file systems have no locks, and a result that is being read may be replaced.
+TEST(H5File, IsReadWhateverLocksItHas) {
+  const TempFolder folder;
+  const std::string path = folder / "f.h5";
+  FileWriter writer(path);
+  h5::File::on_disk(writer).close();
+  writer.commit();
+  const int other = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(::flock(other, LOCK_EX), 0);
+  EXPECT_NO_THROW(h5::File::open(path));
+  ::close(other);
 }
 
 }  // namespace
