@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
-#include <sys/xattr.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -47,24 +46,12 @@ void check_present(const std::string& path, const OutputKind& kind, std::span<co
                    "name another file with -o, or remove it");
 }
 
-/// Neither this user's nor the administrator's.
-bool is_of_another_user(const struct stat& file) { return file.st_uid != 0 && file.st_uid != ::geteuid(); }
-
-bool is_link_of_another_user(const fs::path& link) {
-  struct stat found {};
-  return ::lstat(link.c_str(), &found) == 0 && is_of_another_user(found);
-}
-
-/// Where a symbolic link leads, through further ones, all of them the user's own or the administrator's.
+/// Where a symbolic link leads, through further ones.
 std::string end_of_links(const std::string& path) {
   constexpr int kMostLinks = 40;  // as the system itself
   fs::path at(path);
   std::error_code ignored;
   for (int links = 0; fs::is_symlink(fs::symlink_status(at, ignored)); ++links) {
-    if (is_link_of_another_user(at)) {
-      throw InputError({.file = at.string()}, "is a symbolic link that another user made",
-                       "name the file that it leads to, if that is the one you mean");
-    }
     const fs::path to = fs::read_symlink(at, ignored);
     if (links == kMostLinks || to.empty()) {
       throw InputError({.file = path}, "is a symbolic link that leads nowhere, or in a circle", "name another file");
@@ -95,66 +82,14 @@ bool is_temporary_name(std::string_view name, std::string_view of_file) {
   return name.size() == 2 * kRandomBytes && name.find_first_not_of(kDigits) == std::string_view::npos;
 }
 
-constexpr mode_t kAllRights = 0777;
-
-/// These rights without the group's, which may do no more than everybody.
-mode_t without_group(mode_t mode) {
-  constexpr mode_t kGroup = 070;
-  constexpr mode_t kOthers = 07;
-  return (mode & kAllRights & ~kGroup) | (mode & kOthers) << 3U;
-}
-
-/// A plain file that a new one is to be like.
-struct PermissionModel {
-  std::string path;
-  struct stat facts;
-};
-
-/// For a new file at `path`: `like`, or else what is there, but another user's only where both are.
-std::optional<PermissionModel> model_of(const std::string& path, const std::string& like) {
-  std::optional<PermissionModel> model;
-  for (const std::string& file : {like, path}) {
+/// The permission bits of the first of two files that there is; none where there is neither.
+std::optional<mode_t> rights_of(const std::string& first, const std::string& second) {
+  constexpr mode_t kAllRights = 0777;
+  for (const std::string& file : {first, second}) {
     struct stat found {};
-    if (::lstat(file.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) continue;
-    if (!is_of_another_user(found)) return PermissionModel{file, found};
-    if (!model) model = PermissionModel{file, found};
+    if (::lstat(file.c_str(), &found) == 0 && S_ISREG(found.st_mode)) return found.st_mode & kAllRights;
   }
-  return model;
-}
-
-/// The rights of a new file until it gets those that it is to have; the system takes those of the umask off. Another
-/// user's file gives none that a file of one's own would not have: it may have been put there for that.
-mode_t first_rights(const std::optional<PermissionModel>& model) {
-  constexpr mode_t kReadableByAll = 0666;
-  constexpr mode_t kPrivate = 0600;
-  if (!model) return kReadableByAll;
-  return is_of_another_user(model->facts) ? (model->facts.st_mode | kPrivate) & kReadableByAll : kPrivate;
-}
-
-/// Gives the file the access list of another, or none where that has none. Whether it could.
-bool copy_access_list(const std::string& from, int to) {
-  constexpr const char* kList = "system.posix_acl_access";
-  std::array<std::byte, 4096> list{};
-  const ssize_t bytes = ::lgetxattr(from.c_str(), kList, list.data(), list.size());
-  if (bytes > 0) return ::fsetxattr(to, kList, list.data(), static_cast<std::size_t>(bytes), 0) == 0;
-  if (bytes < 0 && errno != ENODATA && errno != ENOTSUP) return false;
-  return ::fremovexattr(to, kList) == 0 || errno == ENODATA || errno == ENOTSUP;
-}
-
-/// Group, access list and rights of its model. Where these cannot be had, the group that the file has instead may do no
-/// more than everybody.
-void give_permissions(int file, const PermissionModel& model) {
-  struct stat made {};
-  if (is_of_another_user(model.facts)) {
-    const bool same_group = ::fstat(file, &made) == 0 && made.st_gid == model.facts.st_gid;
-    if (!same_group) ::fchmod(file, without_group(made.st_mode));
-    return;
-  }
-  constexpr auto kSameUser = static_cast<uid_t>(-1);
-  const bool has_group = ::fchown(file, kSameUser, model.facts.st_gid) == 0;
-  const bool has_list = copy_access_list(model.path, file);
-  const mode_t rights = model.facts.st_mode;
-  ::fchmod(file, has_group && has_list ? rights & kAllRights : without_group(rights));
+  return std::nullopt;
 }
 
 /// The beginning of a plain file; none where there is no such file, or it cannot be read.
@@ -245,10 +180,12 @@ FileWriter::FileWriter(std::string path, const std::string& like, FillRandomly f
   if (::stat(path_.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
     throw FileError(path_, "is not a plain file and will not be replaced", "choose another name");
   }
-  const std::optional<PermissionModel> model = model_of(path_, like);
-  descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, first_rights(model));
+  constexpr mode_t kReadableByAll = 0666;
+  constexpr mode_t kPrivate = 0600;
+  const std::optional<mode_t> rights = rights_of(like, path_);
+  descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, rights ? kPrivate : kReadableByAll);
   if (descriptor_ == kClosed) fail("cannot be created", errno);
-  if (model) give_permissions(descriptor_, *model);
+  if (rights) ::fchmod(descriptor_, *rights);
 }
 
 FileWriter::~FileWriter() {

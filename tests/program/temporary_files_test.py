@@ -133,20 +133,6 @@ class TemporaryFiles(ResumptionTest):
         self.succeeds("report", "r.h5", "-o", "r.html")
         self.assertEqual(self.mode("r.html"), 0o600)
 
-    def test_a_file_of_another_user_opens_no_result(self):
-        """An empty file that everybody may write to, put there before the run."""
-        old_mask = os.umask(0o022)
-        self.addCleanup(os.umask, old_mask)
-        self.write("r.h5", "").chmod(0o666)
-        try:
-            os.chown(self.folder / "r.h5", 12345, 12345)
-        except OSError as error:
-            self.skipTest(f"only root makes files of others ({error})")
-        self.assertEqual(self.run_quick("--keep-checkpoint").returncode, 0)
-        for name in ("r.h5", "r.h5.part"):
-            self.assertEqual(self.mode(name), 0o644, name)
-            self.assertEqual((self.folder / name).stat().st_uid, os.geteuid(), name)
-
     def test_what_a_kill_left_is_removed(self):
         left = [f"r.h5{part}.tmp.0123456789ab" for part in ("", ".part", ".part.1")]
         others = ["r.h5.tmp", "r.h5.tmp.1", "r.h5.tmp.0123456789abc", "r.h5.tmp.0123456789aB", "other.h5.tmp.0123456789ab",

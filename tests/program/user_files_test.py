@@ -95,24 +95,6 @@ class UserFiles(ProgramTest):
         self.assertIn("r.h5.part", said)
         self.assertIn("MB of memory", said)
 
-    def test_a_link_of_another_user(self):
-        if os.geteuid() != 0:
-            self.skipTest("only root makes links of others")
-        victim = self.folder / "victim.h5"
-        for exists in (True, False):
-            with self.subTest(exists=exists):
-                os.symlink("victim.h5", self.folder / "r.h5")
-                if exists:
-                    self.succeeds("run", "quick.toml", "-o", "victim.h5", "--quiet")
-                    before = victim.read_bytes()
-                os.lchown(self.folder / "r.h5", 12345, 12345)
-                self.assertIn("is a symbolic link that another user made", self.ends(2, "run", "quick.toml", "-o", "r.h5"))
-                if exists:
-                    self.assertEqual(victim.read_bytes(), before)
-                    victim.unlink()
-                self.assertFalse(victim.exists())
-                (self.folder / "r.h5").unlink()
-
     def test_files_beside_a_certificate(self):
         self.write("a.toml", ALLOCATION)
         for make in (os.mkfifo, os.mkdir, lambda path: os.symlink("/dev/zero", path)):

@@ -2,15 +2,11 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <sys/xattr.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstddef>
-#include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <regex>
 #include <set>
@@ -181,90 +177,6 @@ TEST(FileWriter, HasThePermissionsOfTheFileThatItIsToBeLike) {
     EXPECT_EQ(mode_of(folder / "f"), 0604U);
     ::chmod((folder / "f").c_str(), 0666);
   }
-}
-
-/// An access list as the system keeps it: the owner and user 12345 may read and write, nobody else anything.
-std::string access_list() {
-  struct Entry {
-    std::uint16_t whom, rights;
-    std::uint32_t id;
-  };
-  constexpr std::uint32_t kVersion = 2;
-  constexpr std::uint32_t kNobody = 0xFFFF'FFFF;
-  constexpr std::array<Entry, 5> kEntries{
-      {{0x01, 6, kNobody}, {0x02, 6, 12345}, {0x04, 0, kNobody}, {0x10, 6, kNobody}, {0x20, 0, kNobody}}};
-  std::string list(sizeof kVersion + sizeof kEntries, '\0');
-  std::memcpy(list.data(), &kVersion, sizeof kVersion);
-  std::memcpy(list.data() + sizeof kVersion, kEntries.data(), sizeof kEntries);
-  return list;
-}
-
-/// Gives a path such a list under this name. Whether its file system has them.
-bool give_access_list(const std::string& path, const char* name) {
-  const std::string list = access_list();
-  return ::setxattr(path.c_str(), name, list.data(), list.size(), 0) == 0;
-}
-
-std::string access_list_of(const std::string& path) {
-  std::string list(200, '\0');
-  const ssize_t bytes = ::getxattr(path.c_str(), "system.posix_acl_access", list.data(), list.size());
-  list.resize(bytes < 0 ? 0 : static_cast<std::size_t>(bytes));
-  return list;
-}
-
-TEST(FileWriter, KeepsTheAccessListOfWhatItReplaces) {
-  const TempFolder folder;
-  const std::string path = folder.write("f", "old");
-  if (!give_access_list(path, "system.posix_acl_access")) GTEST_SKIP() << "this file system has no access lists";
-  ASSERT_EQ(access_list_of(path), access_list());
-  write_text(path, "new");
-  EXPECT_EQ(access_list_of(path), access_list());
-}
-
-TEST(FileWriter, GetsNoAccessListThatTheOldFileHasNot) {
-  const TempFolder folder;
-  const std::string path = folder.write("f", "old");
-  ::chmod(path.c_str(), 0640);
-  if (!give_access_list(folder.path(), "system.posix_acl_default")) {
-    GTEST_SKIP() << "this file system has no access lists";
-  }
-  write_text(path, "new");
-  EXPECT_EQ(access_list_of(path), "");
-  EXPECT_EQ(mode_of(path), 0640U);
-}
-
-constexpr uid_t kOther = 12345;
-
-/// Replaces a file of another user and this group, which has these rights, under this umask; the rights then.
-mode_t rights_after(mode_t theirs, gid_t group, mode_t mask, const std::string& like = {}) {
-  const TempFolder folder;
-  const std::string path = folder.write("f", "");
-  EXPECT_EQ(::chown(path.c_str(), kOther, group), 0);
-  ::chmod(path.c_str(), theirs);
-  const mode_t old_mask = ::umask(mask);
-  write_like(path, like);
-  ::umask(old_mask);
-  struct stat facts {};
-  EXPECT_EQ(::stat(path.c_str(), &facts), 0);
-  EXPECT_EQ(facts.st_uid, ::geteuid());
-  EXPECT_EQ(facts.st_gid, ::getegid());
-  return facts.st_mode & 0777U;
-}
-
-TEST(FileWriter, GetsNoRightsFromAFileOfAnotherUser) {
-  const TempFolder folder;
-  const std::string like = folder.write("like", "");
-  if (::chown(like.c_str(), kOther, kOther) != 0) GTEST_SKIP() << "only root makes files of others";
-  EXPECT_EQ(rights_after(0666, kOther, 022), 0644U);
-  EXPECT_EQ(rights_after(0600, kOther, 022), 0600U);
-  EXPECT_EQ(rights_after(0660, kOther, 022), 0600U);
-  EXPECT_EQ(rights_after(0604, kOther, 022), 0644U);
-  EXPECT_EQ(rights_after(0044, kOther, 022), 0644U) << "the owner may read and write";
-  EXPECT_EQ(rights_after(0660, ::getegid(), 002), 0660U) << "of a folder whose files have its group";
-  EXPECT_EQ(rights_after(0660, ::getegid(), 022), 0640U);
-  ASSERT_EQ(::chown(like.c_str(), ::geteuid(), ::getegid()), 0);
-  ::chmod(like.c_str(), 0600);
-  EXPECT_EQ(rights_after(0666, kOther, 022, like), 0600U);
 }
 
 TEST(LeftOver, IsRemovedAndNothingElse) {
