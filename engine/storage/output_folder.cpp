@@ -1,50 +1,34 @@
 #include "engine/storage/output_folder.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <optional>
-#include <set>
-#include <span>
-#include <sstream>
-#include <string_view>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
 #include "engine/base/error.h"
-#include "engine/base/plain_file.h"
-#include "engine/storage/content_hash.h"
 #include "engine/storage/file_writer.h"
-#include "engine/study/text_file.h"
 
 namespace poesy {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kComment = "#";
-constexpr std::string_view kUnfinished = "# being written: ";
-/// Before the result that the files below are of.
+constexpr std::string_view kTitle =
+    "# Files that poesy wrote here; it replaces or removes them while they are unchanged";
 constexpr std::string_view kResult = "# content_sha256 ";
-constexpr std::string_view kSeparator = "  ";
-constexpr std::size_t kHashLength = 2 * std::tuple_size_v<Sha256::Digest>;
-constexpr std::size_t kMostBytes = 1 << 20;
+constexpr std::string_view kUnfinished = "# unfinished";
+constexpr std::string_view kUnknown = "unknown";
 constexpr const char* kRemedy = "name another folder with -d, or move it away";
 
-bool is_hash(std::string_view text) {
-  return text.size() == kHashLength && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-}
-
-/// SHA-256 of a file; none when it cannot be read.
-std::optional<std::string> hash_of(const std::string& path) {
-  const PlainFile file(path);
-  Sha256 hash;
-  if (!file.is_open() || !file.read_parts([&](std::span<const std::byte> part) { hash.bytes(part); })) {
-    return std::nullopt;
-  }
-  return hex(hash.digest());
+/// Which file has this name; 0 where there is none. A file that replaces another is another one.
+ino_t file_at(const std::string& path) {
+  struct stat found {};
+  return ::lstat(path.c_str(), &found) == 0 ? found.st_ino : 0;
 }
 
 }  // namespace
@@ -56,90 +40,87 @@ void make_folder(const std::string& folder) {
 }
 
 OutputFolder::OutputFolder(std::string path, const std::string& result)
-    : path_(std::move(path)), result_(is_hash(result) ? result : "") {
-  if (!stands(file(kListOfFiles))) return;
-  std::istringstream text(read_text(file(kListOfFiles), "list of files", kMostBytes));
-  std::string of;
-  for (std::string line; std::getline(text, line);) read_line(line, of);
+    : path_(std::move(path)), result_(result.empty() ? kUnknown : result) {
+  if (stands(file(kManifest))) read_manifest();
 }
 
 std::string OutputFolder::file(const std::string& name) const { return (fs::path(path_) / name).string(); }
 
-/// result: that of the lines above; a line that names one sets it.
-void OutputFolder::read_line(const std::string& line, std::string& result) {
-  Listed listed{.hash = {}, .result = result};
-  std::string name;
-  if (line.starts_with(kResult)) {
-    const std::string hash = line.substr(kResult.size());
-    result = is_hash(hash) ? hash : "";
-    return;
+void OutputFolder::read_manifest() {
+  const std::string path = file(kManifest);
+  const auto expect = [&](bool ours) {
+    if (ours) return;
+    throw InputError({.file = path}, "exists, was not written by poesy, and would be lost", kRemedy);
+  };
+  std::error_code error;
+  expect(fs::is_regular_file(path, error));
+  std::ifstream text(path);
+  std::string line;
+  expect(std::getline(text, line) && line == kTitle);
+  while (std::getline(text, line)) {
+    if (line == kUnfinished) {
+      unfinished_ = true;
+    } else if (line.starts_with(kResult)) {
+      listed_result_ = line.substr(kResult.size());
+    } else {
+      expect(!line.empty() && fs::path(line).filename() == line);
+      listed_.insert(line);
+    }
   }
-  if (line.starts_with(kUnfinished)) {
-    name = line.substr(kUnfinished.size());
-  } else if (line.empty() || line.starts_with(kComment)) {
-    return;
-  } else if (line.size() > kHashLength + kSeparator.size() &&
-             line.compare(kHashLength, kSeparator.size(), kSeparator) == 0) {
-    listed.hash = line.substr(0, kHashLength);
-    name = line.substr(kHashLength + kSeparator.size());
+  const auto written = fs::last_write_time(path, error);
+  for (const std::string& name : listed_) {
+    const auto time = fs::last_write_time(file(name), error);
+    if (!error && !unfinished_ && time > written) changed_.insert(name);
   }
-  const bool is_name = !name.empty() && fs::path(name).filename() == name;
-  if (!is_name || (!listed.hash.empty() && !is_hash(listed.hash))) {
-    throw InputError({.file = file(kListOfFiles)}, "exists, was not written by poesy, and would be lost", kRemedy);
-  }
-  listed_[name] = listed;
 }
 
 /// Throws InputError where what has this name must not be replaced or removed. Precondition: something has it.
 void OutputFolder::check(const std::string& name) const {
-  const std::string path = file(name);
-  const auto refuse = [&](const std::string& problem) { throw InputError({.file = path}, problem, kRemedy); };
+  const auto refuse = [&](const std::string& problem) { throw InputError({.file = file(name)}, problem, kRemedy); };
   std::error_code ignored;
-  if (fs::symlink_status(path, ignored).type() != fs::file_type::regular) {
+  if (fs::symlink_status(file(name), ignored).type() != fs::file_type::regular) {
     refuse("is not a plain file and will not be replaced");
   }
-  const auto listed = listed_.find(name);
-  if (listed == listed_.end()) {
-    refuse(
-        fmt::format("exists and was not written by poesy ({} does not list it), and it would be lost", kListOfFiles));
+  if (!listed_.contains(name)) {
+    refuse(fmt::format("exists and was not written by poesy ({} does not list it), and it would be lost", kManifest));
   }
-  const std::string& hash = listed->second.hash;
-  const bool unfinished = hash.empty();
-  if (!unfinished && hash_of(path) != hash) {
-    refuse("was changed since poesy wrote it, and the changes would be lost");
+  if (changed_.contains(name)) {
+    refuse(fmt::format("was changed since poesy wrote it (it is newer than {}), and the changes would be lost",
+                       kManifest));
   }
 }
 
 void OutputFolder::claim(const std::string& name) {
-  std::string& before = claimed_[name];
-  if (!stands(file(name))) return;
-  check(name);
-  before = hash_of(file(name)).value_or("");
+  if (stands(file(name))) check(name);
+  claimed_[name] = file_at(file(name));
 }
 
 void OutputFolder::fill(const std::function<void()>& write) {
-  std::vector<std::string> others;  // of other results
-  for (const auto& [name, listed] : listed_) {
-    const bool of_this = !result_.empty() && listed.result == result_;
-    if (of_this || claimed_.contains(name) || !stands(file(name))) continue;
-    check(name);
-    others.push_back(name);
+  const bool of_this = !unfinished_ && result_ != kUnknown && listed_result_ == result_;
+  std::set<std::string> names;
+  std::set<std::string> others;  // of other results
+  for (const std::string& name : listed_) {
+    if (claimed_.contains(name) || !stands(file(name))) continue;
+    if (!of_this) {
+      check(name);
+      others.insert(name);
+    }
+    if (!changed_.contains(name)) names.insert(name);
   }
+  for (const auto& [name, before] : claimed_) names.insert(name);
   make_folder(path_);
-  for (const auto& [name, before] : claimed_) listed_[name] = {.hash = {}, .result = result_};
   try {
-    write_list();
+    write_manifest(std::string(kUnfinished), names);
     write();
     remove(others);
-    for (const auto& [name, before] : claimed_) listed_[name].hash = hash_of(file(name)).value_or("");
-    std::erase_if(listed_, [&](const auto& one) { return !stands(file(one.first)); });
-    write_list();
+    std::erase_if(names, [&](const std::string& name) { return !stands(file(name)); });
+    write_manifest(std::string(kResult) + result_, names);
   } catch (const FileError& error) {
     throw FileError("", error.what(), what_is_there());
   }
 }
 
-void OutputFolder::remove(const std::vector<std::string>& names) {
+void OutputFolder::remove(const std::set<std::string>& names) const {
   for (const std::string& name : names) {
     std::error_code error;
     fs::remove(file(name), error);
@@ -150,30 +131,17 @@ void OutputFolder::remove(const std::vector<std::string>& names) {
 
 /// After a failure: how many of the claimed files are new.
 std::string OutputFolder::what_is_there() const {
-  const auto is_new = [&](const auto& claimed) {
-    return stands(file(claimed.first)) && hash_of(file(claimed.first)) != claimed.second;
-  };
+  const auto is_new = [&](const auto& claimed) { return file_at(file(claimed.first)) != claimed.second; };
   const auto written = static_cast<std::size_t>(std::ranges::count_if(claimed_, is_new));
   if (written == 0) return "the files in " + path_ + " are as they were before";
   return fmt::format("{} of the {} files in {} are new, any others are those of before: do not use them together",
                      written, claimed_.size(), path_);
 }
 
-void OutputFolder::write_list() const {
-  std::string text = "# Files that poesy wrote here; it replaces them while they are unchanged (sha256sum -c)\n";
-  std::set<std::string> results;
-  for (const auto& [name, listed] : listed_) results.insert(listed.result);
-  for (const std::string& result : results) {
-    text += std::string(kResult) + (result.empty() ? "unknown" : result) + '\n';
-    for (const auto& [name, listed] : listed_) {
-      if (listed.result != result) continue;
-      text += listed.hash.empty() ? std::string(kUnfinished) : listed.hash + std::string(kSeparator);
-      text += name + '\n';
-    }
-  }
-  FileWriter writer(file(kListOfFiles));
-  writer.write(text);
-  writer.commit();
+void OutputFolder::write_manifest(const std::string& state, const std::set<std::string>& names) const {
+  std::string text = std::string(kTitle) + '\n' + state + '\n';
+  for (const std::string& name : names) text += name + '\n';
+  write_text(file(kManifest), text);
 }
 
 }  // namespace poesy

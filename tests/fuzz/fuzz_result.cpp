@@ -57,7 +57,7 @@ void use(const std::string& path) {
     fuzz::expect(std::filesystem::path(table).parent_path() == folder().path(), "tables lie in the named folder");
     ::unlink(table.c_str());
   }
-  ::unlink((folder() / kListOfFiles).c_str());
+  ::unlink((folder() / kManifest).c_str());
 }
 
 }  // namespace

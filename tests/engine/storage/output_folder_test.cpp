@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 
 #include "engine/base/error.h"
 #include "engine/result/result_file.h"
+#include "engine/storage/file_writer.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/input_error.h"
 #include "tests/support/temp_folder.h"
@@ -49,12 +51,18 @@ class OutputFolders : public testing::Test {
                  Killed);
   }
 
+  /// The user writes a file, later than poesy wrote its own.
+  void change(const std::string& name, const std::string& bytes) {
+    folder_.write(name, bytes);
+    fs::last_write_time(folder_ / name, fs::last_write_time(folder_ / kManifest) + std::chrono::milliseconds(1));
+  }
+
   void expect_refused(const std::string& name, const std::string& words) {
     OutputFolder output(folder_.path(), kResult);
     expect_input_error([&] { output.claim(name); }, {folder_ / name, 0, 0}, {words, "-d"});
   }
 
-  std::string list() const { return read_bytes(folder_ / kListOfFiles); }
+  std::string manifest() const { return read_bytes(folder_ / kManifest); }
   bool has(const std::string& name) const { return fs::exists(folder_ / name); }
 
   TempFolder folder_;
@@ -79,17 +87,19 @@ TEST_F(OutputFolders, AnEmptyFileOfTheUsersIsRefused) {
 
 TEST_F(OutputFolders, AFileThatWasChangedIsRefused) {
   write("z\n0.1\n");
-  folder_.write("a.csv", "z\n0.2\n");
+  change("a.csv", "z\n0.2\n");
   expect_refused("a.csv", "was changed since poesy wrote it");
-  folder_.write("a.csv", "z\n0.1\n");
-  write("z\n0.3\n");
+  // Nor does it become poesy's by what another command writes later.
+  write_all({"b.csv"}, "of the other\n");
+  expect_refused("a.csv", "does not list it");
+  EXPECT_EQ(read_bytes(folder_ / "a.csv"), "z\n0.2\n");
 }
 
 TEST_F(OutputFolders, FilesThatAnInterruptedCommandLeftMayBeReplaced) {
   write("whole\n");
   kill({"a.csv", "b.csv"}, kResult);
   write_all({"a.csv", "b.csv"}, "new\n");
-  folder_.write("b.csv", "changed afterwards\n");
+  change("b.csv", "changed afterwards\n");
   expect_refused("b.csv", "was changed");
 }
 
@@ -109,8 +119,7 @@ TEST_F(OutputFolders, TwoCommandsOfAResultShareAFolder) {
   write("of one\n");
   write_all({"b.csv"}, "of the other\n");
   write("again\n");
-  EXPECT_NE(list().find("  a.csv\n"), std::string::npos);
-  EXPECT_NE(list().find("  b.csv\n"), std::string::npos);
+  EXPECT_NE(manifest().find("\na.csv\nb.csv\n"), std::string::npos);
 }
 
 TEST_F(OutputFolders, FilesOfAnotherResultGoAsAWhole) {
@@ -120,33 +129,32 @@ TEST_F(OutputFolders, FilesOfAnotherResultGoAsAWhole) {
   EXPECT_FALSE(has("a.csv"));
   EXPECT_EQ(read_bytes(folder_ / "b.csv"), "new\n");
   EXPECT_EQ(read_bytes(folder_ / "mine.csv"), "z\n0.1\n");
-  EXPECT_EQ(list().find(kResult), std::string::npos);
-  EXPECT_NE(list().find("# content_sha256 " + kOther + "\n"), std::string::npos);
-  EXPECT_EQ(list().find("a.csv"), std::string::npos);
+  EXPECT_EQ(manifest().find(kResult), std::string::npos);
+  EXPECT_NE(manifest().find("# content_sha256 " + kOther + "\n"), std::string::npos);
+  EXPECT_EQ(manifest().find("a.csv"), std::string::npos);
   EXPECT_EQ(files_in(folder_.path()), 4U);
 }
 
 TEST_F(OutputFolders, AChangedFileOfAnotherResultIsKept) {
   write_all({"a.csv", "b.csv"}, "old\n");
-  folder_.write("a.csv", "of the user\n");
-  const std::string before = list();
+  change("a.csv", "of the user\n");
+  const std::string before = manifest();
   OutputFolder output(folder_.path(), kOther);
   output.claim("b.csv");
   expect_input_error([&] { output.fill([] { FAIL() << "nothing may be written"; }); }, {folder_ / "a.csv", 0, 0},
                      {"was changed since poesy wrote it", "-d"});
   EXPECT_EQ(read_bytes(folder_ / "a.csv"), "of the user\n");
   EXPECT_EQ(read_bytes(folder_ / "b.csv"), "old\n");
-  EXPECT_EQ(list(), before);
+  EXPECT_EQ(manifest(), before);
 }
 
 TEST_F(OutputFolders, AfterAKillTheNextResultHasTheFolderForItself) {
   for (const std::string& next : {kResult, kOther, std::string(64, '3')}) {
     write_all({"a.csv", "b.csv"}, "old\n");
     kill({"b.csv", "c.csv"}, kOther);
-    EXPECT_NE(list().find(kResult), std::string::npos) << "a.csv is still of that";
     write_all({"b.csv"}, "new\n", next);
-    EXPECT_EQ(has("a.csv"), next == kResult);
-    EXPECT_EQ(has("c.csv"), false);
+    EXPECT_FALSE(has("a.csv"));
+    EXPECT_FALSE(has("c.csv"));
     EXPECT_EQ(read_bytes(folder_ / "b.csv"), "new\n");
   }
 }
@@ -157,16 +165,6 @@ TEST_F(OutputFolders, FilesOfAnUnknownResultStayWithNoOthers) {
   EXPECT_FALSE(has("a.csv"));
   write_all({"c.csv"}, "new\n", kResult);
   EXPECT_FALSE(has("b.csv"));
-}
-
-// A list of the time before it named results.
-TEST_F(OutputFolders, FilesOfAListWithoutAResultAreOfAnotherOne) {
-  write("old\n");
-  std::string text = list();
-  text.erase(text.find("# content_sha256"), std::string("# content_sha256 \n").size() + kResult.size());
-  folder_.write(kListOfFiles, text);
-  write_all({"b.csv"}, "new\n");
-  EXPECT_FALSE(has("a.csv"));
 }
 
 TEST_F(OutputFolders, AFailureSaysHowManyFilesAreNew) {
@@ -186,27 +184,20 @@ TEST_F(OutputFolders, AFailureSaysHowManyFilesAreNew) {
   write_all({"a.csv", "b.csv"}, "old\n");
   EXPECT_EQ(failure([] {}),
             "b.csv: cannot be written; make room; the files in " + folder_.path() + " are as they were before");
-  EXPECT_EQ(failure([&] { folder_.write("a.csv", "new\n"); }),
+  EXPECT_EQ(failure([&] { write_text(folder_ / "a.csv", "new\n"); }),
             "b.csv: cannot be written; make room; 1 of the 3 files in " + folder_.path() +
                 " are new, any others are those of before: do not use them together");
 }
 
-TEST_F(OutputFolders, AListThatIsNotOursIsRefused) {
-  const std::string hash(64, 'a');
-  for (const std::string& text : {std::string("notes\n"), std::string("0123  a.csv\n"), std::string("../a.csv  0123\n"),
-                                  hash + "  ../a.csv\n", hash + "  /a.csv\n", std::string("# being written: ../a\n")}) {
-    folder_.write(kListOfFiles, text);
-    expect_input_error([&] { OutputFolder(folder_.path(), kResult); }, {folder_ / kListOfFiles, 0, 0},
+TEST_F(OutputFolders, AManifestThatIsNotOursIsRefused) {
+  write("mine\n");
+  const std::string ours = manifest();
+  for (const std::string& text :
+       {std::string(), std::string("notes\n"), "a.csv\n" + ours, ours + "../a.csv\n", ours + "/a.csv\n", ours + "\n"}) {
+    folder_.write(kManifest, text);
+    expect_input_error([&] { OutputFolder(folder_.path(), kResult); }, {folder_ / kManifest, 0, 0},
                        {"was not written by poesy"});
   }
-}
-
-// The list is the one of sha256sum, of which this is the hash of "abc".
-TEST_F(OutputFolders, ListIsThatOfSha256sum) {
-  write("abc");
-  EXPECT_NE(list().find("\nba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad  a.csv\n"),
-            std::string::npos)
-      << list();
 }
 
 TEST_F(OutputFolders, AnExportWritesNothingWhereOneTableIsTheUsers) {
@@ -231,9 +222,9 @@ TEST_F(OutputFolders, ExportsOfDifferentKindsReplaceEachOther) {
   EXPECT_EQ(files_in(tables), 1 + files);
   EXPECT_EQ(files_in(tables), 1 + export_tables(folder_ / "e.h5", tables).size());
   EXPECT_EQ(files_in(tables), 1 + export_tables(folder_ / "s.h5", tables).size());
-  EXPECT_NE(read_bytes(tables + "/" + kListOfFiles).find(read_result(folder_ / "s.h5").content_sha256),
-            std::string::npos);
+  EXPECT_NE(read_bytes(tables + "/" + kManifest).find(read_result(folder_ / "s.h5").content_sha256), std::string::npos);
   folder_.write("tables/poses.csv", "pose,z [m],beta [rad],gamma [rad],condition\n0,-0.2,0,0,1\n");
+  fs::last_write_time(tables + "/poses.csv", fs::file_time_type::clock::now() + std::chrono::seconds(1));
   EXPECT_THROW(export_tables(folder_ / "s.h5", tables), InputError);
 }
 

@@ -189,13 +189,13 @@ TEST_F(ToleranceFiles, ClaimWhatIsWrittenAndNoMore) {
       if (limit) write_confirmation(out, stored, some(limit), catalog_);
       write_tolerances(out, stored, some(limit));
     });
-    const std::string list = read_bytes(output.file(kListOfFiles));
+    const std::string list = read_bytes(output.file(kManifest));
     std::size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(out)) {
       const std::string name = entry.path().filename().string();
-      if (name == kListOfFiles) continue;
+      if (name == kManifest) continue;
       ++files;
-      EXPECT_NE(list.find("  " + name + "\n"), std::string::npos) << name;
+      EXPECT_NE(list.find("\n" + name + "\n"), std::string::npos) << name;
     }
     EXPECT_EQ(files, limit ? 4U : 1U);
     EXPECT_EQ(std::ranges::count(list, '\n'), static_cast<std::ptrdiff_t>(files + 2));
