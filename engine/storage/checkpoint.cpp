@@ -333,27 +333,19 @@ RunLock::RunLock(const std::string& result_path) : path_(result_path + ".lock") 
 }
 
 bool RunLock::take(const std::string& result_path) {
-  // A FIFO that somebody put there is opened at once, and refused.
-  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
-  const int reason = errno;
-  struct stat file {};
-  const int looked = descriptor_ < 0 ? ::lstat(path_.c_str(), &file) : ::fstat(descriptor_, &file);
-  if (looked == 0 && !S_ISREG(file.st_mode)) {
-    close();
-    throw FileError(path_, "is not a plain file, and a run keeps its lock in one", "remove it");
+  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) {
+    const int reason = errno;
+    if (!stands(path_)) return true;  // who writes the result will find the same trouble, and say what to do
+    throw FileError(path_, "cannot be opened (" + std::generic_category().message(reason) + ")",
+                    "remove it if no run is computing this result, or give another -o");
   }
-  if (descriptor_ >= 0 && looked == 0 && file.st_size > 0) {
+  struct stat file {};
+  if (::fstat(descriptor_, &file) != 0 || !S_ISREG(file.st_mode) || file.st_size > 0) {
     close();
-    throw FileError(path_, "is no lock of poesy, which is empty, and a run would remove it",
+    throw FileError(path_, "is no lock of poesy, which is an empty file, and a run would remove it",
                     "move it away, or give another -o");
   }
-  if (descriptor_ < 0 && looked == 0) {
-    throw FileError(
-        path_,
-        "cannot be opened (" + std::generic_category().message(reason) + "), and a run of another user may have it",
-        "wait for that run, remove the file if there is none, or give another -o");
-  }
-  if (descriptor_ < 0) return true;
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     const bool taken = errno == EWOULDBLOCK;
     close();

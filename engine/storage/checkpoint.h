@@ -129,8 +129,8 @@ class CheckpointFiles {
 class RunLock {
  public:
   /// result_path: where links end (check_output_path), so that a link and what it leads to are one result. Throws
-  /// InputError when another run has the lock, FileError when something other than a plain file has its name, or
-  /// a file that this user may not open.
+  /// InputError when another run has the lock, FileError when something other than an empty plain file has its name,
+  /// or it cannot be opened.
   explicit RunLock(const std::string& result_path);
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;

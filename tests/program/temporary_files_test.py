@@ -62,17 +62,6 @@ class TemporaryFiles(ResumptionTest):
         self.assertFalse((self.folder / "r.h5").is_symlink())
         self.assertTrue((self.folder / "r.h5.part").is_file())
 
-    def test_planted_lock(self):
-        for target in ("victim", "nothing"):
-            with self.subTest(target=target):
-                os.symlink(target, self.folder / "r.h5.lock")
-                done = self.run_quick()
-                self.assertEqual(done.returncode, 3, done.stderr)
-                self.assertIn("r.h5.lock: is not a plain file", done.stderr.decode())
-                self.assertEqual(self.names(), {"quick.toml", "victim", "r.h5.lock"})
-                self.assertEqual(self.victim.read_text(), PRECIOUS)
-                (self.folder / "r.h5.lock").unlink()
-
     def test_output_that_is_a_link(self):
         """The result, its checkpoints and its lock are where the link leads."""
         disk = self.folder / "disk"

@@ -9,7 +9,7 @@ import shutil
 import subprocess
 
 import h5py
-from poesy_program import GALLERY, PROGRAM, STUDY, ProgramTest, least_to_start, least_to_work, main, with_memory
+from poesy_program import GALLERY, STUDY, ProgramTest, least_to_start, least_to_work, main, with_memory
 
 MINI = """\
 format = "poesy-study"
@@ -266,26 +266,6 @@ class Overflow(Untrusted):
         self.write("tr.csv", "t,alpha,beta,z\n0,0,0,0.7\n1,0,0,0.71\n")
         self.write("study.toml", mini(trajectory.format(', time = ["0 s", "1e10 s"], points = 3')))
         self.assertIn("more than 1e9 s from 0", self.said(2, "check", "study.toml"))
-
-
-class Locks(Untrusted):
-    def test_a_lock_that_cannot_be_opened_is_one(self):
-        """As another user's is, who lets nobody read his files."""
-        if os.geteuid() != 0:
-            self.skipTest("only root can be another user")
-        self.write("study.toml", mini())
-        lock = self.write("o.h5.lock", "")
-        lock.chmod(0o600)
-        self.folder.chmod(0o777)
-        parents = [parent for parent in self.folder.parents if not os.stat(parent).st_mode & 0o001]
-        if parents:
-            self.skipTest(f"nobody else reaches {parents[0]}")
-        program = shutil.copy(PROGRAM, self.folder)  # where it was built, others may have no access
-        done = subprocess.run([program, "run", "study.toml", "-o", "o.h5", "--quiet"], cwd=self.folder, capture_output=True,
-                              timeout=120, check=False, user=54321, group=54321, extra_groups=[])
-        self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("o.h5.lock: cannot be opened", done.stderr.decode())
-        self.assertFalse((self.folder / "o.h5").exists())
 
 
 class Words(Untrusted):
