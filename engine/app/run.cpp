@@ -20,6 +20,7 @@
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
+#include "engine/result/checkpoint_identity.h"
 #include "engine/result/result_file.h"
 #include "engine/run/ranks/team.h"
 #include "engine/run/run_options.h"

@@ -22,9 +22,6 @@
 #include "engine/base/text.h"
 #include "engine/storage/content_hash.h"
 #include "engine/storage/file_writer.h"
-#include "engine/storage/version.h"
-#include "engine/study/study_file.h"
-#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
@@ -39,13 +36,6 @@ constexpr std::size_t kDigestBytes = std::tuple_size_v<Sha256::Digest>;
 bool begins_with_magic(std::span<const std::byte> bytes) {
   const auto magic = std::as_bytes(std::span(kMagic));
   return bytes.size() >= magic.size() && std::ranges::equal(bytes.first(magic.size()), magic);
-}
-
-std::string hash_of(const PoseSet& poses) {
-  ByteWriter bytes;
-  bytes.number(poses.size());
-  for (std::size_t m = 0; m < poses.size(); ++m) bytes.reals(poses[PoseIndex(m)]);
-  return hex(sha256(bytes.take()));
 }
 
 /// The members in the order of the file.
@@ -146,24 +136,6 @@ std::variant<Checkpoint, std::string> read_checkpoint(const std::string& path) {
 }
 
 }  // namespace
-
-CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const std::optional<Shard>& shard) {
-  Study rest = study;
-  rest.seed = 0;
-  rest.title.clear();
-  rest.max_not_converged = 1.0;  // judges the run when it is done
-  // Likewise, but that machines are counted under them.
-  if (study.analysis.draws == Draws::per_pose) rest.analysis.limits.clear();
-  if (!study.analysis.kind->decides_by_samples) rest.analysis.samples = 0;
-  return {.poesy_version = poesy_version(),
-          .git_commit = git_commit(),
-          .model = study.model().name,
-          .seed = study.seed,
-          .samples = study.analysis.samples,
-          .study = resolved_text(rest) + (study.mechanism.file ? study.mechanism.file->text : ""),
-          .poses = hash_of(poses),
-          .shard = shard ? to_string(*shard) : ""};
-}
 
 void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& checkpoint, const std::string& path) {
   const auto check = [&](bool continues, const std::string& problem, const std::string& remedy) {

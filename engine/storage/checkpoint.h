@@ -10,31 +10,22 @@
 
 #include "engine/base/bytes.h"
 #include "engine/base/plain_file.h"
-#include "engine/run/shard.h"
-#include "engine/study/poses/pose_selection.h"
-#include "engine/study/study.h"
 
 namespace poesy {
 
-/// What a run must have in common with the checkpoint that it takes up.
+/// What a run must have in common with the checkpoint that it takes up (result/checkpoint_identity.h).
 struct CheckpointIdentity {
   std::string poesy_version;  ///< exact: bytes of a state are for the program that wrote them
   std::string git_commit;     ///< of that program
   std::string model;          ///< its name
   std::uint64_t seed = 0;     ///< of the draws
   std::uint64_t samples = 0;  ///< that the study sets; a run may have more than its checkpoint
-  /// The resolved study, without title, seed, samples (but of a kind that decides by them), max_not_converged and,
-  /// unless errors are drawn per machine, limits; and the mechanism's file.
-  std::string study;
-  std::string poses;       ///< SHA-256 of the poses, hexadecimal
-  std::string shard = {};  ///< "2/5"; empty for the whole study
+  std::string study;          ///< the resolved study without what may differ, and the mechanism's file
+  std::string poses;          ///< SHA-256 of the poses, hexadecimal
+  std::string shard = {};     ///< "2/5"; empty for the whole study
 
   bool operator==(const CheckpointIdentity&) const = default;  ///< Whether nothing differs.
 };
-
-/// That of a run of this program.
-CheckpointIdentity identity_of(const Study& study, const PoseSet& poses,
-                               const std::optional<Shard>& shard = std::nullopt);
 
 /// Seconds that a run took.
 struct RunTime {

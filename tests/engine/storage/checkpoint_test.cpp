@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "engine/base/error.h"
+#include "engine/result/checkpoint_identity.h"
 #include "engine/storage/content_hash.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/kinds.h"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/kinds/study_file.h"
-#include "engine/storage/checkpoint.h"
+#include "engine/result/checkpoint_identity.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
 #include "tests/support/kinds.h"
