@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 #include "engine/base/text.h"
@@ -30,37 +29,6 @@ std::string readable_quoted(std::string_view quoted) {
   } catch (const QuantityError&) {
     return std::string(quoted);
   }
-}
-
-/// The first line of a text, which goes on behind it.
-std::string_view take_line(std::string_view& text) {
-  const std::size_t end = std::min(text.find('\n'), text.size());
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  return line;
-}
-
-/// How many lists begin in a line of TOML and do not end there.
-int open_lists(std::string_view line) {
-  int open = 0;
-  bool quoted = false;
-  for (std::size_t k = 0; k < line.size(); ++k) {
-    if (line[k] == '"' && (k == 0 || line[k - 1] != '\\')) quoted = !quoted;
-    if (!quoted) open += (line[k] == '[' ? 1 : 0) - (line[k] == ']' ? 1 : 0);
-  }
-  return open;
-}
-
-/// A value that begins with this text; of a list, with the lines over which it goes on.
-std::string whole_value(std::string_view begin, std::string_view& text) {
-  std::string value(begin);
-  for (int open = open_lists(begin); open > 0 && !text.empty();) {
-    const std::string_view line = take_line(text);
-    open += open_lists(line);
-    value += " ";
-    value += trimmed(line);
-  }
-  return value;
 }
 
 }  // namespace
@@ -205,32 +173,6 @@ Cell percent_cell(double share) { return cell(percent_number(share), 100.0 * sha
 Cell index_cell(double index, double scale, double rounding) {
   if (is_too_small_to_tell(index, rounding)) return text_cell(kTooSmall);
   return cell(std::abs(index) < rounding ? "0" : number_text(index * scale), index * scale);
-}
-
-std::vector<StudySetting> study_settings(std::string_view study_text) {
-  std::vector<StudySetting> list;
-  std::map<std::string, std::size_t> repeated;
-  std::string section;
-  while (!study_text.empty()) {
-    const std::string_view line = take_line(study_text);
-    const std::size_t equals = line.find(" = ");
-    if (line.starts_with("[[") && line.ends_with("]]")) {
-      const std::string name(line.substr(2, line.size() - 4));
-      section = name + " " + std::to_string(++repeated[name]);
-    } else if (line.starts_with('[') && line.ends_with(']')) {
-      section = line.substr(1, line.size() - 2);
-    } else if (equals != std::string_view::npos) {
-      list.push_back({section, std::string(line.substr(0, equals)), whole_value(line.substr(equals + 3), study_text)});
-    }
-  }
-  return list;
-}
-
-std::string study_setting(std::string_view study_text, std::string_view section, std::string_view key) {
-  for (const StudySetting& setting : study_settings(study_text)) {
-    if (setting.section == section && setting.key == key) return setting.value;
-  }
-  return {};
 }
 
 std::string readable_setting(std::string_view value) {

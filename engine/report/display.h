@@ -10,9 +10,9 @@
 
 #include "engine/report/table.h"
 #include "engine/result/result_file.h"
+#include "engine/schema/settings.h"
 
-/// How values are shown: every table makes its columns and cells here. What a result says of its study: the resolved
-/// text (study/study_file.h), read setting by setting.
+/// How values are shown: every table makes its columns and cells here. Settings of a study as people read them.
 namespace poesy {
 
 /// Position of a response among the result's; it must have it.
@@ -86,20 +86,7 @@ Cell index_cell(double index, double scale, double rounding);
 
 inline constexpr std::string_view kTooSmall = "rounding";  ///< Stands for an index that cannot be told from rounding.
 
-/// A setting of a resolved study.
-struct StudySetting {
-  std::string section;  ///< "errors"; of repeated sections with their number, "analysis.cases 2"; empty at the top
-  std::string key;      ///< "linear"
-  std::string value;    ///< as it is written, a list of several lines as one: "\"newton\"", "1000"
-};
-
-/// All that a resolved study sets, in its order.
-std::vector<StudySetting> study_settings(std::string_view study_text);
-
-/// The value of a key of a section, as it is written. Empty where the study does not set it.
-std::string study_setting(std::string_view study_text, std::string_view section, std::string_view key);
-
-/// A value as people read it: without quotes and braces, quantities in mm and deg.
+/// A value of a study_setting() as people read it: without quotes and braces, quantities in mm and deg.
 std::string readable_setting(std::string_view value);
 
 /// The value of a key of a section, as people read it.

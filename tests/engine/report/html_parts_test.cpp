@@ -135,19 +135,37 @@ TEST(StudySettings, ListsGoOnOverLines) {
       "[errors.override]\nx = { distribution = \"measured\", values = [\n  \"1 m\", \"2 m\",\n  \"3 m [\",\n] }\n"
       "[analysis]\nsamples = 2\n");
   ASSERT_EQ(settings.size(), 2u);
-  EXPECT_EQ(settings[0].value, "{ distribution = \"measured\", values = [ \"1 m\", \"2 m\", \"3 m [\", ] }");
+  EXPECT_EQ(settings[0].section, "errors.override");
+  EXPECT_EQ(settings[0].key, "x");
+  EXPECT_EQ(settings[0].value, "{ distribution = \"measured\", values = [\"1 m\", \"2 m\", \"3 m [\"] }");
   EXPECT_EQ(settings[1].section, "analysis");
   EXPECT_EQ(settings[1].value, "2");
 }
 
 TEST(StudySettings, CountRepeatedSections) {
-  const auto settings = study_settings("title = \"x\"\n[[case]]\nname = \"a\"\n\n[[case]]\nname = \"b\"\n");
-  ASSERT_EQ(settings.size(), 3U);
+  const auto settings = study_settings(
+      "title = \"x\"\n[[case]]\nname = \"a\"\n\n[[case]]\nname = \"b\"\n[case.errors]\nlinear = \"1 mm\"\n");
+  ASSERT_EQ(settings.size(), 4U);
   EXPECT_EQ(settings[0].section, "");
   EXPECT_EQ(settings[1].section, "case 1");
   EXPECT_EQ(settings[2].section, "case 2");
   EXPECT_EQ(settings[2].key, "name");
   EXPECT_EQ(settings[2].value, "\"b\"");
+  EXPECT_EQ(settings[3].section, "case 2.errors");
+}
+
+TEST(StudySettings, HaveTheOrderOfTheText) {
+  const auto settings = study_settings("z = 1\n[b]\ny = 2 # not 3\nx.w = true\n[a]\nv = 0.5\n");
+  std::string all;
+  for (const StudySetting& one : settings) all += one.section + "." + one.key + "=" + one.value + " ";
+  EXPECT_EQ(all, ".z=1 b.y=2 b.x.w=true a.v=0.5 ");
+}
+
+TEST(StudySettings, AreNoneInATextThatIsNotToml) {
+  EXPECT_TRUE(study_settings("a = 1\nx = [").empty());
+  std::string deep = "a";
+  for (int k = 0; k < 8000; ++k) deep += ".a";
+  EXPECT_TRUE(study_settings(deep + " = 1").empty());
 }
 
 TEST(StudySettings, AreFoundInTheirSectionAndMadeReadable) {
