@@ -18,8 +18,7 @@ struct ToleranceRange {
 };
 
 /// Proportions [N] of equal effect: every part alone uses the same share of the limit that it uses most,
-/// T_i = 1 / sqrt(max_l a_li^2 / room_l), or 1 / max_l (|a_li| / room_l) in the worst case. Infinite for a part without
-/// effect.
+/// T_i = 1 / sqrt(max_l a_li^2 / room_l). Infinite for a part without effect.
 std::vector<double> equal_effect_proportions(const ToleranceLimits& limits);
 
 /// The largest tolerances in given proportions.

@@ -22,9 +22,10 @@ struct AllowedRejects {
   std::uint64_t design;       ///< rejects of as many machines of the design
 };
 
-/// For a share `yield` of good machines, shown with this confidence (Clopper and Pearson) by so many machines. The
-/// design may have so many rejects that, with 99 % probability, as many fresh machines have no more than the
-/// certificate allows; both numbers of rejects are taken as normal. Precondition: machines >= trials_without_failure().
+/// Allowed rejects of so many machines that show, with this confidence (Clopper and Pearson), that the share `yield` of
+/// machines is good. The design may have so many rejects that, with 99 % probability, as many fresh machines have no
+/// more than the certificate allows; both numbers of rejects are taken as normal. Precondition: machines >=
+/// trials_without_failure().
 AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t machines);
 
 /// The seed of a set of machines that no other part of the study draws: set 0 is the certificate's, set 1 that of the
@@ -37,26 +38,26 @@ struct SearchProblem {
   explicit SearchProblem(const StudyRun& study_run);
 
   const StudyRun& run;               ///< the study, its model and how it is run
-  const AllocationOptions& options;  ///< of the study
+  const AllocationOptions& options;  ///< the options of the study
   ToleranceProgramme programme;      ///< the parts
-  AllowedRejects allowed;            ///< with as many machines as the study has samples
+  AllowedRejects allowed;            ///< allowed rejects of as many machines as the study has samples
 };
 
 /// Mean squares of limited responses and the tolerances at which they were measured. Around these, limits on root mean
 /// squares are linear in T^2.
 struct Linearisation {
   std::vector<double> at;  ///< [N] tolerances
-  MeanSquares squares;     ///< mean squares at these, and their slopes
+  MeanSquares squares;     ///< mean squares at these tolerances, and their slopes
 };
 
-/// Tolerances on the way, and the last programme.
+/// Tolerances on the way, and what the last programme chose.
 struct Candidate {
   TolerancePoint point;     ///< the tolerances
-  ChosenTolerances chosen;  ///< those of the last programme, to which its bound and its multipliers belong
-  double share = 0.0;       ///< of each limit: what that programme allowed its root mean square
+  ChosenTolerances chosen;  ///< the tolerances of the last programme, with its bound and its multipliers
+  double share = 0.0;       ///< the share of each limit that this programme allowed its root mean square
 };
 
-/// Machines that may decide, those with the largest loads.
+/// The machines with the largest loads, which may decide.
 struct ScreenedMachines {
   std::vector<std::uint32_t> numbers;  ///< [n] ascending
   std::vector<double> load;            ///< [n]
@@ -65,9 +66,9 @@ struct ScreenedMachines {
 /// Tolerances at which the design's machines were tried.
 struct ToleranceDesign {
   Candidate candidate;        ///< the tolerances
-  std::uint64_t seed = 0;     ///< of the machines
-  std::vector<double> load;   ///< [machines] loads; of those that were screened out as they were when all were tried
-  ScreenedMachines screened;  ///< with loads at the candidate's tolerances; empty where these are the lowest ones
+  std::uint64_t seed = 0;     ///< the seed of the machines
+  std::vector<double> load;   ///< [machines] loads when all machines were tried last, or newer ones
+  ScreenedMachines screened;  ///< machines with loads at these tolerances; empty where these are the lowest ones
 };
 
 /// The way to the tolerances.
@@ -79,16 +80,16 @@ struct StageLog {
   void add(std::string name, const Candidate& candidate, std::uint64_t machines, std::uint64_t rejects);
 };
 
-/// What a search found.
+/// The result of a search.
 struct FoundTolerances {
-  Linearisation linearisation;        ///< of the last programme under limits on root mean squares
+  Linearisation linearisation;        ///< the linearisation of the last programme
   ToleranceDesign design;             ///< the tolerances and the loads of the design's machines
   std::vector<double> coarser_yield;  ///< [N] as AllocationResult has it
   StageLog log;                       ///< the way to them
 };
 
-/// Runs the search. Empty when stopped. Throws InputError where no tolerances keep the limits, with the limit, and by
-/// how much.
+/// Runs the search. Empty when stopped. Throws InputError where no tolerances keep the limits; it names the limit and
+/// says by how much.
 std::optional<FoundTolerances> find_tolerances(const SearchProblem& problem);
 
 /// The limits of the last programme.

@@ -2,69 +2,73 @@
 
 #include <cstddef>
 
-/// The constants of the search for tolerances. Each comment says what the constant is and when to change it; theory.md
-/// ("From root mean squares to a certificate") has the method. They change what a study finds, so no study sets them.
+/// The constants of the search for tolerances: what each one is and when to change it. They change what a study finds,
+/// so no study sets them. THEORY.md ("From root mean squares to a certificate") has the method.
 namespace poesy::allocation {
 
-/// Errors are so many times as large as usual where their effects count as linear. Make it smaller where the first
-/// linearisation is far from the settled one, larger where responses drown in rounding.
+/// The size of errors over their usual size at which effects count as linear. Make it smaller where the first
+/// linearisation is far from the settled one, larger where responses of that size drown in rounding.
 inline constexpr double kLinearSize = 0.01;
-/// Trust region: tolerances grow at most so much from one linearisation to the next. Make it smaller for mechanisms
-/// whose effects change much within a few tolerances.
+/// The trust region of a linearisation: the factor by which tolerances may grow. Make it smaller for mechanisms whose
+/// effects change much within a few tolerances.
 inline constexpr double kMaxGrowth = 4.0;
-/// At most so many linearisations before machines are tried. More help where the cost has not settled by then.
+/// The largest number of linearisations before machines are tried. Make it larger where costs have not settled by then.
 inline constexpr std::size_t kMaxLinearisations = 6;
-/// The cost has settled when it moves by less than this share. The later stages move it by percents.
+/// The relative change of the cost below which it has settled. The later stages change it by percents.
 inline constexpr double kCostTolerance = 1e-3;
 
-/// At most so many trials of machines in one loop. Each loop ends after two to five of them as a rule.
+/// The largest number of trials of machines in one loop. Make it larger where loops end before the load is near 1.
 inline constexpr std::size_t kMaxTrials = 12;
-/// The deciding load is near enough to 1 when it is within so much below it. A tolerance follows a load in proportion,
-/// so a smaller value pays only where costs must be compared more finely.
+/// How far the deciding load may be below 1. Tolerances are in proportion to it, so a smaller value pays only where
+/// costs are to be compared more finely.
 inline constexpr double kLoadTolerance = 2e-3;
-/// The same for the last scaling, after which nothing is improved. Make it smaller for more than a million machines,
-/// whose loads are nearer to each other.
+/// The same for the last scaling, after which nothing is improved. Make it smaller where machines near the limit have
+/// loads that are nearer to each other.
 inline constexpr double kFinalLoadTolerance = 1e-5;
-/// Screening: machines below this share of the deciding load are not tried again, because they do not come to decide
-/// while tolerances change a little. Make it smaller where the last stage finds rejects among them (README.md, D66).
+/// The share of the deciding load below which machines are screened out. They are not tried again, because they do not
+/// come to decide while tolerances change a little. Make it smaller where the last scaling finds rejects among them
+/// (D66).
 inline constexpr double kScreeningLoad = 0.75;
-/// A pilot is one of so many machines.
+/// The number of machines over that of a pilot. Make it smaller where the pilot's load is too noisy to approach the
+/// yield.
 inline constexpr std::size_t kPilotOf = 8;
-/// The pilot that looks for rejects among machines that were screened out has at least so many machines.
+/// The least number of machines of a pilot that looks for rejects among machines that were screened out.
 inline constexpr std::size_t kMinPilot = 20'000;
-/// Effects are measured again, or all machines tried again, where tolerances or the load have moved by this share.
+/// The relative change of tolerances or of the load from which on effects are measured again, or all machines tried
+/// again. Make it smaller for mechanisms whose effects change much within a few tolerances.
 inline constexpr double kRelinearise = 0.1;
-/// Where the yield takes limits on root mean squares below this share of the settled ones, a few machines decide that
-/// root mean squares do not see, and the parts that reject machines are tightened instead.
+/// A share of each limit over the settled share. Where the yield needs a smaller one, root mean squares do not see what
+/// rejects machines, and the parts that reject them are tightened instead. Make it larger where this starts too late.
 inline constexpr double kBlindShare = 0.7;
 
-/// At most so many machines of largest load tell the gradient. More make it less noisy; farther from the limit it is
-/// less the gradient of the yield.
+/// The largest number of machines that tell the gradient. More make it less noisy, but they are farther from the limit,
+/// where it is less the gradient of the yield.
 inline constexpr std::size_t kMaxGradientMachines = 3000;
-/// A score is no noise from so many of its standard deviations on.
+/// The number of standard deviations from which on a score counts as more than noise.
 inline constexpr double kSignificance = 3.0;
-/// At most so many steps along the gradient. More follow the noise of the machines (README.md, D66).
+/// The largest number of steps along the gradient. More would follow the noise of the machines (D66).
 inline constexpr std::size_t kMaxGradientSteps = 3;
-/// At most so many fits of one step to the yield.
+/// The largest number of fits of one step to the yield.
 inline constexpr std::size_t kMaxFits = 6;
-/// Trust region of one step along the gradient, which holds near its tolerances only.
+/// The trust region of one step along the gradient, which holds near its tolerances only.
 inline constexpr double kGradientGrowth = 1.3;
-/// A step along the gradient must save this share of the cost. A smaller saving is noise.
+/// The share of the cost that a step along the gradient must save. A smaller saving is noise.
 inline constexpr double kMinSaving = 1e-4;
 
-/// A part is made so many times as coarse to find what it does. Users see it as "5 % coarser".
+/// The factor by which a part is made coarser to find what it does. Users read "5 % coarser".
 inline constexpr double kCoarserStep = 1.05;
-/// So many machines near the limit tell what a part does. More make the yield with a coarser part less noisy.
+/// The number of machines near the limit that tell what a part does. More make the yield with a coarser part less
+/// noisy.
 inline constexpr std::size_t kProbes = 700;
 /// The same for parts of small effect, with mirrored machines.
 inline constexpr std::size_t kProbesOfSmall = 3000;
-/// A part has a small effect where its errors change loads by less than so many times the step.
+/// The change of loads over the step below which a part has a small effect.
 inline constexpr double kSmallEffect = 0.01;
 /// The first step of a part that takes up remaining yield; each further step is the square of the one before.
 inline constexpr double kFirstCoarsening = 1.25;
-/// At most so many steps of one such part.
+/// The largest number of steps of one such part.
 inline constexpr std::size_t kMaxCoarsenings = 12;
-/// At most so many rounds over all parts.
+/// The largest number of rounds over all parts.
 inline constexpr std::size_t kMaxCoarseningRounds = 3;
 
 }  // namespace poesy::allocation

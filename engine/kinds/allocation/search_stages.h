@@ -32,30 +32,30 @@ Linearisation measure(const SearchProblem& problem, std::span<const double> tole
 /// Throws InputError where it is unbounded.
 std::optional<Candidate> choose(const SearchProblem& problem, const Linearisation& linearisation, double share,
                                 const TrustRegion& region);
-/// The same by the least share between these two that is feasible, to a thousandth.
+/// The tolerances of the programme with the least feasible share between these two, to a thousandth.
 std::optional<Candidate> choose_by_least_share(const SearchProblem& problem, const Linearisation& linearisation,
                                                double low, double high, const TrustRegion& region);
 /// The largest a_i / b_i or b_i / a_i.
 double largest_ratio(std::span<const double> a, std::span<const double> b);
 
-/// The study that draws machines of this seed with these tolerances [N].
+/// The study that draws the machines of this seed with these tolerances [N].
 Study machine_study(const SearchProblem& problem, std::uint64_t seed, std::span<const double> tolerance);
-/// Loads of the first `machines` of them; of all where it is not given.
+/// The loads of its first machines, or of all where no number is given.
 std::vector<double> loads_of(const SearchProblem& problem, std::uint64_t seed, std::span<const double> tolerance,
                              std::optional<std::size_t> machines = std::nullopt);
-/// What a response's limit would have to be for so many rejects: the largest load but `rejects`.
+/// The load that would have to be the limit for so many rejects: the one after the `rejects` largest.
 double deciding_load(std::vector<double> load, std::uint64_t rejects);
-/// The machines that may decide by loads of all: those with a load of kScreeningLoad or more of the deciding one.
+/// The numbers of the machines that may decide: their loads are at least kScreeningLoad times the deciding one.
 std::vector<std::uint32_t> screen(const SearchProblem& problem, std::span<const double> load);
 /// Tries the design's screened machines at other tolerances.
 ScreenedMachines try_screened(const SearchProblem& problem, const ToleranceDesign& design, const TolerancePoint& point);
 /// Tries all machines of a seed with the candidate's tolerances.
 ToleranceDesign try_all(const SearchProblem& problem, Candidate candidate, std::uint64_t seed);
-/// The design with the loads of its screened machines among those of all.
+/// The design with the loads of its screened machines put among those of all.
 ToleranceDesign with_screened_loads(ToleranceDesign design);
 /// Whether a pilot of all machines has rejects that were screened out.
 bool misses_rejects(const SearchProblem& problem, const ToleranceDesign& design);
-/// Multiplies all tolerances but those that stay [N] by one factor, at which the screened machines use up what the
+/// Multiplies all tolerances except those that stay [N] by one factor, at which the screened machines use up what the
 /// design allows. Where not even the lowest tolerances keep the yield of these machines, although those of other
 /// machines did, the design stays as it is, and the certificate decides.
 ToleranceDesign scale_screened(const SearchProblem& problem, const ToleranceDesign& from,
@@ -74,8 +74,8 @@ PartScores part_scores(const SearchProblem& problem, const ToleranceDesign& desi
 
 /// A candidate and the linearisation that its programme used.
 struct Linearised {
-  Linearisation linearisation;  ///< by which limits are linear
-  Candidate candidate;          ///< chosen under these limits
+  Linearisation linearisation;  ///< the linearisation of its limits
+  Candidate candidate;          ///< the tolerances of its programme
 };
 
 /// The tolerances as if every effect were linear. Where root mean squares cannot be as small as a normal response needs
@@ -84,18 +84,18 @@ Linearised linearise(const SearchProblem& problem, StageLog& log);
 
 /// Tolerances at which effects have settled.
 struct Settled {
-  Linearisation linearisation;  ///< the last one
+  Linearisation linearisation;  ///< the last linearisation
   Candidate candidate;          ///< the settled tolerances; the lowest ones where the last programme was infeasible
   Candidate feasible;           ///< the last tolerances by a programme
 };
 
-/// Measures effects at the tolerances and chooses tolerances by them, until these stay.
+/// Measures effects at the tolerances and chooses tolerances by them, until these no longer change.
 Settled settle(const SearchProblem& problem, Linearised from, StageLog& log);
 
 /// A design and the linearisation that its programme used.
 struct Scaled {
-  Linearisation linearisation;  ///< by which limits are linear
-  ToleranceDesign design;       ///< with no more rejects than allowed
+  Linearisation linearisation;  ///< the linearisation of its limits
+  ToleranceDesign design;       ///< a design with no more rejects than allowed
 };
 
 /// Scales the limits on root mean squares until the design has as many rejects as it may, and no more.
@@ -116,8 +116,8 @@ struct Probed {
   std::vector<double> coarser_yield;  ///< [N] as AllocationResult has it
 };
 
-/// Finds what each part would do if it alone were coarser, and makes those coarser that would do nothing: at the least
-/// cost there are none.
+/// Finds what each part would do if it alone were coarser, and makes those parts coarser that the yield allows: at the
+/// least cost no part can be coarser alone.
 Probed use_remaining_yield(const SearchProblem& problem, ToleranceDesign from, StageLog& log);
 
 /// @name Refusals, which throw InputError
