@@ -3,7 +3,7 @@
 #include <cstddef>
 
 /// The constants of the search for tolerances: what each one is and when to change it. They change what a study finds,
-/// so no study sets them. THEORY.md ("From root mean squares to a certificate") has the method.
+/// so no study sets them. theory.md ("From root mean squares to a certificate") has the method.
 namespace poesy::allocation {
 
 /// The size of errors over their usual size at which effects count as linear. Make it smaller where the first
