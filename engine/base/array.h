@@ -202,4 +202,11 @@ class Array : public AxisLayout<Axes...> {
   std::vector<T> elements_;
 };
 
+/// Gives arrays along the same axes these lengths; all elements are then as constructed.
+template <class First, class... Others>
+void make_room(const typename First::Lengths& lengths, First& first, Others&... others) {
+  first = First(lengths);
+  ((others = Others(lengths)), ...);
+}
+
 }  // namespace poesy

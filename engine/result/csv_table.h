@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -80,6 +81,12 @@ CsvColumn list_column(std::string heading, const List& list, std::size_t first =
           }};
 }
 
+/// The same of all elements of a row of an array.
+template <class T>
+CsvColumn list_column(std::string heading, std::span<T> row) {
+  return {std::move(heading), [row](std::size_t line) { return to_number(row[line]); }};
+}
+
 /// The same of a row of fields.h.
 template <class Found>
 CsvColumn field_column(std::string heading, const FieldRow<Found>& field, const Found& found, std::size_t first = 0,
@@ -93,6 +100,14 @@ template <class Found>
 CsvColumn field_row_column(std::string heading, const FieldRow<Found>& field, const Found& found, std::size_t at) {
   return {std::move(heading),
           [&field, &found, at](std::size_t line) { return field.member->number_in_row(found, at, line); }};
+}
+
+/// A column for each pose of an array whose last axes are that of the lines and the poses. at: positions on the axes
+/// before.
+template <class T, NamedAxis... Axes, std::integral... Positions>
+CsvPoseColumns pose_columns(const Array<T, Axes...>& array, std::string unit, Positions... at) {
+  return {array.template length<axis::Pose>(), std::move(unit),
+          [&array, at...](std::size_t line, std::size_t pose) { return to_number(array(at..., line, pose)); }};
 }
 
 /// A column for each pose of a row along [factor x pose], the last axes of the row. first: its first element.

@@ -223,7 +223,7 @@ void append_sigma_tables(CsvTables& tables, const StoredResult& result) {
   if (!result.measured.names.empty()) tables.push_back(measured_table(result));
 }
 
-std::vector<std::size_t> constant_responses(const std::vector<std::uint8_t>& varies) {
+std::vector<std::size_t> constant_responses(std::span<const std::uint8_t> varies) {
   std::vector<std::size_t> list;
   for (std::size_t r = 0; r < varies.size(); ++r) {
     if (varies[r] == 0) list.push_back(r);

@@ -73,8 +73,8 @@ void read_sigma(const h5::File& file, StoredResult& result);
 /// factors.csv: the standard deviation of each error; measured_errors.csv where some are measured.
 void append_sigma_tables(CsvTables& tables, const StoredResult& result);
 
-/// Positions of the responses that do not vary. varies: [R] 0 or 1, or empty where all do.
-std::vector<std::size_t> constant_responses(const std::vector<std::uint8_t>& varies);
+/// Positions of the responses that do not vary. varies: of each response 0 or 1, or empty where all do.
+std::vector<std::size_t> constant_responses(std::span<const std::uint8_t> varies);
 
 /// How solves end, as a result lists it: kStatusNames, the last of which, not_assembled, only where a solve ended so.
 /// Hence results without it keep their bits.

@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// Of each component of all details its dimension, [D].
+/// The dimension of each component of all details.
 std::vector<Dimension> detail_dimensions(const ModelDescription& model) {
   std::vector<Dimension> list;
   for (const Detail& detail : model.details) {
@@ -19,24 +19,25 @@ std::vector<Dimension> detail_dimensions(const ModelDescription& model) {
   return list;
 }
 
-/// Of a row its standard deviations at the poses, [M].
-std::vector<double> deviations(const IndexPanel& panel, const PanelSums& sums, std::size_t row) {
+/// Of a row its standard deviations at the poses.
+std::vector<double> deviations(const PanelSums& sums, std::size_t row) {
   std::vector<double> list;
-  for (std::size_t m = 0; m < panel.poses; ++m) {
-    list.push_back(sums.moments[row * panel.poses + m].standard_deviation());
-  }
+  for (const Moments& moments : sums.moments.row(row)) list.push_back(moments.standard_deviation());
   return list;
 }
 
-void fill_with_nan(std::vector<double>& values, std::size_t first, std::size_t count) {
-  std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(first), count, kNaN);
+/// Both indices at these positions.
+template <class Indices, class... Positions>
+void leave_out(Indices& indices, Positions... at) {
+  indices.S1.leave_out(at...);
+  indices.ST.leave_out(at...);
 }
 
-void leave_out(SobolIndices& indices, std::size_t first, std::size_t count) {
-  for (auto* values :
-       {&indices.S1, &indices.S1_ci_low, &indices.S1_ci_high, &indices.ST, &indices.ST_ci_low, &indices.ST_ci_high}) {
-    fill_with_nan(*values, first, count);
-  }
+/// Flags as a result has them: none where all are 1.
+template <class Flags>
+void keep_flags(std::span<const std::uint8_t> from, Flags& flags) {
+  const bool any = std::ranges::find(from, 0) != from.end();
+  flags = any ? Flags({from.size()}, {from.begin(), from.end()}) : Flags();
 }
 
 }  // namespace
@@ -60,9 +61,7 @@ std::vector<std::uint8_t> varying_quantities(const IndexPanel& panel, const Pane
                                              std::span<const double> rounding) {
   std::vector<std::uint8_t> varies;
   for (std::size_t q = 0; q < panel.quantities(); ++q) {
-    const auto component_varies = [&](std::size_t row) {
-      return !is_constant(deviations(panel, sums, row), rounding[row]);
-    };
+    const auto component_varies = [&](std::size_t row) { return !is_constant(deviations(sums, row), rounding[row]); };
     varies.push_back(std::ranges::any_of(panel.components(q), component_varies) ? 1 : 0);
   }
   return varies;
@@ -70,36 +69,23 @@ std::vector<std::uint8_t> varying_quantities(const IndexPanel& panel, const Pane
 
 void leave_out_constant(const IndexPanel& panel, const PanelSums& sums, std::span<const double> rounding,
                         SobolResult& found) {
-  const std::size_t groups = panel.groups.size();
-  const std::size_t poses = panel.poses;
+  const std::vector<std::uint8_t> varies = varying_quantities(panel, sums, rounding);
   for (std::size_t r = 0; r < panel.responses; ++r) {
-    const std::vector<double> at_poses = deviations(panel, sums, r);
-    for (std::size_t m = 0; m < poses; ++m) {
-      if (!is_constant(std::span(at_poses).subspan(m, 1), rounding[r])) continue;
-      for (std::size_t g = 0; g < groups; ++g) leave_out(found.at_poses, (r * groups + g) * poses + m, 1);
+    const std::vector<double> at_poses = deviations(sums, r);
+    for (std::size_t m = 0; m < panel.poses; ++m) {
+      if (!is_constant({&at_poses[m], 1}, rounding[r])) continue;
+      for (std::size_t g = 0; g < panel.groups.size(); ++g) leave_out(found.at_poses, r, g, m);
     }
+    if (varies[r] != 0) continue;
+    leave_out(found.aggregated, r);
+    if (!found.S2.empty()) found.S2.leave_out(r);
+    if (!found.Sh.empty()) found.Sh.leave_out(r);
   }
-  std::vector<std::uint8_t> varies = varying_quantities(panel, sums, rounding);
-  for (std::size_t q = 0; q < varies.size(); ++q) {
-    if (varies[q] != 0) continue;
-    const bool is_response = q < panel.responses;
-    if (!is_response) {
-      leave_out(found.of_vectors, (q - panel.responses) * groups, groups);
-      continue;
-    }
-    leave_out(found.aggregated, q * groups, groups);
-    for (auto* values : {&found.S2, &found.S2_ci_low, &found.S2_ci_high}) {
-      if (!values->empty()) fill_with_nan(*values, q * groups * groups, groups * groups);
-    }
-    for (auto* values : {&found.Sh, &found.Sh_ci_low, &found.Sh_ci_high}) {
-      if (!values->empty()) fill_with_nan(*values, q * groups, groups);
-    }
+  for (std::size_t v = 0; v < panel.vectors.size(); ++v) {
+    if (varies[panel.responses + v] == 0) leave_out(found.of_vectors, v);
   }
-  const auto vectors = varies.begin() + static_cast<std::ptrdiff_t>(panel.responses);
-  found.varies.assign(varies.begin(), vectors);
-  found.vector_varies.assign(vectors, varies.end());
-  if (std::ranges::find(found.varies, 0) == found.varies.end()) found.varies.clear();
-  if (std::ranges::find(found.vector_varies, 0) == found.vector_varies.end()) found.vector_varies.clear();
+  keep_flags(std::span(varies).first(panel.responses), found.varies);
+  keep_flags(std::span(varies).subspan(panel.responses), found.vector_varies);
 }
 
 }  // namespace poesy

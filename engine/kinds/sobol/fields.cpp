@@ -1,3 +1,8 @@
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "engine/kinds/sobol/groups.h"
 #include "engine/kinds/sobol/kind.h"
 #include "engine/kinds/sobol/result.h"
 #include "engine/report/display.h"
@@ -6,28 +11,59 @@
 namespace poesy {
 namespace {
 
-const std::vector<Attribute<SobolIndices>> kLevel{{"conf_level", &SobolIndices::conf_level}};
-
-/// S1 and ST with their intervals along these axes.
-Group<SobolIndices> indices_group(std::string path, std::string description, const Axes& axes) {
-  return {std::move(path),
-          std::move(description),
-          kLevel,
-          {},
-          {{"S1", &SobolIndices::S1, axes, "1",
-            "First-order index: the share of the variance that the error makes alone; of several errors their closed "
-            "index. NaN where the response has no variance, and for a group with errors that are correlated with "
-            "errors of others"},
-           {"S1_ci_low", &SobolIndices::S1_ci_low, axes, "1", "Lower end of the interval of S1"},
-           {"S1_ci_high", &SobolIndices::S1_ci_high, axes, "1", "Upper end of the interval of S1"},
-           {"ST", &SobolIndices::ST, axes, "1",
-            "Total index: the share of the variance that would be left if all others were perfect"},
-           {"ST_ci_low", &SobolIndices::ST_ci_low, axes, "1", "Lower end of the interval of ST"},
-           {"ST_ci_high", &SobolIndices::ST_ci_high, axes, "1", "Upper end of the interval of ST"}}};
-}
-
 /// The axis of what the indices belong to: the errors, or the groups to which the study joins them.
 std::string axis_of(bool joined) { return joined ? "group" : "factor"; }
+
+/// The same rows along that axis.
+template <class Found>
+Fields<Found> along(bool joined, Fields<Found> rows) {
+  for (FieldRow<Found>& row : rows) std::ranges::replace(row.axes, std::string("group"), axis_of(joined));
+  return rows;
+}
+
+/// Shares and the ends of their intervals.
+template <class Shares>
+Fields<Shares> share_rows(bool joined, const std::string& name, std::string meaning) {
+  return along<Shares>(joined, {{name, &Shares::value, "1", std::move(meaning)},
+                                {name + "_ci_low", &Shares::ci_low, "1", "Lower end of the interval of " + name},
+                                {name + "_ci_high", &Shares::ci_high, "1", "Upper end of the interval of " + name}});
+}
+
+/// The group of the indices of some quantities.
+template <NamedAxis... Axes>
+struct IndexRows {
+  IndexRows(bool joined, std::string path, std::string description)
+      : group{.path = std::move(path),
+              .description = std::move(description),
+              .attributes = {{"conf_level", &SobolIndices<Axes...>::conf_level}},
+              .fields = {}},
+        S1(share_rows<Shares<Axes...>>(
+            joined, "S1",
+            "First-order index: the share of the variance that the error makes alone; of several errors their closed "
+            "index. NaN where the response has no variance, and for a group with errors that are correlated with "
+            "errors of others")),
+        ST(share_rows<Shares<Axes...>>(
+            joined, "ST", "Total index: the share of the variance that would be left if all others were perfect")) {}
+
+  Group<SobolIndices<Axes...>> group;
+  Fields<Shares<Axes...>> S1;
+  Fields<Shares<Axes...>> ST;
+};
+
+template <class Rows, class Found>
+void write_indices(ResultBuilder& result, const Rows& rows, const Found& found) {
+  write_group(result, rows.group, found);
+  write_fields(result, rows.group.path, rows.S1, found.S1);
+  write_fields(result, rows.group.path, rows.ST, found.ST);
+  result.show_axes(rows.group.path, rows.S1.front().axes);
+}
+
+template <class Rows, class Found>
+void read_indices(const h5::File& file, const Rows& rows, Found& found) {
+  read_group(file, rows.group, found);
+  read_fields(file, rows.group.path, rows.S1, found.S1);
+  read_fields(file, rows.group.path, rows.ST, found.ST);
+}
 
 const std::string kVaries =
     "0 where it does not vary: what its samples scatter at any pose is rounding, so nothing has a share of it; "
@@ -36,55 +72,38 @@ const std::string kVaries =
 /// The datasets of a result whose errors are joined, or not.
 struct Layout {
   explicit Layout(bool joined)
-      : axis(axis_of(joined)),
-        at_poses(indices_group("/sobol", "Sobol' indices of each response at each pose", {"response", axis, "pose"})),
-        aggregated(indices_group("/sobol/aggregated",
-                                 "The same over the poses together: the sum of an error's parts of the variances at "
-                                 "all poses, over the sum of the variances",
-                                 {"response", axis})),
-        of_vectors(indices_group("/sobol/vector",
-                                 "Generalised indices of vectors with signs over the poses together: as aggregated, of "
-                                 "the sums over a vector's components (Gamboa, Janon, Klein and Lagnoux 2014)",
-                                 {"vector", axis})),
-        beside{
-            {"n", &SobolResult::n, {"response", axis, "pose"}, "1", "Pairs of samples behind S1 and ST, both solved"},
-            {"mean", &SobolResult::mean, kByResponsePose, kResponseUnit, "Mean of the response over the samples"},
-            {"variance", &SobolResult::variance, kByResponsePose, "SI: square of the response unit",
-             "Variance of the response that S1 and ST share"},
-            {"without_sign", &SobolResult::without_sign, kByResponse, "1",
-             "1 where no sample was below zero: such a response, the length of a vector for instance, is not "
-             "additive even where the vector is linear"},
-            {"varies", &SobolResult::varies, kByResponse, "1", kVaries, Presence::where_computed}},
-        beside_vectors{{"varies", &SobolResult::vector_varies, {"vector"}, "1", kVaries, Presence::where_computed}},
-        pairs{
-            {"S2",
-             &SobolResult::S2,
-             {"response", axis, "other"},
-             "1",
-             "Second-order index: the closed index of two together without those of each; NaN on the diagonal"},
-            {"S2_ci_low", &SobolResult::S2_ci_low, {"response", axis, "other"}, "1", "Lower end of the interval of S2"},
-            {"S2_ci_high",
-             &SobolResult::S2_ci_high,
-             {"response", axis, "other"},
-             "1",
-             "Upper end of the interval of S2"}},
-        effects{{"Sh",
-                 &SobolResult::Sh,
-                 {"response", axis},
-                 "1",
-                 "Shapley effect: the share of the variance, what is made together divided evenly; all add up to 1, "
-                 "also where errors are correlated"},
-                {"Sh_ci_low", &SobolResult::Sh_ci_low, {"response", axis}, "1", "Lower end of the interval of Sh"},
-                {"Sh_ci_high", &SobolResult::Sh_ci_high, {"response", axis}, "1", "Upper end of the interval of Sh"}} {}
+      : at_poses(joined, "/sobol", "Sobol' indices of each response at each pose"),
+        aggregated(joined, "/sobol/aggregated",
+                   "The same over the poses together: the sum of an error's parts of the variances at all poses, over "
+                   "the sum of the variances"),
+        of_vectors(joined, "/sobol/vector",
+                   "Generalised indices of vectors with signs over the poses together: as aggregated, of the sums over "
+                   "a vector's components (Gamboa, Janon, Klein and Lagnoux 2014)"),
+        beside(along<SobolResult>(
+            joined, {{"n", &SobolResult::n, "1", "Pairs of samples behind S1 and ST, both solved"},
+                     {"mean", &SobolResult::mean, kResponseUnit, "Mean of the response over the samples"},
+                     {"variance", &SobolResult::variance, "SI: square of the response unit",
+                      "Variance of the response that S1 and ST share"},
+                     {"without_sign", &SobolResult::without_sign, "1",
+                      "1 where no sample was below zero: such a response, the length of a vector for instance, is not "
+                      "additive even where the vector is linear"},
+                     {"varies", &SobolResult::varies, "1", kVaries, Presence::where_computed}})),
+        beside_vectors{{"varies", &SobolResult::vector_varies, "1", kVaries, Presence::where_computed}},
+        pairs(share_rows<decltype(SobolResult::S2)>(
+            joined, "S2",
+            "Second-order index: the closed index of two together without those of each; NaN on the diagonal")),
+        effects(share_rows<decltype(SobolResult::Sh)>(
+            joined, "Sh",
+            "Shapley effect: the share of the variance, what is made together divided evenly; all add up to 1, also "
+            "where errors are correlated")) {}
 
-  std::string axis;
-  Group<SobolIndices> at_poses;
-  Group<SobolIndices> aggregated;
-  Group<SobolIndices> of_vectors;
+  IndexRows<axis::Response, axis::ErrorGroup, axis::Pose> at_poses;
+  IndexRows<axis::Response, axis::ErrorGroup> aggregated;
+  IndexRows<axis::SignedVector, axis::ErrorGroup> of_vectors;
   Fields<SobolResult> beside;
   Fields<SobolResult> beside_vectors;
-  Fields<SobolResult> pairs;
-  Fields<SobolResult> effects;
+  Fields<Shares<axis::Response, axis::ErrorGroup, axis::OtherGroup>> pairs;
+  Fields<Shares<axis::Response, axis::ErrorGroup>> effects;
 };
 
 const CourseWords kConvergence = convergence_words(kByResponse, "ST", "1", "Largest aggregated ST of any error",
@@ -116,17 +135,18 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   add_names(result, study, study.analysis.factors);
   add_sigma(result, study);
   add_axes(result, found);
-  write_group(result, rows.at_poses, found.at_poses);
-  write_fields(result, rows.at_poses.path, rows.beside, found);
-  write_group(result, rows.aggregated, found.aggregated);
+  write_indices(result, rows.at_poses, found.at_poses);
+  write_fields(result, rows.at_poses.group.path, rows.beside, found);
+  write_indices(result, rows.aggregated, found.aggregated);
+  const std::string& aggregated = rows.aggregated.group.path;
   if (!found.S2.empty()) {
-    write_fields(result, rows.aggregated.path, rows.pairs, found);
-    result.show_axes(rows.aggregated.path, rows.pairs.front().axes);
+    write_fields(result, aggregated, rows.pairs, found.S2);
+    result.show_axes(aggregated, rows.pairs.front().axes);
   }
-  if (!found.Sh.empty()) write_fields(result, rows.aggregated.path, rows.effects, found);
+  if (!found.Sh.empty()) write_fields(result, aggregated, rows.effects, found.Sh);
   if (!found.vectors.empty()) {
-    write_group(result, rows.of_vectors, found.of_vectors);
-    write_fields(result, rows.of_vectors.path, rows.beside_vectors, found);
+    write_indices(result, rows.of_vectors, found.of_vectors);
+    write_fields(result, rows.of_vectors.group.path, rows.beside_vectors, found);
   }
   if (found.joined) {
     result.add("/sobol/members", {"group"}, found.group_members, {"1", "Errors of the group, with blanks between"});
@@ -139,8 +159,6 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
 void read(const h5::File& file, StoredResult& result) {
   SobolResult found;
   read_sigma(file, result);
-  found.responses = axis_length(file, "response");
-  found.poses = axis_length(file, "pose");
   found.joined = file.exists("/group");
   if (file.exists("/vector")) found.vectors = file.read<std::string>("/vector");
   const Layout& rows = layout(found.joined);
@@ -148,19 +166,18 @@ void read(const h5::File& file, StoredResult& result) {
   found.group_members = found.joined ? read_along<std::string>(file, "/sobol/members", {"group"}) : found.group_names;
   check_names(found.group_names, "/group");
   check_names(found.vectors, "/vector");
-  read_group(file, rows.at_poses, found.at_poses);
-  read_fields(file, rows.at_poses.path, rows.beside, found);
-  read_group(file, rows.aggregated, found.aggregated);
-  const auto read_if_computed = [&](const Fields<SobolResult>& fields) {
-    if (file.exists(rows.aggregated.path + "/" + fields.front().name)) {
-      read_fields(file, rows.aggregated.path, fields, found);
-    }
+  read_indices(file, rows.at_poses, found.at_poses);
+  read_fields(file, rows.at_poses.group.path, rows.beside, found);
+  read_indices(file, rows.aggregated, found.aggregated);
+  const auto read_if_computed = [&](const auto& fields, auto& shares) {
+    const std::string& path = rows.aggregated.group.path;
+    if (file.exists(path + "/" + fields.front().name)) read_fields(file, path, fields, shares);
   };
-  read_if_computed(rows.pairs);
-  read_if_computed(rows.effects);
+  read_if_computed(rows.pairs, found.S2);
+  read_if_computed(rows.effects, found.Sh);
   if (!found.vectors.empty()) {
-    read_group(file, rows.of_vectors, found.of_vectors);
-    read_fields(file, rows.of_vectors.path, rows.beside_vectors, found);
+    read_indices(file, rows.of_vectors, found.of_vectors);
+    read_fields(file, rows.of_vectors.group.path, rows.beside_vectors, found);
   }
   result.constant = constant_responses(found.varies);
   found.solves = read_solver(file, kByPose);
@@ -172,50 +189,46 @@ void read(const h5::File& file, StoredResult& result) {
   result.found = std::move(found);
 }
 
-/// Appends the index NAME and NAME_conf, half its interval, as SALib calls them.
-void append_salib_columns(CsvTable& table, const std::string& name, const std::vector<double>& value,
-                          const std::vector<double>& low, const std::vector<double>& high, std::size_t first) {
-  table.columns.push_back(list_column(name, value, first));
-  table.columns.push_back({name + "_conf", [&low, &high, first](std::size_t line) {
-                             return 0.5 * (high[first + line] - low[first + line]);
-                           }});
+/// A table with a line for each error or group.
+CsvTable lines_of_groups(const SobolResult& found, std::string name) {
+  return {
+      std::move(name), {axis_of(found.joined), [&](std::size_t g) { return found.group_names[g]; }}, found.groups()};
+}
+
+/// Appends the index NAME and NAME_conf, half its interval, as SALib calls them. row: of the quantity.
+template <class Shares>
+void append_salib_columns(CsvTable& table, const std::string& name, const Shares& shares, std::size_t row) {
+  table.columns.push_back(list_column(name, shares.value.row(row)));
+  table.columns.push_back({name + "_conf", [low = shares.ci_low.row(row), high = shares.ci_high.row(row)](
+                                               std::size_t g) { return 0.5 * (high[g] - low[g]); }});
+}
+
+template <class Shares>
+void append_interval_columns(CsvTable& table, const std::string& name, const Shares& shares, std::size_t row) {
+  table.columns.push_back(list_column(name + "_ci_low", shares.ci_low.row(row)));
+  table.columns.push_back(list_column(name + "_ci_high", shares.ci_high.row(row)));
 }
 
 /// Lines of the groups, with columns for the indices of one quantity.
-CsvTable indices_table(const StoredResult& result, std::string name, const Group<SobolIndices>& rows,
-                       const SobolIndices& found, std::size_t quantity) {
-  const SobolResult& all = sobol_of(result);
-  const std::size_t groups = all.groups();
-  CsvTable table{std::move(name), {axis_of(all.joined), [&](std::size_t g) { return all.group_names[g]; }}, groups};
-  const std::size_t first = quantity * groups;
-  append_salib_columns(table, "S1", found.S1, found.S1_ci_low, found.S1_ci_high, first);
-  append_salib_columns(table, "ST", found.ST, found.ST_ci_low, found.ST_ci_high, first);
-  for (const FieldRow<SobolIndices>& row : rows.fields) {
-    if (row.name.ends_with("_low") || row.name.ends_with("_high")) {
-      table.columns.push_back(field_column(row.name, row, found, first));
-    }
-  }
+template <class Indices>
+CsvTable indices_table(const SobolResult& result, std::string name, const Indices& found, std::size_t quantity) {
+  CsvTable table = lines_of_groups(result, std::move(name));
+  append_salib_columns(table, "S1", found.S1, quantity);
+  append_salib_columns(table, "ST", found.ST, quantity);
+  append_interval_columns(table, "S1", found.S1, quantity);
+  append_interval_columns(table, "ST", found.ST, quantity);
   return table;
 }
 
-/// Columns for the Shapley effects on one response.
-void append_shapley(CsvTable& table, const SobolResult& found, std::size_t r) {
-  const std::size_t first = r * found.groups();
-  append_salib_columns(table, "Sh", found.Sh, found.Sh_ci_low, found.Sh_ci_high, first);
-  table.columns.push_back(list_column("Sh_ci_low", found.Sh_ci_low, first));
-  table.columns.push_back(list_column("Sh_ci_high", found.Sh_ci_high, first));
-}
-
-/// A table for each index at the poses, with a column for each of them.
-void append_pose_tables(CsvTables& tables, const StoredResult& result) {
-  const SobolResult& found = sobol_of(result);
-  const std::size_t groups = found.groups();
-  for (const FieldRow<SobolIndices>& row : layout(found.joined).at_poses.fields) {
-    for (std::size_t r = 0; r < found.responses; ++r) {
-      CsvTable table{"sobol_" + row.name + "_" + result.responses[r].name,
-                     {axis_of(found.joined), [&](std::size_t g) { return found.group_names[g]; }},
-                     groups};
-      table.at_poses = pose_columns<SobolIndices>(result, row, found.at_poses, r * groups * found.poses, "1");
+/// A table for each index at the poses and each end of its interval, with a column for each pose.
+template <class Shares>
+void append_pose_tables(CsvTables& tables, const StoredResult& result, const Fields<Shares>& rows,
+                        const Shares& shares) {
+  const std::array lists{&shares.value, &shares.ci_low, &shares.ci_high};
+  for (std::size_t k = 0; k < lists.size(); ++k) {
+    for (std::size_t r = 0; r < result.responses.size(); ++r) {
+      CsvTable table = lines_of_groups(sobol_of(result), "sobol_" + rows[k].name + "_" + result.responses[r].name);
+      table.at_poses = pose_columns(*lists[k], "1", r);
       tables.push_back(std::move(table));
     }
   }
@@ -224,17 +237,23 @@ void append_pose_tables(CsvTables& tables, const StoredResult& result) {
 /// Each pair of groups on a line.
 CsvTable pairs_table(const StoredResult& result, std::size_t r) {
   const SobolResult& found = sobol_of(result);
-  const std::size_t groups = found.groups();
+  const auto pairs = std::make_shared<const std::vector<GroupPair>>(group_pairs(found.groups()));
   CsvTable table{"sobol_pairs_" + result.responses[r].name,
                  {"pair",
-                  [&found, groups](std::size_t line) {
-                    return found.group_names[line / groups] + " & " + found.group_names[line % groups];
+                  [&found, pairs](std::size_t line) {
+                    const auto [i, j] = (*pairs)[line];
+                    return found.group_names[i] + " & " + found.group_names[j];
                   }},
-                 groups * groups};
-  table.has = [groups](std::size_t line) { return line / groups < line % groups; };
-  for (const FieldRow<SobolResult>& row : layout(found.joined).pairs) {
-    table.columns.push_back(field_column(row.name, row, found, r * groups * groups));
-  }
+                 pairs->size()};
+  const auto append = [&](std::string name, const auto& values) {
+    table.columns.push_back({std::move(name), [&values, pairs, r](std::size_t line) {
+                               const auto [i, j] = (*pairs)[line];
+                               return values(r, i, j);
+                             }});
+  };
+  append("S2", found.S2.value);
+  append("S2_ci_low", found.S2.ci_low);
+  append("S2_ci_high", found.S2.ci_high);
   return table;
 }
 
@@ -242,16 +261,22 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
   const SobolResult& found = sobol_of(result);
   const Layout& rows = layout(found.joined);
   append_sigma_tables(tables, result);
-  for (std::size_t r = 0; r < found.responses; ++r) {
-    CsvTable table = indices_table(result, "sobol_" + result.responses[r].name, rows.aggregated, found.aggregated, r);
-    if (!found.Sh.empty()) append_shapley(table, found, r);
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    CsvTable table = indices_table(found, "sobol_" + result.responses[r].name, found.aggregated, r);
+    if (!found.Sh.empty()) {
+      append_salib_columns(table, "Sh", found.Sh, r);
+      append_interval_columns(table, "Sh", found.Sh, r);
+    }
     tables.push_back(std::move(table));
   }
   for (std::size_t v = 0; v < found.vectors.size(); ++v) {
-    tables.push_back(indices_table(result, "sobol_vector_" + found.vectors[v], rows.of_vectors, found.of_vectors, v));
+    tables.push_back(indices_table(found, "sobol_vector_" + found.vectors[v], found.of_vectors, v));
   }
-  append_pose_tables(tables, result);
-  for (std::size_t r = 0; r < found.responses && !found.S2.empty(); ++r) tables.push_back(pairs_table(result, r));
+  append_pose_tables(tables, result, rows.at_poses.S1, found.at_poses.S1);
+  append_pose_tables(tables, result, rows.at_poses.ST, found.at_poses.ST);
+  for (std::size_t r = 0; r < result.responses.size() && !found.S2.empty(); ++r) {
+    tables.push_back(pairs_table(result, r));
+  }
   CsvTable solves = lines_of_poses(result, "not_converged");
   append_solve_columns(solves, found.solves);
   tables.push_back(std::move(solves));
@@ -260,6 +285,13 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 }
 
 }  // namespace
+
+std::size_t sobol_bytes(const AxisLengths& lengths) {
+  const Layout& rows = layout(true);
+  const auto both = [&](const auto& indices) { return bytes_of(indices.S1, lengths) + bytes_of(indices.ST, lengths); };
+  return both(rows.at_poses) + both(rows.aggregated) + both(rows.of_vectors) + bytes_of(rows.beside, lengths) +
+         bytes_of(rows.pairs, lengths) + bytes_of(rows.effects, lengths);
+}
 
 constinit const FileKind kSobolFile{.write = write, .read = read, .append_tables = append_tables};
 

@@ -130,6 +130,14 @@ std::vector<std::uint8_t> split_groups(std::span<const ErrorGroup> groups, const
   return split;
 }
 
+std::vector<GroupPair> group_pairs(std::size_t groups) {
+  std::vector<GroupPair> pairs;
+  for (std::size_t i = 0; i < groups; ++i) {
+    for (std::size_t j = i + 1; j < groups; ++j) pairs.emplace_back(i, j);
+  }
+  return pairs;
+}
+
 std::vector<std::string> component_units(const Detail& detail) {
   const std::vector<std::string> units = split(detail.unit);
   return units.size() == 1 ? std::vector(detail.components.size(), detail.unit) : units;

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/kinds/sobol/result.h"
@@ -25,8 +26,14 @@ inline constexpr std::string_view kOtherErrors = "others";
 /// The groups of a study: each error is in one. With named groups, errors that none of them has come last, as "others".
 std::vector<ErrorGroup> error_groups(const Analysis& analysis, const ModelDescription& model);
 
-/// Of each group whether an error of it is correlated with one of another group: 0 or 1, [P].
+/// Of each group whether an error of it is correlated with one of another group: 0 or 1.
 std::vector<std::uint8_t> split_groups(std::span<const ErrorGroup> groups, const Study& study);
+
+/// Positions of two groups.
+using GroupPair = std::pair<std::size_t, std::size_t>;
+
+/// All pairs of so many groups, the smaller position first.
+std::vector<GroupPair> group_pairs(std::size_t groups);
 
 /// A vector with a sign, whose components have one unit: its mean square does not depend on the axes.
 struct SignedVector {

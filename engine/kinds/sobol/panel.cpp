@@ -9,6 +9,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/run/response_rounding.h"
+#include "engine/stats/sums.h"
 
 namespace poesy {
 namespace {
@@ -25,16 +26,6 @@ bool need_details(const std::vector<SignedVector>& vectors, std::size_t response
   return std::ranges::any_of(vectors, [&](const SignedVector& vector) {
     return std::ranges::any_of(vector.components, [&](std::size_t component) { return component >= responses; });
   });
-}
-
-void write(const IndexSums& sums, ByteWriter& to) {
-  sums.total.write(to);
-  sums.first.write(to);
-}
-
-IndexSums read_index(ByteReader& from) {
-  const RatioSums total = RatioSums::read(from);
-  return {total, RatioSums::read(from)};
 }
 
 /// Blocks of correlated errors that are not all in one group.
@@ -80,48 +71,54 @@ IndexPanel::IndexPanel(const Study& study, std::size_t pose_count)
   for (std::size_t r = 0; r < responses; ++r) components_.push_back({r});
   for (const SignedVector& vector : vectors) components_.push_back(vector.components);
   if (!asked_of<SobolOptions>(study.analysis).second_order) return;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    for (std::size_t j = i + 1; j < groups.size(); ++j) pairs.emplace_back(i, j);
-  }
+  pairs = group_pairs(groups.size());
 }
 
 std::span<const std::size_t> IndexPanel::components(std::size_t quantity) const { return components_[quantity]; }
 
+void IndexSums::merge(const IndexSums& later) {
+  total.merge(later.total);
+  first.merge(later.first);
+}
+
+void IndexSums::write(ByteWriter& to) const {
+  total.write(to);
+  first.write(to);
+}
+
+IndexSums IndexSums::read(ByteReader& from) {
+  const RatioSums total = RatioSums::read(from);
+  return {total, RatioSums::read(from)};
+}
+
 PanelSums::PanelSums(const IndexPanel& panel)
-    : at_poses(panel.responses * panel.groups.size() * panel.poses),
-      aggregated(panel.quantities() * panel.groups.size()),
-      pairs(panel.responses * panel.pairs.size()),
-      shapley(panel.shapley ? panel.responses * panel.groups.size() : 0),
-      moments(panel.rows() * panel.poses),
-      least(panel.responses, std::numeric_limits<double>::infinity()),
+    : at_poses({panel.responses, panel.groups.size(), panel.poses}),
+      aggregated({panel.quantities(), panel.groups.size()}),
+      pairs({panel.responses, panel.pairs.size()}),
+      moments({panel.rows(), panel.poses}),
+      least({panel.responses}, std::numeric_limits<double>::infinity()),
       solves(panel.poses),
       failed(panel.poses),
-      failures(panel.poses) {}
+      failures(panel.poses) {
+  if (panel.shapley) make_room({panel.responses, panel.groups.size()}, shapley);
+}
 
 void PanelSums::merge(const PanelSums& later) {
-  const auto merge_indices = [](std::vector<IndexSums>& list, const std::vector<IndexSums>& other) {
-    for (std::size_t k = 0; k < list.size(); ++k) {
-      list[k].total.merge(other[k].total);
-      list[k].first.merge(other[k].first);
-    }
-  };
-  merge_indices(at_poses, later.at_poses);
-  merge_indices(aggregated, later.aggregated);
-  for (std::size_t k = 0; k < pairs.size(); ++k) pairs[k].merge(later.pairs[k]);
-  for (std::size_t k = 0; k < shapley.size(); ++k) shapley[k].merge(later.shapley[k]);
-  for (std::size_t k = 0; k < moments.size(); ++k) moments[k].merge(later.moments[k]);
-  for (std::size_t r = 0; r < least.size(); ++r) least[r] = std::min(least[r], later.least[r]);
-  for (std::size_t m = 0; m < solves.size(); ++m) {
-    solves[m].merge(later.solves[m]);
-    failed[m].merge(later.failed[m]);
-    failures[m] += later.failures[m];
-  }
+  merge_each(at_poses, later.at_poses);
+  merge_each(aggregated, later.aggregated);
+  merge_each(pairs, later.pairs);
+  merge_each(shapley, later.shapley);
+  merge_each(moments, later.moments);
+  for (std::size_t r = 0; r < least.size(); ++r) least(r) = std::min(least(r), later.least(r));
+  merge_each(solves, later.solves);
+  merge_each(failed, later.failed);
+  for (std::size_t m = 0; m < failures.size(); ++m) failures[m] += later.failures[m];
 }
 
 PanelSums PanelSums::as_one() const {
   PanelSums one = *this;
-  for (std::vector<IndexSums>* list : {&one.at_poses, &one.aggregated}) {
-    for (IndexSums& index : *list) index = {mean_of(index.total), mean_of(index.first)};
+  for (const std::span<IndexSums> list : {one.at_poses.all(), one.aggregated.all()}) {
+    for (IndexSums& index : list) index = {mean_of(index.total), mean_of(index.first)};
   }
   for (RatioSums& pair : one.pairs) pair = mean_of(pair);
   for (RatioSums& effect : one.shapley) effect = mean_of(effect);
@@ -129,14 +126,13 @@ PanelSums PanelSums::as_one() const {
 }
 
 void PanelSums::write(ByteWriter& to) const {
-  for (const std::vector<IndexSums>* list : {&at_poses, &aggregated}) {
-    for (const IndexSums& index : *list) poesy::write(index, to);
-  }
-  for (const RatioSums& pair : pairs) pair.write(to);
-  for (const RatioSums& effect : shapley) effect.write(to);
-  for (const Moments& one : moments) one.write(to);
+  write_each(at_poses, to);
+  write_each(aggregated, to);
+  write_each(pairs, to);
+  write_each(shapley, to);
+  write_each(moments, to);
   to.reals(least);
-  for (const SolveCounts& counts : solves) counts.write(to);
+  write_each(solves, to);
   for (std::size_t m = 0; m < failed.size(); ++m) {
     to.number(failures[m]);
     failed[m].write(to);
@@ -145,14 +141,13 @@ void PanelSums::write(ByteWriter& to) const {
 
 PanelSums PanelSums::read(ByteReader& from, const IndexPanel& panel, std::uint64_t end) {
   PanelSums sums(panel);
-  for (std::vector<IndexSums>* list : {&sums.at_poses, &sums.aggregated}) {
-    for (IndexSums& index : *list) index = read_index(from);
-  }
-  for (RatioSums& pair : sums.pairs) pair = RatioSums::read(from);
-  for (RatioSums& effect : sums.shapley) effect = RatioSums::read(from);
-  for (Moments& one : sums.moments) one = Moments::read(from);
+  read_each(from, sums.at_poses);
+  read_each(from, sums.aggregated);
+  read_each(from, sums.pairs);
+  read_each(from, sums.shapley);
+  read_each(from, sums.moments);
   from.reals(sums.least);
-  for (SolveCounts& counts : sums.solves) counts = SolveCounts::read(from);
+  read_each(from, sums.solves);
   for (std::size_t m = 0; m < panel.poses; ++m) {
     sums.failures[m] = from.number_up_to(sums.solves[m].not_converged());
     sums.failed[m] = FailedSamples::read(from, sums.failures[m], 0, end);
@@ -170,8 +165,6 @@ SplitDraws::SplitDraws(SplitBlock split, std::size_t subsets) : block(std::move(
     if (mixture.drawn.empty() || mixture.shared.empty()) continue;
     mixture.scores.emplace(*block.copula, mixture.shared, mixture.drawn);
   }
-  scores.resize(block.slots.size() * PanelDesign::kUnitSamples);
-  normals.resize(scores.size());
 }
 
 PanelEvaluator::PanelEvaluator(const Plan& plan, const Model& model, const IndexPanel& panel, const PanelDesign& design)
@@ -180,86 +173,79 @@ PanelEvaluator::PanelEvaluator(const Plan& plan, const Model& model, const Index
       design_(&design),
       evaluator_(model.evaluator(plan.solver())),
       rounding_(response_rounding(model)) {
-  constexpr std::size_t kB = PanelDesign::kUnitSamples;
-  const std::size_t quantities = panel.quantities();
-  const std::size_t groups = panel.groups.size();
-  for (Rows* rows : {&a_, &b_, &mixed_}) rows->resize(plan.factors().size() * kB);
-  for (Outcomes* outcomes : {&of_a_, &of_b_, &of_mixed_}) {
-    outcomes->values.resize(panel.rows() * kB);
-    outcomes->counts.resize(kB);
-  }
-  between_.resize(quantities * kB);
-  for (GroupRows* rows : {&at_pose_, &over_poses_}) {
-    for (Rows* one : {&rows->total, &rows->first, &rows->between}) one->resize(quantities * groups * kB);
-  }
-  pair_first_.resize(panel.responses * panel.pairs.size() * kB);
-  pair_between_.resize(pair_first_.size());
-  if (panel.shapley) {
-    for (SplitBlock& block : split_blocks(plan, panel.groups)) split_.emplace_back(std::move(block), panel.subsets());
-    differences_.resize(panel.subsets() * panel.responses * kB);
-    all_count_.resize(kB);
-    shapley_.resize(panel.responses * groups * kB);
-    shapley_between_.resize(panel.responses * kB);
-  }
-  group_counts_.resize(groups * kB);
-  status_.resize(kB);
-  iterations_.resize(kB);
+  if (!panel.shapley) return;
+  for (SplitBlock& block : split_blocks(plan, panel.groups)) split_.emplace_back(std::move(block), panel.subsets());
 }
 
-std::span<double> PanelEvaluator::row(Rows& rows, std::size_t number) const {
-  return std::span(rows).subspan(number * unit_.count, unit_.count);
+void PanelEvaluator::begin_scratch(std::size_t samples) {
+  const std::size_t responses = panel_->responses;
+  const std::size_t groups = panel_->groups.size();
+  const std::size_t quantities = panel_->quantities();
+  make_room({plan_->factors().size(), samples}, a_, b_);
+  for (Outcomes* outcomes : {&of_a_, &of_b_, &of_mixed_}) {
+    make_room({panel_->rows(), samples}, outcomes->values);
+    outcomes->counts.resize(samples);
+  }
+  make_room({quantities, samples}, between_);
+  for (GroupRows* rows : {&at_pose_, &over_poses_}) {
+    make_room({quantities, groups, samples}, rows->total, rows->first, rows->between);
+  }
+  make_room({responses, panel_->pairs.size(), samples}, pair_first_, pair_between_);
+  make_room({groups, samples}, group_counts_);
+  status_.resize(samples);
+  iterations_.resize(samples);
+  if (!panel_->shapley) return;
+  for (SplitDraws& draws : split_) {
+    make_room({draws.block.slots.size(), samples}, draws.scores, draws.normals);
+  }
+  make_room({panel_->subsets(), responses, samples}, differences_);
+  all_count_.resize(samples);
+  make_room({responses, groups, samples}, shapley_);
+  make_room({responses, samples}, shapley_between_);
 }
 
 void PanelEvaluator::begin(const PanelUnit& unit) {
   unit_ = unit;
-  for (const auto& [sample, rows] : {std::pair(PanelSample::A, &a_), std::pair(PanelSample::B, &b_)}) {
+  begin_scratch(unit.count);
+  for (const auto& [sample, errors] : {std::pair(PanelSample::A, &a_), std::pair(PanelSample::B, &b_)}) {
     for (std::size_t slot = 0; slot < plan_->factors().size(); ++slot) {
-      design_->fill(sample, slot, unit, row(*rows, slot));
+      design_->fill(sample, slot, unit, errors->row(slot));
     }
-    keep_scores(sample, *rows);
-    plan_->transform(std::span(*rows).first(plan_->factors().size() * unit.count), unit.count);
+    keep_scores(sample, *errors);
+    plan_->transform(errors->all(), unit.count);
   }
   mixed_ = a_;
-  for (Rows* rows : {&over_poses_.total, &over_poses_.first, &over_poses_.between, &pair_first_, &pair_between_,
-                     &shapley_, &shapley_between_}) {
-    std::ranges::fill(*rows, 0.0);
-  }
   sums_ = PanelSums(*panel_);
 }
 
-void PanelEvaluator::keep_scores(PanelSample sample, const Rows& uniforms) {
+void PanelEvaluator::keep_scores(PanelSample sample, const OfSamples<axis::Factor>& uniforms) {
   for (SplitDraws& draws : split_) {
-    Rows& kept = sample == PanelSample::A ? draws.scores : draws.normals;
+    auto& kept = sample == PanelSample::A ? draws.scores : draws.normals;
     std::vector<std::span<double>> rows;
     for (std::size_t k = 0; k < draws.block.slots.size(); ++k) {
-      rows.push_back(row(kept, k));
-      std::ranges::copy(std::span(uniforms).subspan(draws.block.slots[k] * unit_.count, unit_.count),
-                        rows.back().begin());
+      rows.push_back(kept.row(k));
+      std::ranges::copy(uniforms.row(draws.block.slots[k]), rows.back().begin());
       normal_quantiles(1.0, rows.back());
     }
     if (sample == PanelSample::A) draws.block.copula->correlate(rows);
   }
 }
 
-void PanelEvaluator::solve(PoseIndex pose, const Rows& errors, Outcomes& outcomes) {
-  const std::size_t count = unit_.count;
-  const std::span values = std::span(outcomes.values);
-  const std::span status = std::span(status_).first(count);
-  const std::span iterations = std::span(iterations_).first(count);
-  evaluator_->evaluate({plan_->poses()[pose], plan_->background(), plan_->factors(),
-                        std::span(errors).first(plan_->factors().size() * count), count},
-                       {values.first(panel_->responses * count), status, iterations,
-                        values.subspan(panel_->responses * count, panel_->details * count)});
+void PanelEvaluator::solve(PoseIndex pose, const OfSamples<axis::Factor>& errors, Outcomes& outcomes) {
+  const std::span values = outcomes.values.all();
+  const std::span responses = values.first(panel_->responses * unit_.count);
+  evaluator_->evaluate({plan_->poses()[pose], plan_->background(), plan_->factors(), errors.all(), unit_.count},
+                       {responses, status_, iterations_, values.subspan(responses.size())});
   SolveCounts& solves = sums_.solves[pose.value];
-  for (std::size_t b = 0; b < count; ++b) {
-    solves.add(status[b], iterations[b]);
-    outcomes.counts[b] = counts(status[b], plan_->not_converged()) ? 1 : 0;
+  for (std::size_t b = 0; b < unit_.count; ++b) {
+    solves.add(status_[b], iterations_[b]);
+    outcomes.counts[b] = counts(status_[b], plan_->not_converged()) ? 1 : 0;
   }
 }
 
-void PanelEvaluator::take(std::size_t group, const Rows& from) {
+void PanelEvaluator::take(std::size_t group, const OfSamples<axis::Factor>& from) {
   for (const std::size_t slot : panel_->groups[group].members) {
-    std::ranges::copy(std::span(from).subspan(slot * unit_.count, unit_.count), row(mixed_, slot).begin());
+    std::ranges::copy(from.row(slot), mixed_.row(slot).begin());
   }
 }
 
@@ -281,15 +267,15 @@ void PanelEvaluator::draw_given(std::span<const std::size_t> groups) {
     std::vector<std::span<const double>> shared;
     std::vector<std::span<const double>> normals;
     std::vector<std::span<double>> drawn;
-    for (const std::size_t k : mixture.shared) shared.emplace_back(row(draws.scores, k));
+    for (const std::size_t k : mixture.shared) shared.emplace_back(draws.scores.row(k));
     for (const std::size_t k : mixture.drawn) {
-      normals.emplace_back(row(draws.normals, k));
-      drawn.push_back(row(mixed_, draws.block.slots[k]));
+      normals.emplace_back(draws.normals.row(k));
+      drawn.push_back(mixed_.row(draws.block.slots[k]));
     }
     mixture.scores->fill(shared, normals, drawn);
     for (const std::size_t k : mixture.drawn) {
       const std::size_t slot = draws.block.slots[k];
-      plan_->distributions()[slot].transform_scores(row(mixed_, slot));
+      plan_->distributions()[slot].transform_scores(mixed_.row(slot));
     }
   }
 }
@@ -299,20 +285,17 @@ void PanelEvaluator::absorb() {
   for (std::size_t b = 0; b < unit_.count; ++b) {
     bool same = true;
     for (std::size_t r = 0; r < panel_->responses; ++r) {
-      const std::size_t at = r * unit_.count + b;
-      same = same && std::abs(of_a_.values[at] - of_mixed_.values[at]) <= rounding_[r];
+      same = same && std::abs(of_a_.values(r, b) - of_mixed_.values(r, b)) <= rounding_[r];
     }
-    for (std::size_t k = 0; same && k < rows; ++k) {
-      of_mixed_.values[k * unit_.count + b] = of_a_.values[k * unit_.count + b];
-    }
+    for (std::size_t k = 0; same && k < rows; ++k) of_mixed_.values(k, b) = of_a_.values(k, b);
   }
 }
 
 void PanelEvaluator::add_squared_differences(std::size_t quantity, const Outcomes& one, const Outcomes& other,
                                              std::span<double> sum) const {
   for (const std::size_t component : panel_->components(quantity)) {
-    const double* const x = one.values.data() + component * unit_.count;
-    const double* const y = other.values.data() + component * unit_.count;
+    const std::span x = one.values.row(component);
+    const std::span y = other.values.row(component);
     for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += (x[b] - y[b]) * (x[b] - y[b]);
   }
 }
@@ -330,19 +313,19 @@ void PanelEvaluator::add_pose(PoseIndex pose) {
   solve(pose, b_, of_b_);
   std::vector<double> kept;
   for (std::size_t row = 0; row < panel_->rows(); ++row) {
-    Moments& moments = sums_.moments[row * panel_->poses + pose.value];
+    Moments& moments = sums_.moments(row, pose.value);
     for (const Outcomes* outcomes : {&of_a_, &of_b_}) {
       kept.clear();
       for (std::size_t b = 0; b < unit_.count; ++b) {
-        if (outcomes->counts[b] != 0) kept.push_back(outcomes->values[row * unit_.count + b]);
+        if (outcomes->counts[b] != 0) kept.push_back(outcomes->values(row, b));
       }
       moments.merge(Moments::of(kept));
       if (row >= panel_->responses) continue;
-      for (const double value : kept) sums_.least[row] = std::min(sums_.least[row], value);
+      for (const double value : kept) sums_.least(row) = std::min(sums_.least(row), value);
     }
   }
   std::ranges::fill(between_, 0.0);
-  for (std::size_t q = 0; q < panel_->quantities(); ++q) add_squared_differences(q, of_a_, of_b_, row(between_, q));
+  for (std::size_t q = 0; q < panel_->quantities(); ++q) add_squared_differences(q, of_a_, of_b_, between_.row(q));
   if (panel_->shapley) {
     for (std::size_t b = 0; b < unit_.count; ++b) all_count_[b] = of_a_.counts[b] & of_b_.counts[b];
   }
@@ -364,7 +347,7 @@ void PanelEvaluator::add_group(PoseIndex pose, std::size_t group) {
 void PanelEvaluator::keep_differences(std::size_t subset) {
   for (std::size_t b = 0; b < unit_.count; ++b) all_count_[b] &= of_mixed_.counts[b];
   for (std::size_t r = 0; r < panel_->responses; ++r) {
-    const std::span kept = row(differences_, subset * panel_->responses + r);
+    const std::span kept = differences_.row(subset, r);
     std::ranges::fill(kept, 0.0);
     add_squared_differences(r, of_a_, of_mixed_, kept);
   }
@@ -385,52 +368,50 @@ void PanelEvaluator::add_shapley(PoseIndex pose) {
     unmix(others);
     keep_differences(subset);
   }
-  const std::size_t responses = panel_->responses;
-  for (std::size_t r = 0; r < responses; ++r) {
-    std::ranges::copy(row(between_, r), row(differences_, r).begin());
-    std::ranges::fill(row(differences_, all * responses + r), 0.0);
+  for (std::size_t r = 0; r < panel_->responses; ++r) {
+    std::ranges::copy(between_.row(r), differences_.row(0, r).begin());
+    std::ranges::fill(differences_.row(all, r), 0.0);
     const auto add = [&](std::span<double> sum, double weight, std::size_t with, std::size_t without) {
-      const std::span<const double> more = row(differences_, with * responses + r);
-      const std::span<const double> less = row(differences_, without * responses + r);
+      const std::span<const double> more = differences_.row(with, r);
+      const std::span<const double> less = differences_.row(without, r);
       for (std::size_t b = 0; b < unit_.count; ++b) {
         sum[b] += all_count_[b] != 0 ? weight * (less[b] - more[b]) : 0.0;
       }
     };
-    add(row(shapley_between_, r), 1.0, all, 0);
+    add(shapley_between_.row(r), 1.0, all, 0);
     for (std::size_t g = 0; g < groups; ++g) {
       const std::size_t own = std::size_t{1} << g;
       for (std::size_t subset = 0; subset <= all; ++subset) {
         if ((subset & own) != 0) continue;
         const auto size = static_cast<std::size_t>(std::popcount(subset));
-        add(row(shapley_, r * groups + g), shapley_weight(size, groups), subset | own, subset);
+        add(shapley_.row(r, g), shapley_weight(size, groups), subset | own, subset);
       }
     }
   }
 }
 
 void PanelEvaluator::add_indices(PoseIndex pose, std::size_t group) {
-  const std::size_t groups = panel_->groups.size();
-  const std::span counts = std::span(group_counts_).subspan(group * unit_.count, unit_.count);
+  const std::span counts = group_counts_.row(group);
   for (std::size_t b = 0; b < unit_.count; ++b) {
     counts[b] = of_a_.counts[b] & of_b_.counts[b] & of_mixed_.counts[b];
   }
   for (std::size_t q = 0; q < panel_->quantities(); ++q) {
-    const std::span total = row(at_pose_.total, q * groups + group);
-    const std::span first = row(at_pose_.first, q * groups + group);
-    const std::span between = row(between_, q);
+    const std::span total = at_pose_.total.row(q, group);
+    const std::span first = at_pose_.first.row(q, group);
+    const std::span between = between_.row(q);
     std::ranges::fill(total, 0.0);
     std::ranges::fill(first, 0.0);
     add_squared_differences(q, of_a_, of_mixed_, total);
     add_squared_differences(q, of_b_, of_mixed_, first);
     for (std::size_t b = 0; b < unit_.count; ++b) first[b] = between[b] - first[b];
     if (q < panel_->responses) {
-      IndexSums& cell = sums_.at_poses[(q * groups + group) * panel_->poses + pose.value];
+      IndexSums& cell = sums_.at_poses(q, group, pose.value);
       cell.total.add(total, between, counts);
       cell.first.add(first, between, counts);
     }
-    const std::span sum_total = row(over_poses_.total, q * groups + group);
-    const std::span sum_first = row(over_poses_.first, q * groups + group);
-    const std::span sum_between = row(over_poses_.between, q * groups + group);
+    const std::span sum_total = over_poses_.total.row(q, group);
+    const std::span sum_first = over_poses_.first.row(q, group);
+    const std::span sum_between = over_poses_.between.row(q, group);
     for (std::size_t b = 0; b < unit_.count; ++b) {
       const bool is_in = counts[b] != 0;
       sum_total[b] += is_in ? total[b] : 0.0;
@@ -442,22 +423,20 @@ void PanelEvaluator::add_indices(PoseIndex pose, std::size_t group) {
 
 void PanelEvaluator::add_pair(PoseIndex pose, std::size_t pair) {
   const auto [i, j] = panel_->pairs[pair];
-  const std::size_t groups = panel_->groups.size();
   const std::array pair_groups{i, j};
   mix(pair_groups);
   solve(pose, mixed_, of_mixed_);
   unmix(pair_groups);
   for (std::size_t r = 0; r < panel_->responses; ++r) {
-    const double* const y_b = of_b_.values.data() + r * unit_.count;
-    const double* const y_c = of_mixed_.values.data() + r * unit_.count;
-    const std::span between = row(between_, r);
-    const std::span first_i = row(at_pose_.first, r * groups + i);
-    const std::span first_j = row(at_pose_.first, r * groups + j);
-    const std::span sum_first = row(pair_first_, r * panel_->pairs.size() + pair);
-    const std::span sum_between = row(pair_between_, r * panel_->pairs.size() + pair);
+    const std::span y_b = of_b_.values.row(r);
+    const std::span y_c = of_mixed_.values.row(r);
+    const std::span between = between_.row(r);
+    const std::span first_i = at_pose_.first.row(r, i);
+    const std::span first_j = at_pose_.first.row(r, j);
+    const std::span sum_first = pair_first_.row(r, pair);
+    const std::span sum_between = pair_between_.row(r, pair);
     for (std::size_t b = 0; b < unit_.count; ++b) {
-      const bool is_in =
-          (group_counts_[i * unit_.count + b] & group_counts_[j * unit_.count + b] & of_mixed_.counts[b]) != 0;
+      const bool is_in = (group_counts_(i, b) & group_counts_(j, b) & of_mixed_.counts[b]) != 0;
       const double both = between[b] - (y_b[b] - y_c[b]) * (y_b[b] - y_c[b]);
       sum_first[b] += is_in ? both - first_i[b] - first_j[b] : 0.0;
       sum_between[b] += is_in ? between[b] : 0.0;
@@ -466,22 +445,21 @@ void PanelEvaluator::add_pair(PoseIndex pose, std::size_t pair) {
 }
 
 void PanelEvaluator::add_over_poses() {
-  const std::array<std::uint8_t, PanelDesign::kUnitSamples> all = [] {
-    std::array<std::uint8_t, PanelDesign::kUnitSamples> ones{};
-    ones.fill(1);
-    return ones;
-  }();
-  const std::span counts = std::span(all).first(unit_.count);
-  for (std::size_t k = 0; k < sums_.aggregated.size(); ++k) {
-    if (panel_->split[k % panel_->groups.size()] != 0) continue;
-    sums_.aggregated[k].total.add(row(over_poses_.total, k), row(over_poses_.between, k), counts);
-    sums_.aggregated[k].first.add(row(over_poses_.first, k), row(over_poses_.between, k), counts);
+  const Flags all(unit_.count, 1);
+  for (std::size_t g = 0; g < panel_->groups.size(); ++g) {
+    for (std::size_t q = 0; q < panel_->quantities() && panel_->split[g] == 0; ++q) {
+      IndexSums& index = sums_.aggregated(q, g);
+      index.total.add(over_poses_.total.row(q, g), over_poses_.between.row(q, g), all);
+      index.first.add(over_poses_.first.row(q, g), over_poses_.between.row(q, g), all);
+    }
+    for (std::size_t r = 0; r < panel_->responses && panel_->shapley; ++r) {
+      sums_.shapley(r, g).add(shapley_.row(r, g), shapley_between_.row(r), all);
+    }
   }
-  for (std::size_t k = 0; k < sums_.pairs.size(); ++k) {
-    sums_.pairs[k].add(row(pair_first_, k), row(pair_between_, k), counts);
-  }
-  for (std::size_t k = 0; k < sums_.shapley.size(); ++k) {
-    sums_.shapley[k].add(row(shapley_, k), row(shapley_between_, k / panel_->groups.size()), counts);
+  for (std::size_t r = 0; r < panel_->responses; ++r) {
+    for (std::size_t k = 0; k < panel_->pairs.size(); ++k) {
+      sums_.pairs(r, k).add(pair_first_.row(r, k), pair_between_.row(r, k), all);
+    }
   }
 }
 

@@ -5,8 +5,10 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include "engine/base/array.h"
 #include "engine/base/bytes.h"
 #include "engine/kinds/sobol/design.h"
 #include "engine/kinds/sobol/groups.h"
@@ -18,36 +20,63 @@
 
 namespace poesy {
 
-/// What a panel is of: R responses and V signed vectors, P groups of errors, M poses.
+namespace axis {
+/// Quantities that have indices: the responses, then the vectors with a sign.
+struct PanelQuantity {
+  static constexpr std::string_view kName = "quantity";
+};
+/// What is solved: the responses, then the components of all details.
+struct PanelRow {
+  static constexpr std::string_view kName = "row";
+};
+/// Pairs of groups.
+struct GroupPair {
+  static constexpr std::string_view kName = "pair";
+};
+/// Subsets of the groups, as numbers whose bit g is set for group g.
+struct GroupSubset {
+  static constexpr std::string_view kName = "subset";
+};
+/// Errors of a block.
+struct BlockError {
+  static constexpr std::string_view kName = "block_error";
+};
+}  // namespace axis
+
+/// What a panel is of.
 struct IndexPanel {
   /// Of a study. Precondition: its kind is that of Sobol' indices.
   IndexPanel(const Study& study, std::size_t pose_count);
 
-  std::vector<ErrorGroup> groups;                          ///< [P]
-  std::vector<SignedVector> vectors;                       ///< [V]
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;  ///< of groups, the smaller first; none: not asked for
-  std::size_t responses;                                   ///< R
-  std::size_t details;                                     ///< D, components of all details; 0: none is needed
-  std::size_t poses;                                       ///< M
-  std::vector<std::uint8_t> split;                         ///< [P] as split_groups(): 1 has no S1 and ST
-  bool shapley;                                            ///< whether Shapley effects are asked for
+  std::vector<ErrorGroup> groups;     ///< of errors
+  std::vector<SignedVector> vectors;  ///< of the model
+  std::vector<GroupPair> pairs;       ///< as group_pairs() lists them; none: not asked for
+  std::size_t responses;              ///< number of them
+  std::size_t details;                ///< components of all details; 0: none is needed
+  std::size_t poses;                  ///< number of them
+  std::vector<std::uint8_t> split;    ///< as split_groups(): 1 has no S1 and ST
+  bool shapley;                       ///< whether Shapley effects are asked for
 
-  std::size_t quantities() const { return responses + vectors.size(); }  ///< R + V, in this order.
-  std::size_t rows() const { return responses + details; }               ///< R + D, in this order.
-  std::span<const std::size_t> components(std::size_t quantity) const;   ///< Rows of [(R + D) x B].
+  std::size_t quantities() const { return responses + vectors.size(); }  ///< Positions of axis::PanelQuantity.
+  std::size_t rows() const { return responses + details; }               ///< Positions of axis::PanelRow.
+  std::span<const std::size_t> components(std::size_t quantity) const;   ///< Rows of which the quantity is made.
   /// At each pose.
   std::size_t solves_of_sample() const { return (shapley ? subsets() : 2 + groups.size()) + pairs.size(); }
-  /// Of the groups, as numbers whose bit g is set for group g. Precondition: shapley.
+  /// Positions of axis::GroupSubset. Precondition: shapley.
   std::size_t subsets() const { return std::size_t{1} << groups.size(); }
 
  private:
-  std::vector<std::vector<std::size_t>> components_;  ///< [R + V]
+  std::vector<std::vector<std::size_t>> components_;  ///< of each quantity
 };
 
 /// What both indices of one group are made of.
 struct IndexSums {
   RatioSums total;  ///< ST
   RatioSums first;  ///< S1
+
+  void merge(const IndexSums& later);       ///< Both streams together.
+  void write(ByteWriter& to) const;         ///< Every bit of them.
+  static IndexSums read(ByteReader& from);  ///< The opposite. Throws BytesError.
 };
 
 /// What some samples of a panel come to.
@@ -55,15 +84,15 @@ struct PanelSums {
   PanelSums() = default;
   explicit PanelSums(const IndexPanel& panel);  ///< Of no samples.
 
-  std::vector<IndexSums> at_poses;      ///< [R x P x M]
-  std::vector<IndexSums> aggregated;    ///< [(R + V) x P]
-  std::vector<RatioSums> pairs;         ///< [R x pairs] second-order indices
-  std::vector<RatioSums> shapley;       ///< [R x P] Shapley effects; or empty
-  std::vector<Moments> moments;         ///< [(R + D) x M] of the samples A and B
-  std::vector<double> least;            ///< [R] smallest of these; infinite without samples
-  std::vector<SolveCounts> solves;      ///< [M]
-  std::vector<FailedSamples> failed;    ///< [M] the first samples of A that were not solved
-  std::vector<std::uint64_t> failures;  ///< [M] how many there are
+  Array<IndexSums, axis::Response, axis::ErrorGroup, axis::Pose> at_poses;  ///< of each pose by itself
+  Array<IndexSums, axis::PanelQuantity, axis::ErrorGroup> aggregated;       ///< of the poses together
+  Array<RatioSums, axis::Response, axis::GroupPair> pairs;                  ///< second-order indices
+  Array<RatioSums, axis::Response, axis::ErrorGroup> shapley;               ///< Shapley effects; or empty
+  Array<Moments, axis::PanelRow, axis::Pose> moments;                       ///< of the samples A and B
+  Array<double, axis::Response> least;  ///< smallest of these; infinite without samples
+  std::vector<SolveCounts> solves;      ///< of each pose
+  std::vector<FailedSamples> failed;    ///< of each pose the first samples of A that were not solved
+  std::vector<std::uint64_t> failures;  ///< of each pose how many there are
 
   /// Precondition: the samples of `later` come after those of this, and are of the same panel.
   void merge(const PanelSums& later);
@@ -94,10 +123,10 @@ struct SplitDraws {
 
   SplitDraws(SplitBlock split, std::size_t subsets);  ///< Of mixtures of so many subsets of groups.
 
-  SplitBlock block;               ///< whose errors these are
-  std::vector<Mixture> mixtures;  ///< [subsets] by the groups that are not shared
-  std::vector<double> scores;     ///< [k x B] of A
-  std::vector<double> normals;    ///< [k x B] from which the scores of B are made
+  SplitBlock block;                                       ///< whose errors these are
+  std::vector<Mixture> mixtures;                          ///< by the groups that are not shared
+  Array<double, axis::BlockError, axis::Sample> scores;   ///< of A
+  Array<double, axis::BlockError, axis::Sample> normals;  ///< from which the scores of B are made
 };
 
 /// Solves the samples A and B, and A with each group of errors, and each pair of groups, from B; at all poses with the
@@ -114,28 +143,34 @@ class PanelEvaluator {
   std::uint64_t try_pose(const PanelUnit& unit, PoseIndex pose);
 
  private:
-  /// Rows of B numbers.
-  using Rows = std::vector<double>;
+  /// A number of each sample of the unit along other axes.
+  template <NamedAxis... Axes>
+  using OfSamples = Array<double, Axes..., axis::Sample>;
+  /// Flags: 0 or 1.
+  using Flags = std::vector<std::uint8_t>;
   /// What samples came to.
   struct Outcomes {
-    Rows values;                       ///< [(R + D) x B]
-    std::vector<std::uint8_t> counts;  ///< [B] whether the sample counts
+    OfSamples<axis::PanelRow> values;
+    Flags counts;  ///< whether the sample counts
   };
-  /// Numbers for each quantity and group, [(R + V) x P x B].
+  /// Numbers for each quantity and group.
   struct GroupRows {
-    Rows total;    ///< squared difference of A and C
-    Rows first;    ///< what B and C have in common: that of A and B, less that of B and C
-    Rows between;  ///< that of A and B, where all three count
+    OfSamples<axis::PanelQuantity, axis::ErrorGroup> total;  ///< squared difference of A and C
+    /// What B and C have in common: that of A and B, less that of B and C.
+    OfSamples<axis::PanelQuantity, axis::ErrorGroup> first;
+    OfSamples<axis::PanelQuantity, axis::ErrorGroup> between;  ///< that of A and B, where all three count
   };
 
   void begin(const PanelUnit& unit);
-  void keep_scores(PanelSample sample, const Rows& uniforms);
+  /// Makes the scratch for so many samples, all zero.
+  void begin_scratch(std::size_t samples);
+  void keep_scores(PanelSample sample, const OfSamples<axis::Factor>& uniforms);
   void add_pose(PoseIndex pose);
   void add_samples(PoseIndex pose);
   void add_group(PoseIndex pose, std::size_t group);
   void add_pair(PoseIndex pose, std::size_t pair);
   void add_over_poses();
-  void solve(PoseIndex pose, const Rows& errors, Outcomes& outcomes);
+  void solve(PoseIndex pose, const OfSamples<axis::Factor>& errors, Outcomes& outcomes);
   /// Makes mixed_ A with these groups from B, or A again.
   void mix(std::span<const std::size_t> groups);
   void unmix(std::span<const std::size_t> groups);
@@ -143,10 +178,9 @@ class PanelEvaluator {
   void add_indices(PoseIndex pose, std::size_t group);
   void keep_differences(std::size_t subset);
   void add_shapley(PoseIndex pose);
-  void take(std::size_t group, const Rows& from);
+  void take(std::size_t group, const OfSamples<axis::Factor>& from);
   /// Makes samples of C equal to A where they differ by rounding alone: their error is absorbed.
   void absorb();
-  std::span<double> row(Rows& rows, std::size_t number) const;
   /// Adds the squared differences of a quantity's components.
   void add_squared_differences(std::size_t quantity, const Outcomes& one, const Outcomes& other,
                                std::span<double> sum) const;
@@ -155,25 +189,25 @@ class PanelEvaluator {
   const IndexPanel* panel_;
   const PanelDesign* design_;
   std::unique_ptr<Evaluator> evaluator_;
-  std::vector<double> rounding_;  ///< [R] as Model::rounding gives it
+  std::vector<double> rounding_;  ///< of each response as Model::rounding gives it
   PanelUnit unit_{};
-  Rows a_;  ///< [errors x B], as b_ and mixed_
-  Rows b_;
-  Rows mixed_;
+  OfSamples<axis::Factor> a_;
+  OfSamples<axis::Factor> b_;
+  OfSamples<axis::Factor> mixed_;
   Outcomes of_a_;
   Outcomes of_b_;
   Outcomes of_mixed_;
-  Rows between_;                            ///< [(R + V) x B] of A and B at this pose
-  GroupRows at_pose_;                       ///< at this pose
-  GroupRows over_poses_;                    ///< sums over the poses
-  Rows pair_first_;                         ///< [R x pairs x B] sums over the poses
-  Rows pair_between_;                       ///< likewise
-  std::vector<SplitDraws> split_;           ///< where Shapley effects are of groups that split blocks
-  Rows differences_;                        ///< [subsets x R x B] of A and what shares the subset with it, at this pose
-  std::vector<std::uint8_t> all_count_;     ///< [B] at this pose: all mixtures count
-  Rows shapley_;                            ///< [R x P x B] sums over the poses
-  Rows shapley_between_;                    ///< [R x B] likewise
-  std::vector<std::uint8_t> group_counts_;  ///< [P x B] at this pose: A, B and C count
+  OfSamples<axis::PanelQuantity> between_;                    ///< of A and B at this pose
+  GroupRows at_pose_;                                         ///< at this pose
+  GroupRows over_poses_;                                      ///< sums over the poses
+  OfSamples<axis::Response, axis::GroupPair> pair_first_;     ///< sums over the poses
+  OfSamples<axis::Response, axis::GroupPair> pair_between_;   ///< likewise
+  std::vector<SplitDraws> split_;                             ///< where Shapley effects are of groups that split blocks
+  OfSamples<axis::GroupSubset, axis::Response> differences_;  ///< of A and what shares the subset with it, at this pose
+  Flags all_count_;                                           ///< at this pose: all mixtures count
+  OfSamples<axis::Response, axis::ErrorGroup> shapley_;       ///< sums over the poses
+  OfSamples<axis::Response> shapley_between_;                 ///< likewise
+  Array<std::uint8_t, axis::ErrorGroup, axis::Sample> group_counts_;  ///< at this pose: A, B and C count
   std::vector<SolveStatus> status_;
   std::vector<std::uint32_t> iterations_;
   PanelSums sums_;

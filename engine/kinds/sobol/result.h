@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -7,12 +9,31 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/array.h"
+#include "engine/base/nan.h"
 #include "engine/report/tables.h"
+#include "engine/result/fields.h"
 #include "engine/result/result_file.h"
 #include "engine/run/result.h"
+#include "engine/stats/moments.h"
 #include "engine/study/study.h"
 
 namespace poesy {
+
+namespace axis {
+/// What variances are shared among. The axis has another name in a file whose errors are not joined: "factor".
+struct ErrorGroup {
+  static constexpr std::string_view kName = "group";
+};
+/// The second group of a pair.
+struct OtherGroup {
+  static constexpr std::string_view kName = "other";
+};
+/// Vectors with a sign, whose components have one unit.
+struct SignedVector {
+  static constexpr std::string_view kName = "vector";
+};
+}  // namespace axis
 
 /// By what errors are joined to groups, whose members vary at once.
 enum class GroupsBy {
@@ -54,52 +75,78 @@ std::string_view name(Design design);  ///< As a study file has it.
 /// The kind of study that divides the variance of each response among the errors.
 extern const StudyKind kSobolStudy;
 
-/// Indices of some quantities to P groups, with their intervals: shares of a variance, NaN where a quantity does not
-/// vary (stats/indices.h), and for a group with errors that are correlated with errors of other groups.
-struct SobolIndices {
-  double conf_level = 0.95;        ///< of the intervals
-  std::vector<double> S1;          ///< first-order index; of several errors their closed index
-  std::vector<double> S1_ci_low;   ///< lower ends
-  std::vector<double> S1_ci_high;  ///< upper ends
-  std::vector<double> ST;          ///< total index
-  std::vector<double> ST_ci_low;   ///< lower ends
-  std::vector<double> ST_ci_high;  ///< upper ends
+/// Shares of the variance of some quantities, with the ends of their intervals: NaN where a quantity does not vary
+/// (stats/indices.h), and for a group with errors that are correlated with errors of other groups.
+template <NamedAxis... Axes>
+struct Shares {
+  using Values = Array<double, Axes...>;     ///< One for each quantity and group, or for each pose of these.
+  using Lengths = typename Values::Lengths;  ///< Of the axes.
+
+  Shares() = default;
+  /// Of these lengths, all NaN.
+  explicit Shares(const Lengths& lengths) : value(lengths, kNaN), ci_low(lengths, kNaN), ci_high(lengths, kNaN) {}
+
+  /// Sets the one at these positions.
+  template <std::integral... Positions>
+  void set(const Estimate& estimate, Positions... at) {
+    value(at...) = estimate.value;
+    ci_low(at...) = estimate.interval.low;
+    ci_high(at...) = estimate.interval.high;
+  }
+  /// Makes those at these positions on the first axes NaN.
+  template <std::integral... Positions>
+  void leave_out(Positions... at) {
+    for (Values* values : {&value, &ci_low, &ci_high}) std::ranges::fill(values->row(at...), kNaN);
+  }
+  bool empty() const { return value.empty(); }  ///< Whether the study was not asked for them.
+
+  Values value;    ///< estimates
+  Values ci_low;   ///< lower ends
+  Values ci_high;  ///< upper ends
 };
 
-/// What a study of Sobol' indices found: R responses and V signed vectors, P groups of errors, M poses. A group is an
-/// error of its own unless the study joins errors.
+/// Sobol' indices of some quantities.
+template <NamedAxis... Axes>
+struct SobolIndices {
+  double conf_level = 0.95;  ///< of the intervals
+  Shares<Axes...> S1;        ///< first-order index; of several errors their closed index
+  Shares<Axes...> ST;        ///< total index
+};
+
+/// What a study of Sobol' indices found. A group is an error of its own unless the study joins errors.
 struct SobolResult {
-  std::size_t responses = 0;               ///< R
-  std::size_t poses = 0;                   ///< M
   bool joined = false;                     ///< whether errors are joined to groups
-  std::vector<std::string> group_names;    ///< [P] of an error of its own that error's
-  std::vector<std::string> group_members;  ///< [P] names of a group's errors, with blanks between
-  std::vector<std::string> vectors;        ///< [V] names
-  SobolIndices at_poses;                   ///< [R x P x M]
-  SobolIndices aggregated;                 ///< [R x P] sums of the parts over the poses, over the sum of the variances
-  SobolIndices of_vectors;                 ///< [V x P] likewise, of the traces (Gamboa et al. 2014)
-  std::vector<std::uint64_t> n;            ///< [R x P x M] pairs of samples behind at_poses
-  std::vector<double> mean;                ///< [R x M] of the response
-  std::vector<double> variance;            ///< [R x M] of the response, that its indices share
-  std::vector<std::uint8_t> without_sign;  ///< [R] whether no sample was below zero: 0 or 1
-  std::vector<double> S2;                  ///< [R x P x P] aggregated, of a pair without its members' own; or empty
-  std::vector<double> S2_ci_low;           ///< [R x P x P] lower ends; NaN where no pair is
-  std::vector<double> S2_ci_high;          ///< [R x P x P] upper ends
-  std::vector<double> Sh;                  ///< [R x P] aggregated Shapley effects, which add up to 1; or empty
-  std::vector<double> Sh_ci_low;           ///< [R x P] lower ends
-  std::vector<double> Sh_ci_high;          ///< [R x P] upper ends
-  std::vector<SolveCounts> solves;         ///< [M]
-  std::vector<Failure> failures;           ///< the first, in the order of poses and samples
-  std::uint64_t failed_samples = 0;        ///< how many there are of them; other solves have no addresses
+  std::vector<std::string> group_names;    ///< of an error of its own that error's
+  std::vector<std::string> group_members;  ///< names of a group's errors, with blanks between
+  std::vector<std::string> vectors;        ///< names of the vectors with a sign
+  SobolIndices<axis::Response, axis::ErrorGroup, axis::Pose> at_poses;  ///< of each response at each pose
+  /// Sums of the parts over the poses, over the sum of the variances.
+  SobolIndices<axis::Response, axis::ErrorGroup> aggregated;
+  /// Likewise, of the traces (Gamboa et al. 2014).
+  SobolIndices<axis::SignedVector, axis::ErrorGroup> of_vectors;
+  Array<std::uint64_t, axis::Response, axis::ErrorGroup, axis::Pose> n;  ///< pairs of samples behind at_poses
+  Array<double, axis::Response, axis::Pose> mean;                        ///< of the response
+  Array<double, axis::Response, axis::Pose> variance;                    ///< of the response, that its indices share
+  Array<std::uint8_t, axis::Response> without_sign;                      ///< whether no sample was below zero: 0 or 1
+  /// Aggregated, of a pair without its members' own, which is as well that of the pair in the other order. NaN where no
+  /// pair is.
+  Shares<axis::Response, axis::ErrorGroup, axis::OtherGroup> S2;
+  Shares<axis::Response, axis::ErrorGroup> Sh;                  ///< aggregated Shapley effects, which add up to 1
+  std::vector<SolveCounts> solves;                              ///< of each pose
+  std::vector<Failure> failures;                                ///< the first, in the order of poses and samples
+  std::uint64_t failed_samples = 0;                             ///< how many there are; other solves have no addresses
   std::optional<ConvergenceResult> convergence = std::nullopt;  ///< where the study has adaptive samples
 
-  // Whether a quantity varies, 0 or 1; empty where all do.
-  std::vector<std::uint8_t> varies;         ///< [R]
-  std::vector<std::uint8_t> vector_varies;  ///< [V]
+  Array<std::uint8_t, axis::Response> varies;             ///< whether it varies, 0 or 1; empty where all do
+  Array<std::uint8_t, axis::SignedVector> vector_varies;  ///< likewise
 
-  std::size_t groups() const { return group_names.size(); }  ///< P
-  SolveCounts total() const { return total_of(solves); }     ///< over all poses
+  std::size_t groups() const { return group_names.size(); }  ///< Number of groups.
+  SolveCounts total() const { return total_of(solves); }     ///< Over all poses.
 };
+
+/// Bytes of the numbers of a result whose axes have these lengths; "group" is the axis of what variances are shared
+/// among, and "other" has none where no pairs are asked for.
+std::size_t sobol_bytes(const AxisLengths& lengths);
 
 /// What a study of Sobol' indices found, read back. Precondition: a result of that kind.
 inline const SobolResult& sobol_of(const StoredResult& result) { return found_of<SobolResult>(result); }

@@ -24,16 +24,15 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kKind = 6;  ///< no other state begins with this number
 
 /// The group's ST, or its Shapley effect where it has no ST.
-Estimate headline_index(const IndexPanel& panel, const PanelSums& sums, std::size_t place, double conf_level) {
-  const bool split = panel.split[place % panel.groups.size()] != 0;
-  return (split ? sums.shapley[place] : sums.aggregated[place].total).estimate(conf_level);
+Estimate headline_index(const IndexPanel& panel, const PanelSums& sums, std::size_t r, std::size_t g,
+                        double conf_level) {
+  return (panel.split[g] != 0 ? sums.shapley(r, g) : sums.aggregated(r, g).total).estimate(conf_level);
 }
 
 /// How sure the indices of a panel are: of each response the largest ST, and the largest half-width of any; zero where
-/// it does not vary, so that no sample is taken for it. rounding: [R + D].
+/// it does not vary, so that no sample is taken for it. rounding: of each row.
 std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelSums& sums,
                                            std::span<const double> rounding, double conf_level) {
-  const std::size_t groups = panel.groups.size();
   const std::vector<std::uint8_t> varies = varying_quantities(panel, sums, rounding);
   std::vector<Estimate> list;
   for (std::size_t r = 0; r < panel.responses; ++r) {
@@ -43,8 +42,8 @@ std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelS
     }
     double value = 0.0;
     double half_width = 0.0;
-    for (std::size_t g = 0; g < groups; ++g) {
-      const Estimate total = headline_index(panel, sums, r * groups + g, conf_level);
+    for (std::size_t g = 0; g < panel.groups.size(); ++g) {
+      const Estimate total = headline_index(panel, sums, r, g, conf_level);
       const double half = 0.5 * (total.interval.high - total.interval.low);
       value = std::max(value, total.value);
       half_width = std::isnan(half) ? kInfinity : std::max(half_width, half);
@@ -180,7 +179,7 @@ class PanelWork {
   const Plan& plan_;
   const Model& model_;
   IndexPanel panel_;
-  std::vector<double> rounding_;  ///< [R + D] as row_rounding gives it
+  std::vector<double> rounding_;  ///< of each row as row_rounding gives it
   PanelDesign design_;
   std::size_t units_per_leaf_;
   NumberRange leaves_;  ///< of this shard
@@ -194,38 +193,51 @@ class PanelWork {
   SolveCounts closed_;  ///< of the tree
 };
 
-void append(const Estimate& estimate, std::vector<double>& value, std::vector<double>& low, std::vector<double>& high) {
-  value.push_back(estimate.value);
-  low.push_back(estimate.interval.low);
-  high.push_back(estimate.interval.high);
+template <class Indices, class... Positions>
+void set(Indices& indices, const IndexSums& sums, Positions... at) {
+  indices.S1.set(sums.first.estimate(indices.conf_level), at...);
+  indices.ST.set(sums.total.estimate(indices.conf_level), at...);
 }
 
-SobolIndices indices_of(std::span<const IndexSums> sums, double conf_level) {
-  SobolIndices found;
-  found.conf_level = conf_level;
-  for (const IndexSums& index : sums) {
-    append(index.first.estimate(conf_level), found.S1, found.S1_ci_low, found.S1_ci_high);
-    append(index.total.estimate(conf_level), found.ST, found.ST_ci_low, found.ST_ci_high);
+/// What the result says of one response.
+void set_response(const IndexPanel& panel, const PanelSums& sums, std::size_t r, SobolResult& found) {
+  const double level = found.aggregated.conf_level;
+  for (std::size_t g = 0; g < panel.groups.size(); ++g) {
+    set(found.aggregated, sums.aggregated(r, g), r, g);
+    if (panel.shapley) found.Sh.set(sums.shapley(r, g).estimate(level), r, g);
+    for (std::size_t m = 0; m < panel.poses; ++m) {
+      set(found.at_poses, sums.at_poses(r, g, m), r, g, m);
+      found.n(r, g, m) = sums.at_poses(r, g, m).total.count();
+    }
   }
-  return found;
-}
-
-/// The pairs of one response as a symmetric matrix, NaN on its diagonal.
-void append_pairs(const IndexPanel& panel, std::span<const RatioSums> sums, double conf_level, SobolResult& found) {
-  const std::size_t groups = panel.groups.size();
-  const std::size_t first = found.S2.size();
-  for (std::vector<double>* list : {&found.S2, &found.S2_ci_low, &found.S2_ci_high}) {
-    list->resize(first + groups * groups, kNaN);
+  for (std::size_t m = 0; m < panel.poses; ++m) {
+    const Moments& moments = sums.moments(r, m);
+    found.mean(r, m) = moments.count() == 0 ? kNaN : moments.mean();
+    found.variance(r, m) = moments.variance();
   }
   for (std::size_t k = 0; k < panel.pairs.size(); ++k) {
     const auto [i, j] = panel.pairs[k];
-    const Estimate estimate = sums[k].estimate(conf_level);
-    for (const std::size_t at : {first + i * groups + j, first + j * groups + i}) {
-      found.S2[at] = estimate.value;
-      found.S2_ci_low[at] = estimate.interval.low;
-      found.S2_ci_high[at] = estimate.interval.high;
-    }
+    const Estimate estimate = sums.pairs(r, k).estimate(level);
+    found.S2.set(estimate, r, i, j);
+    found.S2.set(estimate, r, j, i);
   }
+  found.without_sign(r) = sums.least(r) >= 0.0 ? 1 : 0;
+}
+
+/// With room for what is found.
+SobolResult room_for(const IndexPanel& panel, double level) {
+  const std::size_t responses = panel.responses;
+  const std::size_t groups = panel.groups.size();
+  SobolResult found;
+  found.at_poses.conf_level = found.aggregated.conf_level = found.of_vectors.conf_level = level;
+  make_room({responses, groups, panel.poses}, found.at_poses.S1, found.at_poses.ST, found.n);
+  make_room({responses, groups}, found.aggregated.S1, found.aggregated.ST);
+  make_room({panel.vectors.size(), groups}, found.of_vectors.S1, found.of_vectors.ST);
+  make_room({responses, panel.poses}, found.mean, found.variance);
+  make_room({responses}, found.without_sign);
+  if (!panel.pairs.empty()) make_room({responses, groups, groups}, found.S2);
+  if (panel.shapley) make_room({responses, groups}, found.Sh);
+  return found;
 }
 
 std::string members_text(const ErrorGroup& group, const Study& study) {
@@ -238,31 +250,18 @@ std::string members_text(const ErrorGroup& group, const Study& study) {
 
 SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSums& sums,
                       std::span<const double> rounding) {
-  const double level = study.analysis.conf_level;
-  const std::size_t shared = panel.responses * panel.groups.size();
-  SobolResult found;
-  found.responses = panel.responses;
-  found.poses = panel.poses;
+  SobolResult found = room_for(panel, study.analysis.conf_level);
   found.joined = asked_of<SobolOptions>(study.analysis).groups_by != GroupsBy::none;
   for (const ErrorGroup& group : panel.groups) {
     found.group_names.push_back(group.name);
     found.group_members.push_back(members_text(group, study));
   }
   for (const SignedVector& vector : panel.vectors) found.vectors.push_back(vector.name);
-  found.at_poses = indices_of(sums.at_poses, level);
-  found.aggregated = indices_of(std::span(sums.aggregated).first(shared), level);
-  found.of_vectors = indices_of(std::span(sums.aggregated).subspan(shared), level);
-  for (const IndexSums& cell : sums.at_poses) found.n.push_back(cell.total.count());
-  for (const Moments& moments : std::span(sums.moments).first(panel.responses * panel.poses)) {
-    found.mean.push_back(moments.count() == 0 ? kNaN : moments.mean());
-    found.variance.push_back(moments.variance());
-  }
-  for (const double least : sums.least) found.without_sign.push_back(least >= 0.0 ? 1 : 0);
-  for (std::size_t r = 0; r < panel.responses && !panel.pairs.empty(); ++r) {
-    append_pairs(panel, std::span(sums.pairs).subspan(r * panel.pairs.size(), panel.pairs.size()), level, found);
-  }
-  for (const RatioSums& effect : sums.shapley) {
-    append(effect.estimate(level), found.Sh, found.Sh_ci_low, found.Sh_ci_high);
+  for (std::size_t r = 0; r < panel.responses; ++r) set_response(panel, sums, r, found);
+  for (std::size_t v = 0; v < panel.vectors.size(); ++v) {
+    for (std::size_t g = 0; g < panel.groups.size(); ++g) {
+      set(found.of_vectors, sums.aggregated(panel.responses + v, g), v, g);
+    }
   }
   leave_out_constant(panel, sums, rounding, found);
   found.solves = sums.solves;
@@ -305,7 +304,11 @@ MemoryOutlook memory_of(const IndexPanel& panel, const PanelDesign& design) {
   const std::size_t cells = panel.responses * panel.groups.size() * panel.poses;
   const std::size_t sums = cells * sizeof(IndexSums);
   const std::size_t nodes = 1 + MergeTree<PanelSums>::most_nodes(design.units());
-  const std::size_t numbers = cells * 7 * sizeof(double);
+  const std::size_t numbers = sobol_bytes({{"response", panel.responses},
+                                           {"group", panel.groups.size()},
+                                           {"pose", panel.poses},
+                                           {"vector", panel.vectors.size()},
+                                           {"other", panel.pairs.empty() ? 0 : panel.groups.size()}});
   return {nodes * sums, nodes * sums, numbers, numbers};
 }
 

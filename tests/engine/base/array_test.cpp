@@ -65,6 +65,14 @@ TEST(Array, EqualNeedsEqualLengths) {
   EXPECT_EQ(Table({2, 3}, 5), Table({2, 3}, std::vector<int>(6, 5)));
 }
 
+TEST(Array, GetsRoomTogetherWithOthersOfItsAxes) {
+  Cube cube = counting();
+  Array<double, axis::Response, axis::Factor, axis::Pose> other;
+  make_room({1, 2, 2}, cube, other);
+  EXPECT_EQ(cube, Cube({1, 2, 2}, 0));
+  EXPECT_EQ(other.lengths(), cube.lengths());
+}
+
 TEST(ArrayView, SeesElementsElsewhere) {
   std::vector<int> elements(24);
   const ArrayView<int, axis::Response, axis::Sample> view(elements, {4, 6});

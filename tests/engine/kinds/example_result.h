@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -379,8 +380,6 @@ class Example {
     study.analysis.kind = &kSobolStudy;
     asked_of<SobolOptions>(study.analysis).second_order = true;
     SobolResult result;
-    result.responses = 2;
-    result.poses = kPoses;
     for (const FactorIndex factor : study.analysis.factors) {
       result.group_names.push_back(study.model().factors[factor.value].name);
     }
@@ -388,23 +387,27 @@ class Example {
     const std::size_t groups = result.groups();
     result.vectors = {"twist_21_omega", "twist_21_v"};
     double next = 0.0;
-    const auto fill = [&](std::vector<double>& values, std::size_t length) {
-      for (std::size_t k = 0; k < length; ++k) values.push_back(next += 0.0078125);
-      values.back() = std::numeric_limits<double>::quiet_NaN();
+    const auto fill = [&](auto& values, const auto&... lengths) {
+      values = std::remove_reference_t<decltype(values)>({lengths...});
+      for (double& value : values) value = next += 0.0078125;
+      values.all().back() = std::numeric_limits<double>::quiet_NaN();
     };
-    for (const auto& [indices, length] : {std::pair(&result.at_poses, 2 * groups * kPoses),
-                                          {&result.aggregated, 2 * groups},
-                                          {&result.of_vectors, 2 * groups}}) {
-      indices->conf_level = 0.9;
-      for (auto* values : {&indices->S1, &indices->S1_ci_low, &indices->S1_ci_high, &indices->ST, &indices->ST_ci_low,
-                           &indices->ST_ci_high}) {
-        fill(*values, length);
-      }
-    }
-    for (auto* values : {&result.S2, &result.S2_ci_low, &result.S2_ci_high}) fill(*values, 2 * groups * groups);
-    for (auto* values : {&result.mean, &result.variance}) fill(*values, 2 * kPoses);
-    for (std::size_t k = 0; k < 2 * groups * kPoses; ++k) result.n.push_back(100 + k);
-    result.without_sign = {0, 1};
+    const auto fill_shares = [&](auto& shares, const auto&... lengths) {
+      for (auto* values : {&shares.value, &shares.ci_low, &shares.ci_high}) fill(*values, lengths...);
+    };
+    const auto fill_indices = [&](auto& indices, const auto&... lengths) {
+      indices.conf_level = 0.9;
+      fill_shares(indices.S1, lengths...);
+      fill_shares(indices.ST, lengths...);
+    };
+    fill_indices(result.at_poses, 2U, groups, kPoses);
+    fill_indices(result.aggregated, 2U, groups);
+    fill_indices(result.of_vectors, 2U, groups);
+    fill_shares(result.S2, 2U, groups, groups);
+    for (auto* values : {&result.mean, &result.variance}) fill(*values, 2U, kPoses);
+    result.n = decltype(result.n)({2, groups, kPoses});
+    std::iota(result.n.begin(), result.n.end(), 100);
+    result.without_sign = decltype(result.without_sign)({2}, {0, 1});
     result.solves.resize(kPoses);
     for (SolveCounts& solves : result.solves) {
       for (std::size_t s = 0; s < 5; ++s) solves.add(SolveStatus::converged, 3);

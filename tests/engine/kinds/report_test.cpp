@@ -167,7 +167,7 @@ void expect_shown(float shown, double value) {
 
 /// That the bars of a figure show these series, [R x P] each, in the order of its responses. member: of its quantity.
 void expect_bars(const Json& page, const Json& figure, const char* member, const StoredResult& result,
-                 const std::vector<std::vector<double>>& series) {
+                 const std::vector<std::span<const double>>& series) {
   const std::vector<float> shown = array(page, figure["quantities"][0][member]);
   const std::vector<std::string> order = figure["choices"][0]["options"];
   const std::size_t items = figure["items"].size();
@@ -311,10 +311,10 @@ TEST_F(HtmlReport, DrawsSobolIndicesWithTheirIntervals) {
   const Json page = data(html);
   const Json& figure = page["figures"]["sobol"];
   EXPECT_EQ(figure["series"], Json({"ST, with interactions", "S1, alone"}));
-  const SobolIndices& found = sobol_of(result.stored).aggregated;
-  expect_bars(page, figure, "value", result.stored, {found.ST, found.S1});
-  expect_bars(page, figure, "low", result.stored, {found.ST_ci_low, found.S1_ci_low});
-  expect_bars(page, figure, "high", result.stored, {found.ST_ci_high, found.S1_ci_high});
+  const auto& [conf_level, S1, ST] = sobol_of(result.stored).aggregated;
+  expect_bars(page, figure, "value", result.stored, {ST.value.all(), S1.value.all()});
+  expect_bars(page, figure, "low", result.stored, {ST.ci_low.all(), S1.ci_low.all()});
+  expect_bars(page, figure, "high", result.stored, {ST.ci_high.all(), S1.ci_high.all()});
   EXPECT_FALSE(page["figures"].contains("shapley"));
 }
 
@@ -322,18 +322,18 @@ TEST_F(HtmlReport, DrawsShapleyEffectsWithTheirIntervals) {
   example.write_sobol(path);
   ReportedResult result = stored();
   SobolResult found = sobol_of(result.stored);
-  found.Sh = {0.25, 0.75, 0.625, 0.375};
-  found.Sh_ci_low = {0.125, 0.5, 0.5, std::nan("")};
-  found.Sh_ci_high = {0.375, 1.0, 0.75, std::nan("")};
+  found.Sh.value = {{2, 2}, {0.25, 0.75, 0.625, 0.375}};
+  found.Sh.ci_low = {{2, 2}, {0.125, 0.5, 0.5, std::nan("")}};
+  found.Sh.ci_high = {{2, 2}, {0.375, 1.0, 0.75, std::nan("")}};
   result.stored.found = found;
   const std::string html = report(result);
   check_page(html);
   const Json page = data(html);
   const Json& figure = page["figures"]["shapley"];
   EXPECT_EQ(figure["items"], Json(found.group_names));
-  expect_bars(page, figure, "value", result.stored, {found.Sh});
-  expect_bars(page, figure, "low", result.stored, {found.Sh_ci_low});
-  expect_bars(page, figure, "high", result.stored, {found.Sh_ci_high});
+  expect_bars(page, figure, "value", result.stored, {found.Sh.value.all()});
+  expect_bars(page, figure, "low", result.stored, {found.Sh.ci_low.all()});
+  expect_bars(page, figure, "high", result.stored, {found.Sh.ci_high.all()});
   EXPECT_NE(html.find("Shapley effect of each error"), std::string::npos);
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -91,42 +93,37 @@ TEST(SobolOfConstants, HaveNoShares) {
   asked_of<SobolOptions>(study.study.analysis).shapley = true;
   const StudyResult result = study.run();
   const auto& found = result.as<SobolResult>();
-  EXPECT_EQ(found.varies, (std::vector<std::uint8_t>{1, 0, 1}));
-  for (const auto* list : {&found.aggregated.S1, &found.aggregated.ST, &found.aggregated.ST_ci_low, &found.Sh}) {
-    EXPECT_TRUE(all_nan(std::span(*list).subspan(2 * kStill, 2)));
-    EXPECT_FALSE(all_nan(std::span(*list).subspan(2 * kMoving, 2)));
-    EXPECT_FALSE(all_nan(std::span(*list).subspan(2 * kAtOnePose, 2)));
+  EXPECT_TRUE(std::ranges::equal(found.varies, std::array{1, 0, 1}));
+  const auto& [conf_level, S1, ST] = found.aggregated;
+  for (const auto* list : {&S1.value, &ST.value, &ST.ci_low, &found.Sh.value}) {
+    EXPECT_TRUE(all_nan(list->row(kStill)));
+    EXPECT_FALSE(all_nan(list->row(kMoving)));
+    EXPECT_FALSE(all_nan(list->row(kAtOnePose)));
   }
-  EXPECT_TRUE(all_nan(std::span(found.S2).subspan(4 * kStill, 4)));
-  EXPECT_NEAR(found.aggregated.ST[2 * kMoving], 0.2, 0.05);
-  EXPECT_NEAR(found.aggregated.ST[2 * kMoving + 1], 0.8, 0.05);
-  EXPECT_NEAR(found.aggregated.ST[2 * kAtOnePose], 1.0, 1e-12) << "the other pose adds nothing";
+  EXPECT_TRUE(all_nan(found.S2.value.row(kStill)));
+  EXPECT_NEAR(ST.value(kMoving, 0), 0.2, 0.05);
+  EXPECT_NEAR(ST.value(kMoving, 1), 0.8, 0.05);
+  EXPECT_NEAR(ST.value(kAtOnePose, 0), 1.0, 1e-12) << "the other pose adds nothing";
 }
 
-/// [R x P x M]: at the pose where it stands still nothing is shared, at the other one x1 has all.
+/// At the pose where it stands still nothing is shared, at the other one x1 has all.
 TEST(SobolOfConstants, AreJudgedPoseByPose) {
   const StudyResult result = Found(kSobolStudy).run();
-  const SobolIndices& at = result.as<SobolResult>().at_poses;
-  const auto cell = [](std::size_t response, std::size_t error, std::size_t pose) {
-    return (response * 2 + error) * 2 + pose;
-  };
-  for (std::size_t p = 0; p < 2; ++p) {
-    for (std::size_t m = 0; m < 2; ++m) EXPECT_TRUE(std::isnan(at.S1[cell(kStill, p, m)]));
-    EXPECT_TRUE(std::isnan(at.ST[cell(kAtOnePose, p, 0)]));
-  }
-  EXPECT_EQ(at.ST[cell(kAtOnePose, 0, 1)], 1.0);
-  EXPECT_EQ(at.ST[cell(kAtOnePose, 1, 1)], 0.0);
+  const auto& [conf_level, S1, ST] = result.as<SobolResult>().at_poses;
+  EXPECT_TRUE(all_nan(S1.value.row(kStill)));
+  for (std::size_t p = 0; p < 2; ++p) EXPECT_TRUE(std::isnan(ST.value(kAtOnePose, p, 0)));
+  EXPECT_EQ(ST.value(kAtOnePose, 0, 1), 1.0);
+  EXPECT_EQ(ST.value(kAtOnePose, 1, 1), 0.0);
 }
 
 TEST(SobolOfConstants, VectorsAreJudgedByTheirComponents) {
   const StudyResult result = Found(kSobolStudy).run();
   const auto& found = result.as<SobolResult>();
   ASSERT_EQ(found.vectors, (std::vector<std::string>{"some_v", "none_v"}));
-  EXPECT_EQ(found.vector_varies, (std::vector<std::uint8_t>{1, 0}));
-  EXPECT_TRUE(all_nan(std::span(found.of_vectors.ST).subspan(2, 2)));
-  for (std::size_t p = 0; p < 2; ++p) {
-    EXPECT_EQ(found.of_vectors.ST[p], found.aggregated.ST[2 * kMoving + p]) << "rounding adds no bit";
-  }
+  EXPECT_TRUE(std::ranges::equal(found.vector_varies, std::array{1, 0}));
+  EXPECT_TRUE(all_nan(found.of_vectors.ST.value.row(1)));
+  EXPECT_TRUE(std::ranges::equal(found.of_vectors.ST.value.row(0), found.aggregated.ST.value.row(kMoving)))
+      << "rounding adds no bit";
 }
 
 /// ST of what does not vary would be asked for ever more samples.

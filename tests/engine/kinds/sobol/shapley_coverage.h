@@ -78,7 +78,7 @@ inline std::array<Coverage, 3> shapley_coverage(const ShapleyFunction& function,
     study.seed = seed + static_cast<std::uint64_t>(r);
     const auto result = run_study(study, model, PoseSet(1, {0.5}), {.threads = 1});
     const auto& found = result->as<SobolResult>();
-    for (std::size_t p = 0; p < 3; ++p) coverage[p].add({found.Sh_ci_low[p], found.Sh_ci_high[p]}, effects[p]);
+    for (std::size_t p = 0; p < 3; ++p) coverage[p].add({found.Sh.ci_low(0, p), found.Sh.ci_high(0, p)}, effects[p]);
   }
   return coverage;
 }

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <algorithm>
+#include <type_traits>
+
+#include "engine/base/bytes.h"
+#include "engine/base/contract.h"
+
+/// Lists and arrays of accumulators, element by element.
+namespace poesy {
+
+/// Calls visit(one, other) for the elements of both, in order. Precondition: as many of both.
+template <class Ones, class Others, class Visit>
+void for_each_pair(Ones& ones, const Others& others, const Visit& visit) {
+  POESY_EXPECTS(ones.size() == others.size());
+  std::ranges::for_each(ones, [&, other = others.begin()](auto& one) mutable { visit(one, *other++); });
+}
+
+/// Merges the elements of `later` into those of `sums`.
+template <class Sums>
+void merge_each(Sums& sums, const Sums& later) {
+  for_each_pair(sums, later, [](auto& sum, const auto& other) { sum.merge(other); });
+}
+
+/// Writes every element, or reads as many as there are. Throws BytesError.
+/// @{
+template <class Sums>
+void write_each(const Sums& sums, ByteWriter& to) {
+  for (const auto& sum : sums) sum.write(to);
+}
+template <class Sums>
+void read_each(ByteReader& from, Sums& sums) {
+  for (auto& sum : sums) sum = std::remove_reference_t<decltype(sum)>::read(from);
+}
+/// @}
+
+}  // namespace poesy
