@@ -81,12 +81,6 @@ CsvColumn list_column(std::string heading, const List& list, std::size_t first =
           }};
 }
 
-/// The same of all elements of a row of an array.
-template <class T>
-CsvColumn list_column(std::string heading, std::span<T> row) {
-  return {std::move(heading), [row](std::size_t line) { return to_number(row[line]); }};
-}
-
 /// The same of a row of fields.h.
 template <class Found>
 CsvColumn field_column(std::string heading, const FieldRow<Found>& field, const Found& found, std::size_t first = 0,

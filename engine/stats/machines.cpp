@@ -15,10 +15,11 @@ void add(Rejects& to, const Rejects& rejects) {
 }
 
 /// The first one takes the sizes of the second one where it has none.
-void add(std::vector<Rejects>& to, const std::vector<Rejects>& rejects) {
-  if (to.empty()) to.resize(rejects.size());
-  POESY_EXPECTS(to.size() == rejects.size());
-  for (std::size_t k = 0; k < to.size(); ++k) add(to[k], rejects[k]);
+template <NamedAxis... Axes>
+void add(Array<Rejects, Axes...>& to, const Array<Rejects, Axes...>& rejects) {
+  if (to.empty()) make_room(rejects.lengths(), to);
+  POESY_EXPECTS(to.lengths() == rejects.lengths());
+  for (std::size_t k = 0; k < to.size(); ++k) add(to.all()[k], rejects.all()[k]);
 }
 
 /// Rejects among these; a strict reject that is no lenient one has a sample that does not count.
@@ -28,15 +29,15 @@ void rejects_state(Archive& archive, Rejects& rejects, const Rejects& among, std
   archive.expect(rejects.strict - rejects.lenient <= unsolved, "has rejects without a reason");
 }
 
-/// What one response of B machines does at a pose: which keep its limit, and what it adds to their largest magnitudes
-/// and sums of squares. Machines whose sample does not count are left as they are.
+/// What one response of some machines does at a pose: which keep its limit, and what it adds to their largest
+/// magnitudes and sums of squares. Machines whose sample does not count are left as they are.
 struct ResponseAtPose {
-  std::span<const double> values;        ///< [B]
-  std::span<const std::uint8_t> counts;  ///< [B]
+  std::span<const double> values;
+  std::span<const std::uint8_t> counts;
   double limit;
-  std::span<double> largest;       ///< [B]
-  std::span<double> squares;       ///< [B]
-  std::span<std::uint8_t> beyond;  ///< [B] 1 from the first pose on at which the limit is broken
+  std::span<double> largest;
+  std::span<double> squares;
+  std::span<std::uint8_t> beyond;  ///< 1 from the first pose on at which the limit is broken
 
   Rejects add() const {
     std::uint64_t broken = 0;
@@ -74,14 +75,15 @@ void MachineCounts::state(Archive& archive) {
     rejects_state(archive, rejects, all, unsolved);
     archive.expect(rejects.strict >= unsolved, "has machines that keep a limit unsolved");
   }
-  const std::size_t poses = by_limit.empty() ? 0 : at_pose.size() / by_limit.size();
-  for (std::size_t k = 0; k < at_pose.size(); ++k) rejects_state(archive, at_pose[k], by_limit[k / poses], unsolved);
+  for (std::size_t r = 0; r < by_limit.size(); ++r) {
+    for (Rejects& rejects : at_pose.row(r)) rejects_state(archive, rejects, by_limit(r), unsolved);
+  }
 }
 
 MachineCounts MachineCounts::read(ByteReader& from, std::size_t responses, std::size_t poses) {
   MachineCounts counts;
-  counts.by_limit.resize(responses);
-  counts.at_pose.resize(responses * poses);
+  make_room({responses}, counts.by_limit);
+  make_room({responses, poses}, counts.at_pose);
   Archive archive(from);
   counts.state(archive);
   return counts;
@@ -90,41 +92,40 @@ MachineCounts MachineCounts::read(ByteReader& from, std::size_t responses, std::
 MachineBlock::MachineBlock(std::span<const double> limits, std::size_t machines)
     : limits_(limits.begin(), limits.end()),
       solved_(machines, 1),
-      largest_(limits.size() * machines),
-      squares_(limits.size() * machines),
-      beyond_(limits.size() * machines) {}
+      largest_({limits.size(), machines}),
+      squares_({limits.size(), machines}),
+      beyond_({limits.size(), machines}) {}
 
 void MachineBlock::add_pose(std::span<const double> responses, std::span<const std::uint8_t> counts) {
-  const std::size_t count = machines();
-  POESY_EXPECTS(counts.size() == count && responses.size() == limits_.size() * count);
-  for (std::size_t b = 0; b < count; ++b) solved_[b] &= static_cast<std::uint8_t>(counts[b] != 0);
+  const ArrayView<const double, axis::Response, axis::Sample> values(responses, largest_.lengths());
+  POESY_EXPECTS(counts.size() == machines());
+  for (std::size_t b = 0; b < counts.size(); ++b) solved_[b] &= static_cast<std::uint8_t>(counts[b] != 0);
+  std::vector<Rejects>& rejects = at_pose_.emplace_back();
   for (std::size_t r = 0; r < limits_.size(); ++r) {
-    const auto row = [&](auto& all) { return std::span(all).subspan(r * count, count); };
-    at_pose_.push_back(
-        ResponseAtPose{row(responses), counts, limits_[r], row(largest_), row(squares_), row(beyond_)}.add());
+    rejects.push_back(
+        ResponseAtPose{values.row(r), counts, limits_[r], largest_.row(r), squares_.row(r), beyond_.row(r)}.add());
   }
-  ++poses_;
 }
 
 MachineCounts MachineBlock::counts() const {
-  MachineCounts counts;
   const std::size_t responses = limits_.size();
+  MachineCounts counts;
   counts.machines = machines();
-  counts.by_limit.resize(responses);
-  counts.at_pose.resize(at_pose_.size());
+  make_room({responses}, counts.by_limit);
+  make_room({responses, poses()}, counts.at_pose);
   for (std::size_t b = 0; b < machines(); ++b) {
     const bool unsolved = solved_[b] == 0;
     bool beyond_any = false;
     for (std::size_t r = 0; r < responses; ++r) {
-      const bool beyond = beyond_[r * machines() + b] != 0;
+      const bool beyond = beyond_(r, b) != 0;
       beyond_any |= beyond;
-      add(counts.by_limit[r], {beyond || unsolved ? 1U : 0U, beyond ? 1U : 0U});
+      add(counts.by_limit(r), {beyond || unsolved ? 1U : 0U, beyond ? 1U : 0U});
     }
     counts.unsolved += unsolved ? 1 : 0;
     add(counts.all, {beyond_any || unsolved ? 1U : 0U, beyond_any ? 1U : 0U});
   }
-  for (std::size_t k = 0; k < at_pose_.size(); ++k) {
-    counts.at_pose[k % responses * poses_ + k / responses] = at_pose_[k];
+  for (std::size_t m = 0; m < poses(); ++m) {
+    for (std::size_t r = 0; r < responses; ++r) counts.at_pose(r, m) = at_pose_[m][r];
   }
   return counts;
 }
@@ -132,23 +133,29 @@ MachineCounts MachineBlock::counts() const {
 std::vector<std::uint8_t> MachineBlock::rejected() const {
   std::vector<std::uint8_t> rejected(machines());
   for (std::size_t b = 0; b < machines(); ++b) rejected[b] = static_cast<std::uint8_t>(solved_[b] == 0);
-  for (std::size_t k = 0; k < beyond_.size(); ++k) rejected[k % machines()] |= beyond_[k];
+  for (std::size_t r = 0; r < limits_.size(); ++r) {
+    for (std::size_t b = 0; b < machines(); ++b) rejected[b] |= beyond_(r, b);
+  }
   return rejected;
 }
 
-std::vector<double> MachineBlock::largest() const {
-  std::vector<double> values = largest_;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (solved_[k % machines()] == 0) values[k] = kNaN;
+Array<double, axis::Response, axis::Sample> MachineBlock::largest() const {
+  Array<double, axis::Response, axis::Sample> values(largest_.lengths(), kNaN);
+  for (std::size_t r = 0; r < limits_.size(); ++r) {
+    for (std::size_t b = 0; b < machines(); ++b) {
+      if (solved_[b] != 0) values(r, b) = largest_(r, b);
+    }
   }
   return values;
 }
 
-std::vector<double> MachineBlock::root_mean_square() const {
-  POESY_EXPECTS(poses_ > 0);
-  std::vector<double> values(squares_.size(), kNaN);
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (solved_[k % machines()] != 0) values[k] = std::sqrt(squares_[k] / static_cast<double>(poses_));
+Array<double, axis::Response, axis::Sample> MachineBlock::root_mean_square() const {
+  POESY_EXPECTS(poses() > 0);
+  Array<double, axis::Response, axis::Sample> values(squares_.lengths(), kNaN);
+  for (std::size_t r = 0; r < limits_.size(); ++r) {
+    for (std::size_t b = 0; b < machines(); ++b) {
+      if (solved_[b] != 0) values(r, b) = std::sqrt(squares_(r, b) / static_cast<double>(poses()));
+    }
   }
   return values;
 }

@@ -18,15 +18,13 @@ constexpr std::uint64_t kKind = 2;  ///< no other state begins with this number
 /// Calls visit(numbers) with all that a finished pose of a result knows from a response's sketch.
 template <class Result, class Visit>
 void visit_sketched(Result& result, std::size_t response, std::size_t pose, const Visit& visit) {
-  const std::size_t cell = response * result.poses + pose;
-  const std::size_t levels = result.levels.size();
-  visit(std::span(result.min).subspan(cell, 1));
-  visit(std::span(result.max).subspan(cell, 1));
-  visit(std::span(result.quantiles).subspan(cell * levels, levels));
-  visit(std::span(result.quantiles_ci_low).subspan(cell * levels, levels));
-  visit(std::span(result.quantiles_ci_high).subspan(cell * levels, levels));
-  visit(std::span(result.quantile_error).subspan(cell, 1));
-  if (!result.share_magnitude.empty()) visit(std::span(result.share_magnitude).subspan(cell, 1));
+  visit(result.min.row(response, pose));
+  visit(result.max.row(response, pose));
+  visit(result.quantiles.row(response, pose));
+  visit(result.quantiles_ci_low.row(response, pose));
+  visit(result.quantiles_ci_high.row(response, pose));
+  visit(result.quantile_error.row(response, pose));
+  if (!result.share_magnitude.empty()) visit(result.share_magnitude.row(response, pose));
 }
 
 /// Throws unless these are the solves of whole units, of so many samples at most.
@@ -96,7 +94,7 @@ MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses
       asked_(asked_of<MonteCarloOptions>(analysis)),
       keep_checkpoint_(keep_checkpoint),
       sketches_(responses),
-      moments_(plan.poses().size() * responses),
+      moments_({plan.poses().size(), responses}),
       columns_(plan.poses().size(), responses, analysis),
       effects_(plan.poses().size()),
       failed_(plan.poses().size()),
@@ -138,7 +136,7 @@ void MonteCarloCollector::set_kept(std::size_t pose, Kept kept) {
 
 void MonteCarloCollector::set_moments(std::size_t response, std::size_t pose, const Moments& moments) {
   columns_.set_moments(response, pose, moments);
-  moments_[pose * responses_ + response] = moments;
+  moments_(pose, response) = moments;
 }
 
 void MonteCarloCollector::finish_pose() {
@@ -194,13 +192,13 @@ MonteCarloResult MonteCarloCollector::result() && {
   MonteCarloResult& found = columns_.result();
   for (std::size_t r = 0; r < responses_; ++r) {
     Moments overall;
-    for (std::size_t m = 0; m < found.poses; ++m) {
+    for (std::size_t m = 0; m < found.poses(); ++m) {
       POESY_EXPECTS(is_finished(m));
-      overall.merge(moments_[m * responses_ + r]);
+      overall.merge(moments_(m, r));
     }
-    columns_.set_overall(overall, sketches_[r], sketches_[r].count());
+    columns_.set_overall(r, overall, sketches_[r], sketches_[r].count());
   }
-  for (std::size_t m = 0; m < found.poses; ++m) append_failures(0, PoseIndex(m), failed_[m], found.failures);
+  for (std::size_t m = 0; m < found.poses(); ++m) append_failures(0, PoseIndex(m), failed_[m], found.failures);
   found.effects = effects();
   if (!limits_.empty()) found.verdicts = judge_draws(limits_, asked_.judge, asked_.share, found, sketches_);
   return std::move(found);
@@ -208,7 +206,7 @@ MonteCarloResult MonteCarloCollector::result() && {
 
 void MonteCarloCollector::write_finished(ByteWriter& to, std::size_t pose) const {
   for (std::size_t r = 0; r < responses_; ++r) {
-    moments_[pose * responses_ + r].write(to);
+    moments_(pose, r).write(to);
     visit_sketched(columns_.result(), r, pose, [&](std::span<const double> numbers) { to.reals(numbers); });
   }
   columns_.result().solves[pose].write(to);
@@ -230,11 +228,11 @@ void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std:
 }
 
 void MonteCarloCollector::write_state(ByteWriter& to) const {
-  for (const std::uint64_t number : std::array<std::uint64_t, 5>{kKind, responses_, columns_.result().poses,
+  for (const std::uint64_t number : std::array<std::uint64_t, 5>{kKind, responses_, columns_.result().poses(),
                                                                  columns_.result().levels.size(), plan_->samples()}) {
     to.number(number);
   }
-  for (std::size_t m = 0; m < columns_.result().poses; ++m) {
+  for (std::size_t m = 0; m < columns_.result().poses(); ++m) {
     to.number(is_finished(m) ? 1 : 0);
     if (is_finished(m)) write_finished(to, m);
     to.block(kept_[m].bytes);
@@ -253,13 +251,13 @@ void MonteCarloCollector::restore(std::span<const std::byte> state) {
 
 void MonteCarloCollector::restore_one(ByteReader& from) {
   for (const std::uint64_t expected :
-       std::array<std::uint64_t, 4>{kKind, responses_, columns_.result().poses, columns_.result().levels.size()}) {
+       std::array<std::uint64_t, 4>{kKind, responses_, columns_.result().poses(), columns_.result().levels.size()}) {
     if (from.number() != expected) throw BytesError("is the state of another kind or size of study");
   }
   const auto samples = static_cast<std::size_t>(from.number_up_to(plan_->samples()));
   if (samples == 0) throw BytesError("has no samples");
   const bool shorter = samples < plan_->samples();
-  for (std::size_t m = 0; m < columns_.result().poses; ++m) {
+  for (std::size_t m = 0; m < columns_.result().poses(); ++m) {
     const bool finished = from.number_up_to(1) == 1;
     if (finished) read_finished(from, m, samples);
     read_kept(from, m, finished ? samples : samples - 1);
@@ -277,7 +275,7 @@ void MonteCarloCollector::restore_one(ByteReader& from) {
 
 void MonteCarloCollector::read_open(ByteReader& from, std::size_t samples) {
   if (at_pose_.solves.total() > 0) throw BytesError("has two unfinished poses");
-  open_ = PoseIndex(static_cast<std::size_t>(from.number_up_to(columns_.result().poses - 1)));
+  open_ = PoseIndex(static_cast<std::size_t>(from.number_up_to(columns_.result().poses() - 1)));
   if (is_finished(open_.value)) throw BytesError("has a pose twice");
   at_pose_ = PoseSamples::read(from, responses_, plan_->factors().size());
   check_whole(at_pose_.solves, samples - 1);

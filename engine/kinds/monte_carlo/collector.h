@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/array.h"
 #include "engine/base/bytes.h"
 #include "engine/kinds/monte_carlo/columns.h"
 #include "engine/kinds/monte_carlo/result.h"
@@ -25,7 +26,7 @@ struct ResponseSamples {
 
 /// Some samples, all or not, at one pose.
 struct PoseSamples {
-  std::vector<ResponseSamples> responses;  ///< [R]
+  std::vector<ResponseSamples> responses;  ///< each of them
   SolveCounts solves;                      ///< how their solves ended
   FailedSamples failed;                    ///< the first of them
   std::optional<MainEffectSums> effects;   ///< at the poses where main effects are added up
@@ -34,8 +35,7 @@ struct PoseSamples {
   void add(const PoseUnit& unit);
   /// For a state.
   void write(ByteWriter& to) const;
-  /// Throws BytesError for what no samples give.
-  /// errors: that vary.
+  /// Throws BytesError for what no samples give. errors: that vary.
   static PoseSamples read(ByteReader& from, std::size_t responses, std::size_t errors);
 };
 
@@ -99,12 +99,12 @@ class MonteCarloCollector {
   bool keep_checkpoint_;
   PoseIndex open_;                                      ///< the open pose, if there is one
   PoseSamples at_pose_;                                 ///< its samples
-  std::vector<QuantileSketch> sketches_;                ///< [R] of the finished poses together
-  std::vector<Moments> moments_;                        ///< [M x R] of the finished poses
+  std::vector<QuantileSketch> sketches_;                ///< of each response at the finished poses together
+  Array<Moments, axis::Pose, axis::Response> moments_;  ///< of the finished poses
   MonteCarloColumns columns_;                           ///< of the finished poses
-  std::vector<std::optional<MainEffectSums>> effects_;  ///< [M] of the finished poses that have them
-  std::vector<FailedSamples> failed_;                   ///< [M] of the finished poses
-  std::vector<Kept> kept_;  ///< [M] finished poses for a longer study; others from a shorter study
+  std::vector<std::optional<MainEffectSums>> effects_;  ///< of each finished pose that has them
+  std::vector<FailedSamples> failed_;                   ///< of each finished pose
+  std::vector<Kept> kept_;  ///< of each pose: finished ones for a longer study, others from a shorter study
   std::size_t kept_bytes_ = 0;
 };
 

@@ -34,7 +34,7 @@ std::uint64_t count_within(const QuantileSketch& samples, double limit) {
 
 /// What the share of the draws stays within at the worst pose, into `value` and `pose`.
 void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
-  const std::span at_poses = std::span(found.share_magnitude).subspan(verdict.response * found.poses, found.poses);
+  const std::span at_poses = found.share_magnitude.row(verdict.response);
   const auto worst = std::ranges::max_element(at_poses);
   verdict.value = *worst;
   verdict.pose = static_cast<std::size_t>(worst - at_poses.begin());
@@ -44,33 +44,31 @@ void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
 
 MonteCarloColumns::MonteCarloColumns(std::size_t poses, std::size_t responses, const Analysis& analysis)
     : asked_(asked_of<MonteCarloOptions>(analysis)), mean_intervals_(analysis.conf_level) {
-  result_.responses = responses;
-  result_.poses = poses;
+  const std::size_t levels = asked_.quantiles.size();
   result_.conf_level = analysis.conf_level;
   result_.quantile_relative_error = QuantileSketch::kRelativeError;
   result_.levels = asked_.quantiles;
-  const std::size_t cells = responses * poses;
-  for (std::vector<double>* values : {&result_.mean, &result_.mean_ci_low, &result_.mean_ci_high, &result_.std,
-                                      &result_.min, &result_.max, &result_.rms, &result_.quantile_error}) {
-    values->resize(cells);
-  }
-  if (asked_.judge == Judge::share) result_.share_magnitude.resize(cells);
-  result_.count.resize(cells);
-  for (std::vector<double>* values : {&result_.quantiles, &result_.quantiles_ci_low, &result_.quantiles_ci_high}) {
-    values->resize(cells * result_.levels.size());
-  }
+  make_room({responses, poses}, result_.mean, result_.mean_ci_low, result_.mean_ci_high, result_.std, result_.min,
+            result_.max, result_.count, result_.rms, result_.quantile_error);
+  if (asked_.judge == Judge::share) make_room({responses, poses}, result_.share_magnitude);
+  make_room({responses, poses, levels}, result_.quantiles, result_.quantiles_ci_low, result_.quantiles_ci_high);
+  make_room({responses}, result_.overall_mean, result_.overall_std, result_.overall_min, result_.overall_max,
+            result_.overall_count, result_.overall_rms, result_.overall_quantile_error);
+  make_room({responses, levels}, result_.overall_quantiles, result_.overall_quantiles_ci_low,
+            result_.overall_quantiles_ci_high);
+  make_room({responses, kHistogramBins + 1}, result_.histogram_edges);
+  make_room({responses, kHistogramBins}, result_.histogram_counts);
   result_.solves.resize(poses);
 }
 
 void MonteCarloColumns::set_moments(std::size_t response, std::size_t pose, const Moments& moments) {
-  const std::size_t cell = response * result_.poses + pose;
   const Interval interval = mean_intervals_.of(moments);
-  result_.mean[cell] = mean_of(moments);
-  result_.mean_ci_low[cell] = interval.low;
-  result_.mean_ci_high[cell] = interval.high;
-  result_.std[cell] = moments.standard_deviation();
-  result_.rms[cell] = root_mean_square(moments.mean(), moments.standard_deviation(), moments.count());
-  result_.count[cell] = moments.count();
+  result_.mean(response, pose) = mean_of(moments);
+  result_.mean_ci_low(response, pose) = interval.low;
+  result_.mean_ci_high(response, pose) = interval.high;
+  result_.std(response, pose) = moments.standard_deviation();
+  result_.rms(response, pose) = root_mean_square(moments.mean(), moments.standard_deviation(), moments.count());
+  result_.count(response, pose) = moments.count();
 }
 
 const std::vector<RankInterval>& MonteCarloColumns::ranks_of(std::uint64_t samples) {
@@ -103,49 +101,48 @@ QuantilesOf quantiles_of(std::span<const Bucket> buckets, std::span<const double
 
 void MonteCarloColumns::set_quantiles(std::size_t response, std::size_t pose, const QuantileSketch& sketch,
                                       std::uint64_t tried) {
-  const std::size_t cell = response * result_.poses + pose;
   const QuantilesOf quantiles = quantiles_of(sketch.buckets(), result_.levels, ranks_of(sketch.count()));
-  result_.min[cell] = sketch.min();
-  result_.max[cell] = sketch.max();
-  for (std::size_t q = 0; q < result_.levels.size(); ++q) {
-    const std::size_t at = cell * result_.levels.size() + q;
-    result_.quantiles[at] = quantiles.value[q];
-    result_.quantiles_ci_low[at] = quantiles.interval[q].low;
-    result_.quantiles_ci_high[at] = quantiles.interval[q].high;
-  }
-  result_.quantile_error[cell] = quantiles.error;
+  result_.min(response, pose) = sketch.min();
+  result_.max(response, pose) = sketch.max();
+  quantiles.copy(result_.quantiles.row(response, pose), result_.quantiles_ci_low.row(response, pose),
+                 result_.quantiles_ci_high.row(response, pose));
+  result_.quantile_error(response, pose) = quantiles.error;
   if (asked_.judge != Judge::share) return;
   const std::uint64_t rank = quantile_rank(asked_.share, tried);
-  result_.share_magnitude[cell] =
+  result_.share_magnitude(response, pose) =
       rank <= sketch.count() ? sketch.magnitudes().order_statistic(rank) : std::numeric_limits<double>::infinity();
 }
 
-void MonteCarloColumns::set_overall(const Moments& moments, const QuantileSketch& sketch, std::uint64_t independent) {
-  result_.overall_mean.push_back(mean_of(moments));
-  result_.overall_std.push_back(moments.standard_deviation());
-  result_.overall_rms.push_back(root_mean_square(moments.mean(), moments.standard_deviation(), moments.count()));
-  result_.overall_min.push_back(sketch.min());
-  result_.overall_max.push_back(sketch.max());
-  result_.overall_count.push_back(moments.count());
+void MonteCarloColumns::set_overall(std::size_t response, const Moments& moments, const QuantileSketch& sketch,
+                                    std::uint64_t independent) {
+  result_.overall_mean(response) = mean_of(moments);
+  result_.overall_std(response) = moments.standard_deviation();
+  result_.overall_rms(response) = root_mean_square(moments.mean(), moments.standard_deviation(), moments.count());
+  result_.overall_min(response) = sketch.min();
+  result_.overall_max(response) = sketch.max();
+  result_.overall_count(response) = moments.count();
   std::vector<RankInterval> ranks;
   for (const RankInterval& one : ranks_of(independent)) ranks.push_back(among(one, independent, sketch.count()));
   const std::vector<Bucket> buckets = sketch.buckets();
   const QuantilesOf quantiles = quantiles_of(buckets, result_.levels, ranks);
-  for (std::size_t q = 0; q < result_.levels.size(); ++q) {
-    result_.overall_quantiles.push_back(quantiles.value[q]);
-    result_.overall_quantiles_ci_low.push_back(quantiles.interval[q].low);
-    result_.overall_quantiles_ci_high.push_back(quantiles.interval[q].high);
-  }
-  result_.overall_quantile_error.push_back(quantiles.error);
-  append_histogram(buckets, result_.histogram_edges, result_.histogram_counts);
+  quantiles.copy(result_.overall_quantiles.row(response), result_.overall_quantiles_ci_low.row(response),
+                 result_.overall_quantiles_ci_high.row(response));
+  result_.overall_quantile_error(response) = quantiles.error;
+  fill_histogram(buckets, result_.histogram_edges.row(response), result_.histogram_counts.row(response));
 }
 
-void append_histogram(std::span<const Bucket> buckets, std::vector<double>& edges, std::vector<std::uint64_t>& counts) {
-  Histogram bins = buckets.empty() ? Histogram{std::vector<double>(kHistogramBins + 1, kNaN), {}}
-                                   : histogram(buckets, kHistogramBins);
-  bins.counts.resize(kHistogramBins);
-  edges.insert(edges.end(), bins.edges.begin(), bins.edges.end());
-  counts.insert(counts.end(), bins.counts.begin(), bins.counts.end());
+void QuantilesOf::copy(std::span<double> values, std::span<double> low, std::span<double> high) const {
+  std::ranges::copy(value, values.begin());
+  std::ranges::transform(interval, low.begin(), &Interval::low);
+  std::ranges::transform(interval, high.begin(), &Interval::high);
+}
+
+void fill_histogram(std::span<const Bucket> buckets, std::span<double> edges, std::span<std::uint64_t> counts) {
+  std::ranges::fill(edges, kNaN);
+  if (buckets.empty()) return;
+  const Histogram bins = histogram(buckets, kHistogramBins);
+  std::ranges::copy(bins.edges, edges.begin());
+  std::ranges::copy(bins.counts, counts.begin());
 }
 
 LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
@@ -157,7 +154,7 @@ LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, do
     LimitVerdict verdict{.response = limit.response, .limit = limit.most, .tried = tried};
     verdict.within = count_within(overall[limit.response], limit.most);
     if (judge == Judge::rms) {
-      verdict.value = found.overall_rms[limit.response];
+      verdict.value = found.overall_rms(limit.response);
     } else {
       take_worst_pose(found, verdict);
     }

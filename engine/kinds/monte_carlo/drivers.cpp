@@ -27,29 +27,30 @@ std::vector<std::size_t> shared_responses(const StoredResult& result, const Yiel
   std::vector<std::size_t> list;
   if (!yield.has_shares()) return list;
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
-    if (!std::isnan(yield.linear_share[r])) list.push_back(r);
+    if (!std::isnan(yield.linear_share(r))) list.push_back(r);
   }
-  std::ranges::stable_sort(list, {}, [&](std::size_t r) { return yield.by_response[r]; });
+  std::ranges::stable_sort(list, {}, [&](std::size_t r) { return yield.by_response(r); });
   return list;
 }
 
 /// What the yield changes by, with its interval: in files without it a part of the slope.
 struct Changes {
-  std::vector<double> value;  ///< [P]
-  std::vector<double> low;    ///< [P]
-  std::vector<double> high;   ///< [P]
+  using Values = Array<double, axis::Factor>;
+  Values value;
+  Values low;
+  Values high;
 
   /// Whether it is told from zero.
-  bool is_told(std::size_t p) const { return low[p] > 0.0 || high[p] < 0.0; }
+  bool is_told(std::size_t p) const { return low(p) > 0.0 || high(p) < 0.0; }
 };
 
 Changes changes_of(const StoredResult& result, const YieldResult& yield) {
   if (yield.has_change()) return {yield.change, yield.change_ci_low, yield.change_ci_high};
-  const auto part = [&](const std::vector<double>& slope) {
-    std::vector<double> change;
+  const auto part = [&](const Changes::Values& slope) {
+    Changes::Values change(slope.lengths(), kNaN);
     for (std::size_t p = 0; p < slope.size(); ++p) {
-      change.push_back(std::max(-yield.value, kStep * slope[p] * result.factor_sigma[p]));
-      if (std::isnan(slope[p])) change.back() = kNaN;
+      if (std::isnan(slope(p))) continue;
+      change(p) = std::max(-yield.value, kStep * slope(p) * result.factor_sigma[p]);
     }
     return change;
   };
@@ -62,24 +63,23 @@ std::vector<std::size_t> told_errors(const Changes& changes) {
   for (std::size_t p = 0; p < changes.value.size(); ++p) {
     if (changes.is_told(p)) told.push_back(p);
   }
-  return largest_first(std::move(told), [&](std::size_t p) { return -changes.value[p]; });
+  return largest_first(std::move(told), [&](std::size_t p) { return -changes.value(p); });
 }
 
 std::string linear_note(const StoredResult& result, const YieldResult& yield, std::size_t r) {
   return fmt::format(
       "{}: {} of the mean square of its scatter is linear in the errors{}", result.responses[r].name,
-      percent_text(yield.linear_share[r]),
-      yield.linear_share[r] < 0.9 ? "; the rest belongs to no error alone, so these shares say little" : "");
+      percent_text(yield.linear_share(r)),
+      yield.linear_share(r) < 0.9 ? "; the rest belongs to no error alone, so these shares say little" : "");
 }
 
 Table share_table(const StoredResult& result, const YieldResult& yield, const std::vector<std::size_t>& responses) {
-  const std::size_t factors = result.factors.size();
   const std::size_t first = responses.front();
   std::vector<FilledColumn> columns{name_column(result.factors, "error")};
-  const auto add = [&](const std::string& name, const std::string& heading, const std::vector<double>& values,
-                       std::size_t r, int dispensable) {
-    columns.push_back({percent_column(name, heading, dispensable),
-                       [&values, at = r * factors](std::size_t p) { return percent_cell(values[at + p]); }});
+  const auto add = [&](const std::string& name, const std::string& heading, std::span<const double> values,
+                       int dispensable) {
+    columns.push_back(
+        {percent_column(name, heading, dispensable), [values](std::size_t p) { return percent_cell(values[p]); }});
   };
   Table table{.name = "mean_square_shares",
               .caption = fmt::format("Which errors a limit is up against: shares of the mean square of {}, to first "
@@ -91,13 +91,13 @@ Table share_table(const StoredResult& result, const YieldResult& yield, const st
               .ranked = true};
   for (const std::size_t r : responses) {
     const std::string& response = result.responses[r].name;
-    add("share_" + response, response, yield.mean_square_share, r, r == first ? 0 : 1);
-    add("share_ci_low_" + response, "low", yield.mean_square_share_ci_low, r, r == first ? 0 : 2);
-    add("share_ci_high_" + response, "high", yield.mean_square_share_ci_high, r, r == first ? 0 : 2);
+    add("share_" + response, response, yield.mean_square_share.row(r), r == first ? 0 : 1);
+    add("share_ci_low_" + response, "low", yield.mean_square_share_ci_low.row(r), r == first ? 0 : 2);
+    add("share_ci_high_" + response, "high", yield.mean_square_share_ci_high.row(r), r == first ? 0 : 2);
     table.notes.push_back(linear_note(result, yield, r));
   }
-  const auto share = [&](std::size_t p) { return yield.mean_square_share[first * factors + p]; };
-  fill(table, largest_first(positions(factors), share), columns);
+  const auto share = [&](std::size_t p) { return yield.mean_square_share(first, p); };
+  fill(table, largest_first(positions(result.factors.size()), share), columns);
   return table;
 }
 
@@ -111,9 +111,9 @@ void add_line(Table& table, std::size_t errors, std::string_view one, std::strin
 
 Table change_table(const StoredResult& result, const YieldResult& yield) {
   const Changes changes = changes_of(result, yield);
-  const auto column = [&](std::string name, std::string heading, const std::vector<double>& values) {
+  const auto column = [&](std::string name, std::string heading, const Changes::Values& values) {
     return FilledColumn{percent_column(std::move(name), std::move(heading)),
-                        [&values](std::size_t p) { return percent_cell(values[p]); }};
+                        [&values](std::size_t p) { return percent_cell(values(p)); }};
   };
   Table table{
       .name = "yield_gradient",
@@ -131,7 +131,7 @@ Table change_table(const StoredResult& result, const YieldResult& yield) {
         column("change_low", "low", changes.low),
         column("change_high", "high", changes.high),
         {number_column("slope", "slope", "", 1),
-         [&](std::size_t p) { return number_cell(yield.gradient[p] * display(result.factors[p]).si); }}});
+         [&](std::size_t p) { return number_cell(yield.gradient(p) * display(result.factors[p]).si); }}});
   const auto unknown =
       static_cast<std::size_t>(std::ranges::count_if(changes.low, [](double low) { return std::isnan(low); }));
   add_line(table, changes.value.size() - told.size() - unknown, "whose effect cannot be told from zero",
@@ -155,13 +155,8 @@ Table change_table(const StoredResult& result, const YieldResult& yield) {
 void add_share_figure(const StoredResult& result, const YieldResult& yield, Section& section, Page& page) {
   const std::vector<std::size_t> responses = shared_responses(result, yield);
   if (responses.empty()) return;
-  const auto add = [&](const std::string& name, const std::vector<double>& values) {
-    std::vector<double> list;
-    for (const std::size_t r : responses) {
-      const std::vector<double> row = of_row(values, r, result.factors.size());
-      list.insert(list.end(), row.begin(), row.end());
-    }
-    return page.figures.pool.add(name, list, 0.01);
+  const auto add = [&](const std::string& name, const MainEffects::Indices& values) {
+    return page.figures.pool.add(name, in_order(values, responses), 0.01);
   };
   Bars bars{
       {{"response", names_of(result.responses, responses)}},
@@ -179,9 +174,9 @@ void add_change_figure(const StoredResult& result, const YieldResult& yield, Sec
   const Changes changes = changes_of(result, yield);
   const std::vector<std::size_t> told = told_errors(changes);
   if (told.empty()) return;
-  const auto add = [&](const std::string& name, const std::vector<double>& values) {
+  const auto add = [&](const std::string& name, const Changes::Values& values) {
     std::vector<double> list;
-    for (const std::size_t p : told) list.push_back(values[p]);
+    for (const std::size_t p : told) list.push_back(values(p));
     return page.figures.pool.add(name, list, 0.01);
   };
   Bars bars{{},
@@ -208,12 +203,21 @@ std::vector<std::size_t> largest_first(std::vector<std::size_t> order,
   return order;
 }
 
+std::vector<double> in_order(const MainEffects::Indices& values, std::span<const std::size_t> responses) {
+  std::vector<double> list;
+  for (const std::size_t r : responses) {
+    const std::span row = values.row(r);
+    list.insert(list.end(), row.begin(), row.end());
+  }
+  return list;
+}
+
 std::optional<ResponseShares> response_shares(const StoredResult& result) {
   const YieldResult* const yield = yield_in(result);
   if (yield == nullptr) return std::nullopt;
   const std::vector<std::size_t> responses = shared_responses(result, *yield);
   if (responses.empty()) return std::nullopt;
-  return ResponseShares{responses.front(), of_row(yield->mean_square_share, responses.front(), result.factors.size())};
+  return ResponseShares{responses.front(), yield->mean_square_share.row(responses.front())};
 }
 
 std::vector<Table> driver_tables(const StoredResult& result) {

@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "engine/kinds/monte_carlo/result.h"
 #include "engine/report/html/parts.h"
 #include "engine/report/tables.h"
 #include "engine/result/result_file.h"
@@ -15,10 +17,13 @@ namespace poesy {
 /// These positions by a value of each, the largest first; NaN last.
 std::vector<std::size_t> largest_first(std::vector<std::size_t> order, const std::function<double(std::size_t)>& value);
 
+/// Values of each error, response by response in this order.
+std::vector<double> in_order(const MainEffects::Indices& values, std::span<const std::size_t> responses);
+
 /// The shares of the mean square of a limited response.
 struct ResponseShares {
-  std::size_t response;      ///< the limited one that rejects most machines, of those whose shares are known
-  std::vector<double> each;  ///< [P] NaN for correlated errors
+  std::size_t response;          ///< the limited one that rejects most machines, of those whose shares are known
+  std::span<const double> each;  ///< of the errors, in the result; NaN for correlated ones
 };
 
 /// None where the result has no yield, or no shares of it are known.

@@ -12,8 +12,6 @@ namespace {
 
 using MonteCarlo = MonteCarloResult;
 
-const Axes kQuantileAtPose{"response", "pose", "quantile"};
-const Axes kOverallQuantile{"response", "quantile"};
 const std::vector<Attribute<MonteCarlo>> kInterval{{"conf_level", &MonteCarlo::conf_level}};
 const std::vector<Attribute<MonteCarlo>> kSketch{{"quantile_relative_error", &MonteCarlo::quantile_relative_error}};
 const std::string kEndOfInterval =
@@ -27,111 +25,130 @@ const Group<MonteCarlo> kMonteCarlo{
     "/monte_carlo",
     "Each response with all errors varying together, at each pose and over all poses",
     kInterval,
-    {{"response", &MonteCarlo::responses}, {"pose", &MonteCarlo::poses}},
-    {{"mean", &MonteCarlo::mean, kByResponsePose, kResponseUnit, "Mean over the samples; NaN where none counts"},
-     {"mean_ci_low", &MonteCarlo::mean_ci_low, kByResponsePose, kResponseUnit,
-      "Lower end of Student's interval of the mean", kInterval},
-     {"mean_ci_high", &MonteCarlo::mean_ci_high, kByResponsePose, kResponseUnit,
-      "Upper end of Student's interval of the mean", kInterval},
-     {"std", &MonteCarlo::std, kByResponsePose, kResponseUnit, "Sample standard deviation"},
-     {"min", &MonteCarlo::min, kByResponsePose, kResponseUnit, "Smallest sample"},
-     {"max", &MonteCarlo::max, kByResponsePose, kResponseUnit, "Largest sample"},
-     {"count", &MonteCarlo::count, kByResponsePose, "1", "Samples behind these: solved, or as not_converged has it"},
-     {"quantiles", &MonteCarlo::quantiles, kQuantileAtPose, kResponseUnit,
+    {},
+    {{"mean", &MonteCarlo::mean, kResponseUnit, "Mean over the samples; NaN where none counts"},
+     {"mean_ci_low", &MonteCarlo::mean_ci_low, kResponseUnit, "Lower end of Student's interval of the mean",
+      Presence::always, kInterval},
+     {"mean_ci_high", &MonteCarlo::mean_ci_high, kResponseUnit, "Upper end of Student's interval of the mean",
+      Presence::always, kInterval},
+     {"std", &MonteCarlo::std, kResponseUnit, "Sample standard deviation"},
+     {"min", &MonteCarlo::min, kResponseUnit, "Smallest sample"},
+     {"max", &MonteCarlo::max, kResponseUnit, "Largest sample"},
+     {"count", &MonteCarlo::count, "1", "Samples behind these: solved, or as not_converged has it"},
+     {"quantiles", &MonteCarlo::quantiles, kResponseUnit,
       "Order statistic of rank ceil(q n) of n samples, off by quantile_error and by its part quantile_relative_error "
       "at most",
-      kSketch},
-     {"rms", &MonteCarlo::rms, kByResponsePose, kResponseUnit,
-      "Root mean square of the samples; NaN where none counts"},
-     {"quantiles_ci_low", &MonteCarlo::quantiles_ci_low, kQuantileAtPose, kResponseUnit, kLowerEnd, kInterval},
-     {"quantiles_ci_high", &MonteCarlo::quantiles_ci_high, kQuantileAtPose, kResponseUnit, kUpperEnd, kInterval},
-     {"overall_mean", &MonteCarlo::overall_mean, kByResponse, kResponseUnit, "Mean over the samples of all poses"},
-     {"overall_std", &MonteCarlo::overall_std, kByResponse, kResponseUnit,
+      Presence::always, kSketch},
+     {"rms", &MonteCarlo::rms, kResponseUnit, "Root mean square of the samples; NaN where none counts"},
+     {"quantiles_ci_low", &MonteCarlo::quantiles_ci_low, kResponseUnit, kLowerEnd, Presence::always, kInterval},
+     {"quantiles_ci_high", &MonteCarlo::quantiles_ci_high, kResponseUnit, kUpperEnd, Presence::always, kInterval},
+     {"overall_mean", &MonteCarlo::overall_mean, kResponseUnit, "Mean over the samples of all poses"},
+     {"overall_std", &MonteCarlo::overall_std, kResponseUnit,
       "Sample standard deviation over the samples of all poses"},
-     {"overall_min", &MonteCarlo::overall_min, kByResponse, kResponseUnit,
-      "Smallest value over the samples of all poses"},
-     {"overall_max", &MonteCarlo::overall_max, kByResponse, kResponseUnit,
-      "Largest value over the samples of all poses"},
-     {"overall_count", &MonteCarlo::overall_count, kByResponse, "1", "Samples of all poses that count"},
-     {"overall_quantiles", &MonteCarlo::overall_quantiles, kOverallQuantile, kResponseUnit,
-      "As quantiles, over the samples of all poses", kSketch},
-     {"overall_rms", &MonteCarlo::overall_rms, kByResponse, kResponseUnit,
-      "Root mean square over the samples of all poses"},
-     {"overall_quantiles_ci_low", &MonteCarlo::overall_quantiles_ci_low, kOverallQuantile, kResponseUnit, kLowerEnd,
+     {"overall_min", &MonteCarlo::overall_min, kResponseUnit, "Smallest value over the samples of all poses"},
+     {"overall_max", &MonteCarlo::overall_max, kResponseUnit, "Largest value over the samples of all poses"},
+     {"overall_count", &MonteCarlo::overall_count, "1", "Samples of all poses that count"},
+     {"overall_quantiles", &MonteCarlo::overall_quantiles, kResponseUnit, "As quantiles, over the samples of all poses",
+      Presence::always, kSketch},
+     {"overall_rms", &MonteCarlo::overall_rms, kResponseUnit, "Root mean square over the samples of all poses"},
+     {"overall_quantiles_ci_low", &MonteCarlo::overall_quantiles_ci_low, kResponseUnit, kLowerEnd, Presence::always,
       kInterval},
-     {"overall_quantiles_ci_high", &MonteCarlo::overall_quantiles_ci_high, kOverallQuantile, kResponseUnit, kUpperEnd,
+     {"overall_quantiles_ci_high", &MonteCarlo::overall_quantiles_ci_high, kResponseUnit, kUpperEnd, Presence::always,
       kInterval},
-     {"histogram_edges",
-      &MonteCarlo::histogram_edges,
-      {"response", "edge"},
-      kResponseUnit,
+     {"histogram_edges", &MonteCarlo::histogram_edges, kResponseUnit,
       "Edges of the bins; the first and the last are the extremes; bins that are not needed have no width and stand at "
       "the end; NaN where no sample counts"},
-     {"histogram_counts",
-      &MonteCarlo::histogram_counts,
-      {"response", "bin"},
-      "1",
+     {"histogram_counts", &MonteCarlo::histogram_counts, "1",
       "Samples of all poses in each bin, exact; the first and the last bin hold the outermost 0.05 % each"},
-     {"share_magnitude", &MonteCarlo::share_magnitude, kByResponsePose, kResponseUnit,
+     {"share_magnitude", &MonteCarlo::share_magnitude, kResponseUnit,
       "Within this magnitude stays the share of all draws that [analysis] share asks for; draws that do not count are "
       "outside; infinite where they are too many",
       Presence::where_computed},
-     {"quantile_error", &MonteCarlo::quantile_error, kByResponsePose, kResponseUnit,
+     {"quantile_error", &MonteCarlo::quantile_error, kResponseUnit,
       "What none of the quantiles at the pose is off by more than from its order statistic; 0 of up to 256 samples, "
       "some thousandths of std of more; NaN where none counts",
       Presence::where_computed},
-     {"overall_quantile_error", &MonteCarlo::overall_quantile_error, kByResponse, kResponseUnit,
-      "The same of overall_quantiles", Presence::where_computed},
-     {"varies", &MonteCarlo::varies, kByResponse, "1",
+     {"overall_quantile_error", &MonteCarlo::overall_quantile_error, kResponseUnit, "The same of overall_quantiles",
+      Presence::where_computed},
+     {"varies", &MonteCarlo::varies, "1",
       "0 where the response does not vary: what its samples scatter at any pose is rounding, so it has no indices "
       "and no main effects; left out where all vary",
       Presence::where_computed}}};
 
-const FieldRow<MonteCarlo>& row(std::string_view name) {
-  return *std::ranges::find(kMonteCarlo.fields, name, &FieldRow<MonteCarlo>::name);
-}
+/// What a table shows of some samples: arrays whose last axis but that of the quantiles is the one of its lines.
+template <class Numbers, class Quantiles, class Counts>
+struct ShownNumbers {
+  std::vector<std::pair<std::string, const Numbers*>> first;  ///< with their names
+  const Counts& count;
+  const Numbers& rms;
+  const Quantiles& quantiles;
+  const Quantiles& quantiles_ci_low;
+  const Quantiles& quantiles_ci_high;
+  const Numbers& quantile_error;
+};
 
-/// Appends columns of numbers and quantiles: those of the poses of a response (prefix "", first: its first number) or
-/// those of the responses (prefix "overall_", first: 0).
-void append_number_columns(CsvTable& table, const StoredResult& result, const std::vector<std::string>& names,
-                           const std::string& prefix, std::size_t first, const std::string& unit) {
-  const MonteCarlo& found = monte_carlo_of(result);
-  const std::size_t levels = found.levels.size();
-  for (const std::string& name : names) {
-    table.columns.push_back(
-        field_column(with_unit(name, name == "count" ? "1" : unit), row(prefix + name), found, first));
-  }
-  const auto append_quantile = [&](std::size_t q, const std::string& rest) {
-    const std::string heading = with_unit("q_" + shortest(found.levels[q]) + rest, unit);
-    table.columns.push_back(field_column(heading, row(prefix + "quantiles" + rest), found, first * levels + q, levels));
+/// Appends columns of numbers and quantiles at these positions on the axes before that of the lines.
+template <class Numbers, class Quantiles, class Counts, class... Positions>
+void append_number_columns(CsvTable& table, const std::string& unit, const std::vector<double>& levels,
+                           const ShownNumbers<Numbers, Quantiles, Counts>& shown, Positions... at) {
+  const auto append = [&](const std::string& name, const Numbers& numbers) {
+    table.columns.push_back(list_column(with_unit(name, unit), numbers.row(at...)));
   };
-  for (std::size_t q = 0; q < levels; ++q) append_quantile(q, "");
-  table.columns.push_back(field_column(with_unit("rms", unit), row(prefix + "rms"), found, first));
-  for (std::size_t q = 0; q < levels; ++q) {
-    append_quantile(q, "_ci_low");
-    append_quantile(q, "_ci_high");
+  const auto append_quantile = [&](std::size_t q, const std::string& rest, const Quantiles& quantiles) {
+    table.columns.push_back({with_unit("q_" + shortest(levels[q]) + rest, unit),
+                             [&quantiles, q, at...](std::size_t line) { return quantiles(at..., line, q); }});
+  };
+  for (const auto& [name, numbers] : shown.first) append(name, *numbers);
+  table.columns.push_back(list_column("count", shown.count.row(at...)));
+  for (std::size_t q = 0; q < levels.size(); ++q) append_quantile(q, "", shown.quantiles);
+  append("rms", shown.rms);
+  for (std::size_t q = 0; q < levels.size(); ++q) {
+    append_quantile(q, "_ci_low", shown.quantiles_ci_low);
+    append_quantile(q, "_ci_high", shown.quantiles_ci_high);
   }
-  if (found.overall_quantile_error.empty()) return;  // of version 0.2
-  table.columns.push_back(
-      field_column(with_unit("quantile_error", unit), row(prefix + "quantile_error"), found, first));
+  if (!shown.quantile_error.empty()) append("quantile_error", shown.quantile_error);  // version 0.2 has none
 }
 
 CsvTable response_table(const StoredResult& result, std::size_t r) {
   const NamedUnit& response = result.responses[r];
+  const MonteCarlo& found = monte_carlo_of(result);
   CsvTable table = lines_of_poses(result, "monte_carlo_" + response.name);
-  append_number_columns(table, result, {"mean", "mean_ci_low", "mean_ci_high", "std", "min", "max", "count"}, "",
-                        r * result.poses.size(), response.unit);
+  append_number_columns(table, response.unit, found.levels,
+                        ShownNumbers{{{"mean", &found.mean},
+                                      {"mean_ci_low", &found.mean_ci_low},
+                                      {"mean_ci_high", &found.mean_ci_high},
+                                      {"std", &found.std},
+                                      {"min", &found.min},
+                                      {"max", &found.max}},
+                                     found.count,
+                                     found.rms,
+                                     found.quantiles,
+                                     found.quantiles_ci_low,
+                                     found.quantiles_ci_high,
+                                     found.quantile_error},
+                        r);
   return table;
 }
 
 /// Responses have units of their own, so a row ends with its unit.
 CsvTable overall_table(const StoredResult& result) {
+  const MonteCarlo& found = monte_carlo_of(result);
   CsvTable table{"overall",
                  {"response", [&](std::size_t r) { return result.responses[r].name; }},
                  result.responses.size(),
                  {},
                  {"unit", [&](std::size_t r) { return result.responses[r].unit; }}};
-  append_number_columns(table, result, {"mean", "std", "min", "max", "count"}, "overall_", 0, "1");
+  append_number_columns(table, "1", found.levels,
+                        ShownNumbers{{{"mean", &found.overall_mean},
+                                      {"std", &found.overall_std},
+                                      {"min", &found.overall_min},
+                                      {"max", &found.overall_max}},
+                                     found.overall_count,
+                                     found.overall_rms,
+                                     found.overall_quantiles,
+                                     found.overall_quantiles_ci_low,
+                                     found.overall_quantiles_ci_high,
+                                     found.overall_quantile_error});
   return table;
 }
 
@@ -139,19 +156,15 @@ CsvTable overall_table(const StoredResult& result) {
 CsvTable histogram_table(const StoredResult& result, std::size_t r) {
   const MonteCarlo& found = monte_carlo_of(result);
   const NamedUnit& response = result.responses[r];
-  const std::size_t bins = found.histogram_counts.size() / found.responses;
-  const std::size_t edge = r * (bins + 1);
+  const std::span counts = found.histogram_counts.row(r);
+  const std::span edges = found.histogram_edges.row(r);
   return {"histogram_" + response.name,
           {"bin", [](std::size_t b) { return std::to_string(b); }},
-          bins,
-          {field_column(with_unit("low", response.unit), row("histogram_edges"), found, edge),
-           field_column(with_unit("high", response.unit), row("histogram_edges"), found, edge + 1),
-           list_column("count", found.histogram_counts, r * bins)},
+          counts.size(),
+          {list_column(with_unit("low", response.unit), edges.first(counts.size())),
+           list_column(with_unit("high", response.unit), edges.subspan(1)), list_column("count", counts)},
           {},
-          [&found, edge, first = r * bins](std::size_t b) {
-            return found.histogram_counts[first + b] > 0 ||
-                   found.histogram_edges[edge + b] < found.histogram_edges[edge + b + 1];
-          }};
+          [counts, edges](std::size_t b) { return counts[b] > 0 || edges[b] < edges[b + 1]; }};
 }
 
 const CourseWords kConvergence = convergence_words(
@@ -162,7 +175,7 @@ const CourseWords kConvergence = convergence_words(
 
 void write(ResultBuilder& result, const Study& study, std::any& any) {
   const auto& found = std::any_cast<const MonteCarlo&>(any);
-  const std::size_t bins = found.histogram_counts.size() / found.responses;
+  const std::size_t bins = found.histogram_counts.length<axis::HistogramBin>();
   add_names(result, study, study.analysis.factors);
   add_sigma(result, study);
   result.add_axis("quantile", found.levels, {"1", "Share of the samples below the quantile"});
@@ -214,9 +227,9 @@ void read(const h5::File& file, StoredResult& result) {
 void append_tables(CsvTables& tables, const StoredResult& result) {
   const MonteCarlo& found = monte_carlo_of(result);
   append_sigma_tables(tables, result);
-  for (std::size_t r = 0; r < found.responses; ++r) tables.push_back(response_table(result, r));
+  for (std::size_t r = 0; r < result.responses.size(); ++r) tables.push_back(response_table(result, r));
   tables.push_back(overall_table(result));
-  for (std::size_t r = 0; r < found.responses; ++r) tables.push_back(histogram_table(result, r));
+  for (std::size_t r = 0; r < result.responses.size(); ++r) tables.push_back(histogram_table(result, r));
   append_effect_tables(tables, result);
   if (found.machines) append_machine_tables(tables, result);
   append_limit_table(tables, result);
@@ -228,6 +241,10 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 }
 
 }  // namespace
+
+std::size_t monte_carlo_bytes(const AxisLengths& lengths, bool machines) {
+  return bytes_of(kMonteCarlo.fields, lengths) + effect_bytes(lengths) + (machines ? machine_bytes(lengths) : 0);
+}
 
 constinit const FileKind kMonteCarloFile{.write = write, .read = read, .append_tables = append_tables};
 

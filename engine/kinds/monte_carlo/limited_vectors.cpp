@@ -42,23 +42,25 @@ LimitedVectors::LimitedVectors(const Plan& plan, const Model& model, const Analy
   details_ = 0;
 }
 
-void LimitedVectors::fill(PoseIndex pose, const UnitOutcomes& outcomes, std::span<const double> details,
-                          std::span<double> rows) const {
+void LimitedVectors::fill(PoseIndex pose, const UnitOutcomes& outcomes,
+                          const Array<double, axis::DetailComponent, axis::Sample>& details,
+                          const ArrayView<double, axis::VectorRow, axis::Sample>& rows) const {
   const std::size_t block = outcomes.status.size();
-  POESY_EXPECTS(rows.size() == rows_ * block && details.size() == details_ * block);
+  const ArrayView<const double, axis::Response, axis::Sample> responses(outcomes.responses,
+                                                                        {outcomes.responses.size() / block, block});
   for (const LimitedVector& vector : vectors_) {
-    const std::span<double> own = rows.subspan(vector.first_row * block, vector.rows * block);
     for (std::size_t k = 0; k < vector.responses.size(); ++k) {
-      std::ranges::copy(outcomes.responses.subspan(vector.responses[k] * block, block),
-                        own.begin() + static_cast<std::ptrdiff_t>(k * block));
+      std::ranges::copy(responses.row(vector.responses[k]), rows.row(vector.first_row + k).begin());
     }
     if (!vector.responses.empty()) continue;
-    const std::vector<double> matrix = model_->norm_of_details(vector.response, plan_->poses()[pose]);
-    std::ranges::fill(own, 0.0);
+    const Array<double, axis::VectorRow, axis::DetailComponent> matrix(
+        {vector.rows, details_}, model_->norm_of_details(vector.response, plan_->poses()[pose]));
     for (std::size_t k = 0; k < vector.rows; ++k) {
+      const std::span<double> own = rows.row(vector.first_row + k);
+      std::ranges::fill(own, 0.0);
       for (std::size_t d = 0; d < details_; ++d) {
-        const double factor = matrix[k * details_ + d];
-        for (std::size_t b = 0; b < block; ++b) own[k * block + b] += factor * details[d * block + b];
+        const std::span<const double> detail = details.row(d);
+        for (std::size_t b = 0; b < block; ++b) own[b] += matrix(k, d) * detail[b];
       }
     }
   }

@@ -3,14 +3,27 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include "engine/base/array.h"
 #include "engine/model/model.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
 
 namespace poesy {
+
+namespace axis {
+/// Components of the model's details.
+struct DetailComponent {
+  static constexpr std::string_view kName = "detail_component";
+};
+/// Components of the vectors behind all limited responses.
+struct VectorRow {
+  static constexpr std::string_view kName = "vector_row";
+};
+}  // namespace axis
 
 /// The vector behind a limited response, of which the response is the norm: components that are linear in the errors to
 /// first order. Of a response with a sign that is itself.
@@ -35,9 +48,10 @@ class LimitedVectors {
   /// Components of the model's details where a vector is made of them, else 0.
   std::size_t details() const { return details_; }
 
-  /// Fills the rows [rows x B] from what was solved at a pose. details: [details() x B].
-  void fill(PoseIndex pose, const UnitOutcomes& outcomes, std::span<const double> details,
-            std::span<double> rows) const;
+  /// Fills the rows from what was solved at a pose.
+  void fill(PoseIndex pose, const UnitOutcomes& outcomes,
+            const Array<double, axis::DetailComponent, axis::Sample>& details,
+            const ArrayView<double, axis::VectorRow, axis::Sample>& rows) const;
 
  private:
   const Plan* plan_;

@@ -18,40 +18,33 @@ constexpr std::uint64_t kKind = 4;  ///< no other state begins with this number
 }  // namespace
 
 MachineCollector::Counts::Counts(std::size_t responses, std::size_t poses)
-    : at_pose(poses * responses), largest(responses), rms(responses), solves(poses), failed(poses) {}
+    : at_pose({poses, responses}), largest(responses), rms(responses), solves(poses), failed(poses) {}
 
 void MachineCollector::Counts::add(const MachineUnit& unit) {
-  for (std::size_t k = 0; k < at_pose.size(); ++k) at_pose[k].add(unit.at_pose[k]);
-  for (std::size_t r = 0; r < largest.size(); ++r) {
-    largest[r].add(unit.largest[r]);
-    rms[r].add(unit.rms[r]);
-  }
-  for (std::size_t m = 0; m < solves.size(); ++m) {
-    solves[m].merge(unit.solves[m]);
-    failed[m].merge(unit.failed[m]);
-  }
+  const auto add_block = [](QuantileSketch& sketch, const NumberBlock& block) { sketch.add(block); };
+  for_each_pair(at_pose, unit.at_pose, add_block);
+  for_each_pair(largest, unit.largest, add_block);
+  for_each_pair(rms, unit.rms, add_block);
+  merge_each(solves, unit.solves);
+  merge_each(failed, unit.failed);
   rejected.insert(rejected.end(), unit.rejected.begin(), unit.rejected.end());
   machines.merge(unit.counts);
 }
 
 void MachineCollector::Counts::merge(const Counts& later) {
-  for (std::size_t k = 0; k < at_pose.size(); ++k) at_pose[k].merge(later.at_pose[k]);
-  for (std::size_t r = 0; r < largest.size(); ++r) {
-    largest[r].merge(later.largest[r]);
-    rms[r].merge(later.rms[r]);
-  }
-  for (std::size_t m = 0; m < solves.size(); ++m) {
-    solves[m].merge(later.solves[m]);
-    failed[m].merge(later.failed[m]);
-  }
+  merge_each(at_pose, later.at_pose);
+  merge_each(largest, later.largest);
+  merge_each(rms, later.rms);
+  merge_each(solves, later.solves);
+  merge_each(failed, later.failed);
   rejected.insert(rejected.end(), later.rejected.begin(), later.rejected.end());
   machines.merge(later.machines);
 }
 
 void MachineCollector::Counts::write(ByteWriter& to) const {
-  for (const auto* sketches : {&at_pose, &largest, &rms}) {
-    for (const QuantileSketch& sketch : *sketches) sketch.write(to);
-  }
+  write_each(at_pose, to);
+  write_each(largest, to);
+  write_each(rms, to);
   for (std::size_t m = 0; m < solves.size(); ++m) {
     solves[m].write(to);
     failed[m].write(to);
@@ -65,9 +58,9 @@ MachineCollector::Counts MachineCollector::Counts::read(ByteReader& from, const 
   const std::size_t responses = table.responses();
   const std::size_t poses = table.plan().poses().size();
   Counts counts(responses, poses);
-  for (auto* sketches : {&counts.at_pose, &counts.largest, &counts.rms}) {
-    for (QuantileSketch& sketch : *sketches) sketch = QuantileSketch::read(from);
-  }
+  read_each(from, counts.at_pose);
+  read_each(from, counts.largest);
+  read_each(from, counts.rms);
   for (std::size_t m = 0; m < poses; ++m) {
     counts.solves[m] = SolveCounts::read(from);
     if (counts.solves[m].total() != end - first) throw BytesError("has a pose with other machines");
@@ -112,22 +105,20 @@ std::vector<Estimate> MachineCollector::overall_means() const {
 }
 
 void MachineCollector::set_columns(const MachineSums& sums, MonteCarloResult& found, MonteCarloColumns& columns) const {
-  const std::size_t responses = table_->responses();
   for (std::size_t m = 0; m < poses(); ++m) {
     found.solves[m] = counts_.solves[m];
     append_failures(0, PoseIndex(m), counts_.failed[m], found.failures);
   }
-  for (std::size_t r = 0; r < responses; ++r) {
+  for (std::size_t r = 0; r < table_->responses(); ++r) {
     Moments moments;
     QuantileSketch sketch;
     for (std::size_t m = 0; m < poses(); ++m) {
-      const std::size_t k = m * responses + r;
-      columns.set_moments(r, m, sums.at_pose[k]);
-      columns.set_quantiles(r, m, counts_.at_pose[k], counts_.solves[m].total());
-      moments.merge(sums.at_pose[k]);
-      sketch.merge(counts_.at_pose[k]);
+      columns.set_moments(r, m, sums.at_pose(m, r));
+      columns.set_quantiles(r, m, counts_.at_pose(m, r), counts_.solves[m].total());
+      moments.merge(sums.at_pose(m, r));
+      sketch.merge(counts_.at_pose(m, r));
     }
-    columns.set_overall(moments, sketch, counts_.machines.machines);
+    columns.set_overall(r, moments, sketch, counts_.machines.machines);
   }
 }
 
@@ -178,7 +169,9 @@ MonteCarloResult MachineCollector::result() && {
     return std::move(found);
   }
   std::vector<QuantileSketch> overall(table_->responses());
-  for (std::size_t k = 0; k < counts_.at_pose.size(); ++k) overall[k % overall.size()].merge(counts_.at_pose[k]);
+  for (std::size_t m = 0; m < poses(); ++m) {
+    for (std::size_t r = 0; r < overall.size(); ++r) overall[r].merge(counts_.at_pose(m, r));
+  }
   found.verdicts = judge_draws(analysis_->limits, asked.judge, asked.share, found, overall);
   return std::move(found);
 }

@@ -29,8 +29,8 @@ class MachineCollector {
   /// The number of the unit that comes next.
   std::size_t next() const;
   SolveCounts total() const;  ///< Over all that was added.
-  /// [R] the mean over the samples of all poses of the whole units, with its interval: machines are what is
-  /// independent. Of machines that are solved at each pose.
+  /// Of each response the mean over the samples of all poses of the whole units, with its interval: machines are what
+  /// is independent. Of machines that are solved at each pose.
   std::vector<Estimate> overall_means() const;
   /// Of all machines that were added. Precondition: no more follow.
   MonteCarloResult result() &&;
@@ -45,11 +45,11 @@ class MachineCollector {
  private:
   /// What is counted, so that no order shows in it.
   struct Counts {
-    std::vector<QuantileSketch> at_pose;  ///< [M x R]
-    std::vector<QuantileSketch> largest;  ///< [R]
-    std::vector<QuantileSketch> rms;      ///< [R]
-    std::vector<SolveCounts> solves;      ///< [M]
-    std::vector<FailedSamples> failed;    ///< [M]
+    Array<QuantileSketch, axis::Pose, axis::Response> at_pose;
+    std::vector<QuantileSketch> largest;  ///< of each response
+    std::vector<QuantileSketch> rms;      ///< of each response
+    std::vector<SolveCounts> solves;      ///< of each pose
+    std::vector<FailedSamples> failed;    ///< of each pose
     std::vector<std::uint8_t> rejected;   ///< of the machines that MachineTable::kept() counts
     MachineCounts machines;
 

@@ -11,9 +11,6 @@
 namespace poesy {
 namespace {
 
-const Axes kByResponseQuantile{"response", "quantile"};
-const Axes kByFactorBin{"factor", "effect_bin"};
-const Axes kByResponseFactorBin{"response", "factor", "effect_bin"};
 const Axes kByEffectPose{"effect_pose"};
 
 /// What a machine that is not solved at every pose has.
@@ -23,38 +20,31 @@ const std::string kOfSolved = " over the machines that are solved at every pose"
 Group<MachineValues> values_group(const std::string& path, const std::string& what) {
   using Values = MachineValues;
   const std::string of = "of the machines' " + what + ",";
-  return {path,
-          "The distribution " + of + kOfSolved,
-          {},
-          {},
-          {{"mean", &Values::mean, kByResponse, kResponseUnit, "Mean " + of + kOfSolved},
-           {"mean_ci_low", &Values::mean_ci_low, kByResponse, kResponseUnit,
-            "Lower end of Student's interval of the mean; machines are independent of each other"},
-           {"mean_ci_high", &Values::mean_ci_high, kByResponse, kResponseUnit,
-            "Upper end of Student's interval of the mean"},
-           {"std", &Values::std, kByResponse, kResponseUnit, "Sample standard deviation"},
-           {"min", &Values::min, kByResponse, kResponseUnit, "Smallest of any machine"},
-           {"max", &Values::max, kByResponse, kResponseUnit, "Largest of any machine"},
-           {"count", &Values::count, kByResponse, "1", "Machines behind these: solved at every pose"},
-           {"quantiles", &Values::quantiles, kByResponseQuantile, kResponseUnit,
-            "Order statistic of rank ceil(q n) of n machines, off by quantile_error at most"},
-           {"quantiles_ci_low", &Values::quantiles_ci_low, kByResponseQuantile, kResponseUnit,
-            "Lower end of an interval for the quantile of the distribution, from order statistics (binomial)"},
-           {"quantiles_ci_high", &Values::quantiles_ci_high, kByResponseQuantile, kResponseUnit,
-            "Upper end of an interval for the quantile of the distribution, from order statistics (binomial)"},
-           {"histogram_edges",
-            &Values::histogram_edges,
-            {"response", "edge"},
-            kResponseUnit,
-            "Edges of the bins, as /monte_carlo/histogram_edges"},
-           {"histogram_counts",
-            &Values::histogram_counts,
-            {"response", "bin"},
-            "1",
-            "Machines in each bin, as /monte_carlo/histogram_counts"},
-           {"quantile_error", &Values::quantile_error, kByResponse, kResponseUnit,
-            "What none of the quantiles is off by more than from its order statistic, as /monte_carlo/quantile_error",
-            Presence::where_computed}}};
+  return {
+      path,
+      "The distribution " + of + kOfSolved,
+      {},
+      {},
+      {{"mean", &Values::mean, kResponseUnit, "Mean " + of + kOfSolved},
+       {"mean_ci_low", &Values::mean_ci_low, kResponseUnit,
+        "Lower end of Student's interval of the mean; machines are independent of each other"},
+       {"mean_ci_high", &Values::mean_ci_high, kResponseUnit, "Upper end of Student's interval of the mean"},
+       {"std", &Values::std, kResponseUnit, "Sample standard deviation"},
+       {"min", &Values::min, kResponseUnit, "Smallest of any machine"},
+       {"max", &Values::max, kResponseUnit, "Largest of any machine"},
+       {"count", &Values::count, "1", "Machines behind these: solved at every pose"},
+       {"quantiles", &Values::quantiles, kResponseUnit,
+        "Order statistic of rank ceil(q n) of n machines, off by quantile_error at most"},
+       {"quantiles_ci_low", &Values::quantiles_ci_low, kResponseUnit,
+        "Lower end of an interval for the quantile of the distribution, from order statistics (binomial)"},
+       {"quantiles_ci_high", &Values::quantiles_ci_high, kResponseUnit,
+        "Upper end of an interval for the quantile of the distribution, from order statistics (binomial)"},
+       {"histogram_edges", &Values::histogram_edges, kResponseUnit,
+        "Edges of the bins, as /monte_carlo/histogram_edges"},
+       {"histogram_counts", &Values::histogram_counts, "1", "Machines in each bin, as /monte_carlo/histogram_counts"},
+       {"quantile_error", &Values::quantile_error, kResponseUnit,
+        "What none of the quantiles is off by more than from its order statistic, as /monte_carlo/quantile_error",
+        Presence::where_computed}}};
 }
 
 const Group<MachineValues> kLargest = values_group("/machines/largest", "largest magnitude over the poses");
@@ -69,55 +59,52 @@ const Group<YieldResult> kYield{
     "solved at a pose is a reject, unless said otherwise",
     kYieldInterval,
     {},
-    {{"value", &YieldResult::value, {}, "1", "The yield: share of the machines that are no rejects"},
-     {"ci_low", &YieldResult::ci_low, {}, "1", "Lower" + kPearson},
-     {"ci_high", &YieldResult::ci_high, {}, "1", "Upper" + kPearson},
-     {"rejects", &YieldResult::rejects, {}, "1", "Machines that are not within every limit at every pose"},
-     {"machines", &YieldResult::machines, {}, "1", "Machines that were tried"},
-     {"unsolved", &YieldResult::unsolved, {}, "1", "Of these, machines with a pose that is not solved"},
-     {"unsolved_pass",
-      &YieldResult::unsolved_pass,
-      {},
-      "1",
+    {{"value", &YieldResult::value, "1", "The yield: share of the machines that are no rejects"},
+     {"ci_low", &YieldResult::ci_low, "1", "Lower" + kPearson},
+     {"ci_high", &YieldResult::ci_high, "1", "Upper" + kPearson},
+     {"rejects", &YieldResult::rejects, "1", "Machines that are not within every limit at every pose"},
+     {"machines", &YieldResult::machines, "1", "Machines that were tried"},
+     {"unsolved", &YieldResult::unsolved, "1", "Of these, machines with a pose that is not solved"},
+     {"unsolved_pass", &YieldResult::unsolved_pass, "1",
       "The yield if samples that are not solved were within every limit"},
-     {"unsolved_pass_ci_low", &YieldResult::unsolved_pass_ci_low, {}, "1", "Lower" + kPearson},
-     {"unsolved_pass_ci_high", &YieldResult::unsolved_pass_ci_high, {}, "1", "Upper" + kPearson},
-     {"unsolved_pass_rejects", &YieldResult::unsolved_pass_rejects, {}, "1", "The rejects if they were"},
-     {"by_response", &YieldResult::by_response, kByResponse, "1",
+     {"unsolved_pass_ci_low", &YieldResult::unsolved_pass_ci_low, "1", "Lower" + kPearson},
+     {"unsolved_pass_ci_high", &YieldResult::unsolved_pass_ci_high, "1", "Upper" + kPearson},
+     {"unsolved_pass_rejects", &YieldResult::unsolved_pass_rejects, "1", "The rejects if they were"},
+     {"by_response", &YieldResult::by_response, "1",
       "Share of the machines that are within the limit of this response at every pose; NaN for a response without a "
       "limit"},
-     {"by_response_ci_low", &YieldResult::by_response_ci_low, kByResponse, "1", "Lower" + kPearson},
-     {"by_response_ci_high", &YieldResult::by_response_ci_high, kByResponse, "1", "Upper" + kPearson},
-     {"worst_pose_share", &YieldResult::worst_pose_share, kByResponsePose, "1",
+     {"by_response_ci_low", &YieldResult::by_response_ci_low, "1", "Lower" + kPearson},
+     {"by_response_ci_high", &YieldResult::by_response_ci_high, "1", "Upper" + kPearson},
+     {"worst_pose_share", &YieldResult::worst_pose_share, "1",
       "Share of the machines that are not within the limit of this response at this pose; NaN for a response without a "
       "limit"},
-     {"gradient", &YieldResult::gradient, kByFactor, "SI: 1 / factor unit",
+     {"gradient", &YieldResult::gradient, "SI: 1 / factor unit",
       "Slope of the yield by the error's sigma (likelihood ratio; of uniform, triangular and measured errors by a "
       "linear map of the limited responses, where the machines give one); NaN for errors of a correlated block that "
       "are not all normal, and where the machines do not tell it"},
-     {"gradient_ci_low", &YieldResult::gradient_ci_low, kByFactor, "SI: 1 / factor unit",
+     {"gradient_ci_low", &YieldResult::gradient_ci_low, "SI: 1 / factor unit",
       "Lower end of its interval (central limit theorem)"},
-     {"gradient_ci_high", &YieldResult::gradient_ci_high, kByFactor, "SI: 1 / factor unit",
+     {"gradient_ci_high", &YieldResult::gradient_ci_high, "SI: 1 / factor unit",
       "Upper end of its interval (central limit theorem)"},
-     {"change", &YieldResult::change, kByFactor, "1",
+     {"change", &YieldResult::change, "1",
       "What the yield changes by if the error's sigma grows by a tenth and all else stays: the finite step, not a "
       "tenth "
       "of the slope, except for correlated errors; NaN as the gradient",
       Presence::where_computed},
-     {"change_ci_low", &YieldResult::change_ci_low, kByFactor, "1", "Lower end of its interval (central limit theorem)",
+     {"change_ci_low", &YieldResult::change_ci_low, "1", "Lower end of its interval (central limit theorem)",
       Presence::where_computed},
-     {"change_ci_high", &YieldResult::change_ci_high, kByFactor, "1",
-      "Upper end of its interval (central limit theorem)", Presence::where_computed},
-     {"mean_square_share", &YieldResult::mean_square_share, kByResponseFactor, "1",
+     {"change_ci_high", &YieldResult::change_ci_high, "1", "Upper end of its interval (central limit theorem)",
+      Presence::where_computed},
+     {"mean_square_share", &YieldResult::mean_square_share, "1",
       "Share of the mean square of the limited response, of a norm that of its vector, over all poses that the error "
       "adds to first order; NaN for a response without a limit, for correlated errors, and where there are too few "
       "machines for a fit",
       Presence::where_computed},
-     {"mean_square_share_ci_low", &YieldResult::mean_square_share_ci_low, kByResponseFactor, "1",
+     {"mean_square_share_ci_low", &YieldResult::mean_square_share_ci_low, "1",
       "Lower end of its interval (least squares)", Presence::where_computed},
-     {"mean_square_share_ci_high", &YieldResult::mean_square_share_ci_high, kByResponseFactor, "1",
+     {"mean_square_share_ci_high", &YieldResult::mean_square_share_ci_high, "1",
       "Upper end of its interval (least squares)", Presence::where_computed},
-     {"linear_share", &YieldResult::linear_share, kByResponse, "1",
+     {"linear_share", &YieldResult::linear_share, "1",
       "The part of that mean square that is linear in the errors: the rest belongs to no error alone",
       Presence::where_computed}}};
 
@@ -128,14 +115,14 @@ const Group<PartsYield> kPartsYield{
     "or good, and where errors that are correlated were not all measured on the same parts",
     {},
     {},
-    {{"ci_low", &PartsYield::ci_low, {}, "1", "Lower end of the interval at the conf_level of /yield"},
-     {"ci_high", &PartsYield::ci_high, {}, "1", "Upper end of the interval at the conf_level of /yield"}}};
+    {{"ci_low", &PartsYield::ci_low, "1", "Lower end of the interval at the conf_level of /yield"},
+     {"ci_high", &PartsYield::ci_high, "1", "Upper end of the interval at the conf_level of /yield"}}};
 
 /// S1, its interval.
 Fields<MainEffects> index_fields(const std::string& what) {
-  return {{"S1", &MainEffects::s1, kByResponseFactor, "1", "First-order index " + what},
-          {"S1_ci_low", &MainEffects::s1_ci_low, kByResponseFactor, "1", "Lower end of its interval"},
-          {"S1_ci_high", &MainEffects::s1_ci_high, kByResponseFactor, "1", "Upper end of its interval"}};
+  return {{"S1", &MainEffects::s1, "1", "First-order index " + what},
+          {"S1_ci_low", &MainEffects::s1_ci_low, "1", "Lower end of its interval"},
+          {"S1_ci_high", &MainEffects::s1_ci_high, "1", "Upper end of its interval"}};
 }
 
 const Fields<MainEffects> kIndices =
@@ -147,9 +134,9 @@ Group<MainEffects> curves_group(const std::string& path, const std::string& what
           "Main effects: " + what + ", while an error is in each bin of equal probability and all others vary",
           {},
           {},
-          {{"mean", &MainEffects::mean, kByResponseFactorBin, kResponseUnit, "Mean over the machines in the bin"},
-           {"ci_low", &MainEffects::ci_low, kByResponseFactorBin, kResponseUnit, "Lower end of Student's interval"},
-           {"ci_high", &MainEffects::ci_high, kByResponseFactorBin, kResponseUnit, "Upper end of Student's interval"}}};
+          {{"mean", &MainEffects::mean, kResponseUnit, "Mean over the machines in the bin"},
+           {"ci_low", &MainEffects::ci_low, kResponseUnit, "Lower end of Student's interval"},
+           {"ci_high", &MainEffects::ci_high, kResponseUnit, "Upper end of Student's interval"}}};
 }
 
 const Group<MainEffects> kCurves = curves_group(
@@ -158,8 +145,7 @@ const Group<MainEffects> kCurves = curves_group(
 const Group<MainEffects> kCurvesOfLargest =
     curves_group("/machines/largest/main_effect", "the largest magnitude over all poses of each response");
 
-const Fields<EffectResult> kBins{
-    {"error", &EffectResult::bin_error, kByFactorBin, kFactorUnit, "Mean of the error in its bin"}};
+const Fields<EffectResult> kBins{{"error", &EffectResult::bin_error, kFactorUnit, "Mean of the error in its bin"}};
 
 /// S1 and its interval, in a group.
 void write_indices(ResultBuilder& result, const std::string& group, const Fields<MainEffects>& fields,
@@ -177,8 +163,11 @@ CsvTable by_response(const StoredResult& result, const std::string& name, const 
                  result.responses.size(),
                  {},
                  {"unit", [&](std::size_t r) { return result.responses[r].unit; }}};
-  const auto add = [&](const std::string& heading, const auto& list, std::size_t first = 0, std::size_t stride = 1) {
-    table.columns.push_back(list_column(heading, list, first, stride));
+  const auto add = [&](const std::string& heading, const auto& numbers) {
+    table.columns.push_back(list_column(heading, numbers.all()));
+  };
+  const auto add_quantile = [&](const std::string& heading, const MachineValues::Quantiles& quantiles, std::size_t q) {
+    table.columns.push_back({heading, [&quantiles, q](std::size_t r) { return quantiles(r, q); }});
   };
   add("mean", values.mean);
   add("mean_ci_low", values.mean_ci_low);
@@ -189,28 +178,29 @@ CsvTable by_response(const StoredResult& result, const std::string& name, const 
   add("count", values.count);
   for (std::size_t q = 0; q < levels.size(); ++q) {
     const std::string heading = "q_" + shortest(levels[q]);
-    add(heading, values.quantiles, q, levels.size());
-    add(heading + "_ci_low", values.quantiles_ci_low, q, levels.size());
-    add(heading + "_ci_high", values.quantiles_ci_high, q, levels.size());
+    add_quantile(heading, values.quantiles, q);
+    add_quantile(heading + "_ci_low", values.quantiles_ci_low, q);
+    add_quantile(heading + "_ci_high", values.quantiles_ci_high, q);
   }
   if (!values.quantile_error.empty()) add("quantile_error", values.quantile_error);
   return table;
 }
 
+/// Appends what each error does to a response, with its interval: "share_RESPONSE", "share_ci_low_RESPONSE" and so on.
+void append_error_columns(CsvTable& table, const std::string& name, const std::string& response,
+                          std::span<const double> value, std::span<const double> low, std::span<const double> high) {
+  table.columns.push_back(list_column(name + "_" + response, value));
+  table.columns.push_back(list_column(name + "_ci_low_" + response, low));
+  table.columns.push_back(list_column(name + "_ci_high_" + response, high));
+}
+
 /// Each error's share of the mean square of each limited response.
 CsvTable share_table(const StoredResult& result, const YieldResult& found) {
-  CsvTable table{"mean_square_share",
-                 {"factor", [&](std::size_t p) { return result.factors[p].name; }},
-                 result.factors.size(),
-                 {},
-                 {}};
+  CsvTable table = lines_of_factors(result, "mean_square_share");
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
-    if (std::isnan(found.by_response[r])) continue;  // without a limit
-    const std::size_t first = r * result.factors.size();
-    const std::string& response = result.responses[r].name;
-    table.columns.push_back(list_column("share_" + response, found.mean_square_share, first));
-    table.columns.push_back(list_column("share_ci_low_" + response, found.mean_square_share_ci_low, first));
-    table.columns.push_back(list_column("share_ci_high_" + response, found.mean_square_share_ci_high, first));
+    if (std::isnan(found.by_response(r))) continue;  // without a limit
+    append_error_columns(table, "share", result.responses[r].name, found.mean_square_share.row(r),
+                         found.mean_square_share_ci_low.row(r), found.mean_square_share_ci_high.row(r));
   }
   return table;
 }
@@ -227,65 +217,70 @@ void append_yield_tables(CsvTables& tables, const StoredResult& result, const Yi
     }
   }
   tables.push_back(std::move(all));
-  CsvTable each{"yield_by_response",
-                {"response", [&](std::size_t r) { return result.responses[r].name; }},
-                result.responses.size(),
-                {list_column("yield", found.by_response), list_column("yield_ci_low", found.by_response_ci_low),
-                 list_column("yield_ci_high", found.by_response_ci_high)},
-                {}};
+  CsvTable each{
+      "yield_by_response",
+      {"response", [&](std::size_t r) { return result.responses[r].name; }},
+      result.responses.size(),
+      {list_column("yield", found.by_response.all()), list_column("yield_ci_low", found.by_response_ci_low.all()),
+       list_column("yield_ci_high", found.by_response_ci_high.all())},
+      {}};
   tables.push_back(std::move(each));
   if (found.has_shares()) tables.push_back(share_table(result, found));
-  CsvTable gradient{"yield_gradient",
-                    {"factor", [&](std::size_t p) { return result.factors[p].name; }},
-                    result.factors.size(),
-                    {list_column("gradient", found.gradient), list_column("gradient_ci_low", found.gradient_ci_low),
-                     list_column("gradient_ci_high", found.gradient_ci_high)},
-                    {"unit", [&](std::size_t p) { return "per " + result.factors[p].unit; }}};
+  CsvTable gradient{
+      "yield_gradient",
+      {"factor", [&](std::size_t p) { return result.factors[p].name; }},
+      result.factors.size(),
+      {list_column("gradient", found.gradient.all()), list_column("gradient_ci_low", found.gradient_ci_low.all()),
+       list_column("gradient_ci_high", found.gradient_ci_high.all())},
+      {"unit", [&](std::size_t p) { return "per " + result.factors[p].unit; }}};
   if (found.has_change()) {
     for (const auto& [name, list] : {std::pair{"change", &found.change},
                                      {"change_ci_low", &found.change_ci_low},
                                      {"change_ci_high", &found.change_ci_high}}) {
-      gradient.columns.push_back(list_column(name, *list));
+      gradient.columns.push_back(list_column(name, list->all()));
     }
   }
   tables.push_back(std::move(gradient));
   CsvTable poses = lines_of_poses(result, "rejects");
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
-    poses.columns.push_back(
-        list_column(with_unit(result.responses[r].name, "1"), found.worst_pose_share, r * result.poses.size()));
+    poses.columns.push_back(list_column(with_unit(result.responses[r].name, "1"), found.worst_pose_share.row(r)));
   }
   tables.push_back(std::move(poses));
 }
 
 /// S1 of each error on each response, as SALib names them.
 CsvTable index_table(const StoredResult& result, const std::string& name, const MainEffects& effects) {
-  CsvTable table{
-      name, {"factor", [&](std::size_t p) { return result.factors[p].name; }}, result.factors.size(), {}, {}};
+  CsvTable table = lines_of_factors(result, name);
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
-    const std::size_t first = r * result.factors.size();
-    const std::string& response = result.responses[r].name;
-    table.columns.push_back(list_column("S1_" + response, effects.s1, first));
-    table.columns.push_back(list_column("S1_ci_low_" + response, effects.s1_ci_low, first));
-    table.columns.push_back(list_column("S1_ci_high_" + response, effects.s1_ci_high, first));
+    append_error_columns(table, "S1", result.responses[r].name, effects.s1.row(r), effects.s1_ci_low.row(r),
+                         effects.s1_ci_high.row(r));
   }
   return table;
 }
 
 /// The curves of one response: a line for each error and bin.
 CsvTable curve_table(const StoredResult& result, const EffectResult& found, std::size_t r) {
-  const std::size_t lines = result.factors.size() * kEffectBins;
   const NamedUnit& response = result.responses[r];
   return {"main_effect_" + response.name,
           {"factor", [&](std::size_t line) { return result.factors[line / kEffectBins].name; }},
-          lines,
-          {list_column("error", found.bin_error),
-           list_column(with_unit("mean", response.unit), found.effects.mean, r * lines),
-           list_column(with_unit("ci_low", response.unit), found.effects.ci_low, r * lines),
-           list_column(with_unit("ci_high", response.unit), found.effects.ci_high, r * lines)},
+          found.bin_error.size(),
+          {list_column("error", found.bin_error.all()),
+           list_column(with_unit("mean", response.unit), found.effects.mean.row(r)),
+           list_column(with_unit("ci_low", response.unit), found.effects.ci_low.row(r)),
+           list_column(with_unit("ci_high", response.unit), found.effects.ci_high.row(r))},
           {"unit", [&](std::size_t line) { return result.factors[line / kEffectBins].unit; }}};
 }
 
 }  // namespace
+
+std::size_t effect_bytes(const AxisLengths& lengths) {
+  return bytes_of(kIndices, lengths) + bytes_of(kCurves.fields, lengths) + bytes_of(kBins, lengths);
+}
+
+std::size_t machine_bytes(const AxisLengths& lengths) {
+  return bytes_of(kLargest.fields, lengths) + bytes_of(kRms.fields, lengths) + bytes_of(kYield.fields, lengths) +
+         bytes_of(kIndicesOfLargest, lengths) + bytes_of(kCurvesOfLargest.fields, lengths);
+}
 
 void write_effects(ResultBuilder& result, const EffectResult& found) {
   std::vector<double> middles;

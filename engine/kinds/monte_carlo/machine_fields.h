@@ -8,6 +8,12 @@
 /// How files keep what the bins of errors say, and what a Monte Carlo study of machines found in addition.
 namespace poesy {
 
+/// Bytes of the numbers of effects, and of what studies of machines find in addition, along axes of these lengths.
+/// @{
+std::size_t effect_bytes(const AxisLengths& lengths);
+std::size_t machine_bytes(const AxisLengths& lengths);
+/// @}
+
 /// Adds first-order indices and the group /monte_carlo/main_effect. Precondition: /monte_carlo is there.
 void write_effects(ResultBuilder& result, const EffectResult& found);
 /// The opposite. Throws h5::Error.

@@ -33,12 +33,10 @@ std::string quantile_name(double level) {
 
 Table values_table(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
-  const std::size_t levels = found.levels.size();
-  const auto number = [&result](std::string name, std::string heading, const std::vector<double>& values,
-                                int dispensable = 0, std::size_t stride = 1, std::size_t offset = 0) {
+  const auto number = [&result](std::string name, std::string heading, const auto& values, int dispensable = 0) {
     return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
-                        [&result, &values, stride, offset](std::size_t r) {
-                          return value_cell(values[r * stride + offset], result.responses[r], kDigits);
+                        [&result, &values](std::size_t r) {
+                          return value_cell(values.row(r).back(), result.responses[r], kDigits);  // highest quantile
                         }};
   };
   const MachineValues& largest = machines_of(result).largest;
@@ -48,14 +46,13 @@ Table values_table(const StoredResult& result) {
   Table table{.name = "machines",
               .caption = fmt::format("Of each of {} the largest magnitude and the root mean square (rms) over {}",
                                      counted(found.solves.front().total(), "machine", "machines"),
-                                     found.poses == 1 ? "its pose" : fmt::format("all {} poses", found.poses)),
+                                     found.poses() == 1 ? "its pose" : fmt::format("all {} poses", found.poses())),
               .columns = {}};
   fill(table, result.headline,
        {name_column(result.responses, "response"), unit_column(result.responses),
-        number("largest_mean", "largest: mean", largest.mean),
-        number("largest_" + name, level, largest.quantiles, 0, levels, levels - 1),
+        number("largest_mean", "largest: mean", largest.mean), number("largest_" + name, level, largest.quantiles),
         number("largest_max", "max", largest.max), number("rms_mean", "rms: mean", rms.mean, 1),
-        number("rms_" + name, level, rms.quantiles, 1, levels, levels - 1), number("rms_max", "max", rms.max, 1)});
+        number("rms_" + name, level, rms.quantiles, 1), number("rms_max", "max", rms.max, 1)});
   table.notes.push_back("Machines that are not solved at every pose are left out");
   if (!largest.quantile_error.empty()) {  // version 0.2 has none
     table.notes.push_back(fmt::format("largest: {}; rms: {}",
@@ -69,15 +66,14 @@ Table values_table(const StoredResult& result) {
 Table rejects_table(const StoredResult& result) {
   constexpr std::size_t kMost = 5;
   const YieldResult& yield = *machines_of(result).yield;
-  const std::size_t poses = result.poses.size();
   Table table{.name = "reject_poses",
               .caption = "Where machines are rejected: the poses at which most of them are not within a limit",
               .columns = {text_column("response", "response"), number_column("pose", "pose"),
                           percent_column("rejected", "rejected"), text_column("place", "where", 1)}};
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
-    const auto share = [&](std::size_t m) { return yield.worst_pose_share[r * poses + m]; };
-    const std::vector<std::size_t> order = largest_first(positions(poses), share);
-    for (const std::size_t m : std::span(order).first(std::min(kMost, poses))) {
+    const auto share = [&](std::size_t m) { return yield.worst_pose_share(r, m); };
+    const std::vector<std::size_t> order = largest_first(positions(result.poses.size()), share);
+    for (const std::size_t m : std::span(order).first(std::min(kMost, order.size()))) {
       if (!(share(m) > 0.0)) break;
       table.rows.push_back({text_cell(result.responses[r].name), count_cell(m), percent_cell(share(m)),
                             text_cell(coordinates_text(result, m))});
@@ -96,7 +92,7 @@ bool has_correlated(const StoredResult& result) {
 bool has_too_few_samples(const StoredResult& result, std::size_t r) {
   const MonteCarloResult& found = monte_carlo_of(result);
   return std::ranges::any_of(found.effects.s1_poses,
-                             [&](std::uint64_t m) { return found.count[r * found.poses + m] < kFewestIndexSamples; });
+                             [&](std::uint64_t m) { return found.count(r, m) < kFewestIndexSamples; });
 }
 
 /// Why no error has an index on a response.
@@ -111,30 +107,18 @@ std::string no_index_text(const StoredResult& result, std::size_t r) {
 }
 
 std::string indices_note(const StoredResult& result, std::size_t r) {
-  const std::size_t factors = result.factors.size();
   double sum = 0.0;
   std::size_t without = 0;
-  for (const double s1 : std::span(effects_of(result).effects.s1).subspan(r * factors, factors)) {
+  for (const double s1 : effects_of(result).effects.s1.row(r)) {
     sum += std::isnan(s1) ? 0.0 : s1;
     without += std::isnan(s1) ? 1 : 0;
   }
-  if (without == factors) return no_index_text(result, r);
+  if (without == result.factors.size()) return no_index_text(result, r);
   return fmt::format(
       "{}: the indices sum to {}; what is missing from 1 is what errors do together. A response without sign makes "
       "such "
       "interaction of its own, so an error with a small index is not one without effect",
       result.responses[r].name, number_text(sum, 3));
-}
-
-/// Values [R x P] of the responses in this order.
-std::vector<double> in_order(std::span<const double> values, std::span<const std::size_t> responses) {
-  const std::size_t factors = responses.empty() ? 0 : values.size() / responses.size();
-  std::vector<double> list;
-  for (const std::size_t r : responses) {
-    const auto row = values.subspan(r * factors, factors);
-    list.insert(list.end(), row.begin(), row.end());
-  }
-  return list;
 }
 
 /// A panel for each response of the headline, with the errors of the largest indices first.
@@ -152,12 +136,11 @@ Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
     if (!varies(result, r)) continue;
     const NamedUnit& response = result.responses[r];
     Panel panel{"mean of " + response.name, unit_text(response), {}};
-    const auto s1 = [&](std::size_t p) { return effects.s1[r * factors + p]; };
+    const auto s1 = [&](std::size_t p) { return effects.s1(r, p); };
     const std::vector<std::size_t> order = largest_first(positions(factors), s1);
     for (const std::size_t p : std::span(order).first(std::min(kMost, factors))) {
-      const auto add = [&](std::string_view what, const std::vector<double>& values) {
-        return pool.add(fmt::format("{}/{}/{}", what, r, p),
-                        std::span(values).subspan((r * factors + p) * kEffectBins, kEffectBins), display(response).si);
+      const auto add = [&](std::string_view what, const MainEffects::Curves& values) {
+        return pool.add(fmt::format("{}/{}/{}", what, r, p), values.row(r, p), display(response).si);
       };
       panel.series.push_back({result.factors[p].name, add("effect_mean", effects.mean),
                               add("effect_low", effects.ci_low), add("effect_high", effects.ci_high)});
@@ -200,7 +183,7 @@ void add_effects_section(const StoredResult& result, std::span<const Table> tabl
   Section& section = page.add_section("first-order", "What each error does alone");
   ArrayPool& pool = page.figures.pool;
   const auto quantity = [&](const std::string& label, const std::string& name, const MainEffects& effects) {
-    const auto add = [&](const std::string& end, const std::vector<double>& values) {
+    const auto add = [&](const std::string& end, const MainEffects::Indices& values) {
       return pool.add(name + end, in_order(values, order));
     };
     return BarQuantity{label, std::vector(order.size(), std::vector<std::string>{""}), add("", effects.s1),
@@ -229,19 +212,18 @@ void add_effects_section(const StoredResult& result, std::span<const Table> tabl
 
 Table effect_table(const StoredResult& result) {
   const MainEffects& effects = effects_of(result).effects;
-  const std::size_t factors = result.factors.size();
   const std::size_t ranking = response_named(result, default_ranking(result));
   std::vector<FilledColumn> columns{name_column(result.factors, "error")};
-  const auto add = [&](const std::string& name, const std::string& heading, const std::vector<double>& values,
-                       std::size_t r, int dispensable) {
-    columns.push_back({number_column(name, heading, "", dispensable),
-                       [&values, at = r * factors](std::size_t p) { return number_cell(values[at + p], 3); }});
+  const auto add = [&](const std::string& name, const std::string& heading, std::span<const double> values,
+                       int dispensable) {
+    columns.push_back(
+        {number_column(name, heading, "", dispensable), [values](std::size_t p) { return number_cell(values[p], 3); }});
   };
   for (const std::size_t r : headline_order(result)) {
     const std::string& response = result.responses[r].name;
-    add("S1_" + response, response, effects.s1, r, r == ranking ? 0 : 1);
-    add("S1_ci_low_" + response, "low", effects.s1_ci_low, r, r == ranking ? 0 : 2);
-    add("S1_ci_high_" + response, "high", effects.s1_ci_high, r, r == ranking ? 0 : 2);
+    add("S1_" + response, response, effects.s1.row(r), r == ranking ? 0 : 1);
+    add("S1_ci_low_" + response, "low", effects.s1_ci_low.row(r), r == ranking ? 0 : 2);
+    add("S1_ci_high_" + response, "high", effects.s1_ci_high.row(r), r == ranking ? 0 : 2);
   }
   Table table{.name = "first_order",
               .caption = "First-order indices S1: the part of a response's variance that an error makes alone",
@@ -259,7 +241,7 @@ Table effect_table(const StoredResult& result) {
         "- for an error that is correlated with others: nothing is its effect alone; indices of groups and Shapley "
         "effects divide the variance of such errors");
   }
-  fill(table, largest_first(positions(factors), [&](std::size_t p) { return effects.s1[ranking * factors + p]; }),
+  fill(table, largest_first(positions(result.factors.size()), [&](std::size_t p) { return effects.s1(ranking, p); }),
        columns);
   return table;
 }
@@ -267,12 +249,11 @@ Table effect_table(const StoredResult& result) {
 std::vector<Field> reject_fields(const StoredResult& result, const PoseFigures& figures) {
   std::vector<Field> fields;
   if (!machines_of(result).yield) return fields;
-  const std::vector<double>& shares = machines_of(result).yield->worst_pose_share;
-  const std::size_t poses = result.poses.size();
+  const auto& shares = machines_of(result).yield->worst_pose_share;
   for (const std::size_t r : figures.responses()) {
     if (verdict_on(result, r) == nullptr) continue;
     fields.push_back({result.responses[r].name + ", machines rejected", "%",
-                      figures.add(fmt::format("rejected/{}", r), std::span(shares).subspan(r * poses, poses), 0.01)});
+                      figures.add(fmt::format("rejected/{}", r), shares.row(r), 0.01)});
   }
   return fields;
 }

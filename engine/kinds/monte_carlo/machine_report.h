@@ -12,7 +12,7 @@
 /// Precondition of what follows but for effects: monte_carlo_of(result).machines is there.
 namespace poesy {
 
-/// How far quantiles of some responses, [R], may be off: "quantiles to 0.12 % of std", of the worst response.
+/// How far quantiles of some responses may be off: "quantiles to 0.12 % of std", of the worst response.
 std::string quantile_error_text(std::span<const std::size_t> responses, std::span<const double> errors,
                                 std::span<const double> deviations);
 

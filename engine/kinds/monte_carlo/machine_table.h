@@ -37,7 +37,7 @@ class MachineTable {
   bool is_whole(std::size_t n) const { return unit(n).count == unit_machines(plan_->poses().size()); }
 
   bool has_limits() const { return has_limits_; }             ///< Whether machines may be rejected.
-  std::span<const double> limits() const { return limits_; }  ///< [R] on magnitudes, infinite for none.
+  std::span<const double> limits() const { return limits_; }  ///< On magnitudes of responses, infinite for none.
   std::size_t errors() const { return scores_.each.size(); }  ///< P.
   /// How the yield depends on the size of each error. Not known of an error that is correlated with others unless they
   /// are all normal.
@@ -45,7 +45,7 @@ class MachineTable {
 
   /// The vectors behind the limited responses, which are fitted to first order.
   const LimitedVectors& vectors() const { return vectors_; }
-  /// [R] what an error may seem to do because solves round (Model::rounding).
+  /// For each response what an error may seem to do because solves round (Model::rounding).
   std::span<const double> rounding() const { return rounding_; }
   /// Whether the vectors are fitted to this unit's machines, too: they are the first ones, as many as tell what is
   /// linear.

@@ -1,31 +1,11 @@
 #include "engine/kinds/monte_carlo/machine_unit.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "engine/base/contract.h"
 
 namespace poesy {
-namespace {
-
-template <class Sum>
-void merge_each(std::vector<Sum>& sums, const std::vector<Sum>& later) {
-  POESY_EXPECTS(sums.size() == later.size());
-  for (std::size_t k = 0; k < sums.size(); ++k) sums[k].merge(later[k]);
-}
-
-template <class Value>
-void write_each(const std::vector<Value>& values, ByteWriter& to) {
-  for (const Value& value : values) value.write(to);
-}
-
-template <class Value>
-void read_each(ByteReader& from, std::size_t count, std::vector<Value>& values) {
-  values.clear();
-  for (std::size_t k = 0; k < count; ++k) values.push_back(Value::read(from));
-}
-
-}  // namespace
-
 std::vector<std::uint8_t> read_rejected(ByteReader& from, const MachineTable& table, std::size_t first,
                                         std::size_t end) {
   std::vector<std::uint8_t> rejected;
@@ -38,7 +18,7 @@ std::vector<std::uint8_t> read_rejected(ByteReader& from, const MachineTable& ta
 }
 
 MachineSums::MachineSums(const MachineTable& table)
-    : at_pose(table.plan().poses().size() * table.responses()),
+    : at_pose({table.plan().poses().size(), table.responses()}),
       mean(table.responses()),
       largest(table.responses()),
       rms(table.responses()) {
@@ -60,7 +40,8 @@ void MachineSums::merge(const MachineSums& later) {
 }
 
 void MachineSums::write(ByteWriter& to) const {
-  for (const auto* moments : {&at_pose, &mean, &largest, &rms}) write_each(*moments, to);
+  write_each(at_pose, to);
+  for (const auto* moments : {&mean, &largest, &rms}) write_each(*moments, to);
   if (scores) scores->write(to);
   to.number(fit ? 1 : 0);
   if (fit) fit->write(to);
@@ -70,8 +51,8 @@ void MachineSums::write(ByteWriter& to) const {
 
 MachineSums MachineSums::read(ByteReader& from, const MachineTable& table) {
   MachineSums sums(table);
-  for (auto* moments : {&sums.at_pose, &sums.mean, &sums.largest, &sums.rms})
-    read_each(from, moments->size(), *moments);
+  read_each(from, sums.at_pose);
+  for (auto* moments : {&sums.mean, &sums.largest, &sums.rms}) read_each(from, *moments);
   if (sums.scores) sums.scores = ScoreSums::read(from, table.scores());
   if (from.number_up_to(table.vectors().rows() > 0 ? 1 : 0) == 1) {
     sums.fit = LinearFitSums::read(from, table.errors(), table.vectors().rows() * table.plan().poses().size());
@@ -84,10 +65,19 @@ MachineSums MachineSums::read(ByteReader& from, const MachineTable& table) {
   return sums;
 }
 
+MachineUnit::MachineUnit(const MachineTable& table)
+    : at_pose({table.plan().poses().size(), table.responses()}),
+      largest(table.responses()),
+      rms(table.responses()),
+      solves(table.plan().poses().size()),
+      failed(table.plan().poses().size()) {}
+
 void MachineUnit::write(ByteWriter& to) const {
   sums->write(to);
   counts.write(to);
-  for (const auto* values : {&at_pose, &largest, &rms}) write_each(*values, to);
+  write_each(at_pose, to);
+  write_each(largest, to);
+  write_each(rms, to);
   to.block(std::as_bytes(std::span(rejected)));
   write_each(solves, to);
   write_each(failed, to);
@@ -95,14 +85,15 @@ void MachineUnit::write(ByteWriter& to) const {
 
 MachineUnit MachineUnit::read(ByteReader& from, const MachineTable& table, std::size_t first, std::size_t machines) {
   const std::size_t poses = table.plan().poses().size();
-  MachineUnit unit;
+  MachineUnit unit(table);
   unit.sums = MachineSums::read(from, table);
   unit.counts = MachineCounts::read(from, table.responses(), poses);
-  read_each(from, poses * table.responses(), unit.at_pose);
-  read_each(from, table.responses(), unit.largest);
-  read_each(from, table.responses(), unit.rms);
+  read_each(from, unit.at_pose);
+  read_each(from, unit.largest);
+  read_each(from, unit.rms);
   unit.rejected = read_rejected(from, table, first, first + machines);
-  read_each(from, poses, unit.solves);
+  read_each(from, unit.solves);
+  unit.failed.clear();
   for (const SolveCounts& solves : unit.solves) {
     if (solves.total() != machines) throw BytesError("has a pose with other machines");
     unit.failed.push_back(FailedSamples::read(from, solves.not_converged(), first, first + machines));
@@ -130,12 +121,10 @@ std::span<const double> MachineUnitEvaluator::only(std::span<const double> value
 
 void MachineUnitEvaluator::solve_pose(const WorkUnit& unit, std::size_t pose, const EffectBins& bins,
                                       MachineBlock& block, MachineUnit& found) {
-  const std::span details = std::span(details_).first(is_fitted_ ? table_->vectors().details() * unit.count : 0);
-  const UnitOutcomes outcomes = UnitSolver::solve(PoseIndex(pose), plan_->factors(), unit.count, 0.0, details);
-  if (is_fitted_) {
-    const std::size_t rows = table_->vectors().rows() * unit.count;
-    table_->vectors().fill(PoseIndex(pose), outcomes, details, std::span(rows_).subspan(pose * rows, rows));
-  }
+  const UnitOutcomes outcomes = UnitSolver::solve(PoseIndex(pose), plan_->factors(), unit.count, 0.0, details_.all());
+  if (is_fitted_)
+    table_->vectors().fill(PoseIndex(pose), outcomes, details_,
+                           {rows_.row(pose), {rows_.length<axis::VectorRow>(), unit.count}});
   const std::span ok = std::span(counts_).first(unit.count);
   for (std::size_t b = 0; b < unit.count; ++b) {
     ok[b] = counts(outcomes.status[b], plan_->not_converged()) ? 1 : 0;
@@ -143,12 +132,13 @@ void MachineUnitEvaluator::solve_pose(const WorkUnit& unit, std::size_t pose, co
     found.failed[pose].add(SampleIndex(unit.first.value + b), outcomes.status[b]);
   }
   block.add_pose(outcomes.responses, ok);
+  const ArrayView<const double, axis::Response, axis::Sample> responses(outcomes.responses, sum_.lengths());
   for (std::size_t r = 0; r < responses_; ++r) {
-    const std::span all = outcomes.responses.subspan(r * unit.count, unit.count);
-    for (std::size_t b = 0; b < unit.count; ++b) sum_[r * unit.count + b] += all[b];
+    const std::span all = responses.row(r);
+    std::ranges::transform(sum_.row(r), all, sum_.row(r).begin(), std::plus());
     const std::span<const double> kept = only(all, ok);
-    found.sums->at_pose[pose * responses_ + r] = Moments::of(kept);
-    found.at_pose.emplace_back(kept);
+    found.sums->at_pose(pose, r) = Moments::of(kept);
+    found.at_pose(pose, r) = NumberBlock(kept);
   }
   const auto place = std::ranges::find(table_->effect_poses(), PoseIndex(pose));
   if (place == table_->effect_poses().end()) return;
@@ -157,26 +147,24 @@ void MachineUnitEvaluator::solve_pose(const WorkUnit& unit, std::size_t pose, co
 }
 
 void MachineUnitEvaluator::add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found) {
-  const std::size_t machines = block.machines();
   for (double& sum : sum_) sum /= static_cast<double>(block.poses());
-  const std::vector<double> largest = block.largest();
-  const std::vector<double> rms = block.root_mean_square();
-  const auto of_response = [&](const std::vector<double>& values, std::size_t r) {
-    return only(std::span(values).subspan(r * machines, machines), block.solved());
-  };
+  const auto largest = block.largest();
+  const auto rms = block.root_mean_square();
   for (std::size_t r = 0; r < responses_; ++r) {
-    found.sums->mean[r] = Moments::of(of_response(sum_, r));
-    found.largest.emplace_back(of_response(largest, r));
-    found.sums->largest[r] = Moments::of(of_response(largest, r));
-    found.rms.emplace_back(of_response(rms, r));
-    found.sums->rms[r] = Moments::of(of_response(rms, r));
+    found.sums->mean[r] = Moments::of(only(sum_.row(r), block.solved()));
+    const std::span<const double> largest_kept = only(largest.row(r), block.solved());
+    found.largest[r] = NumberBlock(largest_kept);
+    found.sums->largest[r] = Moments::of(largest_kept);
+    const std::span<const double> rms_kept = only(rms.row(r), block.solved());
+    found.rms[r] = NumberBlock(rms_kept);
+    found.sums->rms[r] = Moments::of(rms_kept);
   }
   const std::size_t at_poses = table_->effect_poses().size();
   found.sums->effects[at_poses].add(bins, sum_, block.solved());
   found.sums->effects[at_poses + 1].add(bins, largest, block.solved());
   if (!found.sums->scores) return;
   const std::vector<std::uint8_t> rejected = block.rejected();
-  const std::span errors = std::span(values_).first(table_->errors() * machines);
+  const std::span errors = std::span(values_).first(table_->errors() * block.machines());
   found.sums->scores->add(errors, rejected);
   if (found.sums->parts) found.sums->parts->add(errors, rejected);
   if (is_fitted_) add_fit(block.solved(), found);
@@ -184,32 +172,30 @@ void MachineUnitEvaluator::add_machines(const MachineBlock& block, const EffectB
 }
 
 void MachineUnitEvaluator::add_fit(std::span<const std::uint8_t> solved, MachineUnit& found) const {
-  const std::size_t machines = solved.size();
   const std::size_t errors = table_->errors();
-  std::vector<double> x(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(errors * machines));
+  const std::span<const double> drawn = std::span(values_).first(errors * solved.size());
+  const ArrayView<const double, axis::Factor, axis::Sample> values(drawn, {errors, solved.size()});
+  Array<double, axis::Factor, axis::Sample> x(values.lengths());
   for (std::size_t p = 0; p < errors; ++p) {
     const Distribution& error = plan_->distributions()[p];
-    for (double& one : std::span(x).subspan(p * machines, machines)) {
-      one = (one - error.mean()) / error.standard_deviation();
-    }
+    std::ranges::transform(values.row(p), x.row(p).begin(),
+                           [&](double one) { return (one - error.mean()) / error.standard_deviation(); });
   }
   found.sums->fit.emplace(errors, table_->vectors().rows() * plan_->poses().size());
-  found.sums->fit->add(x, rows_, solved);
+  found.sums->fit->add(x.all(), rows_.all(), solved);
 }
 
 MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {
   const WorkUnit unit = table_->unit(n);
   const std::size_t poses = plan_->poses().size();
-  MachineUnit found;
+  MachineUnit found(*table_);
   found.sums.emplace(*table_);
-  found.at_pose.reserve(poses * responses_);
-  found.solves.resize(poses);
-  found.failed.resize(poses);
   const EffectBins bins = draw_in_bins(unit);
-  sum_.assign(responses_ * unit.count, 0.0);
+  make_room({responses_, unit.count}, sum_);
   is_fitted_ = table_->is_fitted(n);
-  details_.resize(is_fitted_ ? table_->vectors().details() * unit.count : 0);
-  rows_.resize(is_fitted_ ? poses * table_->vectors().rows() * unit.count : 0);
+  const LimitedVectors& vectors = table_->vectors();
+  make_room({is_fitted_ ? vectors.details() : 0, unit.count}, details_);
+  make_room({poses, is_fitted_ ? vectors.rows() : 0, unit.count}, rows_);
   MachineBlock block(table_->limits(), unit.count);
   for (std::size_t m = 0; m < poses; ++m) solve_pose(unit, m, bins, block, found);
   found.counts = block.counts();

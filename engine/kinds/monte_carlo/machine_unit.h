@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/array.h"
 #include "engine/base/bytes.h"
 #include "engine/kinds/monte_carlo/machine_table.h"
 #include "engine/kinds/monte_carlo/part_sums.h"
@@ -16,18 +17,19 @@
 #include "engine/stats/main_effects.h"
 #include "engine/stats/moments.h"
 #include "engine/stats/number_block.h"
+#include "engine/stats/sums.h"
 #include "engine/stats/yield_gradient.h"
 
-/// Units of machines and what they come to: R responses, M poses.
+/// Units of machines and what they come to.
 namespace poesy {
 
 /// Sums over machines whose order shows in their last bits: a Sum of MergeTree.
 struct MachineSums {
-  std::vector<Moments> at_pose;         ///< [M x R] of the samples that count
-  std::vector<Moments> mean;            ///< [R] of the machines' means over the poses
-  std::vector<Moments> largest;         ///< [R] of the machines' largest magnitudes
-  std::vector<Moments> rms;             ///< [R] of the machines' root mean squares
-  std::optional<ScoreSums> scores;      ///< where there are limits
+  Array<Moments, axis::Pose, axis::Response> at_pose;  ///< of the samples that count
+  std::vector<Moments> mean;                           ///< of each response, of the machines' means over the poses
+  std::vector<Moments> largest;                        ///< likewise, of the machines' largest magnitudes
+  std::vector<Moments> rms;                            ///< likewise, of the machines' root mean squares
+  std::optional<ScoreSums> scores;                     ///< where there are limits
   std::optional<LinearFitSums> fit;     ///< of the limited vectors at all poses, over the machines that are fitted
   std::optional<PartSums> parts;        ///< where errors were measured on parts as well
   std::vector<MainEffectSums> effects;  ///< as MachineTable::effects() counts them
@@ -49,14 +51,17 @@ std::vector<std::uint8_t> read_rejected(ByteReader& from, const MachineTable& ta
 
 /// What one unit of machines contributes.
 struct MachineUnit {
-  std::optional<MachineSums> sums;     ///< empty in a default-constructed one alone
-  MachineCounts counts;                ///< which of them are good
-  std::vector<NumberBlock> at_pose;    ///< [M x R] the samples that count, ready for a sketch
-  std::vector<NumberBlock> largest;    ///< [R] of the machines that are solved at each pose
-  std::vector<NumberBlock> rms;        ///< [R] likewise
+  MachineUnit() = default;
+  explicit MachineUnit(const MachineTable& table);  ///< Of no machines.
+
+  std::optional<MachineSums> sums;                         ///< empty in a default-constructed one alone
+  MachineCounts counts;                                    ///< which of them are good
+  Array<NumberBlock, axis::Pose, axis::Response> at_pose;  ///< the samples that count, ready for a sketch
+  std::vector<NumberBlock> largest;    ///< of each response, of the machines that are solved at each pose
+  std::vector<NumberBlock> rms;        ///< likewise
   std::vector<std::uint8_t> rejected;  ///< 1 or 0 for each of the machines that MachineTable::kept() counts
-  std::vector<SolveCounts> solves;     ///< [M] how they ended
-  std::vector<FailedSamples> failed;   ///< [M] the first of them
+  std::vector<SolveCounts> solves;     ///< how they ended at each pose
+  std::vector<FailedSamples> failed;   ///< the first of them at each pose
   SolveCounts total;                   ///< of all poses
 
   /// For a message or a state.
@@ -81,16 +86,17 @@ class MachineUnitEvaluator : private UnitSolver {
   void add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found);
   /// Fits the limited vectors to these machines, whose rows at all poses are in rows_.
   void add_fit(std::span<const std::uint8_t> solved, MachineUnit& found) const;
-  /// Those of [B] values whose machine or sample counts.
+  /// Those of the values whose machine or sample counts.
   std::span<const double> only(std::span<const double> values, std::span<const std::uint8_t> counts);
 
   const MachineTable* table_;
-  std::vector<std::uint8_t> counts_;  ///< [B] at the pose
-  std::vector<double> sum_;           ///< [R x B] over the poses
-  std::vector<double> kept_;          ///< of one response
-  bool is_fitted_ = false;            ///< the unit at work
-  std::vector<double> details_;       ///< [D x B] at the pose, where a limited vector is made of them
-  std::vector<double> rows_;          ///< [M x rows x B] of the limited vectors, where the unit is fitted
+  std::vector<std::uint8_t> counts_;                            ///< of the machines at the pose
+  Array<double, axis::Response, axis::Sample> sum_;             ///< over the poses
+  std::vector<double> kept_;                                    ///< of one response
+  bool is_fitted_ = false;                                      ///< the unit at work
+  Array<double, axis::DetailComponent, axis::Sample> details_;  ///< at the pose, where a limited vector is made of them
+  /// Of the limited vectors, where the unit is fitted.
+  Array<double, axis::Pose, axis::VectorRow, axis::Sample> rows_;
 };
 
 }  // namespace poesy

@@ -33,9 +33,8 @@ MemoryOutlook machine_memory(const Study& study, const Model& model, const Plan&
   const std::size_t sums = cells * sizeof(Moments) + table.effects() * (responses + 3) / 4 * errors * 4 * 512 + fit;
   const std::size_t nodes = MergeTree<MachineSums>::most_nodes(table.units()) * sums;
   const std::size_t piece = sums + cells * MachineTable::unit_machines(plan.poses().size()) * sizeof(double);
-  const std::size_t numbers = (cells + 6 * responses * errors * (1 + kEffectBins)) * sizeof(double);
   return {cells * kSketch + nodes + kInFlight * piece + table.kept(), cells * kPackedSketch + nodes + table.kept(),
-          numbers + 3 * fit, numbers};
+          3 * fit, 0};
 }
 
 MemoryOutlook sum_of(const MemoryOutlook& a, const MemoryOutlook& b) {
@@ -43,24 +42,31 @@ MemoryOutlook sum_of(const MemoryOutlook& a, const MemoryOutlook& b) {
 }
 
 MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const Plan& plan) {
-  constexpr std::size_t kNumbers = 9;  // mean, its interval, std, min, max, count, rms, error of the quantiles
   const std::size_t responses = study.model().responses.size();
   // Quantiles with both ends of their intervals, and the magnitude that a share of the draws is judged by.
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   const std::size_t of_sketch = 3 * asked.quantiles.size() + (asked.judge == Judge::share ? 1 : 0);
-  const std::size_t numbers = responses * (kNumbers + of_sketch) * sizeof(double);
   const MemoryOutlook of_pose{responses * sizeof(Moments) + sizeof(FailedSamples) + sizeof(SolveCounts) + sizeof(Bytes),
                               responses * (kStoredMoments + (3 + of_sketch) * sizeof(double)) + kStoredSolves,
-                              numbers + sizeof(SolveCounts), numbers + kSolverColumns};
+                              sizeof(SolveCounts), kSolverColumns};
   MemoryOutlook memory = times(plan.poses().size(), of_pose);
   const std::size_t errors = plan.factors().size();
   const std::size_t effects = effect_poses(plan.poses().size(), responses, errors).size() * (responses + 3) / 4 * 4 *
                               errors * kEffectBins * 2 * sizeof(double);
   memory.accumulators += effects;
   memory.state += effects;
-  memory.result += 3 * responses * errors * (1 + kEffectBins) * sizeof(double);
-  memory.file += 3 * responses * errors * (1 + kEffectBins) * sizeof(double);
-  if (plan.draws() == Draws::per_machine) return sum_of(memory, machine_memory(study, model, plan));
+  const bool machines = plan.draws() == Draws::per_machine;
+  const std::size_t numbers = monte_carlo_bytes({{"response", responses},
+                                                 {"factor", errors},
+                                                 {"pose", plan.poses().size()},
+                                                 {"quantile", asked.quantiles.size()},
+                                                 {"bin", kHistogramBins},
+                                                 {"edge", kHistogramBins + 1},
+                                                 {"effect_bin", kEffectBins}},
+                                                machines);
+  memory.result += numbers;
+  memory.file += numbers;
+  if (machines) return sum_of(memory, machine_memory(study, model, plan));
   if (!plan.adaptive()) return memory;
   // Packed sketches of finished poses, for the next round.
   constexpr std::size_t kPackedSketch = 6000;
@@ -160,7 +166,7 @@ class MachineTrial {
     begin();
     sketches_.clear();
     sketches_.resize(responses_);
-    for (std::size_t r = 0; r < responses_; ++r) sketches_[r].add(unit_.at_pose[r]);
+    for (std::size_t r = 0; r < responses_; ++r) sketches_[r].add(unit_.at_pose(0, r));
   }
   double merge() {
     if (collect_->next() == table_.units() || !table_.is_whole(collect_->next())) begin();
@@ -171,7 +177,7 @@ class MachineTrial {
   double read_pose() {
     MonteCarloColumns columns(1, responses_, analysis_);
     for (std::size_t r = 0; r < responses_; ++r) {
-      columns.set_moments(r, 0, unit_.sums->at_pose[r]);
+      columns.set_moments(r, 0, unit_.sums->at_pose(0, r));
       columns.set_quantiles(r, 0, sketches_[r], unit_.solves.front().total());
     }
     return 1.0 / static_cast<double>(poses_);
@@ -202,7 +208,7 @@ class MachineTrial {
   MachineTable unit_table_;  ///< as many machines as a unit of the study has
   MachineUnitEvaluator evaluate_;
   MachineUnit unit_;
-  std::vector<QuantileSketch> sketches_;  ///< [R] at one pose
+  std::vector<QuantileSketch> sketches_;  ///< of each response at one pose
   std::optional<MachineCollector> collect_;
 };
 

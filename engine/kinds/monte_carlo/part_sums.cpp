@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/array.h"
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "engine/random/distribution.h"
@@ -29,6 +30,8 @@ PartSums::PartSums(const PartGroups& groups) : groups_(&groups), squares_(groups
 
 void PartSums::add(std::span<const double> errors, std::span<const std::uint8_t> rejected) {
   const std::size_t count = rejected.size();
+  if (count == 0) return;
+  const ArrayView<const double, axis::Factor, axis::Sample> of_machines(errors, {errors.size() / count, count});
   machines_ += count;
   for (std::size_t b = 0; b < count; ++b) {
     if (rejected[b] == 0) continue;
@@ -37,7 +40,7 @@ void PartSums::add(std::span<const double> errors, std::span<const std::uint8_t>
       const PartGroup& group = groups_->each[g];
       std::vector<double> influence(group.size(), 0.0);
       std::vector<double> x;
-      for (const std::size_t p : group.errors) x.push_back(errors[p * count + b]);
+      for (const std::size_t p : group.errors) x.push_back(of_machines(p, b));
       add_influence(group, x, influence);
       for (std::size_t i = 0; i < influence.size(); ++i) {
         sums_[g][i] += influence[i];

@@ -17,7 +17,7 @@ class PartSums {
   /// Of no machines. Refers to the groups.
   explicit PartSums(const PartGroups& groups);
 
-  /// Adds B machines. errors: [P x B], SI. rejected: [B] 1 or 0.
+  /// Adds machines. errors: along errors and machines, row-major, SI. rejected: of each machine 1 or 0.
   void add(std::span<const double> errors, std::span<const std::uint8_t> rejected);
   /// Adds what the other one added. Merging in the same order gives the same bits.
   void merge(const PartSums& later);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,12 +36,11 @@ std::string quantile_heading(double level) { return "q_" + shortest(level); }
 /// The lowest quantiles go first, then the smallest value; mean, spread and what is high stay.
 std::vector<FilledColumn> overall_columns(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
-  const auto number = [&result](std::string name, std::string heading, const std::vector<double>& values,
-                                int dispensable = 0, std::size_t stride = 1, std::size_t offset = 0) {
-    return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
-                        [&result, &values, stride, offset](std::size_t r) {
-                          return value_cell(values[r * stride + offset], result.responses[r], kDigits);
-                        }};
+  const auto number = [&result](std::string name, std::string heading, const auto& values, int dispensable = 0,
+                                std::size_t q = 0) {
+    return FilledColumn{
+        number_column(std::move(name), std::move(heading), "", dispensable),
+        [&result, &values, q](std::size_t r) { return value_cell(values.row(r)[q], result.responses[r], kDigits); }};
   };
   std::vector<FilledColumn> columns{
       name_column(result.responses, "response"),  unit_column(result.responses),
@@ -49,7 +50,7 @@ std::vector<FilledColumn> overall_columns(const StoredResult& result) {
   for (std::size_t q = 0; q < levels; ++q) {
     const int dispensable = q + 1 == levels ? 0 : static_cast<int>(levels - q);
     columns.push_back(number(quantile_name(found.levels[q]), quantile_heading(found.levels[q]), found.overall_quantiles,
-                             dispensable, levels, q));
+                             dispensable, q));
   }
   columns.push_back(number("max", "max", found.overall_max));
   return columns;
@@ -70,7 +71,7 @@ Table overall_table(const StoredResult& result) {
   Table table{.name = "overall",
               .caption = fmt::format("{} together: responses over the samples of {}{}",
                                      counted(result.factors.size(), "error varies", "errors vary"),
-                                     found.poses == 1 ? "" : "all ", counted(found.poses, "pose", "poses")),
+                                     found.poses() == 1 ? "" : "all ", counted(found.poses(), "pose", "poses")),
               .columns = {},
               .notes = {fmt::format(
                   "{} at each pose; std: standard deviation; rms: root mean square; {}: {} of the samples lie "
@@ -82,32 +83,29 @@ Table overall_table(const StoredResult& result) {
 }
 
 /// The pose where a number is largest; NaN counts as least.
-std::size_t worst_pose(const std::vector<double>& at_poses) {
+std::size_t worst_pose(std::span<const double> at_poses) {
   const auto worst =
       std::ranges::max_element(at_poses, [](double a, double b) { return std::isnan(a) ? !std::isnan(b) : a < b; });
   return static_cast<std::size_t>(worst - at_poses.begin());
 }
 
 /// The largest of one number of each pose, and its pose.
-void add_worst_pose(std::vector<Cell>& row, const std::vector<double>& at_poses, const Unit& unit) {
+void add_worst_pose(std::vector<Cell>& row, std::span<const double> at_poses, const Unit& unit) {
   const std::size_t worst = worst_pose(at_poses);
   row.push_back(number_cell(at_poses[worst] / unit.si, kDigits));
   row.push_back(std::isnan(at_poses[worst]) ? text_cell("") : count_cell(worst));
 }
 
-/// Of [R x M x Q] numbers of quantiles, those of one response and quantile, [M].
-std::vector<double> at_poses(const MonteCarloResult& found, const std::vector<double>& quantiles, std::size_t r,
-                             std::size_t q) {
+/// One quantile of a response at all poses.
+std::vector<double> at_poses(const MonteCarloResult::QuantilesAtPoses& quantiles, std::size_t r, std::size_t q) {
   std::vector<double> values;
-  for (std::size_t m = 0; m < found.poses; ++m) {
-    values.push_back(quantiles[(r * found.poses + m) * found.levels.size() + q]);
-  }
+  for (std::size_t m = 0; m < quantiles.length<axis::Pose>(); ++m) values.push_back(quantiles(r, m, q));
   return values;
 }
 
 /// The poses where the highest quantile of a response is the largest.
 struct WorstPoses {
-  std::vector<double> quantile;  ///< [M]
+  std::vector<double> quantile;  ///< at all poses
   std::size_t worst;             ///< the pose of the largest
   double low;                    ///< its interval
   double high;
@@ -116,14 +114,12 @@ struct WorstPoses {
 
 WorstPoses worst_poses(const MonteCarloResult& found, std::size_t r) {
   const std::size_t highest = found.levels.size() - 1;
-  WorstPoses poses{at_poses(found, found.quantiles, r, highest), 0, kNaN, kNaN, {}};
+  WorstPoses poses{at_poses(found.quantiles, r, highest), 0, kNaN, kNaN, {}};
   poses.worst = worst_pose(poses.quantile);
-  const std::vector<double> low = at_poses(found, found.quantiles_ci_low, r, highest);
-  const std::vector<double> high = at_poses(found, found.quantiles_ci_high, r, highest);
-  poses.low = low[poses.worst];
-  poses.high = high[poses.worst];
-  for (std::size_t m = 0; m < found.poses; ++m) {
-    if (m != poses.worst && high[m] > poses.low) poses.alike.push_back(m);
+  poses.low = found.quantiles_ci_low(r, poses.worst, highest);
+  poses.high = found.quantiles_ci_high(r, poses.worst, highest);
+  for (std::size_t m = 0; m < found.poses(); ++m) {
+    if (m != poses.worst && found.quantiles_ci_high(r, m, highest) > poses.low) poses.alike.push_back(m);
   }
   std::ranges::stable_sort(poses.alike, std::ranges::greater(), [&](std::size_t m) { return poses.quantile[m]; });
   return poses;
@@ -132,14 +128,10 @@ WorstPoses worst_poses(const MonteCarloResult& found, std::size_t r) {
 std::vector<Cell> poses_row(const StoredResult& result, std::size_t r) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const Unit& unit = display(result.responses[r]);
-  std::vector<double> mean;
-  double sum = 0.0;
-  for (std::size_t m = 0; m < found.poses; ++m) {
-    mean.push_back(found.mean[r * found.poses + m]);
-    sum += mean.back();
-  }
+  const std::span mean = found.mean.row(r);
+  const double sum = std::accumulate(mean.begin(), mean.end(), 0.0);
   std::vector<Cell> row{text_cell(result.responses[r].name), text_cell(unit.name),
-                        number_cell(sum / static_cast<double>(found.poses) / unit.si, kDigits)};
+                        number_cell(sum / static_cast<double>(mean.size()) / unit.si, kDigits)};
   add_worst_pose(row, mean, unit);
   const WorstPoses poses = worst_poses(found, r);
   add_worst_pose(row, poses.quantile, unit);
@@ -192,19 +184,18 @@ Table poses_table(const StoredResult& result) {
 /// The histogram of a response and its cumulative curve, as outlines over the edges of the bins. Without the first and
 /// the last bin, which reach out to the extremes.
 struct Outline {
-  std::vector<double> x;        ///< [2 B] each bin's lower and upper end, in the unit shown
-  std::vector<double> density;  ///< [2 B] share of the samples per unit of x
-  std::vector<double> below;    ///< [2 B] share of the samples below x
+  std::vector<double> x;        ///< each bin's lower and upper end, in the unit shown
+  std::vector<double> density;  ///< share of the samples per unit of x, there
+  std::vector<double> below;    ///< share of the samples below x
 };
 
 Outline outline(const MonteCarloResult& found, std::size_t r, double unit) {
-  const std::size_t bins = found.histogram_counts.size() / found.responses;
-  const std::span counts = std::span(found.histogram_counts).subspan(r * bins, bins);
-  const std::span edges = std::span(found.histogram_edges).subspan(r * (bins + 1), bins + 1);
-  const double all = static_cast<double>(found.overall_count[r]);
+  const std::span counts = found.histogram_counts.row(r);
+  const std::span edges = found.histogram_edges.row(r);
+  const double all = static_cast<double>(found.overall_count(r));
   Outline drawn;
   double sum = static_cast<double>(counts.front()) / all;
-  for (std::size_t b = 1; b + 1 < bins; ++b) {
+  for (std::size_t b = 1; b + 1 < counts.size(); ++b) {
     // Bins that are left over are at the largest value.
     if (!(edges[b] < edges[b + 1]) || !(edges[b + 1] < edges.back())) continue;
     const double share = static_cast<double>(counts[b]) / all;
@@ -244,7 +235,7 @@ Lines distribution(const StoredResult& result, std::size_t r, ArrayPool& pool) {
                       unit.empty() ? "%" : "%/" + unit,
                       {{"samples of all poses", density, zero, density}}},
                      {"share of the samples below", "%", {{"samples of all poses", add("below", drawn.below, 0.01)}}}},
-          .marks = limit_marks(result, r, monte_carlo_of(result).overall_min[r] < 0.0)};
+          .marks = limit_marks(result, r, monte_carlo_of(result).overall_min(r) < 0.0)};
 }
 
 void add_how_large(const StoredResult& result, std::span<const Table> tables, Page& page) {
@@ -254,7 +245,7 @@ void add_how_large(const StoredResult& result, std::span<const Table> tables, Pa
   section.table(tables, "overall");
   if (found.machines) section.table(tables, "machines");
   for (const std::size_t r : headline_order(result)) {
-    if (found.overall_count[r] == 0) continue;
+    if (found.overall_count(r) == 0) continue;
     add_figure(page, section, fmt::format("distribution-{}", r), distribution(result, r, page.figures.pool),
                distribution_caption(result, r));
   }
@@ -281,18 +272,17 @@ void add_where(const StoredResult& result, Page& page) {
       return figures.add(fmt::format("{}/{}", what, r), at_poses, response);
     };
     const auto quantile = [&](std::size_t q) {
-      return add(fmt::format("quantile/{}", q), at_poses(found, found.quantiles, r, q));
+      return add(fmt::format("quantile/{}", q), at_poses(found.quantiles, r, q));
     };
-    const ArrayName mean = add("mean", std::span(found.mean).subspan(r * found.poses, found.poses));
+    const ArrayName mean = add("mean", found.mean.row(r));
     const ArrayName highest = quantile(levels.size() - 1);
     bands.panels.push_back({response.name,
                             unit,
                             {{"mean", mean, quantile(0), highest}},
-                            limit_marks(result, r, found.overall_min[r] < 0.0)});
+                            limit_marks(result, r, found.overall_min(r) < 0.0)});
     fields.push_back({response.name + ", mean", unit, mean});
     fields.push_back({response.name + ", " + quantile_label(levels.back()), unit, highest});
-    fields.push_back({response.name + ", standard deviation", unit,
-                      add("std", std::span(found.std).subspan(r * found.poses, found.poses))});
+    fields.push_back({response.name + ", standard deviation", unit, add("std", found.std.row(r))});
   }
   if (found.machines) std::ranges::move(reject_fields(result, figures), std::back_inserter(fields));
   fields.push_back(figures.not_converged(tally(result).shares_by_pose()));
@@ -332,7 +322,7 @@ void add_how_sure(const StoredResult& result, std::span<const Table> tables, Pag
 }
 
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  if (monte_carlo_of(result).poses == 0 || monte_carlo_of(result).levels.empty()) return;
+  if (monte_carlo_of(result).poses() == 0 || monte_carlo_of(result).levels.empty()) return;
   add_limits(tables, page);
   if (const auto& machines = monte_carlo_of(result).machines; machines && machines->yield) {
     add_drivers_section(result, tables, page);
@@ -350,11 +340,10 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
   constexpr double kLittle = 0.1;
   const MonteCarloResult& found = monte_carlo_of(result);
   const MainEffects& effects = found.effects.effects;
-  const std::size_t factors = result.factors.size();
-  const auto share = [&](std::size_t p) { return effects.s1[r * factors + p]; };
+  const auto share = [&](std::size_t p) { return effects.s1(r, p); };
   std::vector<std::size_t> order;  // those that certainly have an effect alone
-  for (std::size_t p = 0; p < factors; ++p) {
-    if (effects.s1_ci_low[r * factors + p] > 0.0) order.push_back(p);
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
+    if (effects.s1_ci_low(r, p) > 0.0) order.push_back(p);
   }
   std::ranges::stable_sort(order, std::ranges::greater(), share);
   order.resize(std::min(kMost, order.size()));
@@ -401,7 +390,7 @@ std::string advice(const StoredResult& result, std::size_t r) {
 /// What one may expect, and where the worst pose is, of a response.
 Answer answer(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
-  if (found.poses == 0 || found.levels.empty()) return {};
+  if (found.poses() == 0 || found.levels.empty()) return {};
   const std::size_t r = response_named(result, default_ranking(result));
   const NamedUnit& response = result.responses[r];
   const auto text = [&](double value) { return response_text(response, value); };
@@ -409,10 +398,9 @@ Answer answer(const StoredResult& result) {
   const std::string level = percent_text(found.levels[highest]);
   const WorstPoses worst = worst_poses(found, r);
   Answer lines{
-      {"Answer",
-       fmt::format("{} is {} on average; {} of the samples of all poses are below {}, the largest is {}.",
-                   response.name, text(found.overall_mean[r]), level,
-                   text(found.overall_quantiles[r * found.levels.size() + highest]), text(found.overall_max[r]))}};
+      {"Answer", fmt::format("{} is {} on average; {} of the samples of all poses are below {}, the largest is {}.",
+                             response.name, text(found.overall_mean(r)), level,
+                             text(found.overall_quantiles(r, highest)), text(found.overall_max(r)))}};
   if (std::string limits = limits_text(result); !limits.empty()) lines.emplace_back("Limits", std::move(limits));
   const std::string place = place_text(result, worst.worst);
   lines.emplace_back("Where", fmt::format("The worst is {}: {} of the samples there are below {}.", place, level,
@@ -435,39 +423,35 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
 }
 
 /// The numbers of a Monte Carlo result over the samples of all poses, by name; in the order of the levels.
-std::vector<std::pair<std::string, std::vector<double>>> overall(const StoredResult& result) {
+std::vector<std::pair<std::string, std::function<double(std::size_t r)>>> overall(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
-  std::vector<std::pair<std::string, std::vector<double>>> list{
-      {"mean", found.overall_mean}, {"standard deviation", found.overall_std}, {"smallest", found.overall_min}};
+  const auto of = [](const MonteCarloResult::Overall& numbers) { return [&](std::size_t r) { return numbers(r); }; };
+  std::vector<std::pair<std::string, std::function<double(std::size_t)>>> list{
+      {"mean", of(found.overall_mean)},
+      {"standard deviation", of(found.overall_std)},
+      {"smallest", of(found.overall_min)}};
   for (std::size_t q = 0; q < found.levels.size(); ++q) {
-    std::vector<double> values;
-    for (std::size_t r = 0; r < found.responses; ++r) {
-      values.push_back(found.overall_quantiles[r * found.levels.size() + q]);
-    }
-    list.emplace_back(shortest(100.0 * found.levels[q]) + " % quantile", std::move(values));
+    list.emplace_back(shortest(100.0 * found.levels[q]) + " % quantile",
+                      [&found, q](std::size_t r) { return found.overall_quantiles(r, q); });
   }
-  list.emplace_back("largest", found.overall_max);
+  list.emplace_back("largest", of(found.overall_max));
   return list;
 }
 
 /// Shares of the mean square of a limited response, else first-order indices; and root mean squares at the poses.
 ErrorShares error_shares(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
-  if (found.poses == 0) return {};
-  if (auto shares = response_shares(result)) {
-    const std::string& response = result.responses[shares->response].name;
-    return {.what = "share of the mean square of " + response,
-            .values = std::move(shares->each),
-            .pose_what = "the root mean square of " + response,
-            .at_poses = of_row(found.rms, shares->response, found.poses)};
-  }
-  const std::size_t r = response_named(result, default_ranking(result));
-  if (!varies(result, r)) return {};
+  if (found.poses() == 0) return {};
+  const auto shares = response_shares(result);
+  const std::size_t r = shares ? shares->response : response_named(result, default_ranking(result));
+  if (!shares && !varies(result, r)) return {};
   const std::string& response = result.responses[r].name;
-  return {.what = "first-order index S1 of " + response,
-          .values = of_row(found.effects.effects.s1, r, result.factors.size()),
+  const std::span values = shares ? shares->each : found.effects.effects.s1.row(r);
+  const std::span at_poses = found.rms.row(r);
+  return {.what = (shares ? "share of the mean square of " : "first-order index S1 of ") + response,
+          .values = {values.begin(), values.end()},
           .pose_what = "the root mean square of " + response,
-          .at_poses = of_row(found.rms, r, found.poses)};
+          .at_poses = {at_poses.begin(), at_poses.end()}};
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
@@ -476,7 +460,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
   for (const auto& number : numbers) names.push_back(number.first);
   Comparable all = comparable_by_response(result, "number", std::move(names));
   add_quantity(all, result, "over the samples of all poses", "overall",
-               [&](std::size_t r, std::size_t n) { return numbers[n].second[r]; });
+               [&](std::size_t r, std::size_t n) { return numbers[n].second(r); });
   return all;
 }
 
@@ -485,7 +469,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
 std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions&) {
   const MonteCarloResult& found = monte_carlo_of(result);
   std::vector<Table> tables;
-  if (found.poses > 0 && !found.levels.empty()) {
+  if (found.poses() > 0 && !found.levels.empty()) {
     tables = driver_tables(result);
     tables.push_back(overall_table(result));
     tables.push_back(poses_table(result));

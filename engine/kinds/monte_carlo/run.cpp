@@ -18,14 +18,11 @@
 namespace poesy {
 namespace {
 
-/// Of each response over the samples of all poses, [R].
+/// Of each response over the samples of all poses.
 std::vector<Estimate> overall_means(const MonteCarloResult& found) {
   std::vector<Estimate> means;
-  for (std::size_t first = 0; first < found.mean.size(); first += found.poses) {
-    means.push_back(stratified_mean(
-        {std::span(found.count).subspan(first, found.poses), std::span(found.mean).subspan(first, found.poses),
-         std::span(found.std).subspan(first, found.poses)},
-        found.conf_level));
+  for (std::size_t r = 0; r < found.responses(); ++r) {
+    means.push_back(stratified_mean({found.count.row(r), found.mean.row(r), found.std.row(r)}, found.conf_level));
   }
   return means;
 }

@@ -1,6 +1,7 @@
 #include "engine/kinds/monte_carlo/yield.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -15,48 +16,59 @@ namespace {
 
 double share(std::uint64_t part, std::uint64_t all) { return static_cast<double>(part) / static_cast<double>(all); }
 
-void append(const Estimate& estimate, std::vector<double>& value, std::vector<double>& low, std::vector<double>& high) {
-  value.push_back(estimate.value);
-  low.push_back(estimate.interval.low);
-  high.push_back(estimate.interval.high);
+/// Sets such lists of errors.
+void set_all(const std::vector<Estimate>& estimates, Array<double, axis::Factor>& value,
+             Array<double, axis::Factor>& low, Array<double, axis::Factor>& high) {
+  make_room({estimates.size()}, value, low, high);
+  for (std::size_t p = 0; p < estimates.size(); ++p) set_estimate(estimates[p], value, low, high, p);
 }
 
-void append_quantiles(std::span<const Bucket> buckets, std::span<const double> levels, double conf_level,
-                      MachineValues& values) {
+/// With room for so many responses.
+MachineValues values_of(std::size_t responses, std::size_t levels) {
+  MachineValues values;
+  make_room({responses}, values.mean, values.mean_ci_low, values.mean_ci_high, values.std, values.min, values.max,
+            values.count, values.quantile_error);
+  make_room({responses, levels}, values.quantiles, values.quantiles_ci_low, values.quantiles_ci_high);
+  make_room({responses, kHistogramBins + 1}, values.histogram_edges);
+  make_room({responses, kHistogramBins}, values.histogram_counts);
+  return values;
+}
+
+void set_quantiles(std::span<const Bucket> buckets, std::span<const double> levels, double conf_level,
+                   std::size_t response, MachineValues& values) {
   std::vector<RankInterval> ranks;
   const std::uint64_t count = buckets.empty() ? 0 : buckets.back().up_to;
   for (const double level : levels) ranks.push_back(quantile_ranks(count, level, conf_level));
   const QuantilesOf found = quantiles_of(buckets, levels, ranks);
-  for (std::size_t q = 0; q < levels.size(); ++q) {
-    append({found.value[q], found.interval[q]}, values.quantiles, values.quantiles_ci_low, values.quantiles_ci_high);
-  }
-  values.quantile_error.push_back(found.error);
+  found.copy(values.quantiles.row(response), values.quantiles_ci_low.row(response),
+             values.quantiles_ci_high.row(response));
+  values.quantile_error(response) = found.error;
 }
 
-/// At this position of [R x P].
-void leave_out(std::size_t at, MainEffects& effects) {
-  for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) (*list)[at] = kNaN;
-  for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) {
-    std::ranges::fill(std::span(*list).subspan(at * kEffectBins, kEffectBins), kNaN);
-  }
+/// What an error does alone, or all of them do on a response.
+template <class... Positions>
+void leave_out(MainEffects& effects, Positions... at) {
+  for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) std::ranges::fill(list->row(at...), kNaN);
+  for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) std::ranges::fill(list->row(at...), kNaN);
 }
 
 }  // namespace
 
 MachineValues machine_values(std::span<const Moments> moments, std::span<const QuantileSketch> sketches,
                              const Analysis& analysis) {
-  MachineValues values;
+  const std::vector<double>& levels = asked_of<MonteCarloOptions>(analysis).quantiles;
+  MachineValues values = values_of(moments.size(), levels.size());
   for (std::size_t r = 0; r < moments.size(); ++r) {
     const bool none = moments[r].count() == 0;
-    append({none ? kNaN : moments[r].mean(), mean_interval(moments[r], analysis.conf_level)}, values.mean,
-           values.mean_ci_low, values.mean_ci_high);
-    values.std.push_back(moments[r].standard_deviation());
-    values.min.push_back(sketches[r].min());
-    values.max.push_back(sketches[r].max());
-    values.count.push_back(moments[r].count());
+    set_estimate({none ? kNaN : moments[r].mean(), mean_interval(moments[r], analysis.conf_level)}, values.mean,
+                 values.mean_ci_low, values.mean_ci_high, r);
+    values.std(r) = moments[r].standard_deviation();
+    values.min(r) = sketches[r].min();
+    values.max(r) = sketches[r].max();
+    values.count(r) = moments[r].count();
     const std::vector<Bucket> buckets = sketches[r].buckets();
-    append_quantiles(buckets, asked_of<MonteCarloOptions>(analysis).quantiles, analysis.conf_level, values);
-    append_histogram(buckets, values.histogram_edges, values.histogram_counts);
+    set_quantiles(buckets, levels, analysis.conf_level, r, values);
+    fill_histogram(buckets, values.histogram_edges.row(r), values.histogram_counts.row(r));
   }
   return values;
 }
@@ -67,8 +79,6 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
   const auto good = [&](std::uint64_t rejects) { return proportion(n - rejects, n, conf_level); };
   const Estimate strict = good(counts.all.strict);
   const Estimate lenient = good(counts.all.lenient);
-  const std::size_t responses = counts.by_limit.size();
-  const std::size_t poses = counts.at_pose.size() / std::max<std::size_t>(1, responses);
   YieldResult found{.conf_level = conf_level,
                     .value = strict.value,
                     .ci_low = strict.interval.low,
@@ -80,20 +90,19 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
                     .unsolved_pass_ci_low = lenient.interval.low,
                     .unsolved_pass_ci_high = lenient.interval.high,
                     .unsolved_pass_rejects = counts.all.lenient};
-  for (std::size_t r = 0; r < responses; ++r) {
-    const bool limited = std::ranges::find(limits, r, &ResponseLimit::response) != limits.end();
-    append(limited ? good(counts.by_limit[r].strict) : Estimate{kNaN, {kNaN, kNaN}}, found.by_response,
-           found.by_response_ci_low, found.by_response_ci_high);
-    for (std::size_t m = 0; m < poses; ++m) {
-      found.worst_pose_share.push_back(limited ? share(counts.at_pose[r * poses + m].strict, n) : kNaN);
-    }
+  for (auto* list : {&found.by_response, &found.by_response_ci_low, &found.by_response_ci_high}) {
+    *list = Array<double, axis::Response>(counts.by_limit.lengths(), kNaN);
   }
-  for (const Estimate& one : scores.gradient(conf_level)) {
-    append(one, found.gradient, found.gradient_ci_low, found.gradient_ci_high);
+  found.worst_pose_share = decltype(found.worst_pose_share)(counts.at_pose.lengths(), kNaN);
+  for (const ResponseLimit& limit : limits) {
+    const std::size_t r = limit.response;
+    set_estimate(good(counts.by_limit(r).strict), found.by_response, found.by_response_ci_low,
+                 found.by_response_ci_high, r);
+    std::ranges::transform(counts.at_pose.row(r), found.worst_pose_share.row(r).begin(),
+                           [&](const Rejects& rejects) { return share(rejects.strict, n); });
   }
-  for (const Estimate& one : scores.change(conf_level)) {
-    append(one, found.change, found.change_ci_low, found.change_ci_high);
-  }
+  set_all(scores.gradient(conf_level), found.gradient, found.gradient_ci_low, found.gradient_ci_high);
+  set_all(scores.change(conf_level), found.change, found.change_ci_low, found.change_ci_high);
   return found;
 }
 
@@ -106,13 +115,17 @@ PartsYield parts_yield(const PartSums& parts, const YieldResult& found) {
 MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence dependence, const MainEffectSums& curve,
                          std::span<const BinSpread> errors, std::size_t responses, double conf_level) {
   MainEffects effects;
+  make_room({responses, errors.size()}, effects.s1, effects.s1_ci_low, effects.s1_ci_high);
+  make_room({responses, errors.size(), kEffectBins}, effects.mean, effects.ci_low, effects.ci_high);
   for (std::size_t r = 0; r < responses; ++r) {
     for (std::size_t p = 0; p < errors.size(); ++p) {
       std::vector<BinnedVariance> variances;
       for (const MainEffectSums& sums : at_poses) variances.push_back(sums.variance(r, p, errors[p]));
-      append(first_order_index(variances, dependence, conf_level), effects.s1, effects.s1_ci_low, effects.s1_ci_high);
-      for (const Estimate& bin : curve.curve(r, p, conf_level)) {
-        append(bin, effects.mean, effects.ci_low, effects.ci_high);
+      set_estimate(first_order_index(variances, dependence, conf_level), effects.s1, effects.s1_ci_low,
+                   effects.s1_ci_high, r, p);
+      const std::array<Estimate, kEffectBins> bins = curve.curve(r, p, conf_level);
+      for (std::size_t b = 0; b < bins.size(); ++b) {
+        set_estimate(bins[b], effects.mean, effects.ci_low, effects.ci_high, r, p, b);
       }
     }
   }
@@ -120,29 +133,24 @@ MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence de
 }
 
 void leave_out_correlated(const Plan& plan, MainEffects& effects) {
-  const std::size_t errors = plan.factors().size();
-  for (std::size_t at = 0; at < effects.s1.size(); ++at) {
-    if (plan.is_correlated(at % errors)) leave_out(at, effects);
+  for (std::size_t p = 0; p < plan.factors().size(); ++p) {
+    if (!plan.is_correlated(p)) continue;
+    for (std::size_t r = 0; r < effects.s1.length<axis::Response>(); ++r) leave_out(effects, r, p);
   }
 }
 
 void leave_out_constant(std::span<const double> rounding, MonteCarloResult& found) {
-  const auto leave_out_all = [&](std::size_t r, MainEffects& effects) {
-    const std::size_t errors = effects.s1.size() / found.responses;
-    for (std::size_t p = 0; p < errors; ++p) leave_out(r * errors + p, effects);
-  };
-  for (std::size_t r = 0; r < found.responses; ++r) {
-    const std::span at_poses = std::span(found.std).subspan(r * found.poses, found.poses);
+  make_room({found.responses()}, found.varies);
+  for (std::size_t r = 0; r < found.responses(); ++r) {
+    const std::span at_poses = found.std.row(r);
     std::vector<double> at_some;
     for (const std::uint64_t m : found.effects.s1_poses) at_some.push_back(at_poses[m]);
-    found.varies.push_back(is_constant(at_poses, rounding[r]) ? 0 : 1);
-    if (is_constant(at_some, rounding[r])) leave_out_all(r, found.effects.effects);
+    found.varies(r) = is_constant(at_poses, rounding[r]) ? 0 : 1;
+    if (is_constant(at_some, rounding[r])) leave_out(found.effects.effects, r);
     if (!found.machines) continue;
-    if (is_constant({&found.machines->largest.std[r], 1}, rounding[r])) {
-      leave_out_all(r, found.machines->effects_on_largest);
-    }
+    if (is_constant(found.machines->largest.std.row(r), rounding[r])) leave_out(found.machines->effects_on_largest, r);
   }
-  if (std::ranges::find(found.varies, 0) == found.varies.end()) found.varies.clear();
+  if (std::ranges::find(found.varies, 0) == found.varies.end()) found.varies = {};
 }
 
 std::vector<BinSpread> bin_spreads(const Plan& plan) {
@@ -160,8 +168,9 @@ EffectResult effect_result(std::span<const PoseIndex> poses, std::span<const Bin
   EffectResult found;
   found.conf_level = conf_level;
   for (const PoseIndex pose : poses) found.s1_poses.push_back(pose.value);
-  for (const BinSpread& spread : errors) {
-    found.bin_error.insert(found.bin_error.end(), spread.mean.begin(), spread.mean.end());
+  make_room({errors.size(), kEffectBins}, found.bin_error);
+  for (std::size_t p = 0; p < errors.size(); ++p) {
+    std::ranges::copy(errors[p].mean, found.bin_error.row(p).begin());
   }
   return found;
 }
@@ -194,7 +203,7 @@ LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked
   const std::uint64_t n = counts.machines;
   for (const ResponseLimit& limit : limits) {
     LimitVerdict verdict{.response = limit.response, .limit = limit.most, .value = kNaN, .tried = n};
-    verdict.within = n - counts.by_limit[limit.response].strict;
+    verdict.within = n - counts.by_limit(limit.response).strict;
     const std::uint64_t rank = asked == 0.0 ? n : quantile_rank(asked, n);
     const QuantileSketch& values = largest[limit.response];
     if (asked > 0.0) {

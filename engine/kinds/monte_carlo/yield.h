@@ -16,11 +16,19 @@
 /// From counts and sums over machines to what a result says of them.
 namespace poesy {
 
-/// One number of each machine. moments, sketches: [R] of the machines that are solved at each pose.
+/// Sets an estimate in lists of values and of the ends of their intervals, at these positions.
+template <class Values, class... Positions>
+void set_estimate(const Estimate& estimate, Values& value, Values& low, Values& high, Positions... at) {
+  value(at...) = estimate.value;
+  low(at...) = estimate.interval.low;
+  high(at...) = estimate.interval.high;
+}
+
+/// One number of each machine. moments, sketches: of each response, of the machines that are solved at each pose.
 MachineValues machine_values(std::span<const Moments> moments, std::span<const QuantileSketch> sketches,
                              const Analysis& analysis);
 
-/// counts: of R responses at M poses; limits: those of the study.
+/// limits: those of the study.
 YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::span<const ResponseLimit> limits,
                      double conf_level);
 
@@ -28,7 +36,7 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
 PartsYield parts_yield(const PartSums& parts, const YieldResult& found);
 
 /// First-order indices and curves of all errors: the indices added up over the poses that `at_poses` are of, the curves
-/// of `curve`. errors: [P].
+/// of `curve`. errors: all of them.
 MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence dependence, const MainEffectSums& curve,
                          std::span<const BinSpread> errors, std::size_t responses, double conf_level);
 
@@ -37,11 +45,11 @@ MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence de
 void leave_out_correlated(const Plan& plan, MainEffects& effects);
 
 /// Makes indices and curves of responses NaN that do not vary (stats/indices.h), at the poses over which indices add up
-/// or from machine to machine. Says which do not vary at any pose, where there are such. rounding: [R] as
+/// or from machine to machine. Says which do not vary at any pose, where there are such. rounding: of each response as
 /// joint_rounding (run/response_rounding.h) gives it.
 void leave_out_constant(std::span<const double> rounding, MonteCarloResult& found);
 
-/// How the errors of a study lie in their bins, [P].
+/// How each error of a study lies in its bins.
 std::vector<BinSpread> bin_spreads(const Plan& plan);
 
 /// What is found at these poses, but for the effects.
@@ -52,8 +60,8 @@ EffectResult effect_result(std::span<const PoseIndex> poses, std::span<const Bin
 /// machines at all poses.
 YieldVerdict judge_yield(const YieldResult& found, const SolveCounts& solves, double asked);
 
-/// Judges the limits of a study of machines: all together, and each alone. largest: [R] of the machines that are solved
-/// at each pose. counts: as for yield_of; solves: as for judge_yield.
+/// Judges the limits of a study of machines: all together, and each alone. largest: of each response, of the machines
+/// that are solved at each pose. counts: as for yield_of; solves: as for judge_yield.
 LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked, const YieldResult& found,
                              const SolveCounts& solves, const MachineCounts& counts,
                              std::span<const QuantileSketch> largest);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/nan.h"
+#include "engine/kinds/monte_carlo/yield.h"
 #include "engine/random/stream.h"
 #include "engine/random/weighted_points.h"
 #include "engine/stats/indices.h"
@@ -44,18 +45,22 @@ std::vector<ErrorEffect> effects_on(const MachineTable& table, std::size_t respo
 
 /// A limited vector at one pose, by the errors themselves.
 LinearLimit limit_at(const MachineTable& table, const LinearFit& fit, const LimitedVector& vector, std::size_t pose) {
-  const std::size_t first = pose * table.vectors().rows() + vector.first_row;
-  const auto part = [&](const std::vector<double>& list, std::size_t each) {
-    const auto from = list.begin() + static_cast<std::ptrdiff_t>(first * each);
-    return std::vector(from, from + static_cast<std::ptrdiff_t>(vector.rows * each));
-  };
-  LinearLimit limit = with_fewest_rows({vector.rows, vector.most, part(fit.offset, 1), part(fit.slope, fit.errors)});
+  const std::size_t rows = table.vectors().rows();
+  const ArrayView<const double, axis::Pose, axis::VectorRow, axis::Factor> slopes(
+      fit.slope, {table.plan().poses().size(), rows, fit.errors});
+  const ArrayView<const double, axis::Pose, axis::VectorRow> offsets(fit.offset, {table.plan().poses().size(), rows});
+  LinearLimit limit{vector.rows, vector.most, {}, {}};
+  for (std::size_t k = vector.first_row; k < vector.first_row + vector.rows; ++k) {
+    limit.offset.push_back(offsets(pose, k));
+    limit.slope.insert(limit.slope.end(), slopes.row(pose, k).begin(), slopes.row(pose, k).end());
+  }
+  limit = with_fewest_rows(limit);
+  const ArrayView<double, axis::VectorRow, axis::Factor> slope(limit.slope, {limit.rows, fit.errors});
   for (std::size_t k = 0; k < limit.rows; ++k) {
     for (std::size_t p = 0; p < fit.errors; ++p) {
       const Distribution& error = table.plan().distributions()[p];
-      double& slope = limit.slope[k * fit.errors + p];
-      slope /= error.standard_deviation();
-      limit.offset[k] -= slope * error.mean();
+      slope(k, p) /= error.standard_deviation();
+      limit.offset[k] -= slope(k, p) * error.mean();
     }
   }
   return limit;
@@ -85,33 +90,24 @@ std::vector<std::optional<MappedError>> mapped_errors(const MachineTable& table)
   return errors;
 }
 
-/// The errors of consecutive machines once more, [P x B].
-std::vector<double> errors_of(const Plan& plan, std::size_t first, std::size_t count) {
-  const std::size_t errors = plan.factors().size();
-  std::vector<double> values(errors * count);
-  for (std::size_t p = 0; p < errors; ++p) {
-    fill_uniforms(plan.address(p, PoseIndex(0)), SampleIndex(first), std::span(values).subspan(p * count, count));
+/// The errors of consecutive machines once more.
+Array<double, axis::Factor, axis::Sample> errors_of(const Plan& plan, std::size_t first, std::size_t count) {
+  Array<double, axis::Factor, axis::Sample> values({plan.factors().size(), count});
+  for (std::size_t p = 0; p < plan.factors().size(); ++p) {
+    fill_uniforms(plan.address(p, PoseIndex(0)), SampleIndex(first), values.row(p));
   }
-  plan.transform(values, count);
+  plan.transform(values.all(), count);
   return values;
 }
 
-void set(const Estimate& estimate, std::size_t p, std::vector<double>& value, std::vector<double>& low,
-         std::vector<double>& high) {
-  value[p] = estimate.value;
-  low[p] = estimate.interval.low;
-  high[p] = estimate.interval.high;
-}
-
 void set_shares(const MachineTable& table, const LinearFit& fit, double conf_level, YieldResult& yield) {
-  const std::size_t errors = table.errors();
   for (const LimitedVector& vector : table.vectors().each()) {
     const MeanSquareShares shares = mean_square_shares(fit, rows_of(table, vector), table.plan().poses().size(),
                                                        effects_on(table, vector.response), conf_level);
-    yield.linear_share[vector.response] = shares.linear;
-    for (std::size_t p = 0; p < errors; ++p) {
-      set(shares.each[p], vector.response * errors + p, yield.mean_square_share, yield.mean_square_share_ci_low,
-          yield.mean_square_share_ci_high);
+    yield.linear_share(vector.response) = shares.linear;
+    for (std::size_t p = 0; p < table.errors(); ++p) {
+      set_estimate(shares.each[p], yield.mean_square_share, yield.mean_square_share_ci_low,
+                   yield.mean_square_share_ci_high, vector.response, p);
     }
   }
 }
@@ -136,9 +132,9 @@ void set_gradient(const MachineTable& table, const LinearFit& fit, std::span<con
   if (!judges_well(gradient, rejected)) return;
   for (std::size_t p = 0; p < table.errors(); ++p) {
     if (!std::holds_alternative<PolynomialScore>(table.scores().each[p])) continue;
-    set(gradient.gradient(p, conf_level), p, yield.gradient, yield.gradient_ci_low, yield.gradient_ci_high);
-    set(within(gradient.change(p, conf_level), -yield.value, 1.0 - yield.value), p, yield.change, yield.change_ci_low,
-        yield.change_ci_high);
+    set_estimate(gradient.gradient(p, conf_level), yield.gradient, yield.gradient_ci_low, yield.gradient_ci_high, p);
+    set_estimate(within(gradient.change(p, conf_level), -yield.value, 1.0 - yield.value), yield.change,
+                 yield.change_ci_low, yield.change_ci_high, p);
   }
 }
 
@@ -147,9 +143,9 @@ void set_gradient(const MachineTable& table, const LinearFit& fit, std::span<con
 void set_first_order(const MachineTable& table, const LinearFitSums* sums, std::span<const std::uint8_t> rejected,
                      double conf_level, YieldResult& yield) {
   for (auto* list : {&yield.mean_square_share, &yield.mean_square_share_ci_low, &yield.mean_square_share_ci_high}) {
-    list->assign(table.responses() * table.errors(), kNaN);
+    *list = decltype(yield.mean_square_share)({table.responses(), table.errors()}, kNaN);
   }
-  yield.linear_share.assign(table.responses(), kNaN);
+  yield.linear_share = decltype(yield.linear_share)({table.responses()}, kNaN);
   const std::optional<LinearFit> fit = sums == nullptr ? std::nullopt : sums->fit();
   if (!fit) return;
   set_shares(table, *fit, conf_level, yield);

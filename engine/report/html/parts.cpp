@@ -42,11 +42,6 @@ std::string order_by_effect(bool mixed) {
          (mixed ? "; indices per mm and per deg do not compare" : "");
 }
 
-std::vector<double> of_row(std::span<const double> values, std::size_t r, std::size_t columns) {
-  const std::span<const double> row = values.subspan(r * columns, columns);
-  return {row.begin(), row.end()};
-}
-
 bool mixed_units(const std::vector<NamedUnit>& things) {
   return std::ranges::any_of(things, [&](const NamedUnit& one) { return one.unit != things[0].unit; });
 }

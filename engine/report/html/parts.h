@@ -38,8 +38,6 @@ std::vector<std::vector<std::string>> response_units(const StoredResult& result,
                                                      std::span<const std::size_t> responses);
 /// What a caption of bars says of the order of errors, whose units may be mixed.
 std::string order_by_effect(bool mixed);
-/// Row r of values of that many columns.
-std::vector<double> of_row(std::span<const double> values, std::size_t r, std::size_t columns);
 bool mixed_units(const std::vector<NamedUnit>& things);  ///< Whether not all have the same unit.
 
 /// Which part of a result's cells goes into its figures, so that a report stays small.

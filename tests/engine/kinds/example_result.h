@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -102,54 +103,57 @@ class Example {
                        {1, PoseIndex(3), {SampleIndex(99), SolveStatus::non_finite}}};
     return result;
   }
+  /// Fills arrays of these lengths with numbers that go on from `next`, of which the last one is NaN.
+  static auto filler(double& next, double step = 0.125) {
+    return [&next, step]<class Numbers>(Numbers& numbers, const typename Numbers::Lengths& lengths) {
+      make_room(lengths, numbers);
+      for (double& number : numbers) number = next += step;
+      numbers.all().back() = std::numeric_limits<double>::quiet_NaN();
+    };
+  }
 
   /// Two quantiles; sets the study's kind and levels to match. Numbers count on through the arrays.
   MonteCarloResult monte_carlo() {
     study.analysis.kind = &kMonteCarloStudy;
     asked_of<MonteCarloOptions>(study.analysis).quantiles = {0.05, 0.995};
     MonteCarloResult result;
-    result.responses = 2;
-    result.poses = kPoses;
     result.conf_level = 0.9;
     result.quantile_relative_error = 1.0 / 512.0;
     result.levels = asked_of<MonteCarloOptions>(study.analysis).quantiles;
     double next = 0.0;
-    const auto fill = [&](std::vector<double>& values, std::size_t length) {
-      for (std::size_t k = 0; k < length; ++k) values.push_back(next += 0.125);
-      values.back() = std::numeric_limits<double>::quiet_NaN();
-    };
+    const auto fill = filler(next);
     for (auto* values :
          {&result.mean, &result.mean_ci_low, &result.mean_ci_high, &result.std, &result.min, &result.max}) {
-      fill(*values, 2 * kPoses);
+      fill(*values, {2, kPoses});
     }
-    fill(result.quantiles, 2 * kPoses * 2);
+    fill(result.quantiles, {2, kPoses, 2});
     for (auto* values : {&result.overall_mean, &result.overall_std, &result.overall_min, &result.overall_max}) {
-      fill(*values, 2);
+      fill(*values, {2});
     }
-    fill(result.overall_quantiles, 4);
-    fill(result.rms, 2 * kPoses);
-    fill(result.overall_rms, 2);
-    for (auto* values : {&result.quantiles_ci_low, &result.quantiles_ci_high}) fill(*values, 2 * kPoses * 2);
-    for (auto* values : {&result.overall_quantiles_ci_low, &result.overall_quantiles_ci_high}) fill(*values, 4);
-    result.histogram_edges = {0.0, 1.0, 2.0, 4.0, 4.0, 1.0, 2.0, 3.0, 4.0, 5.0};
-    result.histogram_counts = {100, 200, 82, 0, 300, 0, 60, 6};
+    fill(result.overall_quantiles, {2, 2});
+    fill(result.rms, {2, kPoses});
+    fill(result.overall_rms, {2});
+    for (auto* values : {&result.quantiles_ci_low, &result.quantiles_ci_high}) fill(*values, {2, kPoses, 2});
+    for (auto* values : {&result.overall_quantiles_ci_low, &result.overall_quantiles_ci_high}) fill(*values, {2, 2});
+    result.histogram_edges = {{2, 5}, {0.0, 1.0, 2.0, 4.0, 4.0, 1.0, 2.0, 3.0, 4.0, 5.0}};
+    result.histogram_counts = {{2, 4}, {100, 200, 82, 0, 300, 0, 60, 6}};
     asked_of<MonteCarloOptions>(study.analysis).judge = Judge::share;
     asked_of<MonteCarloOptions>(study.analysis).share = 0.9973;
     study.analysis.limits = {{0, 0.5}, {1, 0.25}};
-    fill(result.share_magnitude, 2 * kPoses);
+    fill(result.share_magnitude, {2, kPoses});
     result.verdicts = verdicts();
-    for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) result.count.push_back(97 - cell);
-    result.overall_count = {382, 366};
+    result.count = {{2, kPoses}, {97, 96, 95, 94, 93, 92, 91, 90}};
+    result.overall_count = {{2}, {382, 366}};
     for (std::size_t m = 0; m < kPoses; ++m) {
       result.solves.push_back({.by_status = {90 - m, 7, 2, 1, m}, .iterations = 700 + m, .most_iterations = 50});
     }
     result.failures = {{0, PoseIndex(2), {SampleIndex(0), SolveStatus::singular}}};
-    fill(result.quantile_error, 2 * kPoses);
-    fill(result.overall_quantile_error, 2);
+    fill(result.quantile_error, {2, kPoses});
+    fill(result.overall_quantile_error, {2});
     result.effects.conf_level = result.conf_level;
     result.effects.s1_poses = {0, 2};
     next = 1000.0;
-    fill(result.effects.bin_error, 2 * kEffectBins);
+    fill(result.effects.bin_error, {2, kEffectBins});
     fill_effects(result.effects.effects, fill);
     return result;
   }
@@ -163,22 +167,20 @@ class Example {
     asked.yield = 0.9;
     asked.share = 0.0;
     study.analysis.limits = {{1, 0.25}};
-    result.share_magnitude.clear();
+    result.share_magnitude = {};
     MachineResult& found = result.machines.emplace();
     found.conf_level = result.conf_level;
     double next = 2000.0;
-    const auto fill = [&](std::vector<double>& values, std::size_t length) {
-      for (std::size_t k = 0; k < length; ++k) values.push_back(next += 0.125);
-      values.back() = std::numeric_limits<double>::quiet_NaN();
-    };
+    const auto fill = filler(next);
     for (MachineValues* values : {&found.largest, &found.rms}) {
       for (auto* list :
            {&values->mean, &values->mean_ci_low, &values->mean_ci_high, &values->std, &values->min, &values->max}) {
-        fill(*list, 2);
+        fill(*list, {2});
       }
-      values->count = {200, 198};
-      for (auto* list : {&values->quantiles, &values->quantiles_ci_low, &values->quantiles_ci_high}) fill(*list, 4);
-      values->quantile_error = {0.5, 0.25};
+      values->count = {{2}, {200, 198}};
+      for (auto* list : {&values->quantiles, &values->quantiles_ci_low, &values->quantiles_ci_high})
+        fill(*list, {2, 2});
+      values->quantile_error = {{2}, {0.5, 0.25}};
       values->histogram_edges = result.histogram_edges;
       values->histogram_counts = result.histogram_counts;
     }
@@ -195,14 +197,15 @@ class Example {
     yield.unsolved_pass_ci_low = 0.705;
     yield.unsolved_pass_ci_high = 0.805;
     yield.unsolved_pass_rejects = 49;
-    for (auto* list : {&yield.by_response, &yield.by_response_ci_low, &yield.by_response_ci_high}) fill(*list, 2);
-    fill(yield.worst_pose_share, 2 * kPoses);
+    for (auto* list : {&yield.by_response, &yield.by_response_ci_low, &yield.by_response_ci_high}) fill(*list, {2});
+    fill(yield.worst_pose_share, {2, kPoses});
     for (auto* list : {&yield.gradient, &yield.gradient_ci_low, &yield.gradient_ci_high, &yield.change,
-                       &yield.change_ci_low, &yield.change_ci_high, &yield.linear_share}) {
-      fill(*list, 2);
+                       &yield.change_ci_low, &yield.change_ci_high}) {
+      fill(*list, {2});
     }
+    fill(yield.linear_share, {2});
     for (auto* list : {&yield.mean_square_share, &yield.mean_square_share_ci_low, &yield.mean_square_share_ci_high}) {
-      fill(*list, 4);
+      fill(*list, {2, 2});
     }
     result.verdicts = {.judge = Judge::yield,
                        .limits = {{.response = 1,
@@ -220,8 +223,8 @@ class Example {
   /// Of two errors on two responses. fill(list, length): gives a list its numbers.
   template <class Fill>
   static void fill_effects(MainEffects& effects, const Fill& fill) {
-    for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) fill(*list, 4);
-    for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) fill(*list, 4 * kEffectBins);
+    for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) fill(*list, {2, 2});
+    for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) fill(*list, {2, 2, kEffectBins});
   }
 
   /// Of both responses: the first is kept, the second is not, at the last pose.
@@ -387,27 +390,23 @@ class Example {
     const std::size_t groups = result.groups();
     result.vectors = {"twist_21_omega", "twist_21_v"};
     double next = 0.0;
-    const auto fill = [&](auto& values, const auto&... lengths) {
-      values = std::remove_reference_t<decltype(values)>({lengths...});
-      for (double& value : values) value = next += 0.0078125;
-      values.all().back() = std::numeric_limits<double>::quiet_NaN();
+    const auto fill = filler(next, 0.0078125);
+    const auto fill_shares = [&]<class Shares>(Shares& shares, const typename Shares::Lengths& lengths) {
+      for (auto* values : {&shares.value, &shares.ci_low, &shares.ci_high}) fill(*values, lengths);
     };
-    const auto fill_shares = [&](auto& shares, const auto&... lengths) {
-      for (auto* values : {&shares.value, &shares.ci_low, &shares.ci_high}) fill(*values, lengths...);
-    };
-    const auto fill_indices = [&](auto& indices, const auto&... lengths) {
+    const auto fill_indices = [&](auto& indices, const auto& lengths) {
       indices.conf_level = 0.9;
-      fill_shares(indices.S1, lengths...);
-      fill_shares(indices.ST, lengths...);
+      fill_shares(indices.S1, lengths);
+      fill_shares(indices.ST, lengths);
     };
-    fill_indices(result.at_poses, 2U, groups, kPoses);
-    fill_indices(result.aggregated, 2U, groups);
-    fill_indices(result.of_vectors, 2U, groups);
-    fill_shares(result.S2, 2U, groups, groups);
-    for (auto* values : {&result.mean, &result.variance}) fill(*values, 2U, kPoses);
-    result.n = decltype(result.n)({2, groups, kPoses});
+    fill_indices(result.at_poses, std::array{std::size_t{2}, groups, kPoses});
+    fill_indices(result.aggregated, std::array{std::size_t{2}, groups});
+    fill_indices(result.of_vectors, std::array{std::size_t{2}, groups});
+    fill_shares(result.S2, {2, groups, groups});
+    for (auto* values : {&result.mean, &result.variance}) fill(*values, {2, kPoses});
+    make_room({2, groups, kPoses}, result.n);
     std::iota(result.n.begin(), result.n.end(), 100);
-    result.without_sign = decltype(result.without_sign)({2}, {0, 1});
+    result.without_sign = {{2}, {0, 1}};
     result.solves.resize(kPoses);
     for (SolveCounts& solves : result.solves) {
       for (std::size_t s = 0; s < 5; ++s) solves.add(SolveStatus::converged, 3);

@@ -77,10 +77,10 @@ inline Bits bits_of(const SensitivityResult& result) {
 
 inline Bits bits_of(const MonteCarloResult& result) {
   Bits bits;
-  for (const auto* values :
-       {&result.mean, &result.mean_ci_low, &result.std, &result.min, &result.max, &result.quantiles,
-        &result.overall_mean, &result.overall_std, &result.overall_min, &result.overall_quantiles}) {
-    append(bits, *values);
+  for (const std::span<const double> values : std::initializer_list<std::span<const double>>{
+           result.mean, result.mean_ci_low, result.std, result.min, result.max, result.quantiles, result.overall_mean,
+           result.overall_std, result.overall_min, result.overall_quantiles}) {
+    append(bits, values);
   }
   bits.insert(bits.end(), result.count.begin(), result.count.end());
   bits.insert(bits.end(), result.overall_count.begin(), result.overall_count.end());

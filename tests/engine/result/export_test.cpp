@@ -209,7 +209,7 @@ TEST_F(Export, ErrorsOfAnExportAreReadAgain) {
 
 TEST_F(Export, WholeNumbersHaveAllTheirDigits) {
   MonteCarloResult found = example_.monte_carlo();
-  found.overall_count.assign(found.overall_count.size(), 100'000);
+  std::ranges::fill(found.overall_count, 100'000);
   write_result(folder_ / "m.h5", example_.study, example_.poses, found, example_.facts);
   export_tables(folder_ / "m.h5", folder_.path());
   const auto overall = read_table(folder_ / "overall.csv");

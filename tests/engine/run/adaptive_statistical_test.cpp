@@ -104,7 +104,7 @@ Tally monte_carlo_tally(std::size_t poses, double relative_error) {
     EXPECT_LE(end.course.half_width[last], relative_error * end.course.value[last]);
     tally.covered += std::abs(end.course.value[last] - truth) <= end.course.half_width[last] ? 1 : 0;
     const double local = std::abs(all[0]) * 1e-3 * kFoldedMean;
-    tally.local_covered += inside(local, found.mean_ci_low[0], found.mean_ci_high[0]) ? 1 : 0;
+    tally.local_covered += inside(local, found.mean_ci_low(0, 0), found.mean_ci_high(0, 0)) ? 1 : 0;
     tally.samples += static_cast<double>(end.samples[0]);
   }
   return tally;

@@ -49,9 +49,10 @@ Bits bits_of(const SensitivityResult& found) {
 
 Bits bits_of(const MonteCarloResult& found) {
   Bits bits = bits_of(found.convergence.value());
-  for (const auto* values : {&found.mean, &found.mean_ci_low, &found.std, &found.min, &found.max, &found.quantiles,
-                             &found.overall_mean, &found.overall_std, &found.overall_quantiles}) {
-    append(bits, *values);
+  for (const std::span<const double> values : std::initializer_list<std::span<const double>>{
+           found.mean, found.mean_ci_low, found.std, found.min, found.max, found.quantiles, found.overall_mean,
+           found.overall_std, found.overall_quantiles}) {
+    append(bits, values);
   }
   bits.insert(bits.end(), found.count.begin(), found.count.end());
   return bits;
@@ -147,10 +148,10 @@ TEST(AdaptiveMonteCarlo, EndsWhereEveryOverallMeanIsReached) {
   for (std::size_t r = 0; r < 2; ++r) {
     EXPECT_EQ(end.reached[r], 1);
     const double mean = end.course.value[r * end.course.samples.size() + last];
-    EXPECT_NEAR(mean, found.overall_mean[r], 1e-12 * mean);
+    EXPECT_NEAR(mean, found.overall_mean(r), 1e-12 * mean);
     // Equal numbers of samples: the variance is the mean of those at the poses, over all samples.
     double variance = 0.0;
-    for (std::size_t m = 0; m < 3; ++m) variance += std::pow(found.std[r * 3 + m], 2) / 3.0;
+    for (std::size_t m = 0; m < 3; ++m) variance += std::pow(found.std(r, m), 2) / 3.0;
     const double half = 1.96 * std::sqrt(variance / (3.0 * static_cast<double>(end.samples[0])));
     EXPECT_NEAR(end.course.half_width[r * end.course.samples.size() + last], half, 1e-3 * half);
   }

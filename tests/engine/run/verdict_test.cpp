@@ -18,10 +18,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Two responses at two poses, 4 draws at each, one of which was not solved.
 MonteCarloResult draws() {
   MonteCarloResult found;
-  found.responses = 2;
-  found.poses = 2;
-  found.overall_rms = {2.0, 0.5};
-  found.share_magnitude = {3.0, 4.0, 1.0, 0.75};
+  found.overall_rms = {{2}, {2.0, 0.5}};
+  found.share_magnitude = {{2, 2}, {3.0, 4.0, 1.0, 0.75}};
   found.solves.resize(2);
   found.solves[0].by_status = {4, 0, 0, 0, 0};
   found.solves[1].by_status = {3, 0, 1, 0, 0};
@@ -72,9 +70,9 @@ TEST(JudgeDraws, CountsTheDrawsWithinTheLimit) {
 
 TEST(JudgeDraws, RefusesWhatIsNotKnown) {
   MonteCarloResult found = draws();
-  found.overall_rms[0] = kNaN;
+  found.overall_rms(0) = kNaN;
   EXPECT_FALSE(judged(Judge::rms, 1e9, 1.0, found).limits[0].passed);
-  found.share_magnitude[1] = kInfinity;
+  found.share_magnitude(0, 1) = kInfinity;
   EXPECT_FALSE(judged(Judge::share, 1e9, 1.0, found).limits[0].passed);
 }
 

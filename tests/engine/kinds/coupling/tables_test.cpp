@@ -21,8 +21,8 @@ StoredResult example() {
   result.signed_headline = {1};
   CouplingResult& found = coupling_in(result);
   found.size_names = {"0.1 mm"};
-  found.linear = {{1}, {1e-4}};
-  found.angular = {{1}, {std::numeric_limits<double>::quiet_NaN()}};
+  found.linear = decltype(found.linear)({1}, 1e-4);
+  found.angular = decltype(found.angular)({1}, std::numeric_limits<double>::quiet_NaN());
   found.sources = {"FS", "T"};
   found.subsets = {"FS", "T", "FS+T"};
   found.effect = CouplingResult::Curves({2, 1, 3, 4});

@@ -91,6 +91,17 @@ MonteCarloResult run(const Study& study, const Model& model, std::size_t threads
   return run_monte_carlo(Plan(study, select_poses(study.poses, model).poses), model, study.analysis, options).value();
 }
 
+/// The curves of the first response are straight lines.
+void expect_lines(const EffectResult& found) {
+  const MainEffects& effects = found.effects;
+  for (std::size_t p = 0; p < 3; ++p) {
+    for (std::size_t b = 0; b < kEffectBins; ++b) {
+      const double half = 0.5 * (effects.ci_high(0, p, b) - effects.ci_low(0, p, b));
+      EXPECT_NEAR(effects.mean(0, p, b), LinearModel::kSlopes[p] * found.bin_error(p, b), half * 4.9 / 1.96);
+    }
+  }
+}
+
 /// The closed form and the checks of the likelihood ratio's gradient: |y| <= 0.3, sigma 0.1, 0.05, 0.2.
 TEST(Machines, FindTheYieldOfALinearModel) {
   constexpr std::size_t kMachines = 40'500;
@@ -105,24 +116,20 @@ TEST(Machines, FindTheYieldOfALinearModel) {
   EXPECT_NEAR(yield.value, kYield, kErrors * std::sqrt(kYield * (1.0 - kYield) / kMachines));
   EXPECT_EQ(yield.machines, kMachines);
   EXPECT_EQ(yield.rejects, static_cast<std::uint64_t>(std::lround((1.0 - yield.value) * kMachines)));
-  EXPECT_EQ(yield.by_response[0], yield.value);
-  EXPECT_TRUE(std::isnan(yield.by_response[1]));
-  for (std::size_t m = 0; m < 3; ++m) EXPECT_DOUBLE_EQ(yield.worst_pose_share[m], 1.0 - yield.value);
+  EXPECT_EQ(yield.by_response(0), yield.value);
+  EXPECT_TRUE(std::isnan(yield.by_response(1)));
+  for (std::size_t m = 0; m < 3; ++m) EXPECT_DOUBLE_EQ(yield.worst_pose_share(0, m), 1.0 - yield.value);
   constexpr std::array kGradient{-1.02786887, -2.05573773, -0.51393443};
   for (std::size_t p = 0; p < 3; ++p) {
-    const double half = 0.5 * (yield.gradient_ci_high[p] - yield.gradient_ci_low[p]);
-    EXPECT_NEAR(yield.gradient[p], kGradient[p], half * kErrors / 1.96);
+    const double half = 0.5 * (yield.gradient_ci_high(p) - yield.gradient_ci_low(p));
+    EXPECT_NEAR(yield.gradient(p), kGradient[p], half * kErrors / 1.96);
     EXPECT_LT(half, 0.1 * std::abs(kGradient[p]));
     // Each error makes a third of the variance.
-    EXPECT_NEAR(found.effects.effects.s1[p], 1.0 / 3.0, 0.02);
-    EXPECT_LT(found.effects.effects.s1_ci_low[p], 1.0 / 3.0);
-    EXPECT_GT(found.effects.effects.s1_ci_high[p], 1.0 / 3.0);
+    EXPECT_NEAR(found.effects.effects.s1(0, p), 1.0 / 3.0, 0.02);
+    EXPECT_LT(found.effects.effects.s1_ci_low(0, p), 1.0 / 3.0);
+    EXPECT_GT(found.effects.effects.s1_ci_high(0, p), 1.0 / 3.0);
   }
-  for (std::size_t k = 0; k < 3 * kEffectBins; ++k) {
-    const double half = 0.5 * (found.effects.effects.ci_high[k] - found.effects.effects.ci_low[k]);
-    EXPECT_NEAR(found.effects.effects.mean[k], LinearModel::kSlopes[k / kEffectBins] * found.effects.bin_error[k],
-                half * 4.9 / 1.96);
-  }
+  expect_lines(found.effects);
 }
 
 /// y = a . e of errors of which each half is off: 1 - Y is what a normal sum leaves beyond the limit on either side,
@@ -147,9 +154,9 @@ TEST(Machines, FindTheYieldOfShiftedErrors) {
   }
   constexpr double kErrors = 3.9;
   EXPECT_NEAR(yield.value, expected, kErrors * std::sqrt(expected * (1.0 - expected) / kMachines));
-  EXPECT_TRUE(std::isnan(yield.gradient[0]) && std::isnan(yield.gradient_ci_low[0]));
-  EXPECT_TRUE(std::isnan(yield.gradient[1]) && std::isnan(yield.gradient_ci_high[1]));
-  EXPECT_LT(yield.gradient[2], 0.0);
+  EXPECT_TRUE(std::isnan(yield.gradient(0)) && std::isnan(yield.gradient_ci_low(0)));
+  EXPECT_TRUE(std::isnan(yield.gradient(1)) && std::isnan(yield.gradient_ci_high(1)));
+  EXPECT_LT(yield.gradient(2), 0.0);
   // The shares of the variance are those of sigma^2 + shift^2. Of the first error, two bins beside the middle are
   // equally large, though one is of either half.
   double all = 0.0;
@@ -158,7 +165,7 @@ TEST(Machines, FindTheYieldOfShiftedErrors) {
   }
   for (std::size_t p = 0; p < 3; ++p) {
     const double share = std::pow(LinearModel::kSlopes[p] * study.errors.by_factor[p].standard_deviation(), 2) / all;
-    EXPECT_NEAR(found.effects.effects.s1[p], share, 0.02) << p;
+    EXPECT_NEAR(found.effects.effects.s1(0, p), share, 0.02) << p;
   }
 }
 
@@ -168,7 +175,7 @@ std::vector<Estimate> gradient_of(const Study& study) {
   const YieldResult& yield = *found.machines->yield;
   std::vector<Estimate> gradient;
   for (std::size_t p = 0; p < 3; ++p) {
-    gradient.push_back({yield.gradient[p], {yield.gradient_ci_low[p], yield.gradient_ci_high[p]}});
+    gradient.push_back({yield.gradient(p), {yield.gradient_ci_low(p), yield.gradient_ci_high(p)}});
   }
   return gradient;
 }
@@ -208,13 +215,13 @@ TEST(Machines, TellTheGradientByAnErrorThatAloneMakesTheRejects) {
   study.errors.by_factor[2] = Distribution::uniform(1e-9);
   study.analysis.limits = {{0, kGood * 0.1}};
   const YieldResult yield = *run(study, LinearModel()).machines->yield;
-  EXPECT_NEAR(yield.gradient[0], -kGood * std::sqrt(3.0) / 0.1, 0.02 * kGood * std::sqrt(3.0) / 0.1);
-  EXPECT_NEAR(yield.change[0], -kGood * (1.0 - 1.0 / 1.1), 1e-3);
-  EXPECT_LT(yield.change_ci_high[0], -0.08);
+  EXPECT_NEAR(yield.gradient(0), -kGood * std::sqrt(3.0) / 0.1, 0.02 * kGood * std::sqrt(3.0) / 0.1);
+  EXPECT_NEAR(yield.change(0), -kGood * (1.0 - 1.0 / 1.1), 1e-3);
+  EXPECT_LT(yield.change_ci_high(0), -0.08);
   for (const std::size_t p : {1U, 2U}) {
-    EXPECT_LE(yield.change_ci_low[p], 0.0);
-    EXPECT_GE(yield.change_ci_high[p], 0.0);
-    EXPECT_LT(yield.change_ci_high[p] - yield.change_ci_low[p], 1e-3);
+    EXPECT_LE(yield.change_ci_low(p), 0.0);
+    EXPECT_GE(yield.change_ci_high(p), 0.0);
+    EXPECT_LT(yield.change_ci_high(p) - yield.change_ci_low(p), 1e-3);
   }
 }
 
@@ -233,11 +240,11 @@ TEST(Machines, TellWhatAStepChangesTheYieldBy) {
     error = p == 0 ? Distribution::uniform(0.33) : Distribution::normal(1.1 * error.sigma());
     const double expected = run(grown, LinearModel()).machines->yield->value - yield.value;
     // Machines that cross the limit one way alone: the variance of their share; alpha 1e-4, three comparisons.
-    const double half = 0.5 * (yield.change_ci_high[p] - yield.change_ci_low[p]) / 1.96;
+    const double half = 0.5 * (yield.change_ci_high(p) - yield.change_ci_low(p)) / 1.96;
     const double noise = std::hypot(half, std::sqrt(2.0 * std::abs(expected) / kMachines));
-    EXPECT_NEAR(yield.change[p], expected, 4.2 * noise) << p;
+    EXPECT_NEAR(yield.change(p), expected, 4.2 * noise) << p;
     EXPECT_LT(half, 0.1 * std::abs(expected)) << p;
-    EXPECT_GE(yield.change_ci_low[p], -yield.value);
+    EXPECT_GE(yield.change_ci_low(p), -yield.value);
   }
 }
 
@@ -249,13 +256,13 @@ TEST(Machines, TellTheSharesOfTheMeanSquare) {
   const YieldResult yield = *run(study, LinearModel()).machines->yield;
   const std::array expected{1.0 / 6.0, 1.0 / 6.0, 4.0 / 6.0};
   for (std::size_t p = 0; p < 3; ++p) {
-    EXPECT_NEAR(yield.mean_square_share[p], expected[p], 1e-9);
-    EXPECT_NEAR(yield.mean_square_share_ci_low[p], expected[p], 1e-6);
-    EXPECT_NEAR(yield.mean_square_share_ci_high[p], expected[p], 1e-6);
-    EXPECT_TRUE(std::isnan(yield.mean_square_share[3 + p]));  // without a limit
+    EXPECT_NEAR(yield.mean_square_share(0, p), expected[p], 1e-9);
+    EXPECT_NEAR(yield.mean_square_share_ci_low(0, p), expected[p], 1e-6);
+    EXPECT_NEAR(yield.mean_square_share_ci_high(0, p), expected[p], 1e-6);
+    EXPECT_TRUE(std::isnan(yield.mean_square_share(1, p)));  // without a limit
   }
-  EXPECT_NEAR(yield.linear_share[0], 1.0, 1e-9);
-  EXPECT_TRUE(std::isnan(yield.linear_share[1]));
+  EXPECT_NEAR(yield.linear_share(0), 1.0, 1e-9);
+  EXPECT_TRUE(std::isnan(yield.linear_share(1)));
 }
 
 /// Seven machines do not tell three slopes, an offset and a rest.
@@ -264,9 +271,9 @@ TEST(Machines, AreTooFewForSharesBelowTwiceTheUnknowns) {
   Study study = study_of(catalog, 2, 7, {0.1, 0.05, 0.2});
   study.errors.by_factor[1] = Distribution::uniform(0.1);
   study.analysis.limits = {{0, 0.1}};
-  EXPECT_TRUE(std::isnan(run(study, LinearModel()).machines->yield->mean_square_share[0]));
+  EXPECT_TRUE(std::isnan(run(study, LinearModel()).machines->yield->mean_square_share(0, 0)));
   study.analysis.samples = 8;
-  EXPECT_NEAR(run(study, LinearModel()).machines->yield->linear_share[0], 1.0, 1e-9);
+  EXPECT_NEAR(run(study, LinearModel()).machines->yield->linear_share(0), 1.0, 1e-9);
 }
 
 /// A machine that is not solved at one pose is left out of the fit, and is a reject all the same.
@@ -279,8 +286,8 @@ TEST(Machines, ThatAreNotSolvedAreNotFitted) {
   EXPECT_GT(yield.unsolved, 0u);
   // The response is a magnitude of which the model names no vector: hardly anything of it is linear, and polynomials
   // tell the gradient.
-  EXPECT_LT(yield.linear_share[0], 0.5);
-  EXPECT_LT(yield.gradient[1], 0.0);
+  EXPECT_LT(yield.linear_share(0), 0.5);
+  EXPECT_LT(yield.gradient(1), 0.0);
 }
 
 TEST(Machines, HaveAGradientByCorrelatedNormalErrors) {
@@ -316,15 +323,11 @@ TEST(MonteCarloEffects, AreThoseOfALinearModel) {
   const MonteCarloResult found = run(study, LinearModel());
   EXPECT_EQ(found.effects.s1_poses, (std::vector<std::uint64_t>{0, 1, 2, 4, 5, 6, 8, 9}));
   for (std::size_t p = 0; p < 3; ++p) {
-    const double half = 0.5 * (found.effects.effects.s1_ci_high[p] - found.effects.effects.s1_ci_low[p]);
-    EXPECT_NEAR(found.effects.effects.s1[p], 1.0 / 3.0, half * 4.0 / 1.96);
+    const double half = 0.5 * (found.effects.effects.s1_ci_high(0, p) - found.effects.effects.s1_ci_low(0, p));
+    EXPECT_NEAR(found.effects.effects.s1(0, p), 1.0 / 3.0, half * 4.0 / 1.96);
     EXPECT_LT(half, 0.02);
   }
-  for (std::size_t k = 0; k < 3 * kEffectBins; ++k) {
-    const double half = 0.5 * (found.effects.effects.ci_high[k] - found.effects.effects.ci_low[k]);
-    EXPECT_NEAR(found.effects.effects.mean[k], LinearModel::kSlopes[k / kEffectBins] * found.effects.bin_error[k],
-                half * 4.9 / 1.96);
-  }
+  expect_lines(found.effects);
 }
 
 /// Everything that can be counted by hand, from the draws' addresses.
@@ -340,7 +343,7 @@ TEST(Machines, AgreeWithAllMachinesCountedOneByOne) {
   std::uint64_t rejects = 0;
   std::uint64_t unsolved = 0;
   std::uint64_t lenient = 0;
-  std::vector<std::uint64_t> at_pose(2 * kPoses);
+  Array<std::uint64_t, axis::Response, axis::Pose> at_pose({2, kPoses});
   std::vector<std::vector<double>> largest(2);
   for (std::size_t s = 0; s < kMachines; ++s) {
     std::array<double, 3> errors{};
@@ -359,7 +362,7 @@ TEST(Machines, AgreeWithAllMachinesCountedOneByOne) {
         for (std::size_t f = 0; f < 3; ++f)
           sum += test::FakeModel::weight(test::FakeModel::kArm, r, f, pose) * errors[f];
         const bool beyond = std::abs(sum) > study.analysis.limits[r].most;
-        at_pose[r * kPoses + m] += beyond || !solved ? 1 : 0;
+        at_pose(r, m) += beyond || !solved ? 1 : 0;
         bad = bad || (solved && beyond);
         most[r] = std::max(most[r], std::abs(sum));
       }
@@ -375,15 +378,15 @@ TEST(Machines, AgreeWithAllMachinesCountedOneByOne) {
   EXPECT_EQ(yield.rejects, rejects);
   EXPECT_EQ(yield.unsolved, unsolved);
   EXPECT_EQ(yield.unsolved_pass_rejects, lenient);
-  for (std::size_t k = 0; k < at_pose.size(); ++k) {
-    EXPECT_EQ(yield.worst_pose_share[k], static_cast<double>(at_pose[k]) / kMachines);
-  }
   for (std::size_t r = 0; r < 2; ++r) {
+    for (std::size_t m = 0; m < kPoses; ++m) {
+      EXPECT_EQ(yield.worst_pose_share(r, m), static_cast<double>(at_pose(r, m)) / kMachines);
+    }
     const MachineValues& values = found.machines->largest;
-    EXPECT_EQ(values.count[r], largest[r].size());
-    EXPECT_EQ(values.max[r], std::ranges::max(largest[r]));
+    EXPECT_EQ(values.count(r), largest[r].size());
+    EXPECT_EQ(values.max(r), std::ranges::max(largest[r]));
     const double truth = test::sorted_quantile(largest[r], 0.95);
-    EXPECT_NEAR(values.quantiles[r * 3 + 2], truth, found.quantile_relative_error * truth);
+    EXPECT_NEAR(values.quantiles(r, 2), truth, found.quantile_relative_error * truth);
   }
 }
 
@@ -409,10 +412,10 @@ TEST(Machines, OfOnePoseAreItsSamples) {
   EXPECT_EQ(machines.min, samples.min);
   EXPECT_EQ(machines.max, samples.max);
   for (std::size_t r = 0; r < 2; ++r) {
-    EXPECT_NEAR(machines.mean[r], samples.mean[r], 1e-13 * samples.mean[r]);
-    EXPECT_NEAR(machines.std[r], samples.std[r], 1e-12 * samples.std[r]);
+    EXPECT_NEAR(machines.mean(r, 0), samples.mean(r, 0), 1e-13 * samples.mean(r, 0));
+    EXPECT_NEAR(machines.std(r, 0), samples.std(r, 0), 1e-12 * samples.std(r, 0));
   }
-  EXPECT_EQ(machines.machines->largest.max, samples.max);
+  EXPECT_TRUE(std::ranges::equal(machines.machines->largest.max, samples.max));
   EXPECT_FALSE(samples.machines);
 }
 
@@ -426,7 +429,7 @@ TEST(Machines, StopWhenTheMeansOfMachinesAreKnown) {
   const auto needed = static_cast<std::uint64_t>(std::pow(1.96 * 0.756 / 0.02, 2));
   EXPECT_GT(found.convergence->samples[0], needed * 9 / 10);
   EXPECT_LT(found.convergence->samples[0], 2 * needed);
-  EXPECT_EQ(found.machines->largest.count[0], found.convergence->samples[0]);
+  EXPECT_EQ(found.machines->largest.count(0), found.convergence->samples[0]);
 }
 
 TEST(MachineTable, HasSmallerUnitsForMorePoses) {

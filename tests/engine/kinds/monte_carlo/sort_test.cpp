@@ -68,18 +68,16 @@ TEST_P(MonteCarloOfAllErrors, HasSortedQuantiles) {
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const PoseSet poses = select_poses(study.poses, *model).poses;
   const MonteCarloResult found = run_monte_carlo(Plan(study, poses), *model, study.analysis, {}).value();
-  const std::size_t levels = found.levels.size();
   double worst = 0.0;
   for (std::size_t m = 0; m < kPoses; ++m) {
     const auto samples = solved_samples(study, *model, poses, PoseIndex(m));
-    for (std::size_t r = 0; r < found.responses; ++r) {
-      const std::size_t cell = r * kPoses + m;
-      ASSERT_EQ(found.count[cell], samples[r].size());
-      EXPECT_EQ(found.min[cell], std::ranges::min(samples[r]));
-      EXPECT_EQ(found.max[cell], std::ranges::max(samples[r]));
-      for (std::size_t q = 0; q < levels; ++q) {
+    for (std::size_t r = 0; r < samples.size(); ++r) {
+      ASSERT_EQ(found.count(r, m), samples[r].size());
+      EXPECT_EQ(found.min(r, m), std::ranges::min(samples[r]));
+      EXPECT_EQ(found.max(r, m), std::ranges::max(samples[r]));
+      for (std::size_t q = 0; q < found.levels.size(); ++q) {
         const double truth = test::sorted_quantile(samples[r], found.levels[q]);
-        const double difference = std::abs(found.quantiles[cell * levels + q] - truth) / std::abs(truth);
+        const double difference = std::abs(found.quantiles(r, m, q) - truth) / std::abs(truth);
         EXPECT_LE(difference, found.quantile_relative_error);
         worst = std::max(worst, difference);
       }

@@ -22,26 +22,24 @@ StoredResult example() {
   result.responses = {{"linear_deformation", "m"}, {"ratio", "1"}};
   result.headline = {0, 1};
   MonteCarloResult& found = monte_carlo_in(result);
-  found.responses = 2;
-  found.poses = 3;
   found.quantile_relative_error = 1.0 / 512.0;
   found.levels = {0.5, 0.95};
-  found.mean = {1e-3, 4e-3, 1e-3, 0.5, 0.25, 0.75};
-  found.quantiles = {1e-3, 9e-3, 4e-3, 8e-3, 1e-3, 7e-3, 0.5, 1.0, 0.25, 2.0, 0.75, 1.5};
-  found.overall_mean = {2e-3, 0.5};
-  found.overall_std = {1.5e-3, 0.125};
-  found.overall_rms = {2.5e-3, 0.5};
+  found.mean = {{2, 3}, {1e-3, 4e-3, 1e-3, 0.5, 0.25, 0.75}};
+  found.quantiles = {{2, 3, 2}, {1e-3, 9e-3, 4e-3, 8e-3, 1e-3, 7e-3, 0.5, 1.0, 0.25, 2.0, 0.75, 1.5}};
+  found.overall_mean = {{2}, {2e-3, 0.5}};
+  found.overall_std = {{2}, {1.5e-3, 0.125}};
+  found.overall_rms = {{2}, {2.5e-3, 0.5}};
   found.conf_level = 0.95;
-  found.quantiles_ci_low = {1e-3, 6e-3, 3e-3, 7e-3, 1e-3, 5e-3, 0.5, 0.9, 0.25, 1.75, 0.75, 1.25};
-  found.quantiles_ci_high = {2e-3, 12e-3, 5e-3, 9e-3, 2e-3, 6e-3, 0.75, 1.5, 0.5, kInfinity, 1.0, 1.75};
-  found.overall_count = {36000, 2};
-  found.overall_min = {1e-6, 0.0625};
-  found.overall_max = {1.25e-2, 3.0};
-  found.overall_quantiles = {1.75e-3, 8.5e-3, 0.4375, 1.25};
+  found.quantiles_ci_low = {{2, 3, 2}, {1e-3, 6e-3, 3e-3, 7e-3, 1e-3, 5e-3, 0.5, 0.9, 0.25, 1.75, 0.75, 1.25}};
+  found.quantiles_ci_high = {{2, 3, 2}, {2e-3, 12e-3, 5e-3, 9e-3, 2e-3, 6e-3, 0.75, 1.5, 0.5, kInfinity, 1.0, 1.75}};
+  found.overall_count = {{2}, {36000, 2}};
+  found.overall_min = {{2}, {1e-6, 0.0625}};
+  found.overall_max = {{2}, {1.25e-2, 3.0}};
+  found.overall_quantiles = {{2, 2}, {1.75e-3, 8.5e-3, 0.4375, 1.25}};
   found.effects.s1_poses = {0, 1, 2};
-  found.effects.effects.s1 = {0.25, 0.625, 0.5, 0.125};
-  found.effects.effects.s1_ci_low = {0.125, 0.5, 0.375, 0.0};
-  found.effects.effects.s1_ci_high = {0.375, 0.75, 0.625, 0.25};
+  found.effects.effects.s1 = {{2, 2}, {0.25, 0.625, 0.5, 0.125}};
+  found.effects.effects.s1_ci_low = {{2, 2}, {0.125, 0.5, 0.375, 0.0}};
+  found.effects.effects.s1_ci_high = {{2, 2}, {0.375, 0.75, 0.625, 0.25}};
   found.solves.resize(3);
   for (SolveCounts& solves : found.solves) solves.by_status[0] = 12000;
   return result;
@@ -78,10 +76,10 @@ TEST(MonteCarloTable, ShowsAllPosesTogetherAndTheWorst) {
 TEST(MonteCarloTable, SaysHowGoodItsQuantilesAre) {
   StoredResult result = example();
   MonteCarloResult& found = monte_carlo_in(result);
-  found.overall_quantile_error = {1.5e-6, 0.125 / 512.0};
+  found.overall_quantile_error = {{2}, {1.5e-6, 0.125 / 512.0}};
   EXPECT_NE(text_of(result_tables(result, "linear_deformation"), kUnlimitedWidth).find("(quantiles to 0.195 % of std)"),
             std::string::npos);
-  found.overall_quantile_error = {0.0, 0.0};
+  found.overall_quantile_error = {{2}, {0.0, 0.0}};
   EXPECT_NE(text_of(result_tables(result, "linear_deformation"), kUnlimitedWidth)
                 .find("(quantiles are those of the samples)"),
             std::string::npos);
@@ -91,21 +89,21 @@ TEST(MonteCarloTable, NamesSomeOfManyPosesLikeTheWorstByCoordinates) {
   StoredResult result = example();
   constexpr std::size_t kPoses = 10;
   MonteCarloResult& found = monte_carlo_in(result);
-  found.poses = kPoses;
+  found.solves.resize(kPoses);
   found.levels = {0.95};
   std::vector<double> coordinates;
-  found.quantiles.clear();
+  make_room({1, kPoses, 1}, found.quantiles);
   for (std::size_t m = 0; m < kPoses; ++m) {
     coordinates.push_back(-0.19 + 0.001 * static_cast<double>(m));
-    found.quantiles.push_back(1.0 + static_cast<double>(m));
+    found.quantiles(0, m, 0) = 1.0 + static_cast<double>(m);
   }
   result.pose_coordinates = {{"z", "m"}};
   result.poses = PoseSet(1, coordinates);
-  found.quantiles_ci_low.assign(kPoses, 1.5);
-  found.quantiles_ci_high.assign(kPoses, 12.0);
-  found.quantiles_ci_high[0] = 1.5;  // up to the lower end, not above it
+  found.quantiles_ci_low = MonteCarloResult::QuantilesAtPoses({1, kPoses, 1}, 1.5);
+  found.quantiles_ci_high = MonteCarloResult::QuantilesAtPoses({1, kPoses, 1}, 12.0);
+  found.quantiles_ci_high(0, 0, 0) = 1.5;  // up to the lower end, not above it
   result.headline = {0};
-  found.mean.assign(2 * kPoses, 1.0);
+  found.mean = MonteCarloResult::AtPoses({1, kPoses}, 1.0);
   const Table table = monte_carlo_tables(result).at(1);
   EXPECT_EQ(table.rows[0].back().text, "8");
   EXPECT_EQ(table.notes.at(1),
@@ -170,7 +168,7 @@ TEST(PercentText, KeepsWhatIsMissingFromAHundred) {
 
 TEST(MonteCarloTable, NamesTheWorstOfThePosesThatAreKnown) {
   StoredResult result = example();
-  monte_carlo_in(result).mean[0] = std::numeric_limits<double>::quiet_NaN();
+  monte_carlo_in(result).mean(0, 0) = std::numeric_limits<double>::quiet_NaN();
   const Table poses = monte_carlo_tables(result).at(1);
   EXPECT_EQ(poses.rows[0][2].text, "-");
   EXPECT_FALSE(poses.rows[0][2].value);
@@ -198,27 +196,27 @@ StoredResult example_of_machines() {
   result.factor_sigma.assign(5, 1e-3);
   MonteCarloResult& found = monte_carlo_in(result);
   for (auto* list : {&found.effects.effects.s1, &found.effects.effects.s1_ci_low, &found.effects.effects.s1_ci_high}) {
-    list->assign(10, 0.1);
+    *list = MainEffects::Indices({2, 5}, 0.1);
   }
   MachineResult& machines = found.machines.emplace();
   for (MachineValues* values : {&machines.largest, &machines.rms}) {
-    values->mean = values->max = {1e-3, 0.5};
-    values->quantiles.assign(4, 1e-3);
+    values->mean = values->max = {{2}, {1e-3, 0.5}};
+    values->quantiles = MachineValues::Quantiles({2, 2}, 1e-3);
   }
   YieldResult& yield = machines.yield.emplace();
   yield.value = 0.75;
   yield.rejects = 50;
   yield.machines = 200;
-  yield.by_response = {0.8, 0.9};
-  yield.worst_pose_share.assign(6, 0.0);
-  yield.gradient = {-10.0, -200.0, 1.0, -2.0, kNone};
-  yield.change = {-0.01, -0.2, 0.001, -0.002, kNone};
-  yield.change_ci_low = {-0.015, -0.25, -0.001, -0.004, kNone};
-  yield.change_ci_high = {-0.005, -0.15, 0.003, 0.0001, kNone};
-  yield.mean_square_share = {0.1, 0.7, 0.05, 0.125, kNone, 0.5, 0.25, 0.125, 0.125, kNone};
+  yield.by_response = {{2}, {0.8, 0.9}};
+  make_room({2, 3}, yield.worst_pose_share);
+  yield.gradient = {{5}, {-10.0, -200.0, 1.0, -2.0, kNone}};
+  yield.change = {{5}, {-0.01, -0.2, 0.001, -0.002, kNone}};
+  yield.change_ci_low = {{5}, {-0.015, -0.25, -0.001, -0.004, kNone}};
+  yield.change_ci_high = {{5}, {-0.005, -0.15, 0.003, 0.0001, kNone}};
+  yield.mean_square_share = {{2, 5}, {0.1, 0.7, 0.05, 0.125, kNone, 0.5, 0.25, 0.125, 0.125, kNone}};
   yield.mean_square_share_ci_low = yield.mean_square_share;
   yield.mean_square_share_ci_high = yield.mean_square_share;
-  yield.linear_share = {0.975, 0.5};
+  yield.linear_share = {{2}, {0.975, 0.5}};
   return result;
 }
 
@@ -273,8 +271,8 @@ TEST(MonteCarloTable, TakesAPartOfTheSlopeWhereAFileHasNoChange) {
   yield.change = yield.change_ci_low = yield.change_ci_high = {};
   yield.mean_square_share = yield.mean_square_share_ci_low = yield.mean_square_share_ci_high = {};
   yield.linear_share = {};
-  yield.gradient_ci_low = {-15.0, -9000.0, -1.0, -4.0, yield.gradient[4]};
-  yield.gradient_ci_high = {-5.0, -150.0, 3.0, 0.1, yield.gradient[4]};
+  yield.gradient_ci_low = {{5}, {-15.0, -9000.0, -1.0, -4.0, yield.gradient(4)}};
+  yield.gradient_ci_high = {{5}, {-5.0, -150.0, 3.0, 0.1, yield.gradient(4)}};
   const Table table = monte_carlo_tables(result).front();
   ASSERT_EQ(table.name, "yield_gradient");
   EXPECT_NEAR(table.rows[0][1].value.value(), -2.0, 1e-12);
@@ -300,7 +298,7 @@ TEST(SummaryText, ShowsNoControlCharacterOfATitle) {
 TEST(MonteCarloTable, CountsOnePoseAsOne) {
   StoredResult result = example();
   result.factors.resize(1);
-  monte_carlo_in(result).poses = 1;
+  monte_carlo_in(result).solves.resize(1);
   EXPECT_EQ(monte_carlo_tables(result).at(0).caption, "1 error varies together: responses over the samples of 1 pose");
 }
 
@@ -343,10 +341,10 @@ TEST(NoIndices, HaveTheirTrueReason) {
   StoredResult result = example();
   result.headline = {0};
   MonteCarloResult& found = monte_carlo_in(result);
-  found.count = {63, 100, 100, 100, 100, 100};
-  found.effects.effects.s1.assign(4, std::numeric_limits<double>::quiet_NaN());
+  found.count = {{2, 3}, {63, 100, 100, 100, 100, 100}};
+  std::ranges::fill(found.effects.effects.s1, std::numeric_limits<double>::quiet_NaN());
   EXPECT_NE(notes_of_indices(result).find("no S1 is formed below 64 samples"), std::string::npos);
-  found.count[0] = 100;
+  found.count(0, 0) = 100;
   result.study_text = "[analysis]\n\n[[errors.correlated]]\n";
   EXPECT_NE(notes_of_indices(result).find("each is correlated with others"), std::string::npos);
   result.constant = {0};

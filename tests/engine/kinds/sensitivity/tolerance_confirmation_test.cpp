@@ -91,8 +91,8 @@ TEST(ToleranceConfirmation, MonteCarloConfirmsTheLimit) {
       confirmation.seed = 12;
       const Plan plan(confirmation, found.plan.poses());
       const auto confirmed = run_monte_carlo(plan, found.model, confirmation.analysis, {}).value();
-      const double mean = confirmed.overall_mean[kResponse];
-      const double square = mean * mean + std::pow(confirmed.overall_std[kResponse], 2);
+      const double mean = confirmed.overall_mean(kResponse);
+      const double square = mean * mean + std::pow(confirmed.overall_std(kResponse), 2);
       EXPECT_LT(mean, limit);
       // Each pose's samples give (b + w t z)^2, of variance 2 (w t)^4 + 4 (b w t)^2; the prediction rests on as many of
       // a uniform error, whose squares vary less.
