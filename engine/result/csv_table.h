@@ -104,16 +104,6 @@ CsvPoseColumns pose_columns(const Array<T, Axes...>& array, std::string unit, Po
           [&array, at...](std::size_t line, std::size_t pose) { return to_number(array(at..., line, pose)); }};
 }
 
-/// A column for each pose of a row along [factor x pose], the last axes of the row. first: its first element.
-template <class Found>
-CsvPoseColumns pose_columns(const StoredResult& result, const FieldRow<Found>& field, const Found& found,
-                            std::size_t first, std::string unit) {
-  const std::size_t poses = result.poses.size();
-  return {poses, std::move(unit), [&field, &found, first, poses](std::size_t line, std::size_t pose) {
-            return number_at(field, found, first + line * poses + pose);
-          }};
-}
-
 /// A table with a line for each error and a column for each pose, of a row along [factor x pose].
 template <class Found>
 CsvTable cell_table(const StoredResult& result, std::string name, const FieldRow<Found>& field, const Found& found) {

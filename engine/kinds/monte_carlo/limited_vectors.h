@@ -15,14 +15,8 @@
 namespace poesy {
 
 namespace axis {
-/// Components of the model's details.
-struct DetailComponent {
-  static constexpr std::string_view kName = "detail_component";
-};
-/// Components of the vectors behind all limited responses.
-struct VectorRow {
-  static constexpr std::string_view kName = "vector_row";
-};
+using DetailComponent = Axis<"detail_component">;  ///< Components of the model's details.
+using VectorRow = Axis<"vector_row">;              ///< Components of the vectors behind all limited responses.
 }  // namespace axis
 
 /// The vector behind a limited response, of which the response is the norm: components that are linear in the errors to

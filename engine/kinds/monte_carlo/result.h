@@ -16,22 +16,10 @@
 namespace poesy {
 
 namespace axis {
-/// Quantiles that a study asks for.
-struct Quantile {
-  static constexpr std::string_view kName = "quantile";
-};
-/// Bins of a histogram.
-struct HistogramBin {
-  static constexpr std::string_view kName = "bin";
-};
-/// Where the bins of a histogram begin and end.
-struct HistogramEdge {
-  static constexpr std::string_view kName = "edge";
-};
-/// Bins of equal probability of an error.
-struct EffectBin {
-  static constexpr std::string_view kName = "effect_bin";
-};
+using Quantile = Axis<"quantile">;     ///< Quantiles that a study asks for.
+using HistogramBin = Axis<"bin">;      ///< Bins of a histogram.
+using HistogramEdge = Axis<"edge">;    ///< Where the bins of a histogram begin and end.
+using EffectBin = Axis<"effect_bin">;  ///< Bins of equal probability of an error.
 }  // namespace axis
 
 /// What a Monte Carlo study alone asks.

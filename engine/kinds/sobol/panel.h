@@ -21,26 +21,11 @@
 namespace poesy {
 
 namespace axis {
-/// Quantities that have indices: the responses, then the vectors with a sign.
-struct PanelQuantity {
-  static constexpr std::string_view kName = "quantity";
-};
-/// What is solved: the responses, then the components of all details.
-struct PanelRow {
-  static constexpr std::string_view kName = "row";
-};
-/// Pairs of groups.
-struct GroupPair {
-  static constexpr std::string_view kName = "pair";
-};
-/// Subsets of the groups, as numbers whose bit g is set for group g.
-struct GroupSubset {
-  static constexpr std::string_view kName = "subset";
-};
-/// Errors of a block.
-struct BlockError {
-  static constexpr std::string_view kName = "block_error";
-};
+using PanelQuantity = Axis<"quantity">;  ///< Quantities that have indices: the responses, then the vectors with a sign.
+using PanelRow = Axis<"row">;            ///< What is solved: the responses, then the components of all details.
+using GroupPair = Axis<"pair">;          ///< Pairs of groups.
+using GroupSubset = Axis<"subset">;      ///< Subsets of the groups, as numbers whose bit g is set for group g.
+using BlockError = Axis<"block_error">;  ///< Errors of a block.
 }  // namespace axis
 
 /// What a panel is of.

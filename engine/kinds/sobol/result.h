@@ -22,17 +22,9 @@ namespace poesy {
 
 namespace axis {
 /// What variances are shared among. The axis has another name in a file whose errors are not joined: "factor".
-struct ErrorGroup {
-  static constexpr std::string_view kName = "group";
-};
-/// The second group of a pair.
-struct OtherGroup {
-  static constexpr std::string_view kName = "other";
-};
-/// Vectors with a sign, whose components have one unit.
-struct SignedVector {
-  static constexpr std::string_view kName = "vector";
-};
+using ErrorGroup = Axis<"group">;
+using OtherGroup = Axis<"other">;     ///< The second group of a pair.
+using SignedVector = Axis<"vector">;  ///< Vectors with a sign, whose components have one unit.
 }  // namespace axis
 
 /// By what errors are joined to groups, whose members vary at once.
