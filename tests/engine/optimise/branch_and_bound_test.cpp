@@ -142,9 +142,9 @@ TEST(SearchAmongProcesses, TakesGradesOfAStandard) {
     problem.parts.push_back(available_values(CostLaw::reciprocal(1.0, nominal * 1e-3), list));
   }
   double least = std::numeric_limits<double>::infinity();
-  for (const double a : tolerances[0]) {
-    for (const double b : tolerances[1]) {
-      for (const double c : tolerances[2]) {
+  for (const double a : tolerances.at(0)) {
+    for (const double b : tolerances.at(1)) {
+      for (const double c : tolerances.at(2)) {
         if (a + 0.5 * b + 2.0 * c <= 60e-6) least = std::min(least, 3.0 + 12e-6 / a + 1e-4 / b + 4e-4 / c);
       }
     }
