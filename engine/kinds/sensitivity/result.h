@@ -103,12 +103,11 @@ struct SensitivityResult {
   Array<double, axis::Response, axis::Pose> background;  ///< all varied errors zero; NaN where that was not solved
   Array<SolveCounts, axis::Factor, axis::Pose> solves;   ///< of the samples; those of the background are not counted
   Array<std::uint64_t, axis::Factor> limb;               ///< of each error, from 1
-  /// The error from which tolerances of equal effect are counted, by name; empty where no error has an effect.
-  Array<std::string, axis::Response> reference;
-  Array<double, axis::Response> reference_tolerance;  ///< of that error, SI; NaN where there is none
-  Array<double, axis::Response> mean_square_bound;    ///< Response::mean_square_bound
-  std::optional<SeparationResult> separation;         ///< where the model separates its errors
-  std::optional<FidelityResult> fidelity;             ///< where the study compares two fidelities
+  /// The error from which tolerances of equal effect are counted; none where no error has an effect.
+  Array<std::optional<ReferenceError>, axis::Response> reference;
+  Array<double, axis::Response> mean_square_bound;  ///< Response::mean_square_bound
+  std::optional<SeparationResult> separation;       ///< where the model separates its errors
+  std::optional<FidelityResult> fidelity;           ///< where the study compares two fidelities
   /// The global indices after fewer samples, where the study has a fixed number of them, with intervals: each is what a
   /// study with exactly so many samples at each pose (engine/run/evaluate_unit.h) would find, bit by bit. The last is
   /// the result's.

@@ -110,7 +110,7 @@ std::size_t chosen_response(const TolerancesOptions& options, const StoredResult
 
 std::optional<ReferenceError> reference_of(const TolerancesOptions& options, const StoredResult& result,
                                            std::size_t response) {
-  if (!options.reference) return stored_reference(result, response);
+  if (!options.reference) return sensitivity_of(result).reference(response);
   const std::size_t equals = options.reference->find('=');
   const std::size_t factor = position(result.factors, options.reference->substr(0, equals), "--reference", "error");
   const NamedUnit& named = result.factors[factor];

@@ -57,16 +57,24 @@ const Fields<SensitivityResult> kIndexFields{
     {"index_ci_high", &SensitivityResult::global_ci_high, kIndexUnit, "Upper end of the interval of index",
      Presence::always, kIndexLevel}};
 
-/// What set_references says, which alone is read back.
-const Fields<SensitivityResult> kReferenceFields{
+/// Facts of the study. They and the references alone are read back.
+const Fields<SensitivityResult> kStudyFields{
     {"limb", &SensitivityResult::limb, "1", "Limb of the error, from 1"},
-    {"reference_factor", &SensitivityResult::reference, "1",
-     "The error from which equal_effect is counted; empty when no error has an effect"},
-    {"reference_tolerance", &SensitivityResult::reference_tolerance, "SI: unit of reference_factor",
-     "Tolerance of reference_factor"},
     {"mean_square_bound", &SensitivityResult::mean_square_bound, "1",
      "To first order, the mean square of all errors together is at most this times the sum of those of each error "
      "alone; 1: they add exactly"}};
+
+/// The reference of each response.
+struct ReferenceColumns {
+  Array<std::string, axis::Response> factor;  ///< its name; empty where there is none
+  Array<double, axis::Response> tolerance;    ///< NaN where there is none
+};
+
+const Fields<ReferenceColumns> kReferenceFields{
+    {"reference_factor", &ReferenceColumns::factor, "1",
+     "The error from which equal_effect is counted; empty when no error has an effect"},
+    {"reference_tolerance", &ReferenceColumns::tolerance, "SI: unit of reference_factor",
+     "Tolerance of reference_factor"}};
 
 std::optional<ReferenceError> reference_for(const Study& study, const SensitivityResult& found, std::size_t response) {
   const std::vector<FactorIndex>& factors = study.analysis.factors;
@@ -78,15 +86,6 @@ std::optional<ReferenceError> reference_for(const Study& study, const Sensitivit
   const auto smallest = smallest_effect(response_study(found, sigma, response).index, sigma);
   if (!smallest) return std::nullopt;
   return ReferenceError{*smallest, display_unit(study.model().factors[factors[*smallest].value].dimension).si};
-}
-
-/// The reference of a response, with its position among the errors of these names.
-std::optional<ReferenceError> reference_among(const std::vector<std::string>& names, const SensitivityResult& found,
-                                              std::size_t response) {
-  const std::string& name = found.reference(response);
-  if (name.empty()) return std::nullopt;
-  return ReferenceError{position_in(names, name, "its reference error is none of its factors"),
-                        found.reference_tolerance(response)};
 }
 
 /// The numbers of each error. heading(name, unit, suffix): of a column; the suffix is "_display" for the units people
@@ -278,14 +277,11 @@ void set_references(const Study& study, SensitivityResult& found) {
   for (std::size_t p = 0; p < found.factors(); ++p) {
     found.limb(p) = model.factors[study.analysis.factors[p].value].limb;
   }
-  found.reference = Array<std::string, axis::Response>({found.responses()});
-  found.reference_tolerance = found.mean_square_bound = Array<double, axis::Response>({found.responses()}, kNaN);
+  found.reference = Array<std::optional<ReferenceError>, axis::Response>({found.responses()});
+  found.mean_square_bound = Array<double, axis::Response>({found.responses()});
   for (std::size_t r = 0; r < found.responses(); ++r) {
     found.mean_square_bound(r) = model.responses[r].mean_square_bound;
-    const std::optional<ReferenceError> reference = reference_for(study, found, r);
-    if (!reference) continue;
-    found.reference(r) = model.factors[study.analysis.factors[reference->factor].value].name;
-    found.reference_tolerance(r) = reference->tolerance;
+    found.reference(r) = reference_for(study, found, r);
   }
 }
 
@@ -293,43 +289,51 @@ void write_tolerance_group(ResultBuilder& result, const Study& study, const Sens
   const std::vector<double> sigma = standard_deviations(study);
   ToleranceGroup group;
   group.kind = group.unit = Array<std::string, axis::Factor>({found.factors()});
-  std::vector<std::string> names;
+  const auto factor = [&](std::size_t p) -> const Factor& {
+    return study.model().factors[study.analysis.factors[p].value];
+  };
   for (std::size_t p = 0; p < found.factors(); ++p) {
-    const Factor& factor = study.model().factors[study.analysis.factors[p].value];
-    group.kind(p) = error_kind(factor.dimension);
-    group.unit(p) = unit_of(factor);
-    names.push_back(factor.name);
+    group.kind(p) = error_kind(factor(p).dimension);
+    group.unit(p) = unit_of(factor(p));
   }
   group.equal_effect = group.mean_square_share = group.rms_effect = Indices(found.global.lengths());
   group.background_rms = Array<double, axis::Response>({found.responses()});
+  ReferenceColumns references{Array<std::string, axis::Response>({found.responses()}),
+                              Array<double, axis::Response>({found.responses()}, kNaN)};
   for (std::size_t r = 0; r < found.responses(); ++r) {
-    const Tolerances all = response_tolerances(found, sigma, r, reference_among(names, found, r));
+    const Tolerances all = response_tolerances(found, sigma, r, found.reference(r));
     std::ranges::copy(all.equal_effect, group.equal_effect.row(r).begin());
     std::ranges::copy(all.mean_square_share, group.mean_square_share.row(r).begin());
     std::ranges::transform(all.mean_square.effects, group.rms_effect.row(r).begin(),
                            [](double effect) { return std::sqrt(effect); });
     group.background_rms(r) = std::sqrt(all.mean_square.background);
+    if (!all.reference) continue;
+    references.factor(r) = factor(all.reference->factor).name;
+    references.tolerance(r) = all.reference->tolerance;
   }
   write_group(result, kToleranceGroup, group);
   write_fields(result, "/tolerances", kIndexFields, found);
-  write_fields(result, "/tolerances", kReferenceFields, found);
+  write_fields(result, "/tolerances", kStudyFields, found);
+  write_fields(result, "/tolerances", kReferenceFields, references);
 }
 
 void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, SensitivityResult& found) {
-  read_fields(file, "/tolerances", kReferenceFields, found);
-  const std::vector<std::string> names = names_of(factors);
-  for (std::size_t r = 0; r < found.reference.size(); ++r) reference_among(names, found, r);
-}
-
-std::optional<ReferenceError> stored_reference(const StoredResult& result, std::size_t response) {
-  return reference_among(names_of(result.factors), sensitivity_of(result), response);
+  read_fields(file, "/tolerances", kStudyFields, found);
+  ReferenceColumns references;
+  read_fields(file, "/tolerances", kReferenceFields, references);
+  found.reference = Array<std::optional<ReferenceError>, axis::Response>(references.factor.lengths());
+  for (std::size_t r = 0; r < found.reference.size(); ++r) {
+    const std::string& name = references.factor(r);
+    if (name.empty()) continue;
+    const std::size_t factor =
+        position_in(factors, name, "its reference error is none of its factors", &NamedUnit::name);
+    found.reference(r) = ReferenceError{factor, references.tolerance(r)};
+  }
 }
 
 ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t response) {
-  return {
-      response,
-      response_tolerances(sensitivity_of(result), result.factor_sigma, response, stored_reference(result, response)),
-      std::nullopt};
+  const SensitivityResult& found = sensitivity_of(result);
+  return {response, response_tolerances(found, result.factor_sigma, response, found.reference(response)), std::nullopt};
 }
 
 void append_tolerance_tables(CsvTables& tables, const StoredResult& result) {
@@ -378,7 +382,7 @@ void add_tolerance_section(const StoredResult& result, Page& page) {
   Section& section = page.add_section("tolerances", "How tight must each be");
   const std::size_t response = response_named(result, default_ranking(result));
   const std::string& name = result.responses[response].name;
-  if (!stored_reference(result, response)) {
+  if (!sensitivity_of(result).reference(response)) {
     section.paragraph(fmt::format("No error has an effect on {}, so nothing can be said about tolerances.", name));
     return;
   }

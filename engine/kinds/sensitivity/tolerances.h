@@ -27,7 +27,7 @@ struct ResponseTolerances {
   std::string caveat = {};  ///< why they may not hold, for tables and studies; empty: no known reason
 };
 
-/// Fills in what the study says for tolerances: limb, reference, reference_tolerance and mean_square_bound. The
+/// Fills in what the study says for tolerances: limb, reference and mean_square_bound. The
 /// reference of each response is the study's, or the error of smallest effect at one unit of those in which people read
 /// it.
 void set_references(const Study& study, SensitivityResult& found);
@@ -38,8 +38,6 @@ void write_tolerance_group(ResultBuilder& result, const Study& study, const Sens
 /// Throws h5::Error where a reference is none of these factors.
 void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, SensitivityResult& found);
 /// @}
-/// The error from which tolerances for this response are counted; none where no error has an effect on it.
-std::optional<ReferenceError> stored_reference(const StoredResult& result, std::size_t response);
 /// tolerances_RESPONSE.csv.
 void append_tolerance_tables(CsvTables& tables, const StoredResult& result);
 /// The section of a report.

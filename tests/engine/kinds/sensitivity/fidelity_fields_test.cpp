@@ -92,7 +92,7 @@ TEST_F(FidelityFile, ConfirmationOfItsTolerancesIsAtTheFirstFidelity) {
   write_result(path_, example_.study, example_.poses, solved, example_.facts);
   const StoredResult stored = read_result(path_);
   const ResponseStudy study = response_study(sensitivity_of(stored), stored.factor_sigma, 1);
-  ResponseTolerances found{1, tolerances(study, stored_reference(stored, 1)), std::nullopt};
+  ResponseTolerances found{1, tolerances(study, sensitivity_of(stored).reference(1)), std::nullopt};
   found.limit =
       limit_tolerances(study, found.all.mean_square, stored.factor_sigma, 10.0, largest_tolerances(stored, catalog_));
   for (const std::string& path : write_confirmation(folder_.file("t"), stored, found, catalog_).paths) {

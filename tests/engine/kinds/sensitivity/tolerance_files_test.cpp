@@ -55,7 +55,7 @@ TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
   const StoredResult stored = written({1.0, 2.0, 3.0, 4.0});
   for (const std::size_t p : {0U, 1U}) EXPECT_EQ(sensitivity_of(stored).limb(p), 1U);
   for (const std::size_t r : {0U, 1U}) {
-    const auto reference = stored_reference(stored, r);
+    const auto reference = sensitivity_of(stored).reference(r);
     ASSERT_TRUE(reference);
     EXPECT_EQ(reference->factor, 1U);  // delta_1 is the second that the study varies
     EXPECT_EQ(reference->tolerance, 3e-3);
@@ -64,9 +64,9 @@ TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
 
 TEST_F(ToleranceFiles, ReferenceIsTheSmallestEffectOrTheStudysOwn) {
   const StoredResult stored = written({1e-5, 2.0, 0.0, 0.0});  // times sigma: 2.9e-6 and 2e-3
-  EXPECT_EQ(stored_reference(stored, 0)->factor, 0U);
-  EXPECT_EQ(stored_reference(stored, 0)->tolerance, kDegree);
-  EXPECT_FALSE(stored_reference(stored, 1));
+  EXPECT_EQ(sensitivity_of(stored).reference(0)->factor, 0U);
+  EXPECT_EQ(sensitivity_of(stored).reference(0)->tolerance, kDegree);
+  EXPECT_FALSE(sensitivity_of(stored).reference(1));
 }
 
 TEST_F(ToleranceFiles, ReferenceWithoutEffectLeavesTolerancesUnknown) {
