@@ -287,7 +287,10 @@ class MemberOf final : public Member<Found> {
   }
   void read(const h5::File& file, const std::string& path, const Axes& axes, std::span<Found> things) const override {
     if constexpr (kIsArray<Value>) {
-      things.front().*member_ = read_array<Value>(file, path);
+      // A row may have other names for the axes than the type.
+      typename Value::Lengths lengths;
+      std::ranges::transform(axes, lengths.begin(), [&](const std::string& axis) { return axis_length(file, axis); });
+      things.front().*member_ = Value(lengths, read_along<typename Value::Element>(file, path, axes));
     } else if constexpr (kIsList<Value>) {
       things.front().*member_ = read_along<typename Value::value_type>(file, path, axes);
     } else {

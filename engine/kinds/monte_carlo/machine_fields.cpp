@@ -164,7 +164,7 @@ CsvTable by_response(const StoredResult& result, const std::string& name, const 
                  {},
                  {"unit", [&](std::size_t r) { return result.responses[r].unit; }}};
   const auto add = [&](const std::string& heading, const auto& numbers) {
-    table.columns.push_back(list_column(heading, numbers.all()));
+    table.columns.push_back(list_column(heading, numbers));
   };
   const auto add_quantile = [&](const std::string& heading, const MachineValues::Quantiles& quantiles, std::size_t q) {
     table.columns.push_back({heading, [&quantiles, q](std::size_t r) { return quantiles(r, q); }});
@@ -217,27 +217,25 @@ void append_yield_tables(CsvTables& tables, const StoredResult& result, const Yi
     }
   }
   tables.push_back(std::move(all));
-  CsvTable each{
-      "yield_by_response",
-      {"response", [&](std::size_t r) { return result.responses[r].name; }},
-      result.responses.size(),
-      {list_column("yield", found.by_response.all()), list_column("yield_ci_low", found.by_response_ci_low.all()),
-       list_column("yield_ci_high", found.by_response_ci_high.all())},
-      {}};
+  CsvTable each{"yield_by_response",
+                {"response", [&](std::size_t r) { return result.responses[r].name; }},
+                result.responses.size(),
+                {list_column("yield", found.by_response), list_column("yield_ci_low", found.by_response_ci_low),
+                 list_column("yield_ci_high", found.by_response_ci_high)},
+                {}};
   tables.push_back(std::move(each));
   if (found.has_shares()) tables.push_back(share_table(result, found));
-  CsvTable gradient{
-      "yield_gradient",
-      {"factor", [&](std::size_t p) { return result.factors[p].name; }},
-      result.factors.size(),
-      {list_column("gradient", found.gradient.all()), list_column("gradient_ci_low", found.gradient_ci_low.all()),
-       list_column("gradient_ci_high", found.gradient_ci_high.all())},
-      {"unit", [&](std::size_t p) { return "per " + result.factors[p].unit; }}};
+  CsvTable gradient{"yield_gradient",
+                    {"factor", [&](std::size_t p) { return result.factors[p].name; }},
+                    result.factors.size(),
+                    {list_column("gradient", found.gradient), list_column("gradient_ci_low", found.gradient_ci_low),
+                     list_column("gradient_ci_high", found.gradient_ci_high)},
+                    {"unit", [&](std::size_t p) { return "per " + result.factors[p].unit; }}};
   if (found.has_change()) {
     for (const auto& [name, list] : {std::pair{"change", &found.change},
                                      {"change_ci_low", &found.change_ci_low},
                                      {"change_ci_high", &found.change_ci_high}}) {
-      gradient.columns.push_back(list_column(name, list->all()));
+      gradient.columns.push_back(list_column(name, *list));
     }
   }
   tables.push_back(std::move(gradient));
@@ -261,14 +259,14 @@ CsvTable index_table(const StoredResult& result, const std::string& name, const 
 /// The curves of one response: a line for each error and bin.
 CsvTable curve_table(const StoredResult& result, const EffectResult& found, std::size_t r) {
   const NamedUnit& response = result.responses[r];
-  return {"main_effect_" + response.name,
-          {"factor", [&](std::size_t line) { return result.factors[line / kEffectBins].name; }},
-          found.bin_error.size(),
-          {list_column("error", found.bin_error.all()),
-           list_column(with_unit("mean", response.unit), found.effects.mean.row(r)),
-           list_column(with_unit("ci_low", response.unit), found.effects.ci_low.row(r)),
-           list_column(with_unit("ci_high", response.unit), found.effects.ci_high.row(r))},
-          {"unit", [&](std::size_t line) { return result.factors[line / kEffectBins].unit; }}};
+  return {
+      "main_effect_" + response.name,
+      {"factor", [&](std::size_t line) { return result.factors[found.bin_error.positions(line).front()].name; }},
+      found.bin_error.size(),
+      {list_column("error", found.bin_error), list_column(with_unit("mean", response.unit), found.effects.mean.row(r)),
+       list_column(with_unit("ci_low", response.unit), found.effects.ci_low.row(r)),
+       list_column(with_unit("ci_high", response.unit), found.effects.ci_high.row(r))},
+      {"unit", [&](std::size_t line) { return result.factors[found.bin_error.positions(line).front()].unit; }}};
 }
 
 }  // namespace

@@ -21,7 +21,7 @@
 namespace poesy {
 
 namespace axis {
-using PanelQuantity = Axis<"quantity">;  ///< Quantities that have indices: the responses, then the vectors with a sign.
+using PanelQuantity = Axis<"quantity">;  ///< What has indices: the responses, then the vectors with a sign.
 using PanelRow = Axis<"row">;            ///< What is solved: the responses, then the components of all details.
 using GroupPair = Axis<"pair">;          ///< Pairs of groups.
 using GroupSubset = Axis<"subset">;      ///< Subsets of the groups, as numbers whose bit g is set for group g.
