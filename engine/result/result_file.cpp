@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <numeric>
 
+#include "engine/base/array.h"
 #include "engine/base/error.h"
 #include "engine/result/result_parts.h"
 #include "engine/storage/checkpoint.h"
@@ -255,9 +256,10 @@ SelectedPoses read_poses(const h5::File& file) {
   const std::size_t count = axis_length(file, "pose");
   const std::vector<NamedUnit> coordinates = read_pose_coordinates(file);
   std::vector<double> values(count * coordinates.size());
+  const ArrayView<double, axis::Pose, axis::Component> of_pose(values, {count, coordinates.size()});
   for (std::size_t c = 0; c < coordinates.size(); ++c) {
     const auto column = read_along<double>(file, "/poses/" + coordinates[c].name, {"pose"});
-    for (std::size_t m = 0; m < count; ++m) values[m * coordinates.size() + c] = column[m];
+    for (std::size_t m = 0; m < count; ++m) of_pose(m, c) = column[m];
   }
   SelectedPoses selected;
   selected.poses = PoseSet(coordinates.size(), std::move(values));

@@ -267,11 +267,12 @@ std::vector<SolveCounts> read_solver(const h5::File& file, const Axes& axes) {
   SolverColumns columns;
   read_fields(file, "/solver", solver_fields(axes), columns);
   const std::size_t cells = columns.iterations_mean.size();
+  const ArrayView<const std::uint64_t, Axis<"status">, Axis<"cell">> by_status(columns.by_status, {statuses, cells});
   std::vector<SolveCounts> solves(cells);
   for (std::size_t cell = 0; cell < cells; ++cell) {
     SolveCounts& counts = solves[cell];
     for (std::size_t status = 0; status < statuses; ++status) {
-      counts.by_status[status] = columns.by_status[status * cells + cell];
+      counts.by_status[status] = by_status(status, cell);
     }
     // The mean is the sum over the total, so this gives back the sum exactly; without samples it is NaN.
     const auto total = static_cast<double>(counts.total());

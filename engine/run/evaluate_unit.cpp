@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/base/array.h"
 #include "engine/base/contract.h"
 #include "engine/random/stream.h"
 #include "engine/run/effect_poses.h"
@@ -154,8 +155,10 @@ UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit, std::span<const double> 
   const std::span draws = std::span(values_).first(unit.count);
   draw_uniforms(unit, unit.slot, draws);
   plan_->distributions()[unit.slot].transform(draws);
+  const ArrayView<double, Axis<"scale">, axis::Sample> scaled(std::span(values_).first(count),
+                                                              {scales.size(), unit.count});
   for (std::size_t k = scales.size(); k-- > 0;) {  // the first ones last, because the others are made of them
-    for (std::size_t b = 0; b < unit.count; ++b) values_[k * unit.count + b] = scales[k] * draws[b];
+    for (std::size_t b = 0; b < unit.count; ++b) scaled(k, b) = scales[k] * draws[b];
   }
   return UnitSolver::solve(unit.pose, plan_->factors().subspan(unit.slot, 1), count,
                            expected_range(plan_->distributions()[unit.slot]));
@@ -168,18 +171,20 @@ CellUnit UnitEvaluator::operator()(const WorkUnit& unit) {
   CellUnit found;
   found.responses.reserve(responses_);
   found.within.resize(points.size() * responses_);
+  const ArrayView<LocalIndex, Axis<"point">, axis::Response> within(found.within, {points.size(), responses_});
+  const ArrayView<const double, axis::Response, axis::Sample> responses(outcomes.responses, {responses_, unit.count});
   count_ends(unit, outcomes, found);
   kept_.clear();
   for (std::size_t b = 0; b < unit.count; ++b) {
     if (counts(outcomes.status[b], plan_->not_converged())) kept_.push_back(b);
   }
   for (std::size_t r = 0; r < responses_; ++r) {
-    for (std::size_t n = 0; n < kept_.size(); ++n) values_[n] = outcomes.responses[r * unit.count + kept_[n]];
+    for (std::size_t n = 0; n < kept_.size(); ++n) values_[n] = responses(r, kept_[n]);
     const std::span<const double> kept = std::span(values_).first(kept_.size());
     found.responses.push_back(Moments::of(kept));
     for (std::size_t k = 0; k < points.size(); ++k) {
       const auto count = static_cast<std::size_t>(std::ranges::lower_bound(kept_, points[k]) - kept_.begin());
-      found.within[k * responses_ + r] = local_index_with_error(Moments::of(kept.first(count)), sigma);
+      within(k, r) = local_index_with_error(Moments::of(kept.first(count)), sigma);
     }
   }
   return found;

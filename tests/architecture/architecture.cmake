@@ -19,6 +19,10 @@ add_test(NAME architecture.type_names
          COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/type_names.py ${PROJECT_SOURCE_DIR})
 add_test(NAME architecture.type_names_finds_violations
          COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/type_names_test.py)
+add_test(NAME architecture.index_arithmetic
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/index_arithmetic.py ${PROJECT_SOURCE_DIR})
+add_test(NAME architecture.index_arithmetic_finds_it
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/index_arithmetic_test.py)
 add_test(NAME architecture.ctest_lines
          COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/ctest_lines.py ${PROJECT_BINARY_DIR})
 add_test(NAME architecture.ctest_lines_finds_violations
@@ -26,6 +30,7 @@ add_test(NAME architecture.ctest_lines_finds_violations
 set_tests_properties(architecture.include_table architecture.include_table_finds_violations
                      architecture.kind_names architecture.kind_names_finds_violations
                      architecture.ctest_lines architecture.ctest_lines_finds_violations
+                     architecture.index_arithmetic architecture.index_arithmetic_finds_it
                      architecture.readme_commands architecture.readme_commands_finds_violations
                      architecture.page_links architecture.page_links_finds_violations
                      architecture.type_names architecture.type_names_finds_violations

@@ -76,9 +76,10 @@ EstimateCourse HistoryCollector::history(const SensitivityResult& end) const {
 
 std::vector<std::size_t> HistoryCollector::poses_at(std::size_t slot, std::size_t point,
                                                     std::span<const std::size_t> units_done) const {
+  const std::span<const std::size_t> of_slot = units_done.subspan(slot * poses(), poses());
   std::vector<std::size_t> list;
   for (std::size_t m = 0; m < poses(); ++m) {
-    if (units_done[slot * poses() + m] >= Plan::units_for(points_[point])) list.push_back(m);
+    if (of_slot[m] >= Plan::units_for(points_[point])) list.push_back(m);
   }
   return list;
 }

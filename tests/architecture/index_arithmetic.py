@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+"""Positions in results are not computed by hand: an Array or an ArrayView (engine/base/array.h) knows its axes.
+
+Looks for an index that is a product and a sum, such as `values[r * poses + m]`, in the rooms that hold, store and show
+what a study found. Numerical rooms (stats, random, optimise, linalg, models) work on plain blocks; so do the files below,
+which solve or invert inside a kind.
+
+    index_arithmetic.py ROOT
+"""
+
+import re
+import sys
+from pathlib import Path
+
+ROOMS = ("run", "result", "storage", "report", "kinds")
+INDEX = re.compile(r"\w\[[^][]*(?:\*[^][]*\+|\+[^][]*\*)[^][]*\]")
+COMMENT = re.compile(r"//.*")
+NUMERICAL = {
+    "engine/kinds/allocation/load_solver.h",
+    "engine/kinds/allocation/machine_loads.cpp",
+    "engine/kinds/allocation/mean_squares.cpp",
+    "engine/kinds/allocation/variations.cpp",
+    "engine/kinds/monte_carlo/part_groups.cpp",
+    "engine/result/csv_table.h",  # every n-th element of a list
+}
+
+
+def problems(root):
+    for room in ROOMS:
+        for path in sorted((root / "engine" / room).rglob("*")):
+            name = str(path.relative_to(root))
+            if path.suffix not in (".h", ".cpp") or name in NUMERICAL:
+                continue
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
+                if found := INDEX.search(COMMENT.sub("", line)):
+                    yield f"{name}:{number}: {found[0][1:]} computes a position; use an Array or an ArrayView"
+
+
+def main():
+    found = list(problems(Path(sys.argv[1])))
+    for problem in found:
+        print(problem)
+    if not found:
+        print("no position is computed by hand")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
