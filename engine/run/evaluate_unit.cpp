@@ -155,8 +155,8 @@ UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit, std::span<const double> 
   const std::span draws = std::span(values_).first(unit.count);
   draw_uniforms(unit, unit.slot, draws);
   plan_->distributions()[unit.slot].transform(draws);
-  const ArrayView<double, Axis<"scale">, axis::Sample> scaled(std::span(values_).first(count),
-                                                              {scales.size(), unit.count});
+  const ArrayView<double, Axis<"scale">, axis::Sample> scaled{std::span(values_).first(count),
+                                                              {scales.size(), unit.count}};
   for (std::size_t k = scales.size(); k-- > 0;) {  // the first ones last, because the others are made of them
     for (std::size_t b = 0; b < unit.count; ++b) scaled(k, b) = scales[k] * draws[b];
   }

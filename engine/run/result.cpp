@@ -53,25 +53,29 @@ void FailedSamples::merge(const FailedSamples& later) {
   for (const FailedSample& failed : later.first_) add(failed.sample, failed.status);
 }
 
-void FailedSamples::write(ByteWriter& to) const {
-  to.number(first_.size());
-  for (const FailedSample& failed : first_) {
-    to.number(failed.sample.value);
-    to.number(static_cast<std::uint64_t>(failed.status));
+void FailedSamples::state(Archive& archive, std::uint64_t failures, std::uint64_t first, std::uint64_t end) {
+  std::size_t kept = first_.size();
+  archive.number(kept);
+  archive.expect(kept == std::min<std::uint64_t>(failures, kMost), "has another number of failures than it says");
+  first_.resize(kept);
+  for (auto& [sample, status] : first_) {
+    archive.number(sample.value);
+    archive.number(status, kStatusNames.size() - 1);
+    archive.expect(sample.value >= first && sample.value < end && !solved(status),
+                   "has a failure that cannot be there");
+    first = sample.value + 1;
   }
+}
+
+void FailedSamples::write(ByteWriter& to) const {
+  Archive archive(to);
+  FailedSamples(*this).state(archive, 0, 0, 0);
 }
 
 FailedSamples FailedSamples::read(ByteReader& from, std::uint64_t failures, std::uint64_t first, std::uint64_t end) {
   FailedSamples samples;
-  const std::uint64_t kept = from.number();
-  if (kept != std::min<std::uint64_t>(failures, kMost)) throw BytesError("has another number of failures than it says");
-  for (std::uint64_t n = 0; n < kept; ++n) {
-    const std::uint64_t sample = from.number();
-    const auto status = static_cast<SolveStatus>(from.number_up_to(kStatusNames.size() - 1));
-    if (sample < first || sample >= end || solved(status)) throw BytesError("has a failure that cannot be there");
-    samples.first_.push_back({SampleIndex(static_cast<std::size_t>(sample)), status});
-    first = sample + 1;
-  }
+  Archive archive(from);
+  samples.state(archive, failures, first, end);
   return samples;
 }
 

@@ -77,9 +77,10 @@ class FailedSamples {
   /// In the order of samples, at most kMost.
   std::span<const FailedSample> first() const { return first_; }
 
-  /// For a state or a message.
-  void write(ByteWriter& to) const;
-  /// Of samples first .. end - 1, so many of which failed. Throws BytesError for what cannot be theirs.
+  /// Of samples first .. end - 1, so many of which failed; nobody looks at these numbers where it is written.
+  void state(Archive& archive, std::uint64_t failures, std::uint64_t first, std::uint64_t end);
+  void write(ByteWriter& to) const;  ///< Its state.
+  /// Its state. Throws BytesError for what cannot be theirs.
   static FailedSamples read(ByteReader& from, std::uint64_t failures, std::uint64_t first, std::uint64_t end);
 
  private:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/base/contract.h"
 
 /// Lists and arrays of accumulators, element by element.
@@ -22,16 +22,22 @@ void merge_each(Sums& sums, const Sums& later) {
   for_each_pair(sums, later, [](auto& sum, const auto& other) { sum.merge(other); });
 }
 
-/// Writes every element, or reads as many as there are. Throws BytesError.
-/// @{
+/// The state of every element, where both directions know how many there are.
 template <class Sums>
-void write_each(const Sums& sums, ByteWriter& to) {
-  for (const auto& sum : sums) sum.write(to);
+void state_of_each(Archive& archive, Sums& sums) {
+  for (auto& sum : sums) archive.object(sum);
 }
-template <class Sums>
-void read_each(ByteReader& from, Sums& sums) {
-  for (auto& sum : sums) sum = std::remove_reference_t<decltype(sum)>::read(from);
+
+/// The same of elements whose class has no state, but write() and read().
+template <class Values>
+void packed_of_each(Archive& archive, Values& values) {
+  for (auto& value : values) {
+    if (archive.reads()) {
+      value = std::remove_reference_t<decltype(value)>::read(archive.reader());
+    } else {
+      value.write(archive.writer());
+    }
+  }
 }
-/// @}
 
 }  // namespace poesy

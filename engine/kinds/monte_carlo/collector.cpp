@@ -15,16 +15,14 @@ namespace {
 
 constexpr std::uint64_t kKind = 2;  ///< no other state begins with this number
 
-/// Calls visit(numbers) with all that a finished pose of a result knows from a response's sketch.
-template <class Result, class Visit>
-void visit_sketched(Result& result, std::size_t response, std::size_t pose, const Visit& visit) {
-  visit(result.min.row(response, pose));
-  visit(result.max.row(response, pose));
-  visit(result.quantiles.row(response, pose));
-  visit(result.quantiles_ci_low.row(response, pose));
-  visit(result.quantiles_ci_high.row(response, pose));
-  visit(result.quantile_error.row(response, pose));
-  if (!result.share_magnitude.empty()) visit(result.share_magnitude.row(response, pose));
+/// All that a finished pose of a result knows from a response's sketch.
+void sketched_state(Archive& archive, MonteCarloResult& result, std::size_t response, std::size_t pose) {
+  archive.real(result.min(response, pose), result.max(response, pose));
+  archive.reals(result.quantiles.row(response, pose));
+  archive.reals(result.quantiles_ci_low.row(response, pose));
+  archive.reals(result.quantiles_ci_high.row(response, pose));
+  archive.real(result.quantile_error(response, pose));
+  if (!result.share_magnitude.empty()) archive.real(result.share_magnitude(response, pose));
 }
 
 /// Throws unless these are the solves of whole units, of so many samples at most.
@@ -35,14 +33,13 @@ void check_whole(const SolveCounts& solves, std::size_t most_samples) {
   }
 }
 
-void write_effects(const std::optional<MainEffectSums>& effects, ByteWriter& to) {
-  to.number(effects ? 1 : 0);
-  if (effects) effects->write(to);
-}
-
-std::optional<MainEffectSums> read_effect_sums(ByteReader& from, std::size_t responses, std::size_t errors) {
-  if (from.number_up_to(1) == 0) return std::nullopt;
-  return MainEffectSums::read(from, errors, responses);
+void effects_state(Archive& archive, std::optional<MainEffectSums>& effects, std::size_t errors,
+                   std::size_t responses) {
+  std::uint64_t has = effects ? 1 : 0;
+  archive.number(has, 1);
+  if (archive.reads()) effects.reset();
+  if (archive.reads() && has == 1) effects.emplace(errors, responses);
+  if (effects) archive.object(*effects);
 }
 
 }  // namespace
@@ -63,26 +60,26 @@ void PoseSamples::add(const PoseUnit& unit) {
   }
 }
 
-void PoseSamples::write(ByteWriter& to) const {
-  for (const auto& [moments, sketch] : responses) {
-    moments.write(to);
-    sketch.write(to);
+void PoseSamples::state(Archive& archive, std::size_t errors) {
+  for (auto& [moments, sketch] : responses) {
+    archive.object(moments);
+    archive.object(sketch);
   }
-  solves.write(to);
-  failed.write(to);
-  write_effects(effects, to);
+  archive.object(solves);
+  failed.state(archive, solves.not_converged(), 0, solves.total());
+  effects_state(archive, effects, errors, responses.size());
+}
+
+void PoseSamples::write(ByteWriter& to) const {
+  Archive archive(to);
+  const_cast<PoseSamples&>(*this).state(archive, 0);  // it changes nothing where it writes
 }
 
 PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses, std::size_t errors) {
   PoseSamples samples;
-  for (std::size_t r = 0; r < responses; ++r) {
-    ResponseSamples& response = samples.responses.emplace_back();
-    response.moments = Moments::read(from);
-    response.sketch = QuantileSketch::read(from);
-  }
-  samples.solves = SolveCounts::read(from);
-  samples.failed = FailedSamples::read(from, samples.solves.not_converged(), 0, samples.solves.total());
-  samples.effects = read_effect_sums(from, responses, errors);
+  samples.responses.resize(responses);
+  Archive archive(from);
+  samples.state(archive, errors);
   return samples;
 }
 
@@ -204,27 +201,18 @@ MonteCarloResult MonteCarloCollector::result() && {
   return std::move(found);
 }
 
-void MonteCarloCollector::write_finished(ByteWriter& to, std::size_t pose) const {
+void MonteCarloCollector::finished_state(Archive& archive, std::size_t pose, std::size_t samples) {
+  MonteCarloResult& result = columns_.result();
   for (std::size_t r = 0; r < responses_; ++r) {
-    moments_(pose, r).write(to);
-    visit_sketched(columns_.result(), r, pose, [&](std::span<const double> numbers) { to.reals(numbers); });
+    Moments moments = moments_(pose, r);
+    archive.object(moments);
+    if (archive.reads()) set_moments(r, pose, moments);
+    sketched_state(archive, result, r, pose);
   }
-  columns_.result().solves[pose].write(to);
-  failed_[pose].write(to);
-  write_effects(effects_[pose], to);
-}
-
-void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std::size_t samples) {
-  if (is_finished(pose) || is_open(pose)) throw BytesError("has a pose twice");
-  for (std::size_t r = 0; r < responses_; ++r) {
-    set_moments(r, pose, Moments::read(from));
-    visit_sketched(columns_.result(), r, pose, [&](std::span<double> numbers) { from.reals(numbers); });
-  }
-  columns_.result().solves[pose] = SolveCounts::read(from);
-  if (columns_.result().solves[pose].total() != samples) throw BytesError("has a finished pose with other samples");
-  failed_[pose] = FailedSamples::read(from, columns_.result().solves[pose].not_converged(), 0,
-                                      columns_.result().solves[pose].total());
-  effects_[pose] = read_effect_sums(from, responses_, plan_->factors().size());
+  archive.object(result.solves[pose]);
+  archive.expect(result.solves[pose].total() == samples, "has a finished pose with other samples");
+  failed_[pose].state(archive, result.solves[pose].not_converged(), 0, result.solves[pose].total());
+  effects_state(archive, effects_[pose], plan_->factors().size(), responses_);
 }
 
 void MonteCarloCollector::write_state(ByteWriter& to) const {
@@ -234,7 +222,10 @@ void MonteCarloCollector::write_state(ByteWriter& to) const {
   }
   for (std::size_t m = 0; m < columns_.result().poses(); ++m) {
     to.number(is_finished(m) ? 1 : 0);
-    if (is_finished(m)) write_finished(to, m);
+    if (is_finished(m)) {
+      Archive archive(to);
+      const_cast<MonteCarloCollector*>(this)->finished_state(archive, m, 0);  // it changes nothing where it writes
+    }
     to.block(kept_[m].bytes);
   }
   for (const QuantileSketch& sketch : sketches_) sketch.write(to);
@@ -259,7 +250,11 @@ void MonteCarloCollector::restore_one(ByteReader& from) {
   const bool shorter = samples < plan_->samples();
   for (std::size_t m = 0; m < columns_.result().poses(); ++m) {
     const bool finished = from.number_up_to(1) == 1;
-    if (finished) read_finished(from, m, samples);
+    if (finished) {
+      if (is_finished(m) || is_open(m)) throw BytesError("has a pose twice");
+      Archive archive(from);
+      finished_state(archive, m, samples);
+    }
     read_kept(from, m, finished ? samples : samples - 1);
     if (shorter) {
       columns_.result().solves[m] = {};

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/archive.h"
 #include "engine/base/array.h"
-#include "engine/base/bytes.h"
 #include "engine/kinds/monte_carlo/columns.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/run/evaluate_unit.h"
@@ -33,9 +33,10 @@ struct PoseSamples {
 
   /// Precondition: its samples come after those that are here.
   void add(const PoseUnit& unit);
-  /// For a state.
-  void write(ByteWriter& to) const;
-  /// Throws BytesError for what no samples give. errors: that vary.
+  /// errors: that vary, which nobody looks at where it is written.
+  void state(Archive& archive, std::size_t errors);
+  void write(ByteWriter& to) const;  ///< Their state.
+  /// Their state. Throws BytesError for what no samples give.
   static PoseSamples read(ByteReader& from, std::size_t responses, std::size_t errors);
 };
 
@@ -84,8 +85,7 @@ class MonteCarloCollector {
   /// Keeps the open pose's samples, which make up whole units so far, if there is room for them.
   void keep();
   void set_kept(std::size_t pose, Kept kept);
-  void write_finished(ByteWriter& to, std::size_t pose) const;
-  void read_finished(ByteReader& from, std::size_t pose, std::size_t samples);
+  void finished_state(Archive& archive, std::size_t pose, std::size_t samples);
   void restore_one(ByteReader& from);
   /// The sums of some poses, whose draws are independent.
   EffectResult effects() const;

@@ -18,7 +18,10 @@ constexpr std::uint64_t kKind = 4;  ///< no other state begins with this number
 }  // namespace
 
 MachineCollector::Counts::Counts(std::size_t responses, std::size_t poses)
-    : at_pose({poses, responses}), largest(responses), rms(responses), solves(poses), failed(poses) {}
+    : at_pose({poses, responses}), largest(responses), rms(responses), solves(poses), failed(poses) {
+  make_room({responses}, machines.by_limit);
+  make_room({responses, poses}, machines.at_pose);
+}
 
 void MachineCollector::Counts::add(const MachineUnit& unit) {
   const auto add_block = [](QuantileSketch& sketch, const NumberBlock& block) { sketch.add(block); };
@@ -41,35 +44,19 @@ void MachineCollector::Counts::merge(const Counts& later) {
   machines.merge(later.machines);
 }
 
-void MachineCollector::Counts::write(ByteWriter& to) const {
-  write_each(at_pose, to);
-  write_each(largest, to);
-  write_each(rms, to);
+void MachineCollector::Counts::state(Archive& archive, const MachineTable& table, const NumberRange& range) {
+  const std::size_t count = range.end - range.first;
+  state_of_each(archive, at_pose);
+  state_of_each(archive, largest);
+  state_of_each(archive, rms);
   for (std::size_t m = 0; m < solves.size(); ++m) {
-    solves[m].write(to);
-    failed[m].write(to);
+    archive.object(solves[m]);
+    archive.expect(solves[m].total() == count, "has a pose with other machines");
+    failed[m].state(archive, solves[m].not_converged(), range.first, range.end);
   }
-  to.block(std::as_bytes(std::span(rejected)));
-  machines.write(to);
-}
-
-MachineCollector::Counts MachineCollector::Counts::read(ByteReader& from, const MachineTable& table, std::size_t first,
-                                                        std::size_t end) {
-  const std::size_t responses = table.responses();
-  const std::size_t poses = table.plan().poses().size();
-  Counts counts(responses, poses);
-  read_each(from, counts.at_pose);
-  read_each(from, counts.largest);
-  read_each(from, counts.rms);
-  for (std::size_t m = 0; m < poses; ++m) {
-    counts.solves[m] = SolveCounts::read(from);
-    if (counts.solves[m].total() != end - first) throw BytesError("has a pose with other machines");
-    counts.failed[m] = FailedSamples::read(from, counts.solves[m].not_converged(), first, end);
-  }
-  counts.rejected = read_rejected(from, table, first, end);
-  counts.machines = MachineCounts::read(from, responses, poses);
-  if (counts.machines.machines != end - first) throw BytesError("has counts of other machines");
-  return counts;
+  rejected_state(archive, rejected, table, range);
+  archive.object(machines);
+  archive.expect(machines.machines == count, "has counts of other machines");
 }
 
 MachineCollector::MachineCollector(const MachineTable& table, const Analysis& analysis, const NumberRange& units)
@@ -186,7 +173,8 @@ void MachineCollector::write_state(ByteWriter& to) const {
     sums_.write(to);
     to.number(sums_.first());
     to.number(sums_.end());
-    counts_.write(to);
+    Archive archive(to);
+    const_cast<Counts&>(counts_).state(archive, *table_, {0, 0});  // it changes nothing where it writes
   }
   to.number(tail_ ? 1 : 0);
   if (tail_) tail_->write(to);
@@ -208,19 +196,22 @@ void MachineCollector::restore_one(ByteReader& from) {
   if (from.number_up_to(1) == 1) {
     const std::size_t before = next();
     sums_.read(from, samples / each, [&](ByteReader& bytes, std::size_t, std::size_t leaves) {
-      MachineSums sums = MachineSums::read(bytes, *table_);
+      auto sums = read_state<MachineSums>(bytes, *table_);
       if (sums.effects.front().samples() > leaves * each) throw BytesError("has sums of other machines");
       return sums;
     });
     const auto first = static_cast<std::size_t>(from.number_up_to(samples / each));
     const auto end = static_cast<std::size_t>(from.number_up_to(samples / each));
     if (first != before || end != sums_.end() || first >= end) throw BytesError("has sums of other machines");
-    counts_.merge(Counts::read(from, *table_, first * each, end * each));
+    Counts counts(table_->responses(), poses());
+    Archive archive(from);
+    counts.state(archive, *table_, {first * each, end * each});
+    counts_.merge(counts);
   }
   if (from.number_up_to(1) == 0) return;
   const bool same = samples == table_->plan().samples();
   if (samples % each == 0) throw BytesError("has a last unit that is whole");
-  MachineUnit tail = MachineUnit::read(from, *table_, samples / each * each, samples % each);
+  MachineUnit tail = MachineUnit::read(from, *table_, {samples / each * each, samples});
   if (!same) return;
   if (next() != samples / each) throw BytesError("lacks units before the last");
   tail_ = std::move(tail);

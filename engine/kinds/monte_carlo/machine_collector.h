@@ -57,9 +57,8 @@ class MachineCollector {
     void add(const MachineUnit& unit);
     /// Precondition: the machines of `later` come after those of this.
     void merge(const Counts& later);
-    void write(ByteWriter& to) const;
-    /// Of machines `first` .. end - 1. Throws BytesError.
-    static Counts read(ByteReader& from, const MachineTable& table, std::size_t first, std::size_t end);
+    /// Of these machines, which nobody looks at where it is written. Throws BytesError.
+    void state(Archive& archive, const MachineTable& table, const NumberRange& range);
   };
 
   std::size_t poses() const { return table_->plan().poses().size(); }

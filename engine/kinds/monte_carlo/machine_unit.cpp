@@ -6,22 +6,34 @@
 #include "engine/base/contract.h"
 
 namespace poesy {
-std::vector<std::uint8_t> read_rejected(ByteReader& from, const MachineTable& table, std::size_t first,
-                                        std::size_t end) {
-  std::vector<std::uint8_t> rejected;
-  for (const std::byte flag : from.block()) rejected.push_back(std::to_integer<std::uint8_t>(flag));
-  if (rejected.size() != std::min(end, table.kept()) - std::min(first, table.kept()) ||
-      std::ranges::any_of(rejected, [](std::uint8_t flag) { return flag > 1; })) {
-    throw BytesError("has flags of other machines");
+namespace {
+
+/// How many machines of a range MachineTable::kept() counts.
+std::size_t kept_of(const MachineTable& table, const NumberRange& machines) {
+  return std::min(machines.end, table.kept()) - std::min(machines.first, table.kept());
+}
+
+}  // namespace
+
+void rejected_state(Archive& archive, std::vector<std::uint8_t>& rejected, const MachineTable& table,
+                    const NumberRange& machines) {
+  if (!archive.reads()) {
+    archive.writer().block(std::as_bytes(std::span(rejected)));
+    return;
   }
-  return rejected;
+  rejected.clear();
+  for (const std::byte flag : archive.reader().block()) rejected.push_back(std::to_integer<std::uint8_t>(flag));
+  archive.expect(rejected.size() == kept_of(table, machines) &&
+                     std::ranges::none_of(rejected, [](std::uint8_t flag) { return flag > 1; }),
+                 "has flags of other machines");
 }
 
 MachineSums::MachineSums(const MachineTable& table)
     : at_pose({table.plan().poses().size(), table.responses()}),
       mean(table.responses()),
       largest(table.responses()),
-      rms(table.responses()) {
+      rms(table.responses()),
+      table_(&table) {
   if (table.has_limits()) scores.emplace(table.scores());
   if (table.has_parts()) parts.emplace(table.parts());
   effects.assign(table.effects(), MainEffectSums(table.errors(), table.responses()));
@@ -39,67 +51,47 @@ void MachineSums::merge(const MachineSums& later) {
   merge_each(effects, later.effects);
 }
 
-void MachineSums::write(ByteWriter& to) const {
-  write_each(at_pose, to);
-  for (const auto* moments : {&mean, &largest, &rms}) write_each(*moments, to);
-  if (scores) scores->write(to);
-  to.number(fit ? 1 : 0);
-  if (fit) fit->write(to);
-  if (parts) parts->write(to);
-  write_each(effects, to);
+void MachineSums::state(Archive& archive) {
+  state_of_each(archive, at_pose);
+  for (auto* moments : {&mean, &largest, &rms}) state_of_each(archive, *moments);
+  if (scores) archive.object(*scores);
+  std::uint64_t fits = fit ? 1 : 0;
+  archive.number(fits, table_->vectors().rows() > 0 ? 1 : 0);
+  if (archive.reads() && fits == 1) {
+    fit.emplace(table_->errors(), table_->vectors().rows() * table_->plan().poses().size());
+  }
+  if (fit) archive.object(*fit);
+  if (parts) archive.object(*parts);
+  state_of_each(archive, effects);
 }
 
-MachineSums MachineSums::read(ByteReader& from, const MachineTable& table) {
-  MachineSums sums(table);
-  read_each(from, sums.at_pose);
-  for (auto* moments : {&sums.mean, &sums.largest, &sums.rms}) read_each(from, *moments);
-  if (sums.scores) sums.scores = ScoreSums::read(from, table.scores());
-  if (from.number_up_to(table.vectors().rows() > 0 ? 1 : 0) == 1) {
-    sums.fit = LinearFitSums::read(from, table.errors(), table.vectors().rows() * table.plan().poses().size());
-  }
-  if (sums.parts) sums.parts = PartSums::read(from, table.parts());
-  sums.effects.clear();
-  for (std::size_t k = 0; k < table.effects(); ++k) {
-    sums.effects.push_back(MainEffectSums::read(from, table.errors(), table.responses()));
-  }
-  return sums;
-}
-
-MachineUnit::MachineUnit(const MachineTable& table)
-    : at_pose({table.plan().poses().size(), table.responses()}),
+MachineUnit::MachineUnit(const MachineTable& table, const NumberRange& range)
+    : sums(MachineSums(table)),
+      at_pose({table.plan().poses().size(), table.responses()}),
       largest(table.responses()),
       rms(table.responses()),
+      rejected(kept_of(table, range)),
       solves(table.plan().poses().size()),
-      failed(table.plan().poses().size()) {}
-
-void MachineUnit::write(ByteWriter& to) const {
-  sums->write(to);
-  counts.write(to);
-  write_each(at_pose, to);
-  write_each(largest, to);
-  write_each(rms, to);
-  to.block(std::as_bytes(std::span(rejected)));
-  write_each(solves, to);
-  write_each(failed, to);
+      failed(table.plan().poses().size()),
+      table_(&table),
+      machines_(range) {
+  make_room({table.responses()}, counts.by_limit);
+  make_room({table.responses(), table.plan().poses().size()}, counts.at_pose);
 }
 
-MachineUnit MachineUnit::read(ByteReader& from, const MachineTable& table, std::size_t first, std::size_t machines) {
-  const std::size_t poses = table.plan().poses().size();
-  MachineUnit unit(table);
-  unit.sums = MachineSums::read(from, table);
-  unit.counts = MachineCounts::read(from, table.responses(), poses);
-  read_each(from, unit.at_pose);
-  read_each(from, unit.largest);
-  read_each(from, unit.rms);
-  unit.rejected = read_rejected(from, table, first, first + machines);
-  read_each(from, unit.solves);
-  unit.failed.clear();
-  for (const SolveCounts& solves : unit.solves) {
-    if (solves.total() != machines) throw BytesError("has a pose with other machines");
-    unit.failed.push_back(FailedSamples::read(from, solves.not_converged(), first, first + machines));
+void MachineUnit::state(Archive& archive) {
+  archive.object(*sums);
+  archive.object(counts);
+  packed_of_each(archive, at_pose);
+  packed_of_each(archive, largest);
+  packed_of_each(archive, rms);
+  rejected_state(archive, rejected, *table_, machines_);
+  state_of_each(archive, solves);
+  for (std::size_t m = 0; m < solves.size(); ++m) {
+    archive.expect(solves[m].total() == machines_.end - machines_.first, "has a pose with other machines");
+    failed[m].state(archive, solves[m].not_converged(), machines_.first, machines_.end);
   }
-  unit.total = total_of(unit.solves);
-  return unit;
+  total = total_of(solves);
 }
 
 MachineUnitEvaluator::MachineUnitEvaluator(const MachineTable& table, const Model& model)
@@ -188,8 +180,7 @@ void MachineUnitEvaluator::add_fit(std::span<const std::uint8_t> solved, Machine
 MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {
   const WorkUnit unit = table_->unit(n);
   const std::size_t poses = plan_->poses().size();
-  MachineUnit found(*table_);
-  found.sums.emplace(*table_);
+  MachineUnit found(*table_, {unit.first.value, unit.first.value + unit.count});
   const EffectBins bins = draw_in_bins(unit);
   make_room({responses_, unit.count}, sum_);
   is_fitted_ = table_->is_fitted(n);
@@ -200,8 +191,7 @@ MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {
   for (std::size_t m = 0; m < poses; ++m) solve_pose(unit, m, bins, block, found);
   found.counts = block.counts();
   add_machines(block, bins, found);
-  found.rejected.resize(std::min(unit.first.value + unit.count, table_->kept()) -
-                        std::min(unit.first.value, table_->kept()));
+  found.rejected.resize(kept_of(*table_, {unit.first.value, unit.first.value + unit.count}));
   found.total = total_of(found.solves);
   return found;
 }

@@ -6,12 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/archive.h"
 #include "engine/base/array.h"
-#include "engine/base/bytes.h"
 #include "engine/kinds/monte_carlo/machine_table.h"
 #include "engine/kinds/monte_carlo/part_sums.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
+#include "engine/run/shard.h"
 #include "engine/stats/linear_fit.h"
 #include "engine/stats/machines.h"
 #include "engine/stats/main_effects.h"
@@ -39,20 +40,22 @@ struct MachineSums {
   /// Precondition: the machines of `later` come after those of this.
   void merge(const MachineSums& later);
 
-  /// Every bit, and back.
-  void write(ByteWriter& to) const;
-  static MachineSums read(ByteReader& from, const MachineTable& table);  ///< Throws BytesError.
+  void state(Archive& archive);                                 ///< Every bit.
+  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Its state.
+
+ private:
+  const MachineTable* table_;
 };
 
-/// Whether each of the machines from `first` to before `end` that MachineTable::kept() counts is rejected, a block of
-/// bytes that are 1 or 0. Throws BytesError.
-std::vector<std::uint8_t> read_rejected(ByteReader& from, const MachineTable& table, std::size_t first,
-                                        std::size_t end);
+/// Whether each machine of a range that MachineTable::kept() counts is rejected, 1 or 0.
+void rejected_state(Archive& archive, std::vector<std::uint8_t>& rejected, const MachineTable& table,
+                    const NumberRange& machines);
 
 /// What one unit of machines contributes.
 struct MachineUnit {
   MachineUnit() = default;
-  explicit MachineUnit(const MachineTable& table);  ///< Of no machines.
+  /// Of no machines yet, of this range.
+  MachineUnit(const MachineTable& table, const NumberRange& range);
 
   std::optional<MachineSums> sums;                         ///< empty in a default-constructed one alone
   MachineCounts counts;                                    ///< which of them are good
@@ -64,10 +67,16 @@ struct MachineUnit {
   std::vector<FailedSamples> failed;   ///< the first of them at each pose
   SolveCounts total;                   ///< of all poses
 
-  /// For a message or a state.
-  void write(ByteWriter& to) const;
-  /// Of so many machines from `first` on. Throws BytesError.
-  static MachineUnit read(ByteReader& from, const MachineTable& table, std::size_t first, std::size_t machines);
+  void state(Archive& archive);                                 ///< For a message or a state.
+  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Its state.
+  /// Its state. Throws BytesError.
+  static MachineUnit read(ByteReader& from, const MachineTable& table, const NumberRange& range) {
+    return read_state<MachineUnit>(from, table, range);
+  }
+
+ private:
+  const MachineTable* table_ = nullptr;
+  NumberRange machines_{};
 };
 
 /// Solves units of machines serially: draws their errors once and solves them pose by pose. Owns the scratch of one

@@ -81,28 +81,17 @@ Interval PartSums::interval(double conf_level) const {
   return {share_below(z - half), share_below(z + half)};
 }
 
-void PartSums::write(ByteWriter& to) const {
-  to.number(machines_);
-  to.number(rejects_);
-  for (const std::vector<double>& sums : sums_) to.reals(sums);
-  to.reals(squares_);
-}
-
-PartSums PartSums::read(ByteReader& from, const PartGroups& groups) {
-  PartSums sums(groups);
-  sums.machines_ = from.number();
-  sums.rejects_ = from.number_up_to(sums.machines_);
-  for (std::vector<double>& each : sums.sums_) from.reals(each);
-  from.reals(sums.squares_);
-  const auto rejects = static_cast<double>(sums.rejects_);
+void PartSums::state(Archive& archive) {
+  archive.number(machines_);
+  archive.number(rejects_, machines_);
+  for (std::vector<double>& each : sums_) archive.reals(each);
+  archive.reals(squares_);
+  const auto rejects = static_cast<double>(rejects_);
   constexpr double kRounding = 1.0 + 1e-9;
-  for (std::size_t g = 0; g < sums.sums_.size(); ++g) {
-    const double square = square_sum(sums.sums_[g]);
-    if (!std::isfinite(sums.squares_[g]) || !(square <= rejects * sums.squares_[g] * kRounding)) {
-      throw BytesError("has sums over parts that no machines give");
-    }
+  for (std::size_t g = 0; g < sums_.size(); ++g) {
+    const bool possible = std::isfinite(squares_[g]) && square_sum(sums_[g]) <= rejects * squares_[g] * kRounding;
+    archive.expect(possible, "has sums over parts that no machines give");
   }
-  return sums;
 }
 
 }  // namespace poesy

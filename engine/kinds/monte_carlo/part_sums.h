@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/kinds/monte_carlo/part_groups.h"
 #include "engine/stats/moments.h"
 
@@ -30,8 +30,7 @@ class PartSums {
   /// Precondition: 0 < conf_level < 1.
   Interval interval(double conf_level) const;
 
-  void write(ByteWriter& to) const;                                  ///< Every bit.
-  static PartSums read(ByteReader& from, const PartGroups& groups);  ///< Back. Throws BytesError.
+  void state(Archive& archive);  ///< Every bit.
 
  private:
   const PartGroups* groups_;

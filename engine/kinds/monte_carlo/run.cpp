@@ -146,7 +146,7 @@ class MachineWork {
   static void write(std::size_t, const MachineUnit& found, ByteWriter& to) { found.write(to); }
   MachineUnit read(std::size_t n, ByteReader& from) const {
     const WorkUnit unit = table_.unit(first_ + n);
-    return MachineUnit::read(from, table_, unit.first.value, unit.count);
+    return MachineUnit::read(from, table_, {unit.first.value, unit.first.value + unit.count});
   }
   SolveCounts solved() const { return collect_.total(); }
   std::uint64_t left() const {

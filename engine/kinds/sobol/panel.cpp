@@ -63,6 +63,7 @@ RatioSums mean_of(const RatioSums& sums) {
 IndexPanel::IndexPanel(const Study& study, std::size_t pose_count)
     : groups(error_groups(study.analysis, study.model())),
       vectors(signed_vectors(study.model())),
+      samples(study.analysis.samples),
       responses(study.model().responses.size()),
       details(need_details(vectors, responses) ? detail_components(study.model()) : 0),
       poses(pose_count),
@@ -81,14 +82,9 @@ void IndexSums::merge(const IndexSums& later) {
   first.merge(later.first);
 }
 
-void IndexSums::write(ByteWriter& to) const {
-  total.write(to);
-  first.write(to);
-}
-
-IndexSums IndexSums::read(ByteReader& from) {
-  const RatioSums total = RatioSums::read(from);
-  return {total, RatioSums::read(from)};
+void IndexSums::state(Archive& archive) {
+  archive.object(total);
+  archive.object(first);
 }
 
 PanelSums::PanelSums(const IndexPanel& panel)
@@ -99,7 +95,8 @@ PanelSums::PanelSums(const IndexPanel& panel)
       least({panel.responses}, std::numeric_limits<double>::infinity()),
       solves(panel.poses),
       failed(panel.poses),
-      failures(panel.poses) {
+      failures(panel.poses),
+      end(panel.samples) {
   if (panel.shapley) make_room({panel.responses, panel.groups.size()}, shapley);
 }
 
@@ -125,34 +122,18 @@ PanelSums PanelSums::as_one() const {
   return one;
 }
 
-void PanelSums::write(ByteWriter& to) const {
-  write_each(at_poses, to);
-  write_each(aggregated, to);
-  write_each(pairs, to);
-  write_each(shapley, to);
-  write_each(moments, to);
-  to.reals(least);
-  write_each(solves, to);
+void PanelSums::state(Archive& archive) {
+  state_of_each(archive, at_poses);
+  state_of_each(archive, aggregated);
+  state_of_each(archive, pairs);
+  state_of_each(archive, shapley);
+  state_of_each(archive, moments);
+  archive.reals(least.all());
+  state_of_each(archive, solves);
   for (std::size_t m = 0; m < failed.size(); ++m) {
-    to.number(failures[m]);
-    failed[m].write(to);
+    archive.number(failures[m], solves[m].not_converged());
+    failed[m].state(archive, failures[m], 0, end);
   }
-}
-
-PanelSums PanelSums::read(ByteReader& from, const IndexPanel& panel, std::uint64_t end) {
-  PanelSums sums(panel);
-  read_each(from, sums.at_poses);
-  read_each(from, sums.aggregated);
-  read_each(from, sums.pairs);
-  read_each(from, sums.shapley);
-  read_each(from, sums.moments);
-  from.reals(sums.least);
-  read_each(from, sums.solves);
-  for (std::size_t m = 0; m < panel.poses; ++m) {
-    sums.failures[m] = from.number_up_to(sums.solves[m].not_converged());
-    sums.failed[m] = FailedSamples::read(from, sums.failures[m], 0, end);
-  }
-  return sums;
 }
 
 SplitDraws::SplitDraws(SplitBlock split, std::size_t subsets) : block(std::move(split)) {

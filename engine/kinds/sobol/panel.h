@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/archive.h"
 #include "engine/base/array.h"
-#include "engine/base/bytes.h"
 #include "engine/kinds/sobol/design.h"
 #include "engine/kinds/sobol/groups.h"
 #include "engine/random/normal_copula.h"
@@ -35,6 +35,7 @@ struct IndexPanel {
 
   std::vector<ErrorGroup> groups;     ///< of errors
   std::vector<SignedVector> vectors;  ///< of the model
+  std::size_t samples;                ///< of the study
   std::vector<GroupPair> pairs;       ///< as group_pairs() lists them; none: not asked for
   std::size_t responses;              ///< number of them
   std::size_t details;                ///< components of all details; 0: none is needed
@@ -59,9 +60,8 @@ struct IndexSums {
   RatioSums total;  ///< ST
   RatioSums first;  ///< S1
 
-  void merge(const IndexSums& later);       ///< Both streams together.
-  void write(ByteWriter& to) const;         ///< Every bit of them.
-  static IndexSums read(ByteReader& from);  ///< The opposite. Throws BytesError.
+  void merge(const IndexSums& later);  ///< Both streams together.
+  void state(Archive& archive);        ///< Every bit of them.
 };
 
 /// What some samples of a panel come to.
@@ -78,15 +78,17 @@ struct PanelSums {
   std::vector<SolveCounts> solves;      ///< of each pose
   std::vector<FailedSamples> failed;    ///< of each pose the first samples of A that were not solved
   std::vector<std::uint64_t> failures;  ///< of each pose how many there are
+  std::uint64_t end = 0;                ///< no sample of the study has this number or a larger one
 
   /// Precondition: the samples of `later` come after those of this, and are of the same panel.
   void merge(const PanelSums& later);
   /// The same as one sample that is their mean, for a design whose samples depend on each other.
   PanelSums as_one() const;
 
-  void write(ByteWriter& to) const;  ///< Every bit of it.
-  /// The opposite, of samples before `end`. Throws BytesError.
-  static PanelSums read(ByteReader& from, const IndexPanel& panel, std::uint64_t end);
+  void state(Archive& archive);                                 ///< Every bit of it.
+  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Its state.
+  /// Its state. Throws BytesError.
+  static PanelSums read(ByteReader& from, const IndexPanel& panel) { return read_state<PanelSums>(from, panel); }
 };
 
 /// A block of correlated errors that are not all in one group.

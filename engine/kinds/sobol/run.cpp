@@ -90,7 +90,7 @@ class PanelWork {
     return total_of(found.solves);
   }
   static void write(std::size_t, const PanelSums& found, ByteWriter& to) { found.write(to); }
-  PanelSums read(std::size_t, ByteReader& from) const { return PanelSums::read(from, panel_, plan_.samples()); }
+  PanelSums read(std::size_t, ByteReader& from) const { return PanelSums::read(from, panel_); }
   SolveCounts solved() const {
     SolveCounts sum = closed_;
     if (is_open()) sum.merge(total_of(open_.solves));
@@ -164,11 +164,9 @@ class PanelWork {
     next_ = static_cast<std::size_t>(from.number_up_to(design_.units()));
     const bool has_open = from.number_up_to(1) == 1;
     closed_.merge(SolveCounts::read(from));
-    const auto read_sums = [&](ByteReader& bytes, std::size_t, std::size_t) {
-      return PanelSums::read(bytes, panel_, plan_.samples());
-    };
+    const auto read_sums = [&](ByteReader& bytes, std::size_t, std::size_t) { return PanelSums::read(bytes, panel_); };
     tree_.read(from, design_.units() / units_per_leaf_, read_sums);
-    if (has_open) open_ = PanelSums::read(from, panel_, plan_.samples());
+    if (has_open) open_ = PanelSums::read(from, panel_);
     if (has_open && longer) --next_;  // the shorter study's last unit, of which this one has more
     const bool open = has_open && !longer;
     const std::size_t closed_units = design_.independent() && open ? next_ - 1 : next_;
