@@ -15,7 +15,7 @@ inline StoredResult ranked_result() {
   StoredResult result;
   result.kind = "sensitivity";
   result.model = "some model";
-  result.study_text = "format = \"poesy-study\"\n\n[run]\nseed = 18446744073709551615\n";
+  result.study_text = "format = \"poesy-study\"\n\n[run]\nseed = 9223372036854775807\n";
   result.content_sha256 = "abc";
   result.factors = {{"delta_b", "m"}, {"epsilon_a", "rad"}, {"delta_c", "m"}, {"delta_a", "m"}};
   result.factor_sigma = {1e-3, 0.5 * display({"", "rad"}).si, 2e-3, 1e-3};
