@@ -125,6 +125,18 @@ function check_kind(kind)
   end
 end
 
+% The gap of a planar mechanism: what its indices say is the rounding of solves.
+function check_what_does_not_vary()
+  index = [1e-13 1; 3e-13 2];
+  indices = poesy.internal.indices({'a'; 'b'}, {'m'; 'm'}, [1e-4; 1e-4], {'gap'; 'position'}, {'m'; 'm'}, index, index, index);
+  result = struct('kind', 'sensitivity', 'ranked', poesy.internal.ranked('sensitivity', poesy.internal.effects(indices)));
+  first = poesy.ranking(result);
+  assert(first.response, 'position');
+  assert(first.names, {'b'; 'a'});
+  gap = poesy.ranking(result, 'gap');
+  assert(all(isnan(gap.value)));
+end
+
 % Limits that are not kept: the result is there, and a warning that can be turned off says so.
 function check_limits()
   write('limits.toml', [program('template', '2upr-rpu', 'evaluate'), ...
@@ -162,6 +174,7 @@ cd(folder);
 for kind = {'sensitivity', 'identification', 'evaluate', 'monte-carlo', 'sobol', 'allocation', 'coupling'}
   check_kind(kind{1});
 end
+check_what_does_not_vary();
 check_limits();
 check_errors();
 cd('/');

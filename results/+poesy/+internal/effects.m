@@ -1,7 +1,12 @@
 function found = effects(indices)
-% What POESY.INTERNAL.RANKED takes, from the indices of a sensitivity study: index x sigma, SI.
+% What POESY.INTERNAL.RANKED takes, from the indices of a sensitivity study: index x sigma, SI; NaN for a response that does
+% not vary, because its indices are the rounding of solves.
+  rounding = 1e-10;  % of an index, as the program has it (engine/stats/indices.h)
+  varies = any(indices.index >= rounding, 1) | all(isnan(indices.index), 1);
+  known = ones(size(indices.index));
+  known(:, ~varies) = NaN;
   each = ones(1, numel(indices.responses));
+  scale = known .* (indices.sigma * each);
   found = struct('names', {indices.factors}, 'responses', {indices.responses}, 'units', {indices.response_units}, ...
-                 'value', indices.index .* (indices.sigma * each), 'low', indices.index_low .* (indices.sigma * each), ...
-                 'high', indices.index_high .* (indices.sigma * each));
+                 'value', indices.index .* scale, 'low', indices.index_low .* scale, 'high', indices.index_high .* scale);
 end
