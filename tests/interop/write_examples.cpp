@@ -1,6 +1,7 @@
 // Writes example results and their tables into the folder on the command line, for programs in other languages to read.
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <string>
 
 #include "engine/run/evaluation.h"
@@ -27,6 +28,7 @@ int main(int argc, char** argv) try {
   poesy::test::Example().write_identification(folder + "/identification.h5");
   for (const char* name : {"/sensitivity", "/evaluate", "/paired", "/monte_carlo", "/machines", "/sobol", "/allocation",
                            "/coupling", "/cases", "/identification"}) {
+    std::filesystem::remove_all(folder + name);  // a build folder may have tables of an earlier version
     poesy::export_tables(folder + name + ".h5", folder + name);
   }
   return 0;
