@@ -37,9 +37,13 @@ void effects_state(Archive& archive, std::optional<MainEffectSums>& effects, std
                    std::size_t responses) {
   std::uint64_t has = effects ? 1 : 0;
   archive.number(has, 1);
-  if (archive.reads()) effects.reset();
-  if (archive.reads() && has == 1) effects.emplace(errors, responses);
-  if (effects) archive.object(*effects);
+  if (!archive.reads()) {
+    if (effects) effects->write(archive.writer());
+  } else if (has == 1) {
+    effects = MainEffectSums::read(archive.reader(), errors, responses);
+  } else {
+    effects.reset();
+  }
 }
 
 }  // namespace
