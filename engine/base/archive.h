@@ -67,12 +67,6 @@ class Archive {
       to_->reals(values);
     }
   }
-  /// A number that both directions know: reading throws BytesError where it is another.
-  void same(std::uint64_t value, const char* problem) {
-    std::uint64_t stored = value;
-    number(stored);
-    expect(stored == value, problem);
-  }
   /// Throws BytesError where something that was read does not hold.
   void expect(bool holds, const char* problem) const {
     if (reads() && !holds) throw BytesError(problem);
