@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +13,7 @@
 
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
+#include "engine/base/plain_file.h"
 #include "engine/storage/file_writer.h"
 
 namespace poesy::app {
@@ -45,13 +47,20 @@ std::string contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+/// Whether a PDF is there from its first line to its last.
+bool is_whole(const std::string& pdf) {
+  constexpr std::size_t kEnd = 1024;  // bytes, among which readers of a PDF look for its end
+  return pdf.starts_with("%PDF-") && pdf.find("%%EOF", std::max(pdf.size(), kEnd) - kEnd) != std::string::npos;
+}
+
 }  // namespace
 
 bool is_pdf(const std::string& path) { return path.ends_with(".pdf") || path.ends_with(".PDF"); }
 
 bool is_pdf_report(const std::string& path) {
-  std::error_code unknown;
-  return std::filesystem::is_empty(path, unknown) || contents(path).ends_with(kPdfMark);
+  if (!PlainFile(path).is_open()) return false;
+  const std::string file = contents(path);
+  return file.empty() || (is_whole(file) && file.ends_with(kPdfMark));
 }
 
 bool write_pdf(const std::string& path, std::string_view page) {
@@ -70,7 +79,7 @@ bool write_pdf(const std::string& path, std::string_view page) {
     throw InputError({.file = path}, "cannot be printed: neither Chromium nor Chrome is on PATH", kOtherWay);
   }
   const std::string pdf = contents(folder.path + "/report.pdf");
-  if (status != 0 || pdf.find("%%EOF") == std::string::npos) {
+  if (status != 0 || !is_whole(pdf)) {
     throw FileError(path, "was not printed: the browser said: " + said.substr(0, said.find('\n')), kOtherWay);
   }
   write_text(path, pdf + std::string(kPdfMark));

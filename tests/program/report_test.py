@@ -164,10 +164,10 @@ class Report(ProgramTest):
         temporary.mkdir()
         done = self.printed({"TMPDIR": str(temporary)}, "r.h5", "-o", "r.pdf")
         self.assertEqual(done.returncode, 0, done.stderr)
-        foreign = pdf.removesuffix(b"% poesy report\n")
-        self.write("foreign.pdf", foreign)
-        self.assertIn("would be lost", self.refused(2, "r.h5", "-o", "foreign.pdf"))
-        self.assertEqual((self.folder / "foreign.pdf").read_bytes(), foreign)
+        for foreign in (pdf.removesuffix(b"% poesy report\n"), b"my notes\n% poesy report\n"):
+            self.write("foreign.pdf", foreign)
+            self.assertIn("would be lost", self.refused(2, "r.h5", "-o", "foreign.pdf"))
+            self.assertEqual((self.folder / "foreign.pdf").read_bytes(), foreign)
 
     def test_says_how_to_print_without_a_browser(self):
         done = self.printed({"PATH": str(self.folder)}, "r.h5", "-o", "r.pdf")
@@ -175,12 +175,17 @@ class Report(ProgramTest):
         self.assertIn(b"open it in a browser and print it", done.stderr)
         self.assertFalse((self.folder / "r.pdf").exists())
 
+    @staticmethod
+    def printing(text):
+        """A browser that prints this in place of a PDF."""
+        return 'for a; do case $a in --print-to-pdf=*) echo "%s" > "${a#*=}";; esac; done' % text
+
     def test_is_not_written_where_the_browser_fails(self):
         temporary = self.folder / "tmp"
         temporary.mkdir()
         for script, said in (("echo no display >&2; exit 1", b"no display"), ("exit 0", b"said: nothing"),
                              ("echo one; echo two; kill -9 $$", b"said: two"),
-                             ('for a; do case $a in --print-to-pdf=*) echo %PDF-1.4 > "${a#*=}";; esac; done', b"was not")):
+                             (self.printing("%PDF-1.4"), b"was not"), (self.printing("an error, %%EOF"), b"was not")):
             with self.subTest(script):
                 done = self.printed(self.browser(script) | {"TMPDIR": str(temporary)}, "r.h5", "-o", "r.pdf")
                 self.assertEqual(done.returncode, 3, done.stderr)
