@@ -80,11 +80,11 @@ class Archive {
   ByteReader* from_ = nullptr;
 };
 
-/// Writes an object's state.
-template <class Object>
-void write_state(const Object& object, ByteWriter& to) {
+/// Writes an object's state. context: what its state() is told in addition.
+template <class Object, class... Context>
+void write_state(const Object& object, ByteWriter& to, const Context&... context) {
   Archive archive(to);
-  const_cast<Object&>(object).state(archive);  // it changes nothing where it writes
+  const_cast<Object&>(object).state(archive, context...);  // it changes nothing where it writes
 }
 
 /// Reads the state of an object that is made of these sizes. Throws BytesError for what no such object writes.

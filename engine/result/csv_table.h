@@ -72,21 +72,18 @@ std::string csv_unit(const std::string& unit, const StoredResult& result, const 
 CsvTable lines_of_factors(const StoredResult& result, std::string name);
 CsvTable lines_of_poses(const StoredResult& result, std::string name);  ///< A table with a line for each pose.
 
-/// A column of the elements first, first + step, ... of a list, or of get(element). Refers to the elements.
+/// A column of the elements of a list, or of get(element). Refers to the elements.
 template <class List, class Get = std::identity>
-CsvColumn list_column(std::string heading, const List& list, std::size_t first = 0, std::size_t step = 1,
-                      Get get = {}) {
-  return {std::move(heading), [elements = std::span(list), first, step, get](std::size_t line) {
-            return to_number(std::invoke(get, elements[first + line * step]));
-          }};
+CsvColumn list_column(std::string heading, const List& list, Get get = {}) {
+  return {std::move(heading),
+          [elements = std::span(list), get](std::size_t line) { return to_number(std::invoke(get, elements[line])); }};
 }
 
-/// The same of a row of fields.h.
+/// The same of a row of fields.h, from this element on.
 template <class Found>
-CsvColumn field_column(std::string heading, const FieldRow<Found>& field, const Found& found, std::size_t first = 0,
-                       std::size_t step = 1) {
+CsvColumn field_column(std::string heading, const FieldRow<Found>& field, const Found& found, std::size_t first = 0) {
   return {std::move(heading),
-          [&field, &found, first, step](std::size_t line) { return number_at(field, found, first + line * step); }};
+          [&field, &found, first](std::size_t line) { return number_at(field, found, first + line); }};
 }
 
 /// The same of a row along several axes: its elements at this position on the first one.

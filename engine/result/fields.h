@@ -29,10 +29,6 @@ using Axes = std::vector<std::string>;
 inline const Axes kByResponse{"response"};
 inline const Axes kByFactor{"factor"};
 inline const Axes kByPose{"pose"};
-inline const Axes kByFactorPose{"factor", "pose"};
-inline const Axes kByResponseFactor{"response", "factor"};
-inline const Axes kByResponsePose{"response", "pose"};
-inline const Axes kByResponseFactorPose{"response", "factor", "pose"};
 /// @}
 
 /// Units of datasets whose numbers have the unit of a response, of an error, or of both.
@@ -159,10 +155,9 @@ std::vector<T> read_along(const h5::File& file, const std::string& path, const A
   return read_shaped<T>(file, path, shape);
 }
 
-/// The lengths that the axes of an array have in a file.
+/// The lengths that the axes of an array have in a file. axes: as the file names them.
 template <class AnArray>
-typename AnArray::Lengths lengths_in(const h5::File& file) {
-  const std::vector<std::string> axes = AnArray::axis_names();
+typename AnArray::Lengths lengths_in(const h5::File& file, const Axes& axes = AnArray::axis_names()) {
   typename AnArray::Lengths lengths;
   std::ranges::transform(axes, lengths.begin(), [&](const std::string& axis) { return axis_length(file, axis); });
   return lengths;
@@ -170,8 +165,8 @@ typename AnArray::Lengths lengths_in(const h5::File& file) {
 
 /// A dataset along the axes of this array. Throws h5::Error where it has another shape.
 template <class AnArray>
-AnArray read_array(const h5::File& file, const std::string& path) {
-  return {lengths_in<AnArray>(file), read_along<typename AnArray::Element>(file, path, AnArray::axis_names())};
+AnArray read_array(const h5::File& file, const std::string& path, const Axes& axes = AnArray::axis_names()) {
+  return {lengths_in<AnArray>(file, axes), read_along<typename AnArray::Element>(file, path, axes)};
 }
 
 /// Whether each file of its kind has a dataset.
@@ -287,10 +282,7 @@ class MemberOf final : public Member<Found> {
   }
   void read(const h5::File& file, const std::string& path, const Axes& axes, std::span<Found> things) const override {
     if constexpr (kIsArray<Value>) {
-      // A row may have other names for the axes than the type.
-      typename Value::Lengths lengths;
-      std::ranges::transform(axes, lengths.begin(), [&](const std::string& axis) { return axis_length(file, axis); });
-      things.front().*member_ = Value(lengths, read_along<typename Value::Element>(file, path, axes));
+      things.front().*member_ = read_array<Value>(file, path, axes);  // a row may rename the axes of the type
     } else if constexpr (kIsList<Value>) {
       things.front().*member_ = read_along<typename Value::value_type>(file, path, axes);
     } else {

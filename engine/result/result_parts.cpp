@@ -93,8 +93,9 @@ CsvTable end_table(const StoredResult& result, const CourseWords& words, const C
   table.columns.push_back(list_column("samples", found.samples));
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const std::string& response = result.responses[r].name;
-    table.columns.push_back(list_column(response + "_reached", found.reached, r * slots));
-    table.columns.push_back(list_column(response + "_relative_half_width", found.relative_half_width, r * slots));
+    const auto of_response = [&](const auto& list) { return std::span(list).subspan(r * slots, slots); };
+    table.columns.push_back(list_column(response + "_reached", of_response(found.reached)));
+    table.columns.push_back(list_column(response + "_relative_half_width", of_response(found.relative_half_width)));
   }
   return table;
 }
@@ -158,7 +159,7 @@ CsvTable measured_table(const StoredResult& result) {
                  {},
                  {"unit", [&](std::size_t e) { return result.factors[found.factors[e]].unit; }}};
   for (const FieldRow<MeasuredErrors>& field : kMeasuredErrors.fields) {
-    if (field.name != "most_correlated") table.columns.push_back(field_column(field.name, field, found, 0));
+    if (field.name != "most_correlated") table.columns.push_back(field_column(field.name, field, found));
   }
   return table;
 }
@@ -298,7 +299,7 @@ std::vector<SolveNumber> solve_numbers(std::span<const SolveCounts> solves) {
 
 void append_solve_columns(CsvTable& table, std::span<const SolveCounts> solves) {
   for (const SolveNumber& number : solve_numbers(solves)) {
-    table.columns.push_back(list_column(number.name, solves, 0, 1, number.get));
+    table.columns.push_back(list_column(number.name, solves, number.get));
   }
 }
 
@@ -335,9 +336,9 @@ CsvTable failure_table(const StoredResult& result) {
   return {"failures",
           {"factor", [&](std::size_t line) { return result.varied[list[line].slot]; }},
           list.size(),
-          {list_column("pose", list, 0, 1, [](const Failure& failure) { return failure.pose.value; }),
-           list_column("sample", list, 0, 1, [](const Failure& failure) { return failure.failed.sample.value; }),
-           list_column("status", list, 0, 1, [](const Failure& failure) { return failure.failed.status; })}};
+          {list_column("pose", list, [](const Failure& failure) { return failure.pose.value; }),
+           list_column("sample", list, [](const Failure& failure) { return failure.failed.sample.value; }),
+           list_column("status", list, [](const Failure& failure) { return failure.failed.status; })}};
 }
 
 void add_limits(ResultBuilder& result, const ModelDescription& model, const std::optional<LimitVerdicts>& verdicts) {
@@ -387,7 +388,7 @@ void append_limit_table(CsvTables& tables, const StoredResult& result) {
                  {"unit", [response](std::size_t line) { return response(line).unit; }}};
   for (const FieldRow<LimitVerdict>& field : kLimitFields) {
     table.columns.push_back(
-        list_column(field.name, limits, 0, 1, [&](const LimitVerdict& one) { return number_at(field, one, 0); }));
+        list_column(field.name, limits, [&](const LimitVerdict& one) { return number_at(field, one, 0); }));
   }
   tables.push_back(std::move(table));
 }

@@ -32,11 +32,10 @@ EvaluationResult empty_evaluation(const Model& model, const PoseSet& poses, std:
     for (const Detail& detail : description.details) components += detail.components.size();
   }
   EvaluationResult result;
-  result.response = decltype(result.response)({description.responses.size(), poses.size(), samples});
-  result.detail = decltype(result.detail)({poses.size(), samples, components});
-  result.status = decltype(result.status)({poses.size(), samples});
-  result.iterations = decltype(result.iterations)({poses.size(), samples});
-  result.joint_displacement = decltype(result.joint_displacement)({poses.size(), description.joints.size()});
+  make_room({description.responses.size(), poses.size(), samples}, result.response);
+  make_room({poses.size(), samples, components}, result.detail);
+  make_room({poses.size(), samples}, result.status, result.iterations);
+  make_room({poses.size(), description.joints.size()}, result.joint_displacement);
   for (std::size_t m = 0; m < poses.size(); ++m) {
     std::ranges::copy(model.joint_displacements(poses[PoseIndex(m)]), result.joint_displacement.row(m).begin());
   }

@@ -68,8 +68,7 @@ void FailedSamples::state(Archive& archive, std::uint64_t failures, std::uint64_
 }
 
 void FailedSamples::write(ByteWriter& to) const {
-  Archive archive(to);
-  FailedSamples(*this).state(archive, 0, 0, 0);
+  write_state(*this, to, std::uint64_t{0}, std::uint64_t{0}, std::uint64_t{0});
 }
 
 FailedSamples FailedSamples::read(ByteReader& from, std::uint64_t failures, std::uint64_t first, std::uint64_t end) {

@@ -315,7 +315,7 @@ bool RunLock::take(const std::string& result_path) {
   struct stat file {};
   if (::fstat(descriptor_, &file) != 0 || !S_ISREG(file.st_mode) || file.st_size > 0) {
     close();
-    throw FileError(path_, "is no lock of poesy, which is an empty file, and a run would remove it",
+    throw FileError(path_, "is not a lock of poesy, which is an empty file, and a run would remove it",
                     "move it away, or give another -o");
   }
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {

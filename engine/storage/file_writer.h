@@ -29,7 +29,7 @@ bool is_marked(const std::string& path, std::string_view mark);
 
 /// Gives the path to write to: where a symbolic link leads, whether there is a file yet or not; else the path itself.
 /// Throws when no such file can come into being there, before anything is computed: InputError when its folder does not
-/// exist, when what stands there is one of the inputs or must not be replaced, for a name that is too long, or for
+/// exist, when what is there is one of the inputs or must not be replaced, for a name that is too long, or for
 /// links in a circle, FileError when the folder cannot be written.
 std::string check_output_path(const std::string& path, const OutputKind& kind, std::span<const std::string> inputs);
 
@@ -50,9 +50,9 @@ bool fill_randomly(std::span<std::byte> bytes);  ///< The system's.
 /// Every member throws FileError with the system's reason.
 class FileWriter {
  public:
-  /// Refuses a path where something other than a plain file stands (a folder, a device). The file gets the permission
+  /// Refuses a path where something other than a plain file is (a folder, a device). The file gets the permission
   /// bits of the file `like`; if there is none, of the file that it replaces, and without that either those of the
-  /// umask. fill: for the temporary name; what stands there is not touched, and refused.
+  /// umask. fill: for the temporary name; what is there is not touched, and refused.
   explicit FileWriter(std::string path, const std::string& like = {}, FillRandomly fill = fill_randomly);
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;

@@ -21,7 +21,6 @@ NUMERICAL = {
     "engine/kinds/allocation/mean_squares.cpp",
     "engine/kinds/allocation/variations.cpp",
     "engine/kinds/monte_carlo/part_groups.cpp",
-    "engine/result/csv_table.h",  # every n-th element of a list
 }
 
 

@@ -49,15 +49,7 @@ void write_sensitivity_seed(const std::string& path) {
                        .removable = {{2}, {0.125, 0.5}},
                        .removable_together = 0.375,
                        .published = {{2}, std::vector<std::string>{"", "compensable"}}};
-  FidelityResult& fidelity = result.fidelity.emplace();
-  fidelity.fidelities = catalog()[0].description.fidelities;
-  fidelity.linearity = 0.02;
-  fidelity.global = {{2, 2}, {1.0, 2.0, 3.0, 4.0}};
-  fidelity.discrepancy = {{2, 2}, {0.5, 0.25, -0.125, 0.0}};
-  fidelity.relative_discrepancy = {{2, 2}, {0.25, 0.125, -0.0625, std::numeric_limits<double>::infinity()}};
-  fidelity.nonlinearity = {{2, 2}, {0.5, 0.0625, 0.03125, 0.75}};
-  fidelity.linear = {{2}, {1, 0}};
-  fidelity.not_converged = {{2, 4}, {0, 1, 2, 3, 4, 5, 6, 7}};
+  result.fidelity = test::Example::fidelity(catalog()[0].description.fidelities);
   result.failures = {{0, PoseIndex(1), {SampleIndex(7), SolveStatus::singular}}};
   write_result(path, example.study, example.poses, result, example.facts);
 }
@@ -99,24 +91,8 @@ void write_cases_seed(const std::string& path) {
 
 void write_identification_seed(const std::string& path) {
   test::Example example;
-  example.study.analysis.kind = &kIdentificationStudy;
-  asked_of<IdentificationOptions>(example.study.analysis).groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
-  IdentificationResult result;
-  result.sizes = asked_of<IdentificationOptions>(example.study.analysis).groups;
-  result.poses = test::Example::kPoses;
-  result.rounding = 1.5e-14;
-  result.required_poses = 3;
-  result.single_below = {{2, 2}, {0, 4, 1, 4}};
-  result.single_max = {{2, 2}, {1e-3, 0.0, 2e-3, 1.0}};
-  result.not_solved = {{2, 2}, {0, 0, 1, 0}};
-  result.coupled_below = {{2, 2}, {0, 2, 0, 3}};
-  result.coupled_reduced = {{2, 2}, {0, 4, 0, 1}};
-  result.single_by_group = {{2, 2}, {1, 0, 1, 0}};
-  result.coupled_by_group = {{2, 2}, {1, 1, 1, 0}};
-  result.single = {{2}, {1, 0}};
-  result.coupled = {{2}, {1, 1}};
-  result.couplings = {{0, 0, 1, 4}, {1, 1, 0, 2}};
-  result.solves.by_status = {5, 4, 3, 2, 1};
+  IdentificationResult result = example.identification();
+  result.single_max(1, 1) = 1.0;
   write_result(path, example.study, example.poses, result, example.facts);
 }
 

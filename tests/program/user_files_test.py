@@ -75,12 +75,12 @@ class UserFiles(ProgramTest):
 
     def test_a_file_in_the_place_of_the_lock(self):
         lock = self.write("r.h5.lock", PRECIOUS)
-        self.assertIn("r.h5.lock: is no lock of poesy", self.ends(3, "run", "quick.toml", "-o", "r.h5"))
+        self.assertIn("r.h5.lock: is not a lock of poesy", self.ends(3, "run", "quick.toml", "-o", "r.h5"))
         self.assertEqual(lock.read_text(), PRECIOUS)
         self.assertFalse((self.folder / "r.h5").exists())
         lock.unlink()
         os.mkfifo(lock)
-        self.assertIn("r.h5.lock: is no lock of poesy", self.ends(3, "run", "quick.toml", "-o", "r.h5"))
+        self.assertIn("r.h5.lock: is not a lock of poesy", self.ends(3, "run", "quick.toml", "-o", "r.h5"))
         lock.unlink()
         os.symlink("quick.toml", lock)
         self.assertIn("r.h5.lock: cannot be opened", self.ends(3, "run", "quick.toml", "-o", "r.h5"))

@@ -314,7 +314,7 @@ CsvTable stage_table(const Result& found) {
   CsvTable table{
       "allocation_stages", {"stage", [&found](std::size_t k) { return found.stages[k].name; }}, found.stages.size()};
   for (const FieldRow<AllocationStage>& field : kStageFields) {
-    table.columns.push_back(list_column(field.name, found.stages, 0, 1,
+    table.columns.push_back(list_column(field.name, found.stages,
                                         [&field](const AllocationStage& one) { return number_at(field, one, 0); }));
   }
   return table;
@@ -365,9 +365,9 @@ CsvTable certificate_failures(const Result& found) {
   return {"failures",
           {"factor", [](std::size_t) { return std::string(kAllFactors); }},
           list.size(),
-          {list_column("pose", list, 0, 1, [](const Failure& failure) { return failure.pose.value; }),
-           list_column("sample", list, 0, 1, [](const Failure& failure) { return failure.failed.sample.value; }),
-           list_column("status", list, 0, 1, [](const Failure& failure) { return failure.failed.status; })}};
+          {list_column("pose", list, [](const Failure& failure) { return failure.pose.value; }),
+           list_column("sample", list, [](const Failure& failure) { return failure.failed.sample.value; }),
+           list_column("status", list, [](const Failure& failure) { return failure.failed.status; })}};
 }
 
 void append_tables(CsvTables& tables, const StoredResult& result) {

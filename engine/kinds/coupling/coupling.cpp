@@ -17,6 +17,7 @@
 #include "engine/base/units.h"
 #include "engine/kinds/coupling/kind.h"
 #include "engine/kinds/coupling/worst_case.h"
+#include "engine/result/result_parts.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/response_rounding.h"
 #include "engine/run/result.h"
@@ -125,25 +126,18 @@ Array<double, axis::Size> sizes_or_nan(const std::vector<double>& sizes, std::si
 CouplingResult empty_result(const CouplingStudy& study, std::size_t responses, std::size_t poses) {
   CouplingResult found;
   found.size_names = size_names(study);
-  for (const ErrorSource& source : study.sources) found.sources.push_back(source.name);
+  found.sources = texts(study.sources, &ErrorSource::name);
   found.subsets = subset_names(study.sources);
   found.linear = sizes_or_nan(study.linear, study.sizes());
   found.angular = sizes_or_nan(study.angular, study.sizes());
   const std::size_t sizes = study.sizes();
   const std::size_t subsets = found.subsets.size();
-  for (CouplingResult::Curves* curves :
-       {&found.effect, &found.sum, &found.first_order_sum, &found.root_sum_square, &found.cancellation}) {
-    *curves = CouplingResult::Curves({responses, sizes, subsets, poses});
-  }
-  for (CouplingResult::Summary<double>* summary :
-       {&found.effect_max, &found.interaction_max, &found.first_order_sum_max, &found.root_sum_square_max,
-        &found.opposed_share, &found.cancellation_max}) {
-    *summary = CouplingResult::Summary<double>({responses, sizes, subsets});
-  }
-  found.count = CouplingResult::Summary<std::uint64_t>({responses, sizes, subsets});
-  found.effect_max_pose = CouplingResult::Summary<std::int64_t>({responses, sizes, subsets});
-  found.cancellation_max_pose = found.effect_max_pose;
-  found.solves = Array<SolveCounts, axis::Size, axis::Pose>({sizes, poses});
+  make_room({responses, sizes, subsets, poses}, found.effect, found.sum, found.first_order_sum, found.root_sum_square,
+            found.cancellation);
+  make_room({responses, sizes, subsets}, found.count, found.effect_max, found.effect_max_pose, found.interaction_max,
+            found.first_order_sum_max, found.root_sum_square_max, found.opposed_share, found.cancellation_max,
+            found.cancellation_max_pose);
+  make_room({sizes, poses}, found.solves);
   return found;
 }
 
@@ -172,7 +166,7 @@ class Composer {
     }
     // Last, because it follows from others: the outcomes and all curves need not be in memory both.
     evaluation_ = {};
-    found_.interaction = CouplingResult::Curves(found_.effect.lengths());
+    make_room(found_.effect.lengths(), found_.interaction);
     std::ranges::transform(found_.effect, found_.sum, found_.interaction.begin(), std::minus());
     return std::move(found_);
   }

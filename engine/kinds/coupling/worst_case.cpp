@@ -123,11 +123,10 @@ class CornerWork {
   void clear() {
     next_ = cells_.first;
     found_.value = decltype(found_.value)({responses_, sizes_, subsets_, poses_}, kNaN);
-    found_.tried = decltype(found_.tried)({sizes_, subsets_, poses_});
-    found_.unsolved = found_.tried;
-    found_.solves = decltype(found_.solves)({sizes_, poses_});
-    found_.worst = decltype(found_.worst)({responses_, sizes_, subsets_});
-    found_.first_unsolved = decltype(found_.first_unsolved)({sizes_, subsets_});
+    make_room({sizes_, subsets_, poses_}, found_.tried, found_.unsolved);
+    make_room({sizes_, poses_}, found_.solves);
+    make_room({responses_, sizes_, subsets_}, found_.worst);
+    make_room({sizes_, subsets_}, found_.first_unsolved);
   }
   std::array<std::uint64_t, 6> sizes() const {
     return {kKind, poses_, sizes_, subsets_, responses_, table_.blocks.size()};
@@ -229,11 +228,10 @@ void add_worst_cases(WorstCases found, const CornerTable& table, CouplingResult&
   result.worst_case = std::move(found.value);
   result.corners = std::move(found.tried);
   result.unsolved_corners = std::move(found.unsolved);
-  result.worst_case_max = decltype(result.worst_case_max)(found.worst.lengths());
-  result.worst_case_max_pose = decltype(result.worst_case_max_pose)(found.worst.lengths());
-  result.worst_case_signs = decltype(result.worst_case_signs)({responses, sizes, subsets, errors});
-  result.unsolved_pose = decltype(result.unsolved_pose)({sizes, subsets});
-  result.unsolved_signs = decltype(result.unsolved_signs)({sizes, subsets, errors});
+  make_room(found.worst.lengths(), result.worst_case_max, result.worst_case_max_pose);
+  make_room({responses, sizes, subsets, errors}, result.worst_case_signs);
+  make_room({sizes, subsets}, result.unsolved_pose);
+  make_room({sizes, subsets, errors}, result.unsolved_signs);
   for (std::size_t z = 0; z < sizes; ++z) {
     for (std::size_t k = 0; k < subsets; ++k) {
       for (std::size_t r = 0; r < responses; ++r) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/kinds/evaluate/kind.h"
+#include "engine/result/result_parts.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/result.h"
 
@@ -22,7 +23,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
     solves->verdicts = judge_rows(limits, *solves, kPairing, run.study.not_converged);
   }
   StudyResult found{{}, solves->verdicts, {}};
-  for (const ErrorCase& one : cases) found.row_names.push_back(one.name);
+  found.row_names = texts(cases, &ErrorCase::name);
   found.found = evaluation_of_cases(*std::move(solves), cases, run.model.description(), run.study.not_converged);
   return found;
 }
@@ -54,7 +55,7 @@ Evaluation evaluation(EvaluationResult solves, const ErrorTable& errors, Pairing
   Evaluation found;
   found.solves = std::move(solves);
   found.details = model.details;
-  for (const JointDisplacement& joint : model.joints) found.joints.push_back(joint.name);
+  found.joints = texts(model.joints, &JointDisplacement::name);
   found.pairing = pairing;
   found.errors = decltype(found.errors)({errors.rows, errors.factors.size()}, errors.values);
   found.labels = errors.labels;
@@ -64,7 +65,7 @@ Evaluation evaluation(EvaluationResult solves, const ErrorTable& errors, Pairing
 Evaluation evaluation_of_cases(EvaluationResult solves, std::span<const ErrorCase> cases, const ModelDescription& model,
                                NotConverged policy) {
   Evaluation found = evaluation(std::move(solves), case_table(cases), kPairing, model);
-  for (const ErrorCase& one : cases) found.cases.push_back(one.name);
+  found.cases = texts(cases, &ErrorCase::name);
   const EvaluationResult& all = found.solves;
   found.mean = decltype(found.mean)({all.responses(), cases.size()}, kNaN);
   found.max = found.mean;

@@ -133,10 +133,9 @@ void read_solves(const h5::File& file, const std::vector<NamedUnit>& responses, 
   const auto [poses, samples] = solve_at<Layout>(rows, columns);
   std::size_t components = 0;
   for (const Detail& detail : found.details) components += detail.components.size();
-  solves.response = decltype(solves.response)({responses.size(), poses, samples});
-  solves.detail = decltype(solves.detail)({poses, samples, components});
-  solves.status = decltype(solves.status)({poses, samples});
-  solves.iterations = decltype(solves.iterations)({poses, samples});
+  make_room({responses.size(), poses, samples}, solves.response);
+  make_room({poses, samples, components}, solves.detail);
+  make_room({poses, samples}, solves.status, solves.iterations);
   for (std::size_t r = 0; r < responses.size(); ++r) {
     read_values<double>(file, responses[r].name, layout,
                         [&](std::size_t m, std::size_t s, double value) { solves.response(r, m, s) = value; });

@@ -71,10 +71,10 @@ CsvTable coupling_table(const StoredResult& result) {
   return {"couplings",
           {"coupling", names},
           couplings.size(),
-          {list_column("group", couplings, 0, 1, [](const Coupling& coupling) { return coupling.group + 1; }),
-           list_column("first_factor", couplings, 0, 1, &Coupling::first),
-           list_column("second_factor", couplings, 0, 1, &Coupling::second),
-           list_column("poses", couplings, 0, 1, &Coupling::deforming_poses)}};
+          {list_column("group", couplings, [](const Coupling& coupling) { return coupling.group + 1; }),
+           list_column("first_factor", couplings, &Coupling::first),
+           list_column("second_factor", couplings, &Coupling::second),
+           list_column("poses", couplings, &Coupling::deforming_poses)}};
 }
 
 void write(ResultBuilder& result, const Study& study, std::any& any) {
@@ -120,8 +120,8 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
   tables.push_back({"groups",
                     {"group", [&sizes](std::size_t g) { return sizes[g].name; }},
                     sizes.size(),
-                    {list_column("linear [m]", sizes, 0, 1, &ErrorSize::linear),
-                     list_column("angular [rad]", sizes, 0, 1, &ErrorSize::angular)}});
+                    {list_column("linear [m]", sizes, &ErrorSize::linear),
+                     list_column("angular [rad]", sizes, &ErrorSize::angular)}});
   tables.push_back(verdict_table(result));
   for (const FieldRow<Identification>& field : kIdentification.fields) {
     if (field.axes == kByFactor || by_group(field)) continue;

@@ -30,13 +30,9 @@ class Identification {
     const std::size_t groups = asked_->groups.size();
     found_.sizes = asked_->groups;
     found_.rounding = model.deformation->rounding;
-    for (auto* counts : {&found_.single_below, &found_.not_solved, &found_.coupled_below, &found_.coupled_reduced}) {
-      *counts = IdentificationResult::ByGroup<std::uint64_t>({groups, factors});
-    }
-    found_.single_max = IdentificationResult::ByGroup<double>({groups, factors});
-    found_.single_by_group = IdentificationResult::ByGroup<std::uint8_t>({groups, factors});
-    found_.single = Array<std::uint8_t, axis::Factor>({factors});
-    found_.coupled = found_.single;
+    make_room({groups, factors}, found_.single_below, found_.not_solved, found_.coupled_below, found_.coupled_reduced,
+              found_.single_max, found_.single_by_group);
+    make_room({factors}, found_.single, found_.coupled);
   }
 
   std::optional<IdentificationResult> operator()() {

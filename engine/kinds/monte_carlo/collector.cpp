@@ -74,10 +74,7 @@ void PoseSamples::state(Archive& archive, std::size_t errors) {
   effects_state(archive, effects, errors, responses.size());
 }
 
-void PoseSamples::write(ByteWriter& to) const {
-  Archive archive(to);
-  const_cast<PoseSamples&>(*this).state(archive, 0);  // it changes nothing where it writes
-}
+void PoseSamples::write(ByteWriter& to) const { write_state(*this, to, std::size_t{0}); }
 
 PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses, std::size_t errors) {
   PoseSamples samples;

@@ -173,8 +173,7 @@ void MachineCollector::write_state(ByteWriter& to) const {
     sums_.write(to);
     to.number(sums_.first());
     to.number(sums_.end());
-    Archive archive(to);
-    const_cast<Counts&>(counts_).state(archive, *table_, {0, 0});  // it changes nothing where it writes
+    poesy::write_state(counts_, to, *table_, NumberRange{0, 0});
   }
   to.number(tail_ ? 1 : 0);
   if (tail_) tail_->write(to);

@@ -209,11 +209,11 @@ CsvTable share_table(const StoredResult& result, const YieldResult& found) {
 void append_yield_tables(CsvTables& tables, const StoredResult& result, const YieldResult& found) {
   CsvTable all{"yield", {"limit", [](std::size_t) { return std::string("all"); }}, 1, {}, {}};
   for (const FieldRow<YieldResult>& field : kYield.fields) {
-    if (field.axes.empty()) all.columns.push_back(field_column(field.name, field, found, 0));
+    if (field.axes.empty()) all.columns.push_back(field_column(field.name, field, found));
   }
   if (found.parts) {
     for (const FieldRow<PartsYield>& field : kPartsYield.fields) {
-      all.columns.push_back(field_column("parts_" + field.name, field, *found.parts, 0));
+      all.columns.push_back(field_column("parts_" + field.name, field, *found.parts));
     }
   }
   tables.push_back(std::move(all));

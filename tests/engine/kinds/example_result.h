@@ -313,6 +313,20 @@ class Example {
     return result;
   }
 
+  /// Two responses to two errors, each solved at two fidelities.
+  static FidelityResult fidelity(std::vector<std::string> fidelities) {
+    FidelityResult fidelity;
+    fidelity.fidelities = std::move(fidelities);
+    fidelity.linearity = 0.02;
+    fidelity.global = {{2, 2}, {1.0, 2.0, 3.0, 4.0}};
+    fidelity.discrepancy = {{2, 2}, {0.5, 0.25, -0.125, 0.0}};
+    fidelity.relative_discrepancy = {{2, 2}, {0.25, 0.125, -0.0625, std::numeric_limits<double>::infinity()}};
+    fidelity.nonlinearity = {{2, 2}, {0.5, 0.0625, 0.03125, 0.75}};
+    fidelity.linear = {{2}, {1, 0}};
+    fidelity.not_converged = {{2, 4}, {0, 1, 2, 3, 4, 5, 6, 7}};
+    return fidelity;
+  }
+
   /// Two errors in two groups; sets the study to match.
   IdentificationResult identification() {
     study.analysis.kind = &kIdentificationStudy;

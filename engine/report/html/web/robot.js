@@ -16,7 +16,7 @@ function robotPoints(part, name = "p") {
   return part.dataset[name].split(" ").map((point) => point.split(",").map(Number));
 }
 
-/// Where a point stands in a picture: as SketchView has it.
+/// The place of a point in a picture, as SketchView gives it.
 function robotProjection(data, { yaw, pitch }, { width, height }) {
   const [sinYaw, cosYaw, sinPitch, cosPitch] = [yaw, pitch].flatMap((angle) => [
     Math.sin((angle * Math.PI) / 180),

@@ -25,15 +25,7 @@ class FidelityFile : public testing::Test {
     example_.study.mechanism.entry = &catalog_[0];
     example_.study.mechanism.compared = 1;
     asked_of<SensitivityOptions>(example_.study.analysis).linearity = 0.02;
-    FidelityResult& fidelity = result_.fidelity.emplace();
-    fidelity.fidelities = {"exact", "first-order"};
-    fidelity.linearity = 0.02;
-    fidelity.global = {{2, 2}, {1.0, 2.0, 3.0, 4.0}};
-    fidelity.discrepancy = {{2, 2}, {0.5, 0.25, -0.125, 0.0}};
-    fidelity.relative_discrepancy = {{2, 2}, {0.25, 0.125, -0.0625, std::numeric_limits<double>::infinity()}};
-    fidelity.nonlinearity = {{2, 2}, {0.5, 0.0625, 0.03125, 0.75}};
-    fidelity.linear = {{2}, {1, 0}};
-    fidelity.not_converged = {{2, 4}, {0, 1, 2, 3, 4, 5, 6, 7}};
+    result_.fidelity = test::Example::fidelity(catalog_[0].description.fidelities);
     write_result(path_, example_.study, example_.poses, result_, example_.facts);
   }
 
