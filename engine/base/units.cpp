@@ -15,7 +15,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr double kInch = 0.0254;
 
-constexpr std::array<Unit, 16> kUnits{{{"m", Dimension::length, 1.0},
+constexpr std::array<Unit, 24> kUnits{{{"m", Dimension::length, 1.0},
                                        {"cm", Dimension::length, 1e-2},
                                        {"mm", Dimension::length, 1e-3},
                                        {"um", Dimension::length, 1e-6},
@@ -30,7 +30,18 @@ constexpr std::array<Unit, 16> kUnits{{{"m", Dimension::length, 1.0},
                                        {"s", Dimension::time, 1.0},
                                        {"ms", Dimension::time, 1e-3},
                                        {"min", Dimension::time, 60.0},
-                                       {"h", Dimension::time, 3600.0}}};
+                                       {"h", Dimension::time, 3600.0},
+                                       {"N", Dimension::force, 1.0},
+                                       {"kN", Dimension::force, 1e3},
+                                       {"N m", Dimension::moment, 1.0},
+                                       {"N mm", Dimension::moment, 1e-3},
+                                       {"kN m", Dimension::moment, 1e3},
+                                       {"J", Dimension::energy, 1.0},
+                                       {"mJ", Dimension::energy, 1e-3},
+                                       {"uJ", Dimension::energy, 1e-6}}};
+
+constexpr std::array<Dimension, 7> kAll{Dimension::length, Dimension::angle,  Dimension::time,  Dimension::number,
+                                        Dimension::force,  Dimension::moment, Dimension::energy};
 
 /// How a dimension is called, its SI unit, and the unit in which people read it; in the order of the enumeration.
 struct DimensionWords {
@@ -39,10 +50,13 @@ struct DimensionWords {
   Unit display;
 };
 
-constexpr std::array<DimensionWords, 4> kDimensions{{{"length", "m", {"mm", Dimension::length, 1e-3}},
-                                                     {"angle", "rad", {"deg", Dimension::angle, kDegree}},
-                                                     {"time", "s", {"s", Dimension::time, 1.0}},
-                                                     {"number", "1", {"1", Dimension::number, 1.0}}}};
+constexpr std::array<DimensionWords, kAll.size()> kDimensions{{{"length", "m", {"mm", Dimension::length, 1e-3}},
+                                                               {"angle", "rad", {"deg", Dimension::angle, kDegree}},
+                                                               {"time", "s", {"s", Dimension::time, 1.0}},
+                                                               {"number", "1", {"1", Dimension::number, 1.0}},
+                                                               {"force", "N", {"N", Dimension::force, 1.0}},
+                                                               {"moment", "N m", {"N m", Dimension::moment, 1.0}},
+                                                               {"energy", "J", {"J", Dimension::energy, 1.0}}}};
 
 const DimensionWords& words_of(Dimension dimension) { return kDimensions.at(static_cast<std::size_t>(dimension)); }
 
@@ -52,7 +66,8 @@ struct Spelling {
   std::string_view unit;
 };
 
-constexpr std::array<Spelling, 3> kSpellings{{{"\xC2\xB5m", "um"}, {"\xCE\xBCm", "um"}, {"\xC2\xB0", "deg"}}};
+constexpr std::array<Spelling, 5> kSpellings{
+    {{"\xC2\xB5m", "um"}, {"\xCE\xBCm", "um"}, {"\xC2\xB0", "deg"}, {"\xC2\xB5J", "uJ"}, {"\xCE\xBCJ", "uJ"}}};
 
 /// As std::to_chars writes it in this format.
 template <class... Format>
@@ -100,6 +115,8 @@ std::string problem_of(const NumberRead& read, std::string_view text) {
 
 }  // namespace
 
+std::span<const Dimension> all_dimensions() { return kAll; }
+
 std::span<const Unit> units() { return kUnits; }
 
 const Unit* find_unit(std::string_view spelling) {
@@ -120,6 +137,12 @@ std::string unit_names(std::optional<Dimension> dimension) {
 }
 
 std::string_view name(Dimension dimension) { return words_of(dimension).name; }
+
+std::string with_article(Dimension dimension) {
+  const std::string word(name(dimension));
+  return (std::string_view("aeiou").find(word.front()) == std::string_view::npos ? "a " : "an ") + word;
+}
+
 std::string_view si_unit(Dimension dimension) { return words_of(dimension).si_unit; }
 const Unit& display_unit(Dimension dimension) { return words_of(dimension).display; }
 

@@ -8,28 +8,33 @@
 
 namespace poesy {
 
-/// What a value measures; a number has no unit.
-enum class Dimension { length, angle, time, number };
+/// What a value measures; a number has no unit. Errors are lengths or angles. Only responses, and limits on them, are
+/// forces, moments or energies.
+enum class Dimension { length, angle, time, number, force, moment, energy };
 
-/// A unit that may stand in a study file: its name and its size in SI (m, rad, s).
+std::span<const Dimension> all_dimensions();  ///< In the order of the enumeration.
+
+/// A unit that may stand in a study file: its name and its size in SI (m, rad, s, N, N m, J).
 struct Unit {
-  std::string_view name;  ///< as a study file has it: "mm"
+  std::string_view name;  ///< as a study file has it: "mm", "N m"
   Dimension dimension;    ///< what it measures
   double si;              ///< its size
 };
 
-std::span<const Unit> units();  ///< m, cm, mm, um, in, mil, thou, rad, mrad, deg, arcmin, arcsec, s, ms, min, h.
+/// m, cm, mm, um, in, mil, thou, rad, mrad, deg, arcmin, arcsec, s, ms, min, h, N, kN, N m, N mm, kN m, J, mJ, uJ.
+std::span<const Unit> units();
 
-/// The unit of this name, or of another spelling of it: a micro sign (U+00B5) or Greek mu (U+03BC) before the m, a
+/// The unit of this name, or of another spelling of it: a micro sign (U+00B5) or Greek mu (U+03BC) before the m or J, a
 /// degree sign (U+00B0). Null where there is none.
 const Unit* find_unit(std::string_view spelling);
 
 /// The names of the units of one dimension, or of all: "m, cm, mm, um, in, mil, thou".
 std::string unit_names(std::optional<Dimension> dimension = std::nullopt);
 
-std::string_view name(Dimension dimension);        ///< "length", "angle", "time" or "number".
-std::string_view si_unit(Dimension dimension);     ///< "m", "rad", "s" or "1".
-const Unit& display_unit(Dimension dimension);     ///< The unit in which people read it, "mm", "deg", "s" or "1".
+std::string_view name(Dimension dimension);     ///< "length", "angle", "time", "number", "force", "moment", "energy".
+std::string with_article(Dimension dimension);  ///< "a length", "an angle".
+std::string_view si_unit(Dimension dimension);  ///< "m", "rad", "s", "1", "N", "N m" or "J".
+const Unit& display_unit(Dimension dimension);  ///< The unit in which people read it: "mm", "deg", else that of the SI.
 std::string_view error_kind(Dimension dimension);  ///< What errors of this dimension are called: "linear" or "angular".
 
 /// The dimension of which this is the SI unit; a number for any other text.
@@ -37,7 +42,7 @@ Dimension dimension_of(std::string_view si_name);
 
 /// A value with its dimension.
 struct Quantity {
-  double si = 0.0;                          ///< the value, in m, rad, s or without unit
+  double si = 0.0;                          ///< the value, in the SI unit or without one
   Dimension dimension = Dimension::number;  ///< what it measures
 };
 
@@ -47,7 +52,7 @@ class QuantityError : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// Reads "1.5 mm", "-0.5 rad", "10 um". The number is finite, the unit one that find_unit() knows.
+/// Reads "1.5 mm", "-0.5 rad", "10 um", "2 N m". The number is finite, the unit one that find_unit() knows.
 /// Throws QuantityError with the reason and the units that are known: of the dimension that is wanted, or all.
 Quantity parse_quantity(std::string_view text, std::optional<Dimension> wanted = std::nullopt);
 

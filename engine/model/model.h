@@ -39,7 +39,7 @@ struct FactorSet {
 /// A scalar that is judged for every (pose, sample).
 struct Response {
   std::string name;         ///< as result files have it
-  Dimension dimension;      ///< length (m), angle (rad) or number
+  Dimension dimension;      ///< length (m), angle (rad), force (N), moment (N m), energy (J) or number
   std::string description;  ///< for people
   /// To first order, the mean square that independent errors of mean zero give together is at most this times the sum
   /// of the mean squares that each gives alone. 1 where the response is linear in the errors or the norm of something

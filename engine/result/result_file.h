@@ -54,7 +54,7 @@ std::string check_result_path(const std::string& path, std::span<const std::stri
 /// A pose coordinate or response or factor as a result file names it.
 struct NamedUnit {
   std::string name;              ///< as in the model's description
-  std::string unit;              ///< "m", "rad" or "1"
+  std::string unit;              ///< of the SI: "m", "rad", "N m"; "1" where it has none
   std::string description = {};  ///< what it is, in words
 };
 

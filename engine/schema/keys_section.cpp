@@ -38,20 +38,28 @@ std::string described(const toml::node& node) {
 
 std::string example(Dimension dimension) { return "\"1 " + std::string(display_unit(dimension).name) + "\""; }
 
-/// The unit of which this is the name in capitals or in full: "degrees". No other likeness counts, because a letter
-/// more or less before a unit makes another one: dm, nm, mdeg, grad.
+/// In small letters and without blanks: "n m" and "Nm" are alike.
+std::string plain_unit(std::string_view written) {
+  std::string plain = lower_case(written);
+  std::erase(plain, ' ');
+  return plain;
+}
+
+/// The unit of which this is the name in other capitals, with other blanks or in full: "degrees". No other likeness
+/// counts, because a letter more or less before a unit makes another one: dm, nm, mdeg, grad.
 const Unit* meant_unit(std::string_view written, Dimension dimension) {
   constexpr std::size_t kTelling = 3;
-  const std::string plain = lower_case(written);
+  const std::string plain = plain_unit(written);
   for (const Unit& unit : units()) {
-    const bool begins = unit.name.size() >= kTelling && plain.starts_with(unit.name);
-    if (unit.dimension == dimension && (plain == unit.name || begins)) return &unit;
+    const std::string name = plain_unit(unit.name);
+    const bool begins = name.size() >= kTelling && plain.starts_with(name);
+    if (unit.dimension == dimension && (plain == name || begins)) return &unit;
   }
   return nullptr;
 }
 
 std::string unit_remedy(std::string_view text, Dimension dimension) {
-  const std::string_view written = text.substr(text.find_last_of("0123456789. ") + 1);
+  const std::string_view written = trimmed(text.substr(text.find_last_of("0123456789.") + 1));
   const Unit* meant = find_unit(written) == nullptr ? meant_unit(written, dimension) : nullptr;
   if (meant != nullptr) return "did you mean '" + std::string(meant->name) + "'?";
   return "write a number and a unit, e.g. " + example(dimension);
@@ -122,9 +130,7 @@ double StudyValue::quantity_of(const std::string& written, Dimension dimension) 
   } catch (const QuantityError& reason) {
     fail(std::string("cannot be read: ") + reason.what(), unit_remedy(written, dimension));
   }
-  fail("is '" + written + "', but must be " + (dimension == Dimension::angle ? "an " : "a ") +
-           std::string(name(dimension)),
-       "write it like " + example(dimension));
+  fail("is '" + written + "', but must be " + with_article(dimension), "write it like " + example(dimension));
 }
 
 bool StudyValue::is_zero() const { return node_->is_number() && number() == 0.0; }

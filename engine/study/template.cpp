@@ -12,12 +12,24 @@
 namespace poesy {
 namespace {
 
+/// Those in which values of a study of this model may be written: of lengths, angles, times, and what it responds with.
+std::string model_units(const ModelDescription& model) {
+  std::string list;
+  for (const Dimension dimension : all_dimensions()) {
+    const bool always = dimension == Dimension::length || dimension == Dimension::angle || dimension == Dimension::time;
+    const bool responds = std::ranges::find(model.responses, dimension, &Response::dimension) != model.responses.end();
+    const std::string these = always || responds ? unit_names(dimension) : "";
+    list += (list.empty() || these.empty() ? "" : ", ") + these;
+  }
+  return list;
+}
+
 std::string head(const TemplateLines& lines, const Study& shown) {
   const ModelDescription& model = shown.model();
   std::string title = fmt::format("{} of {}", shown.analysis.kind->name, model.name);
   title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
   return comment(model.name + ": " + model.title) + "# Run this study with: poesy run STUDY.toml\n" +
-         comment("Quantities are texts with a unit: " + unit_names() + ".") +
+         comment("Quantities are texts with a unit: " + model_units(model) + ".") +
          "# A key behind a '#' shows a default or an alternative. All keys: poesy template --reference\n" +
          lines.usual("", "format") + lines.usual("", "version") +
          lines.explained("", "title", "title = " + in_quotes(title));
@@ -91,6 +103,8 @@ std::string introduction() {
       "  poses, unless it says \"else ignored\".\n"
       "- A length, an angle or a time is a text of a number and a unit: `\"0.1 mm\"`. Lengths: {}. Angles: {}. Times: "
       "{}.\n"
+      "  So is a force, a moment or an energy, where a mechanism responds with one. Forces: {}. Moments: {}. Energies: "
+      "{}.\n"
       "  `µm` and `°` may be written for `um` and `deg`. A bare number is an error. A *quantity* has the dimension of "
       "what it is a value of.\n"
       "- A number between 0 and 1 may be a text in percent: `\"99.73 %\"`.\n"
@@ -100,7 +114,8 @@ std::string introduction() {
       "- A table `[poses]` with a key `workspace` of type table may be written as `workspace = {{ ... }}` there, as\n"
       "  `[poses.workspace]`, or with dots; a list of tables as `[[analysis.cases]]` for each of them.\n"
       "- *Required* means: wherever the key holds.\n",
-      units_of(Dimension::length), units_of(Dimension::angle), units_of(Dimension::time));
+      units_of(Dimension::length), units_of(Dimension::angle), units_of(Dimension::time), units_of(Dimension::force),
+      units_of(Dimension::moment), units_of(Dimension::energy));
 }
 
 }  // namespace

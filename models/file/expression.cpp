@@ -23,7 +23,8 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 /// Null where it is no unit of length or angle. Others, such as h, are free for parameters.
 const Unit* unit_of(std::string_view name) {
   const Unit* unit = find_unit(name);
-  return unit != nullptr && unit->dimension != Dimension::time ? unit : nullptr;
+  if (unit == nullptr || (unit->dimension != Dimension::length && unit->dimension != Dimension::angle)) return nullptr;
+  return unit;
 }
 
 /// Reads from left to right; each function takes what its name says off the front.

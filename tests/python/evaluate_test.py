@@ -87,6 +87,14 @@ class Evaluate(FolderTest):
         for name, values in poesy.evaluate("2upr-rpu", self.poses[:1], table).items():
             np.testing.assert_array_equal(values, one[name])
 
+    def test_units_may_hold_a_blank(self):
+        lines = ["  force_1                 N magnitude of the force", "  moment_1              N m its moment", "  x   m along x"]
+        found = [(one.name, one.unit, one.description) for one in poesy._mechanism._named(lines)]
+        self.assertEqual(found, [("force_1", "N", "magnitude of the force"), ("moment_1", "N m", "its moment"),
+                                 ("x", "m", "along x")])
+        self.assertEqual(poesy._units.shown("N m"), ("N m", 1.0))
+        self.assertEqual(poesy._units.labelled("mean", "N m"), "mean [N m]")
+
     def test_another_description_of_a_pose(self):
         mechanism = poesy.mechanism(RPS3)
         at_home = poesy.evaluate(mechanism, {"q_1_2": 0.0, "q_2_2": 0.0, "q_3_2": 0.0}, np.zeros(108))

@@ -34,8 +34,8 @@ KeyValue<WrittenCost> unit_value() {
     const std::string name = value.text();
     written.unit = find_unit(name);
     if (written.unit != nullptr && written.unit->dimension == written.dimension) return;
-    value.fail(fmt::format("is '{}', which is no unit of the part's tolerance, {} {}", printable(name),
-                           written.dimension == Dimension::angle ? "an" : "a", poesy::name(written.dimension)),
+    value.fail(fmt::format("is '{}', which is no unit of the part's tolerance, {}", printable(name),
+                           with_article(written.dimension)),
                "known: " + unit_names(written.dimension));
   };
   return {.type = "text", .read = read, .text = [](const WrittenCost& written) {

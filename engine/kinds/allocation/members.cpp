@@ -28,8 +28,8 @@ PartMembers members_of(const StudyValue& value, Dimension dimension, const Study
     if (factor_of(study, factor).dimension == dimension) members.push_back(factor);
   }
   if (!members.empty()) return members;
-  value.fail(fmt::format("is \"{}\", but no error that the study varies is {} {}", error_kind(dimension),
-                         dimension == Dimension::angle ? "an" : "a", name(dimension)),
+  value.fail(fmt::format("is \"{}\", but no error that the study varies is {}", error_kind(dimension),
+                         with_article(dimension)),
              "leave this part out");
 }
 

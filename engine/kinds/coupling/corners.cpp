@@ -101,7 +101,7 @@ CornersAtPose CornerSearch::operator()(std::size_t pose, std::size_t size) {
 std::vector<CornerSearch::Direction> CornerSearch::directions(const ModelDescription& model) {
   std::vector<Direction> list;
   for (std::size_t r = 0; r < model.responses.size(); ++r) list.push_back({{r, 1.0}});
-  for (const Dimension dimension : {Dimension::length, Dimension::angle, Dimension::number}) {
+  for (const Dimension dimension : all_dimensions()) {
     std::vector<Direction> sums{{}};
     for (const std::size_t r : model.signed_headline) {
       if (model.responses[r].dimension != dimension || sums.size() > kMostSums) continue;

@@ -21,7 +21,7 @@ _NUMBER = r"[-+]?(?:[\d.]+(?:e[-+]?\d+)?|inf|nan)"
 _VECTOR = rf"\(({_NUMBER}), ({_NUMBER}), ({_NUMBER})\)"
 _FRAME = re.compile(rf"  (?P<name>\S+) +(?P<joint>\S+)(?: +(?P<type>\S.*?))? +{_VECTOR} +{_VECTOR} +{_VECTOR}")
 _COORDINATE = re.compile(rf"  (\S+) +({_NUMBER}) to ({_NUMBER}) +(\S+) (.*)")
-_NAMED = re.compile(r"  (\S+) +(\S+) (.*)")
+_NAMED = re.compile(r"  (\S+) +(N m|\S+) (.*)")  # a name, its unit, of which one holds a blank, and words
 _RESPONSES = re.compile(
     r'responses(?: by \[solver\] metric = "(?P<metric>[^"]*)")?(?P<usual>, which a study without the key has)?'
 )

@@ -24,10 +24,11 @@ std::string refusal(std::string_view text, std::optional<Dimension> wanted = std
 TEST(Units, HaveTheSizesOfTheSi) {
   const double degree = std::numbers::pi / 180.0;
   const std::pair<std::string_view, double> sizes[]{
-      {"1 m", 1.0},       {"1 cm", 0.01},    {"1 mm", 1e-3},        {"1 um", 1e-6},          {"1 rad", 1.0},
-      {"1 mrad", 1e-3},   {"1 deg", degree}, {"60 arcmin", degree}, {"3600 arcsec", degree}, {"1 s", 1.0},
-      {"1 ms", 1e-3},     {"1 min", 60.0},   {"1 h", 3600.0},       {"1 in", 0.0254},        {"1 mil", 2.54e-5},
-      {"1 thou", 2.54e-5}};
+      {"1 m", 1.0},        {"1 cm", 0.01},    {"1 mm", 1e-3},        {"1 um", 1e-6},          {"1 rad", 1.0},
+      {"1 mrad", 1e-3},    {"1 deg", degree}, {"60 arcmin", degree}, {"3600 arcsec", degree}, {"1 s", 1.0},
+      {"1 ms", 1e-3},      {"1 min", 60.0},   {"1 h", 3600.0},       {"1 in", 0.0254},        {"1 mil", 2.54e-5},
+      {"1 thou", 2.54e-5}, {"1 N", 1.0},      {"1 kN", 1e3},         {"1 N m", 1.0},          {"1 N mm", 1e-3},
+      {"1 kN m", 1e3},     {"1 J", 1.0},      {"1 mJ", 1e-3},        {"1 uJ", 1e-6}};
   EXPECT_EQ(std::size(sizes), units().size());
   for (const auto& [text, si] : sizes) EXPECT_DOUBLE_EQ(parse_quantity(text).si, si) << text;
 }
@@ -39,12 +40,49 @@ TEST(Units, MayBeSpeltWithTheirSigns) {
   }
   EXPECT_EQ(parse_quantity("-0.5\xC2\xB0").si, parse_quantity("-0.5 deg").si);
   EXPECT_EQ(parse_quantity("-0.5 \xC2\xB0").dimension, Dimension::angle);
+  for (const std::string_view microjoule : {"7 \xC2\xB5J", "7 \xCE\xBCJ"}) {
+    EXPECT_EQ(parse_quantity(microjoule).si, parse_quantity("7 uJ").si);
+  }
+}
+
+TEST(Units, MayHoldABlank) {
+  for (const std::string_view text : {"2 N m", "2N m", " 2000 N mm ", "0.002 kN m"}) {
+    EXPECT_DOUBLE_EQ(parse_quantity(text).si, 2.0) << text;
+    EXPECT_EQ(parse_quantity(text).dimension, Dimension::moment) << text;
+  }
+  EXPECT_EQ(refusal("2 Nm", Dimension::moment), "unknown unit 'Nm' in '2 Nm' (known: N m, N mm, kN m)");
+  EXPECT_EQ(refusal("2 N s", Dimension::force), "unknown unit 'N s' in '2 N s' (known: N, kN)");
+}
+
+TEST(Dimensions, HaveWordsAndAUnitOfTheSi) {
+  const std::string_view names[]{"a length", "an angle", "a time", "a number", "a force", "a moment", "an energy"};
+  ASSERT_EQ(all_dimensions().size(), std::size(names));
+  for (std::size_t d = 0; d < std::size(names); ++d) {
+    const Dimension dimension = all_dimensions()[d];
+    EXPECT_EQ(static_cast<std::size_t>(dimension), d);
+    EXPECT_EQ(with_article(dimension), names[d]);
+    EXPECT_EQ(dimension_of(si_unit(dimension)), dimension);
+    EXPECT_EQ(display_unit(dimension).dimension, dimension);
+    if (dimension == Dimension::number) continue;
+    EXPECT_EQ(parse_quantity(to_text({0.3, dimension})).si, 0.3);
+  }
+}
+
+TEST(Dimensions, AreReadInTheUnitsThatPeopleUse) {
+  EXPECT_EQ(readable_text({0.08, Dimension::length}), "80 mm");
+  EXPECT_EQ(readable_text({-5.0, Dimension::force}), "-5 N");
+  EXPECT_EQ(readable_text({0.25, Dimension::moment}), "0.25 N m");
+  EXPECT_EQ(readable_text({3e-7, Dimension::energy}), "3e-07 J");
+  EXPECT_EQ(readable_text({250.0, Dimension::energy}), "250 J");
 }
 
 TEST(Units, AreListedForOneDimension) {
   EXPECT_EQ(unit_names(Dimension::length), "m, cm, mm, um, in, mil, thou");
   EXPECT_EQ(unit_names(Dimension::angle), "rad, mrad, deg, arcmin, arcsec");
-  EXPECT_EQ(unit_names(), "m, cm, mm, um, in, mil, thou, rad, mrad, deg, arcmin, arcsec, s, ms, min, h");
+  EXPECT_EQ(unit_names(Dimension::moment), "N m, N mm, kN m");
+  EXPECT_EQ(unit_names(),
+            "m, cm, mm, um, in, mil, thou, rad, mrad, deg, arcmin, arcsec, s, ms, min, h, "
+            "N, kN, N m, N mm, kN m, J, mJ, uJ");
   EXPECT_EQ(refusal("8 furlong", Dimension::length),
             "unknown unit 'furlong' in '8 furlong' (known: m, cm, mm, um, in, mil, thou)");
   EXPECT_EQ(refusal("8", Dimension::angle), "'8' has no unit (known: rad, mrad, deg, arcmin, arcsec)");

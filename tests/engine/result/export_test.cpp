@@ -114,6 +114,23 @@ TEST_F(Export, GlobalIndicesComeInSiAndInDisplayUnits) {
   EXPECT_DOUBLE_EQ(parse_number(table[2][16]).value(), 11010.0 * 1e-3 * 180.0 / std::numbers::pi);  // deg per mm
 }
 
+/// A unit of two words is one in headings and in columns of text.
+TEST_F(Export, UnitsMayHoldABlank) {
+  CatalogEntry entry = *example_.study.mechanism.entry;
+  entry.description.responses[0].dimension = Dimension::moment;
+  entry.description.responses[1].dimension = Dimension::energy;
+  example_.study.mechanism.entry = &entry;
+  example_.write_sensitivity(folder_ / "moment.h5");
+  const StoredResult result = read_result(folder_ / "moment.h5");
+  EXPECT_EQ(result.responses[0].unit, "N m");
+  EXPECT_EQ(result.responses[1].unit, "J");
+  EXPECT_EQ(display(result.responses[0]).name, "N m");
+  export_tables(folder_ / "moment.h5", folder_ / "moment");
+  const Cells head = read_table(folder_ / "moment/global.csv").at(0);
+  EXPECT_EQ(head.at(1), "angular_deformation [N m per rad or m]");
+  EXPECT_EQ(head.at(7), "linear_deformation [J per rad or m]");
+}
+
 TEST_F(Export, IndexChangesHaveAColumnForEachResponse) {
   export_tables(folder_ / "s.h5", folder_.path());
   EXPECT_EQ(read_table(folder_ / "index_change.csv"),
