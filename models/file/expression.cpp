@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <vector>
 
@@ -13,6 +14,8 @@ namespace poesy::file {
 namespace {
 
 constexpr std::size_t kLongest = 1000;  ///< bytes; bounds the depth of the recursion, too
+constexpr int kLargestExponent = 12;    ///< behind ^
+constexpr int kLargestPower = 100;      ///< of a value that was raised; keeps powers of powers within int
 constexpr std::array<std::string_view, 5> kFunctions{"sqrt", "sin", "cos", "tan", "atan2"};
 
 bool is_letter(char c) {
@@ -20,18 +23,19 @@ bool is_letter(char c) {
 }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Null where it is no unit of length or angle. Others, such as h, are free for parameters.
-const Unit* unit_of(std::string_view name) {
+/// Whether a name is a unit of length or angle. Those of other quantities, such as h and N, are free for parameters.
+bool is_unit_of_geometry(std::string_view name) {
   const Unit* unit = find_unit(name);
-  if (unit == nullptr || (unit->dimension != Dimension::length && unit->dimension != Dimension::angle)) return nullptr;
-  return unit;
+  return unit != nullptr && (unit->dimension == Dimension::length || unit->dimension == Dimension::angle);
 }
 
 /// Reads from left to right; each function takes what its name says off the front.
 class Parser {
  public:
-  Parser(const Expression& expression, std::span<const GeometryParameter> parameters, std::span<const double> values)
-      : expression_(expression), text_(expression.text), parameters_(parameters), values_(values) {}
+  /// due: powers of the value that is wanted, as far as that is known; for messages.
+  Parser(const Expression& expression, std::span<const GeometryParameter> parameters, std::span<const double> values,
+         const Powers& due)
+      : expression_(expression), text_(expression.text), parameters_(parameters), values_(values), due_(due) {}
 
   Value whole() {
     if (text_.size() > kLongest) fail(0, "is longer than 1000 bytes", "write it with fewer terms");
@@ -53,7 +57,7 @@ class Parser {
   [[noreturn]] void unexpected() {
     const bool ended = at_ >= text_.size();
     fail(at_, ended ? "ends too early" : "cannot be read at '" + printable(text_.substr(at_), 20) + "'",
-         "write numbers with units, parameters, + - * / ( ), sqrt, sin, cos, tan, atan2 and pi, e.g. \"a + 20 mm\"");
+         "write numbers with units, parameters, + - * / ^ ( ), sqrt, sin, cos, tan, atan2 and pi, e.g. \"a + 20 mm\"");
   }
 
   void skip() {
@@ -105,10 +109,15 @@ class Parser {
       const bool times = take('*');
       if (!times && !take('/')) return value;
       const Value next = factor();
-      const int sign = times ? 1 : -1;
-      value = {times ? value.si * next.si : value.si / next.si, value.length + sign * next.length,
-               value.angle + sign * next.angle, value.any || (times && next.any)};
+      value = {times ? value.si * next.si : value.si / next.si, multiplied(value.powers, next.powers, times ? 1 : -1),
+               value.any || (times && next.any)};
     }
+  }
+
+  /// The powers of a value times another one that is raised to an exponent.
+  static Powers multiplied(const Powers& one, const Powers& other, int exponent) {
+    return {one.length + exponent * other.length, one.angle + exponent * other.angle, one.mass + exponent * other.mass,
+            one.time + exponent * other.time};
   }
 
   Value factor() {
@@ -118,6 +127,38 @@ class Parser {
       value.si = -value.si;
       return value;
     }
+    return power();
+  }
+
+  Value power() {
+    const Value base = primary();
+    skip();
+    const std::size_t at = at_;
+    if (!take('^')) return base;
+    const int exponent = whole_exponent();
+    Value value{1.0, multiplied({}, base.powers, exponent), base.any && exponent > 0};
+    for (int n = 0; n < std::abs(exponent); ++n) value.si *= base.si;
+    if (exponent < 0) value.si = 1.0 / value.si;
+    for (const int one : {value.powers.length, value.powers.angle, value.powers.mass, value.powers.time}) {
+      if (std::abs(one) > kLargestPower) fail(at, "has a dimension that nothing has", "write a smaller exponent");
+    }
+    return value;
+  }
+
+  int whole_exponent() {
+    skip();
+    const std::size_t at = at_;
+    int exponent = 0;
+    const auto [end, failure] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), exponent);
+    at_ = static_cast<std::size_t>(end - text_.data());
+    const bool goes_on = at_ < text_.size() && (text_[at_] == '.' || is_letter(text_[at_]));
+    if (failure != std::errc() || goes_on || std::abs(exponent) > kLargestExponent) {
+      fail(at, "has an exponent that is no whole number from -12 to 12", "write e.g. d^4; a root is sqrt(x)");
+    }
+    return exponent;
+  }
+
+  Value primary() {
     if (take('(')) {
       const Value value = sum();
       need(')');
@@ -140,21 +181,37 @@ class Parser {
     if (failure != std::errc()) unexpected();
     at_ += static_cast<std::size_t>(end - begin);
     skip();
-    if (at_ >= text_.size() || !is_letter(text_[at_])) return {value, 0, 0, value == 0.0};
+    if (at_ >= text_.size() || !is_letter(text_[at_])) return {value, {}, value == 0.0};
+    const WrittenUnit found = unit();
+    return {value * found.si, found.powers};
+  }
+
+  /// Behind a number: a power there belongs to the unit.
+  WrittenUnit unit() {
     const std::size_t at = at_;
-    const std::string_view unit_name = word();
-    const Unit* unit = unit_of(unit_name);
-    if (unit == nullptr) {
-      fail(at, "has an unknown unit '" + std::string(unit_name) + "'",
-           "known: " + unit_names(Dimension::length) + ", " + unit_names(Dimension::angle) + "; write * to multiply");
+    const auto found = unit_at_begin(text_.substr(at));
+    if (found) {
+      at_ += found->length;
+    } else {
+      word();
     }
-    return of_dimension(value * unit->si, unit->dimension);
+    std::size_t end = at_;
+    const bool raised = take('^');
+    if (found && !raised) return *found;
+    if (raised) {
+      take('-');
+      word();
+      end = at_;
+    }
+    fail(at, "has an unknown unit '" + printable(text_.substr(at, end - at)) + "'",
+         raised ? "write the power of a quantity as in (5 mm)^3"
+                : "known: " + known_units(due_) + "; write * to multiply");
   }
 
   Value named() {
     const std::size_t at = at_;
     const std::string_view name = word();
-    if (name == "pi") return {std::numbers::pi};
+    if (name == "pi") return {.si = std::numbers::pi};
     if (std::ranges::find(kFunctions, name) != kFunctions.end()) return function(name, at);
     for (std::size_t p = 0; p < parameters_.size(); ++p) {
       if (parameters_[p].name == name) return of_dimension(values_[p], parameters_[p].dimension);
@@ -176,76 +233,72 @@ class Parser {
       const Value y = sum();
       need(')');
       need_like(x, y, at, "takes atan2 of");
-      return {std::atan2(x.si, y.si), 0, 1};
+      return of_dimension(std::atan2(x.si, y.si), Dimension::angle);
     }
     need(')');
     if (name == "sqrt") {
-      if (x.length % 2 != 0 || x.angle % 2 != 0) {
+      const auto& [length, angle, mass, time] = x.powers;
+      const bool odd_angle = angle % 2 != 0 && x.powers.only_angle();
+      if (length % 2 != 0 || mass % 2 != 0 || time % 2 != 0 || odd_angle) {
         fail(at, "takes the root of " + dimension_text(x), "the root of a square has a meaning: sqrt(a * a)");
       }
-      return {std::sqrt(x.si), x.length / 2, x.angle / 2, x.any};
+      return {std::sqrt(x.si), {length / 2, angle / 2, mass / 2, time / 2}, x.any};
     }
-    if (x.length != 0 || (x.angle != 0 && x.angle != 1)) {
+    if (!x.powers.like(kNumber.powers) && !x.powers.like(kAngle.powers)) {
       fail(at, "takes " + std::string(name) + " of " + dimension_text(x), "give it an angle, e.g. 30 deg");
     }
-    return {name == "sin" ? std::sin(x.si) : name == "cos" ? std::cos(x.si) : std::tan(x.si)};
+    return {.si = name == "sin" ? std::sin(x.si) : name == "cos" ? std::cos(x.si) : std::tan(x.si)};
   }
 
   const Expression& expression_;
   std::string_view text_;
   std::span<const GeometryParameter> parameters_;
   std::span<const double> values_;
+  Powers due_;
   std::size_t at_ = 0;
 };
 
 }  // namespace
 
-Value of_dimension(double si, Dimension dimension) {
-  return {si, dimension == Dimension::length ? 1 : 0, dimension == Dimension::angle ? 1 : 0};
-}
+Value of_dimension(double si, Dimension dimension) { return {si, physical(dimension).powers}; }
 
-bool Value::like(const Value& other) const {
-  return any || other.any || (length == other.length && angle == other.angle);
-}
+bool Value::like(const Value& other) const { return any || other.any || powers.like(other.powers); }
 
-std::string dimension_text(const Value& value) {
-  if (value.length == 0 && value.angle == 0) return "a number";
-  if (value.length == 1 && value.angle == 0) return "a length";
-  if (value.length == 0 && value.angle == 1) return "an angle";
-  const auto power = [](const char* name, int exponent) {
-    return exponent == 0 ? "" : exponent == 1 ? std::string(name) : name + ("^" + std::to_string(exponent));
-  };
-  const std::string length = power("length", value.length);
-  const std::string angle = power("angle", value.angle);
-  return length + (length.empty() || angle.empty() ? "" : " ") + angle;
-}
+std::string dimension_text(const Value& value) { return dimension_text(value.powers); }
 
 std::string why_no_parameter(std::string_view name) {
   const auto allowed = [](char c) { return (is_letter(c) && static_cast<unsigned char>(c) < 0x80) || is_digit(c); };
   if (name.empty() || is_digit(name.front()) || !std::ranges::all_of(name, allowed)) {
     return "is no name: letters, digits and _, and no digit first";
   }
-  if (unit_of(name) != nullptr) return "is a unit";
+  if (is_unit_of_geometry(name)) return "is a unit";
   if (name == "pi" || std::ranges::find(kFunctions, name) != kFunctions.end()) return "has a meaning in expressions";
   return {};
 }
 
 Value evaluate(const Expression& expression, std::span<const GeometryParameter> parameters,
                std::span<const double> values) {
-  return Parser(expression, parameters, values).whole();
+  return Parser(expression, parameters, values, {}).whole();
 }
 
 double evaluate(const Expression& expression, Dimension wanted, std::span<const GeometryParameter> parameters,
                 std::span<const double> values) {
-  const Value value = evaluate(expression, parameters, values);
-  const Value due = of_dimension(0.0, wanted);
-  if (value.like(due)) return value.si;
-  const bool bare = value.length == 0 && value.angle == 0 && wanted != Dimension::number;
+  return evaluate(expression, physical(wanted), parameters, values);
+}
+
+double evaluate(const Expression& expression, const Physical& wanted, std::span<const GeometryParameter> parameters,
+                std::span<const double> values) {
+  const Value value = Parser(expression, parameters, values, wanted.powers).whole();
+  if (value.like({.powers = wanted.powers})) return value.si;
+  const std::string unit = wanted.unit.empty() ? "" : " (" + std::string(wanted.unit) + ")";
+  const std::string example = "\"" + std::string(wanted.example) + "\"";
+  const bool bare = value.powers == kNumber.powers;
   throw InputError(expression.place,
                    expression.key + " '" + printable(expression.text, 120) + "' is " + dimension_text(value) +
-                       ", but must be " + dimension_text(due),
-                   bare ? "give it a unit, e.g. \"1 " + std::string(display_unit(wanted).name) + "\""
-                        : "correct the expression or its unit");
+                       ", but must be " + std::string(wanted.name) + unit,
+                   bare           ? "give it a unit, e.g. " + example
+                   : unit.empty() ? "correct the expression or its unit"
+                                  : "write it like " + example);
 }
 
 }  // namespace poesy::file

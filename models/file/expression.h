@@ -7,9 +7,17 @@
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/model/model.h"
+#include "models/file/physical.h"
 
-/// Numbers, parameters of the geometry, + - * / ( ), sqrt, sin, cos, tan, atan2, pi, and a unit behind a number: "a +
-/// 20 mm". Dimensions are found together with values, so that an error names the place inside the expression.
+/// Numbers, parameters of the geometry, + - * / ^ ( ), sqrt, sin, cos, tan, atan2, pi, and a unit behind a number: "a +
+/// 20 mm", "pi * d^4 / 64", "20 N/um". Dimensions are found together with values, so that an error names the place
+/// inside the expression.
+///
+/// A name behind a number, without an operator, is a unit: "2 g" is two grams even where a parameter is called g, and
+/// "2 * g" is twice the parameter. Hence a parameter may have the name of a unit, other than those of length and angle.
+/// A unit is written without blanks around / and ^, and its power belongs to it: "2 m/s^2" is an acceleration, "2 m /
+/// s^2" divides by a parameter; "5 mm^2" is five square millimetres, "(5 mm)^2" is 25. An exponent is a whole number;
+/// -a^2 is -(a^2).
 ///
 /// The parser is ours, because muparser (Debian) computes with doubles alone. Evaluating twice with other units of
 /// length and angle does not see the dimension of what is zero ("offset + 1 deg" with offset = 0 mm). Its operators can
@@ -24,25 +32,22 @@ struct Expression {
   bool quoted = false;  ///< then its text begins a column behind the place
 };
 
-/// A value with its powers of length and angle.
+/// A value with its dimension.
 struct Value {
-  double si = 0.0;   ///< in m, rad and their powers
-  int length = 0;    ///< power
-  int angle = 0;     ///< power
-  bool any = false;  ///< the bare number 0, which is any quantity
+  double si = 0.0;     ///< in m, rad, kg, s and their powers
+  Powers powers = {};  ///< of what it is a value
+  bool any = false;    ///< the bare number 0, which is any quantity
 
   /// Whether they may be added.
   bool like(const Value& other) const;
 };
 
-/// A length, angle or number.
-Value of_dimension(double si, Dimension dimension);
+Value of_dimension(double si, Dimension dimension);  ///< A value in the SI unit of a dimension.
 
-/// "a length", "an angle", "a number", "length^2 angle^-1".
-std::string dimension_text(const Value& value);
+std::string dimension_text(const Value& value);  ///< That of its powers.
 
-/// Whether a name of a parameter would be taken for something else: a unit, a function, pi. Or is no name at all.
-/// A clause; empty where it may be used.
+/// Whether a name of a parameter would be taken for something else: a unit of length or angle, a function, pi. Or is no
+/// name at all. A clause; empty where it may be used.
 std::string why_no_parameter(std::string_view name);
 
 /// The expression's value with these parameters, whose values are `values`, in that order.
@@ -50,8 +55,12 @@ std::string why_no_parameter(std::string_view name);
 Value evaluate(const Expression& expression, std::span<const GeometryParameter> parameters,
                std::span<const double> values);
 
-/// The same, of this dimension, SI. Throws InputError also for any other.
+/// The same, of this dimension, SI: a length, an angle or a number. Throws InputError also for any other.
 double evaluate(const Expression& expression, Dimension wanted, std::span<const GeometryParameter> parameters,
+                std::span<const double> values);
+
+/// The same, of this quantity, SI.
+double evaluate(const Expression& expression, const Physical& wanted, std::span<const GeometryParameter> parameters,
                 std::span<const double> values);
 
 }  // namespace poesy::file

@@ -139,7 +139,7 @@ class Builder {
       if (first.any) first = value;
       vector[static_cast<Eigen::Index>(k)] = value.si;
     }
-    const double smallest = kSamePoint * (first.length == 1 ? reach_ : 1.0);
+    const double smallest = kSamePoint * (first.powers.length == 1 ? reach_ : 1.0);
     if (vector.norm() > smallest) return vector.stableNormalized();
     throw InputError(triple.place, triple.key + " is zero and has no direction", "give it a length, e.g. [0, 0, 1]");
   }

@@ -328,9 +328,10 @@ std::string reference() {
          "of a\nmodel's name: `poesy models FILE` shows what was understood of it. Everything stands in the base's "
          "frame, "
          "with the\nmechanism at home, as on a drawing.\n\n"
-         "- A number may be an expression of parameters: `\"a + 20 mm\"`, with `+ - * / ( )`, `sqrt sin cos tan atan2 "
+         "- A number may be an expression of parameters: `\"a + 20 mm\"`, with `+ - * / ^ ( )`, `sqrt sin cos tan "
+         "atan2 "
          "pi` and units\n  inside. Its dimension is checked. A bare 0 is any quantity; other bare numbers are "
-         "numbers.\n"
+         "numbers. A name behind a\n  number is a unit, `2 * g` twice a parameter.\n"
          "- A point is `[x, y, z]`; a direction `\"x\"`, `\"-z\"`, or three entries of one dimension.\n" +
          tables_reference(mechanism_file_tables());
 }

@@ -90,8 +90,11 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "mrad, deg, "
            "arcmin, arcsec; write * to multiply"},
           {"\"250 mm\"", "\"250 mm^2\"",
-           "m.toml:7:22: geometry.a.value '250 mm^2' cannot be read at '^2'; write numbers with units, parameters, + - "
-           "* / ( ), sqrt, sin, cos, tan, atan2 and pi, e.g. \"a + 20 mm\""},
+           "m.toml:7:5: geometry.a is length^2; a parameter is a length or an angle: give it a unit, e.g. \"1 mm\""},
+          {"\"250 mm\"", "\"250 mm = 1\"",
+           "m.toml:7:23: geometry.a.value '250 mm = 1' cannot be read at '= 1'; write numbers with units, parameters, "
+           "+ "
+           "- * / ^ ( ), sqrt, sin, cos, tan, atan2 and pi, e.g. \"a + 20 mm\""},
           {"\"250 mm\"", "\"h / 2\"",
            "m.toml:7:16: geometry.a.value 'h / 2' has an unknown parameter 'h'; values in [geometry] are numbers; "
            "write the expression where it is used"},
