@@ -48,15 +48,16 @@ SolveCounts counts() {
 }
 
 /// One run with empty solves, on every rank; rank 0 prints what it took.
-template <class Output, class Add, class Read>
-void measure(const char* kind, const Plan& plan, const Output& unit, Team& team, const Add& add, const Read& read) {
+template <class Output, class Add, class State>
+void measure(const char* kind, const Plan& plan, Output unit, Team& team, const Add& add, const State& state) {
   RunOptions options;
   options.threads = 1;
   options.team = &team;
   Stage stage(nullptr, &team);
   stage.begin([](std::span<const std::byte>) {});
   ByteWriter packed;
-  unit.write(packed);
+  Archive archive(packed);
+  state(archive, unit);
   const std::size_t bytes = packed.take().size();
   const bool leads = team.leads();
   const double cpu = thread_seconds();
@@ -68,8 +69,7 @@ void measure(const char* kind, const Plan& plan, const Output& unit, Team& team,
         return unit;
       },
       [&](std::size_t n, const Output& output) { add(plan.unit(n), output); },
-      [](std::size_t, const Output& output, ByteWriter& to) { output.write(to); },
-      [&](std::size_t, ByteReader& from) { return read(from); });
+      [&](Archive& of_unit, std::size_t, Output& output) { state(of_unit, output); });
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double writer = thread_seconds() - cpu;
   stage.end(
@@ -92,7 +92,10 @@ void measure_both(Team& team, std::size_t units_per_cell) {
     SensitivityCollector collect(plan, responses, study.analysis.conf_level);
     measure(
         "sensitivity", plan, unit, team, [&](const WorkUnit& of, const CellUnit& found) { collect.add(of, found); },
-        [&](ByteReader& from) { return CellUnit::read(from, responses, 0, 0); });
+        [&](Archive& archive, CellUnit& one) {
+          one.responses.resize(responses);
+          one.state(archive, 0);
+        });
   }
   // As many units at few poses: what is done once for a pose does not count in long studies.
   study.analysis.kind = &kMonteCarloStudy;
@@ -102,8 +105,11 @@ void measure_both(Team& team, std::size_t units_per_cell) {
   const PoseUnit unit{std::vector(kResponsesOfMonteCarlo, response), counts(), {}, {}};
   MonteCarloCollector collect(plan, kResponsesOfMonteCarlo, study.analysis);
   measure(
-      "monte-carlo", plan, unit, team, [&](const WorkUnit& of, const PoseUnit& found) { collect.add(of.pose, found); },
-      [&](ByteReader& from) { return PoseUnit::read(from, kResponsesOfMonteCarlo, plan.factors().size(), 0); });
+      "monte-carlo", plan, unit, team, [&](const WorkUnit& of, const PoseUnit& found) { collect.add(of, found); },
+      [&](Archive& archive, PoseUnit& one) {
+        one.responses.resize(kResponsesOfMonteCarlo);
+        one.state(archive, plan.factors().size(), 0);
+      });
 }
 
 std::size_t argument(int argc, char** argv, int at, std::size_t otherwise) {

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <ranges>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -46,10 +49,22 @@ class Archive {
     real(value);
     real(more...);
   }
-  /// The state of an object that both directions have.
+  /// The state of an object that both directions have, or of a list of them whose number both know. An object that is
+  /// packed has write(ByteWriter&) and a static read(ByteReader&) instead of state().
   template <class Object>
   void object(Object& object) {
-    object.state(*this);
+    if constexpr (requires { object.state(*this); }) {
+      object.state(*this);
+    } else if constexpr (std::ranges::range<Object>) {
+      for (auto& one : object) this->object(one);
+    } else {
+      packed(object);
+    }
+  }
+  /// The states of several objects.
+  template <class... Objects>
+  void objects(Objects&... objects) {
+    (object(objects), ...);
   }
   /// Doubles whose number both directions know.
   void reals(std::span<double> values) {
@@ -67,13 +82,59 @@ class Archive {
       to_->reals(values);
     }
   }
+  /// An object that may be missing; where it is read, it is first made of these sizes.
+  template <class Object, class... Sizes>
+  void optional(std::optional<Object>& value, const Sizes&... sizes) {
+    if (!flag(value.has_value())) return value.reset();
+    if (reads()) value.emplace(sizes...);
+    object(*value);
+  }
+  /// Whether something holds, as it was when it was written.
+  bool flag(bool value) {
+    std::uint64_t holds = value ? 1 : 0;
+    number(holds, 1);
+    return holds == 1;
+  }
+  /// A text of any length.
+  void text(std::string& value) {
+    if (reads()) {
+      value = from_->text();
+    } else {
+      to_->text(value);
+    }
+  }
+  /// Bytes of any length.
+  void block(Bytes& bytes) {
+    if (reads()) {
+      const std::span<const std::byte> read = from_->block();
+      bytes.assign(read.begin(), read.end());
+    } else {
+      to_->block(bytes);
+    }
+  }
+  /// A number that both directions know. Throws BytesError for any other.
+  void known(std::uint64_t value, const char* problem) {
+    std::uint64_t read = value;
+    number(read);
+    expect(read == value, problem);
+  }
   /// Throws BytesError where something that was read does not hold.
   void expect(bool holds, const char* problem) const {
     if (reads() && !holds) throw BytesError(problem);
   }
 
-  ByteWriter& writer() { return *to_; }    ///< For what is packed. Precondition: it writes.
-  ByteReader& reader() { return *from_; }  ///< For what is packed. Precondition: it reads.
+  /// For an object whose packed form has a writer and a reader: write(ByteWriter&), and read(ByteReader&, ...), which
+  /// gives the object.
+  template <class Object, class... Known>
+  void packed(Object& object, const Known&... known) {
+    if (reads()) {
+      object = Object::read(*from_, known...);
+    } else {
+      object.write(*to_);
+    }
+  }
+  /// Whether something is left to be read.
+  bool is_left() const { return reads() && from_->left() > 0; }
 
  private:
   ByteWriter* to_ = nullptr;
@@ -84,7 +145,7 @@ class Archive {
 template <class Object, class... Context>
 void write_state(const Object& object, ByteWriter& to, const Context&... context) {
   Archive archive(to);
-  const_cast<Object&>(object).state(archive, context...);  // it changes nothing where it writes
+  archive.object(const_cast<Object&>(object));  // it changes nothing where it writes
 }
 
 /// Reads the state of an object that is made of these sizes. Throws BytesError for what no such object writes.
@@ -92,7 +153,7 @@ template <class Object, class... Sizes>
 Object read_state(ByteReader& from, const Sizes&... sizes) {
   Object object(sizes...);
   Archive archive(from);
-  object.state(archive);
+  archive.object(object);
   return object;
 }
 

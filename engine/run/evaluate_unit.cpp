@@ -25,19 +25,6 @@ void count_ends(const WorkUnit& unit, const UnitOutcomes& outcomes, Unit& found)
   }
 }
 
-/// Solves and failures of a unit or a cell, behind what it has of its responses.
-template <class Unit>
-void write_ends(const Unit& unit, ByteWriter& to) {
-  unit.solves.write(to);
-  unit.failed.write(to);
-}
-
-template <class Unit>
-void read_ends(ByteReader& from, std::uint64_t first, Unit& unit) {
-  unit.solves = SolveCounts::read(from);
-  unit.failed = FailedSamples::read(from, unit.solves.not_converged(), first, first + unit.solves.total());
-}
-
 }  // namespace
 
 void UnitStats::merge(const UnitStats& other) {
@@ -47,52 +34,34 @@ void UnitStats::merge(const UnitStats& other) {
   failed.merge(other.failed);
 }
 
-void UnitStats::write(ByteWriter& to) const {
-  for (const Moments& moments : responses) moments.write(to);
-  write_ends(*this, to);
+void ends_state(Archive& archive, SolveCounts& solves, FailedSamples& failed, std::uint64_t first) {
+  archive.object(solves);
+  failed.state(archive, solves.not_converged(), first, first + solves.total());
 }
 
-UnitStats UnitStats::read(ByteReader& from, std::size_t responses, std::uint64_t first) {
-  UnitStats stats;
-  for (std::size_t r = 0; r < responses; ++r) stats.responses.push_back(Moments::read(from));
-  read_ends(from, first, stats);
-  return stats;
-}
-
-void CellUnit::write(ByteWriter& to) const {
-  UnitStats::write(to);
-  for (const LocalIndex& index : within) to.reals(std::array{index.value, index.standard_error});
-}
-
-CellUnit CellUnit::read(ByteReader& from, std::size_t responses, std::uint64_t first, std::size_t points) {
-  CellUnit unit{UnitStats::read(from, responses, first), {}};
-  for (std::size_t n = 0; n < points * responses; ++n) {
-    const double value = from.real();
-    unit.within.push_back({value, from.real()});
+void ends_state(Archive& archive, std::span<SolveCounts> solves, std::span<FailedSamples> failed, std::uint64_t count,
+                std::uint64_t first, std::uint64_t end) {
+  for (std::size_t m = 0; m < solves.size(); ++m) {
+    archive.object(solves[m]);
+    archive.expect(solves[m].total() == count, "has a pose with other machines");
+    failed[m].state(archive, solves[m].not_converged(), first, end);
   }
-  return unit;
 }
 
-void PoseUnit::write(ByteWriter& to) const {
-  for (const ResponseUnit& response : responses) {
-    response.moments.write(to);
-    response.values.write(to);
-  }
-  write_ends(*this, to);
-  to.number(effects ? 1 : 0);
-  if (effects) effects->write(to);
+void UnitStats::state(Archive& archive, std::uint64_t first) {
+  archive.object(responses);
+  ends_state(archive, solves, failed, first);
 }
 
-PoseUnit PoseUnit::read(ByteReader& from, std::size_t responses, std::size_t errors, std::uint64_t first) {
-  PoseUnit unit;
-  unit.responses.resize(responses);
-  for (ResponseUnit& response : unit.responses) {
-    response.moments = Moments::read(from);
-    response.values = NumberBlock::read(from);
-  }
-  read_ends(from, first, unit);
-  if (from.number_up_to(1) == 1) unit.effects = MainEffectSums::read(from, errors, responses);
-  return unit;
+void CellUnit::state(Archive& archive, std::uint64_t first) {
+  UnitStats::state(archive, first);
+  archive.object(within);
+}
+
+void PoseUnit::state(Archive& archive, std::size_t errors, std::uint64_t first) {
+  archive.object(responses);
+  ends_state(archive, solves, failed, first);
+  archive.optional(effects, errors, responses.size());
 }
 
 std::vector<std::size_t> history_points(const Plan& plan) {

@@ -24,27 +24,24 @@ struct UnitStats {
 
   /// Precondition: the samples of `other` come after those of this.
   void merge(const UnitStats& other);
-
-  /// Moments, counts and failures, for a state or a message.
-  void write(ByteWriter& to) const;
-  /// Of samples from `first` on.
-  static UnitStats read(ByteReader& from, std::size_t responses, std::uint64_t first);
+  /// Of samples from `first` on, for a state or a message.
+  void state(Archive& archive, std::uint64_t first);
 };
 
 /// What one work unit of a sensitivity study hands on: its statistics, and the indices over the first of its samples.
 struct CellUnit : UnitStats {
   std::vector<LocalIndex> within;  ///< [K x R] of the unit's first samples, up to each of points_within()
 
-  /// As UnitStats, then `within`.
-  void write(ByteWriter& to) const;
-  /// points: K
-  static CellUnit read(ByteReader& from, std::size_t responses, std::uint64_t first, std::size_t points);
+  /// For a message; of samples from `first` on.
+  void state(Archive& archive, std::uint64_t first);
 };
 
 /// What one work unit of a Monte Carlo study contributes to one response, over the samples that count.
 struct ResponseUnit {
   Moments moments;     ///< mean and spread
   NumberBlock values;  ///< the same samples, ready for a sketch
+
+  void state(Archive& archive) { archive.objects(moments, values); }  ///< Both.
 };
 
 /// What one work unit of a Monte Carlo study contributes.
@@ -54,11 +51,15 @@ struct PoseUnit {
   FailedSamples failed;                   ///< the first of them
   std::optional<MainEffectSums> effects;  ///< at the poses where main effects are added up
 
-  /// For a message.
-  void write(ByteWriter& to) const;
-  /// Of samples from `first` on. errors: that vary.
-  static PoseUnit read(ByteReader& from, std::size_t responses, std::size_t errors, std::uint64_t first);
+  /// For a message; of samples from `first` on. errors: that vary.
+  void state(Archive& archive, std::size_t errors, std::uint64_t first);
 };
+
+/// How the samples of a unit or a cell from `first` on ended.
+void ends_state(Archive& archive, SolveCounts& solves, FailedSamples& failed, std::uint64_t first);
+/// How `count` machines, with numbers first .. end - 1, ended at each pose.
+void ends_state(Archive& archive, std::span<SolveCounts> solves, std::span<FailedSamples> failed, std::uint64_t count,
+                std::uint64_t first, std::uint64_t end);
 
 /// The numbers of samples of a cell at which a sensitivity study with a fixed number of samples looks at its indices,
 /// ascending: 100, 200, 500, 1000, 2000, 5000, ... up to Plan::samples(), which is one of them only by chance. More

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/run/checkpoints.h"
 #include "engine/run/result.h"
 #include "engine/run/run_in_slots.h"
@@ -18,11 +20,11 @@ namespace poesy {
 
 /// Calls work(worker, n) for n = 0 .. count - 1 on a pool of threads, each with its own worker, and finish(n, output)
 /// in the order of n. A few outputs per thread are in flight at any time. Returns false when stopped. With a team, work
-/// is done on all ranks, and finish called on rank 0 alone (run_over_ranks): pack(n, output, to) writes an output,
-/// unpack(n, from) gives it back on rank 0.
-template <class MakeWorker, class Work, class Finish, class Pack, class Unpack>
+/// is done on all ranks, and finish called on rank 0 alone (run_over_ranks): state(archive, n, output) writes an
+/// output, and fills in an empty one on rank 0.
+template <class MakeWorker, class Work, class Finish, class State>
 bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_worker, Work work, Finish finish,
-                  Pack pack, Unpack unpack) {
+                  State state) {
   using Worker = std::invoke_result_t<MakeWorker>;
   using Output = std::invoke_result_t<Work, Worker&, std::size_t>;
   const bool alone = options.team == nullptr;
@@ -32,9 +34,17 @@ bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_
                                        std::size_t n, std::size_t slot) { outputs[slot] = work(*worker, n); };
                           },
                           [&](std::size_t n, std::size_t slot) { finish(n, std::exchange(outputs[slot], Output{})); },
-                          [&](std::size_t n, std::size_t slot, ByteWriter& to) { pack(n, outputs[slot], to); },
-                          [&](std::size_t n, std::size_t slot, ByteReader& from) { outputs[slot] = unpack(n, from); }};
+                          [&](std::size_t n, std::size_t slot, Archive& archive) { state(archive, n, outputs[slot]); }};
   return alone ? run_alone(count, options, in_slots) : run_over_ranks(count, options, in_slots);
+}
+
+/// What a state begins with: whose it is, and of which size. Throws BytesError where another one is read.
+inline void head_state(Archive& archive, std::string_view name, std::span<const std::uint64_t> sizes) {
+  constexpr const char* kOther = "is the state of another kind or size of study";
+  std::string read(name);
+  archive.text(read);
+  archive.expect(read == name, kOther);
+  for (const std::uint64_t size : sizes) archive.known(size, kOther);
 }
 
 /// Does the work of one stage of a study and merges what it gives, in its order: on all threads and ranks, from the
@@ -45,18 +55,26 @@ bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_
 ///     std::size_t begin_round()              numbers the round's pieces of work 0 .. count - 1, and gives count
 ///     Worker worker() const                  solves pieces, and owns the scratch of one thread
 ///     Piece solve(Worker&, std::size_t n)    solves the n-th piece, on any thread
+///     void piece_state(Archive&, std::size_t n, Piece&)   a piece on its way to rank 0, where an empty one is filled
 ///     SolveCounts merge(std::size_t n, Piece&&)   takes the n-th piece, in order; how its solves ended
-///     void write(std::size_t n, const Piece&, ByteWriter&) const   a piece for rank 0, and its way back:
-///     Piece read(std::size_t n, ByteReader&)
 ///     SolveCounts solved() const             of all that was merged, in earlier runs as well
 ///     std::uint64_t left() const             solves that are still to come, as far as is known in this round
-///     void write_state(ByteWriter&) const    everything merged so far
-///     void restore(std::span<const std::byte>)   takes up a state in place of its own; throws BytesError
+///     void state(Archive&)                   everything merged so far; reading takes up a state in place of its own
 ///     bool next_round()                      ends the round; whether another one follows
+///
+/// unit_fold and pose_fold have all of it but what a kind of study solves and adds up.
 template <class Work>
 bool fold(Work& work, const RunOptions& options) {
-  const auto restore = [&](std::span<const std::byte> state) { work.restore(state); };
-  const ByteSource state = [&](ByteWriter& to) { work.write_state(to); };
+  const auto restore = [&](std::span<const std::byte> bytes) {
+    ByteReader from(bytes);
+    Archive archive(from);
+    work.state(archive);
+    from.expect_end();
+  };
+  const ByteSource state = [&](ByteWriter& to) {
+    Archive archive(to);
+    work.state(archive);
+  };
   Stage stage(options.checkpoints, options.team);
   stage.begin(restore);
   const SolveCounts before = work.solved();
@@ -74,8 +92,7 @@ bool fold(Work& work, const RunOptions& options) {
           if (options.progress) options.progress(progress);
           stage.merged(state);
         },
-        [&](std::size_t n, const auto& piece, ByteWriter& to) { work.write(n, piece, to); },
-        [&](std::size_t n, ByteReader& from) { return work.read(n, from); });
+        [&](Archive& archive, std::size_t n, auto& piece) { work.piece_state(archive, n, piece); });
     stage.end(
         complete, [&] { return work.solved(); }, state, restore);
     if (!complete) return false;

@@ -67,17 +67,6 @@ void FailedSamples::state(Archive& archive, std::uint64_t failures, std::uint64_
   }
 }
 
-void FailedSamples::write(ByteWriter& to) const {
-  write_state(*this, to, std::uint64_t{0}, std::uint64_t{0}, std::uint64_t{0});
-}
-
-FailedSamples FailedSamples::read(ByteReader& from, std::uint64_t failures, std::uint64_t first, std::uint64_t end) {
-  FailedSamples samples;
-  Archive archive(from);
-  samples.state(archive, failures, first, end);
-  return samples;
-}
-
 void append_failures(std::size_t slot, PoseIndex pose, const FailedSamples& cell, std::vector<Failure>& list) {
   for (const FailedSample& failed : cell.first()) {
     if (list.size() == kMostFailuresListed) return;

@@ -41,9 +41,7 @@ struct SolveCounts {
   /// The order changes nothing.
   void merge(const SolveCounts& other);
 
-  void state(Archive& archive);                                                        ///< Every count.
-  void write(ByteWriter& to) const { write_state(*this, to); }                         ///< Its state.
-  static SolveCounts read(ByteReader& from) { return read_state<SolveCounts>(from); }  ///< Throws BytesError.
+  void state(Archive& archive);  ///< Every count.
 };
 
 /// Of all cells.
@@ -79,9 +77,6 @@ class FailedSamples {
 
   /// Of samples first .. end - 1, so many of which failed; nobody looks at these numbers where it is written.
   void state(Archive& archive, std::uint64_t failures, std::uint64_t first, std::uint64_t end);
-  void write(ByteWriter& to) const;  ///< Its state.
-  /// Its state. Throws BytesError for what cannot be theirs.
-  static FailedSamples read(ByteReader& from, std::uint64_t failures, std::uint64_t first, std::uint64_t end);
 
  private:
   std::vector<FailedSample> first_;

@@ -146,23 +146,16 @@ std::optional<ConvergenceResult> Rounds::result() const {
   return result;
 }
 
-void Rounds::write_state(ByteWriter& to) const {
-  if (!adaptive_) return;
-  to.number(rows_.size());
-  for (const Row& row : rows_) {
-    to.reals(row.quantity);
-    to.reals(row.half_width);
-  }
-}
-
-void Rounds::restore(ByteReader& from) {
+void Rounds::state(Archive& archive) {
   if (!adaptive_) return;
   const std::size_t cells = rule_.responses * samples_.size();
-  for (std::uint64_t left = from.number_up_to(milestones_.size()); left > 0; --left) {
-    Row row;
-    row.quantity = from.reals(cells);
-    row.half_width = from.reals(cells);
-    if (!decide(std::move(row))) throw BytesError("goes on although it came to its end");
+  std::uint64_t rounds = rows_.size();
+  archive.number(rounds, milestones_.size());
+  for (std::size_t k = 0; k < rounds; ++k) {
+    Row row = archive.reads() ? Row{std::vector<double>(cells), std::vector<double>(cells)} : rows_[k];
+    archive.reals(row.quantity);
+    archive.reals(row.half_width);
+    if (archive.reads()) archive.expect(decide(std::move(row)), "goes on although it came to its end");
   }
 }
 

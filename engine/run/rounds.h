@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/base/contract.h"
 #include "engine/run/result.h"
 #include "engine/run/shard.h"
@@ -59,11 +59,9 @@ class Rounds {
   /// Empty for a study with a fixed number of samples. Precondition: no round follows.
   std::optional<ConvergenceResult> result() const;
 
-  /// What was decided so far; writes nothing for a fixed number of samples.
-  void write_state(ByteWriter& to) const;
-  /// Takes up what an earlier run decided, of this plan or of one that differs by fewer samples; the rest is left.
-  /// Throws BytesError for anything else. Precondition: this is the first round.
-  void restore(ByteReader& from);
+  /// What was decided so far; nothing for a fixed number of samples. Where it is read, it is of this plan or of one
+  /// that differs by fewer samples. Precondition there: this is the first round.
+  void state(Archive& archive);
 
  private:
   /// Quantities and half-widths at a milestone, [R x P].
@@ -111,13 +109,6 @@ class PendingUnits {
       ends_.push_back({end, last});
     }
   }
-
-  /// All units of the shard's cells are wanted.
-  template <class Done>
-  PendingUnits(const Plan& plan, const Shard& shard, const Done& done)
-      : PendingUnits(plan, done, [&plan, cells = shard.of(plan.cells())](std::size_t cell) {
-          return cells.holds(cell) ? plan.units_per_cell() : 0;
-        }) {}
 
   /// Units that are still to be solved.
   std::size_t size() const { return ends_.empty() ? 0 : ends_.back().pending; }

@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/run/run_options.h"
 
 namespace poesy {
@@ -38,9 +38,8 @@ void run_in_slots(const TicketSource& source, const RunOptions& options, const s
 struct SlotWork {
   std::function<SlotJob()> make_work;  ///< as of run_in_slots
   SlotJob finish;                      ///< on rank 0, in the order of n; the slot's output is not needed afterwards
-  /// Writes a slot's output of piece n for another rank.
-  std::function<void(std::size_t n, std::size_t slot, ByteWriter& to)> pack;
-  std::function<void(std::size_t n, std::size_t slot, ByteReader& from)> unpack;  ///< and reads it there
+  /// The slot's output of piece n on its way between ranks. Where it is read, the slot is empty.
+  std::function<void(std::size_t n, std::size_t slot, Archive& archive)> state;
 };
 
 /// work(n, slot) and finish(n, slot) for n = 0 .. count - 1, in this process alone, with pool_slots(). Returns false

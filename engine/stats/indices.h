@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "engine/base/archive.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
@@ -16,6 +17,8 @@ Estimate local_index(const Moments& response, double error_sigma, double conf_le
 struct LocalIndex {
   double value;           ///< Eqs. 51-52
   double standard_error;  ///< of value, from sampling
+
+  void state(Archive& archive) { archive.real(value, standard_error); }  ///< Both.
 };
 
 /// The standard error that belongs to local_index: of its logarithm by Bonett 2006, times the index. NaN below five

@@ -41,12 +41,7 @@ class LinearFitSums {
   /// None below twice as many machines as errors and the offset: fewer leave too little to tell what is not linear.
   std::optional<LinearFit> fit() const;
 
-  void state(Archive& archive);                                 ///< Every bit of the sums.
-  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Their state.
-  /// Of P errors and K numbers. Throws BytesError for what no machines give.
-  static LinearFitSums read(ByteReader& from, std::size_t errors, std::size_t rows) {
-    return read_state<LinearFitSums>(from, errors, rows);
-  }
+  void state(Archive& archive);  ///< Every bit of the sums.
 
  private:
   void add_machine(std::span<const double> x, std::span<const double> numbers);

@@ -80,12 +80,10 @@ void MachineCounts::state(Archive& archive) {
   }
 }
 
-MachineCounts MachineCounts::read(ByteReader& from, std::size_t responses, std::size_t poses) {
+MachineCounts MachineCounts::of_none(std::size_t responses, std::size_t poses) {
   MachineCounts counts;
   make_room({responses}, counts.by_limit);
   make_room({responses, poses}, counts.at_pose);
-  Archive archive(from);
-  counts.state(archive);
   return counts;
 }
 

@@ -32,10 +32,9 @@ struct MachineCounts {
   /// Both together; exact, so in any order. One of no machines has no sizes and takes those of the other one.
   void merge(const MachineCounts& other);
 
-  void state(Archive& archive);                                 ///< Every count, of lists that have their lengths.
-  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Its state.
-  /// Its state. Throws BytesError for counts that no machines give.
-  static MachineCounts read(ByteReader& from, std::size_t responses, std::size_t poses);
+  /// Of no machines, with room for so many responses and poses.
+  static MachineCounts of_none(std::size_t responses, std::size_t poses);
+  void state(Archive& archive);  ///< Every count, of lists that have their lengths.
 
   friend bool operator==(const MachineCounts&, const MachineCounts&) = default;  ///< All counts.
 };

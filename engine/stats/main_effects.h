@@ -62,12 +62,7 @@ class MainEffectSums {
   /// and 89 to 93 %. NaN without samples; NaN at both ends below two. Precondition: 0 < conf_level < 1.
   std::array<Estimate, kEffectBins> curve(std::size_t response, std::size_t error, double conf_level) const;
 
-  void state(Archive& archive);                                 ///< Every bit of the sums.
-  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Their state.
-  /// Of P errors and R responses. Throws BytesError for what no samples give.
-  static MainEffectSums read(ByteReader& from, std::size_t errors, std::size_t responses) {
-    return read_state<MainEffectSums>(from, errors, responses);
-  }
+  void state(Archive& archive);  ///< Every bit of the sums.
 
  private:
   void add_counts(const EffectBins& bins, std::span<const std::uint8_t> counts);

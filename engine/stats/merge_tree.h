@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/base/contract.h"
 
 namespace poesy {
@@ -66,26 +68,23 @@ class MergeTree {
     return std::move(copy).total();
   }
 
-  /// Every node, and back.
-  void write(ByteWriter& to) const {
-    to.number(nodes_.size());
-    for (const Node& node : nodes_) {
-      to.number(node.first);
-      to.number(node.leaves);
-      node.sum.write(to);
-    }
-  }
+  /// The nodes, from the first leaves on.
+  std::span<const Node> nodes() const { return nodes_; }
 
-  /// Adds what write() wrote of the next leaves, up to leaf `end`; read(from, first, leaves) reads a sum of so many
-  /// leaves. Throws BytesError for what cannot follow.
-  template <class Read>
-  void read(ByteReader& from, std::size_t end_of_all, const Read& read) {
-    for (std::uint64_t left = from.number(); left > 0; --left) {
-      const auto first = static_cast<std::size_t>(from.number_up_to(end_of_all));
-      const auto leaves = static_cast<std::size_t>(from.number_up_to(end_of_all - first));
-      if (!is_node(first, leaves)) throw BytesError("has sums of no whole branch");
-      if (!empty() && first != end()) throw BytesError("has sums that do not follow each other");
-      add(Node{first, leaves, read(from, first, leaves)});
+  /// Every node. Where they are read, they are added, as those of the next leaves, up to leaf `end_of_all`. none: a sum
+  /// of no leaves, which is only looked at there.
+  void state(Archive& archive, std::size_t end_of_all, const Sum& none) {
+    std::uint64_t count = nodes_.size();
+    archive.number(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (archive.reads()) {
+        Node next{0, 0, none};
+        node_state(archive, end_of_all, next);
+        archive.expect(empty() || next.first == end(), "has sums that do not follow each other");
+        add(std::move(next));
+      } else {
+        node_state(archive, end_of_all, nodes_[k]);
+      }
     }
   }
 
@@ -103,6 +102,12 @@ class MergeTree {
     const std::size_t branch = branch_of(leaves);
     const std::size_t branches = leaves / branch;
     return branches < kBranches && first % (branches == 1 ? branch : branch * kBranches) == 0;
+  }
+  static void node_state(Archive& archive, std::size_t end_of_all, Node& node) {
+    archive.number(node.first, end_of_all);
+    archive.number(node.leaves, end_of_all - node.first);
+    archive.expect(is_node(node.first, node.leaves), "has sums of no whole branch");
+    archive.object(node.sum);
   }
   /// Whether b is the branch that follows the first ones, a, of the same larger branch.
   static bool goes_on(const Node& a, const Node& b) {

@@ -38,9 +38,7 @@ class Moments {
   /// Kurtosis m4 / m2^2 of the sample (3 for a normal); NaN when the variance is zero or undefined.
   double kurtosis() const;
 
-  void state(Archive& archive);                                                ///< Every bit of it.
-  void write(ByteWriter& to) const { write_state(*this, to); }                 ///< Its state.
-  static Moments read(ByteReader& from) { return read_state<Moments>(from); }  ///< Its state.
+  void state(Archive& archive);  ///< Every bit of it.
 
  private:
   std::uint64_t count_ = 0;

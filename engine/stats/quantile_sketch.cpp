@@ -210,11 +210,7 @@ void QuantileSketch::state(Archive& archive) {
   }
   extremes_.count = values;
   archive.object(extremes_);
-  if (archive.reads()) {
-    counts_ = BucketCounts::read(archive.reader(), extremes_);
-  } else {
-    counts_.write(archive.writer());
-  }
+  archive.packed(counts_, extremes_);
 }
 
 }  // namespace poesy

@@ -62,9 +62,6 @@ class QuantileSketch {
 
   /// Every count of it: up to two bytes for each bucket.
   void state(Archive& archive);
-  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Its state.
-  /// Its state. Throws BytesError for counts that no stream of numbers gives.
-  static QuantileSketch read(ByteReader& from) { return read_state<QuantileSketch>(from); }
 
  private:
   bool keeps_all() const { return count() <= kMostExact; }

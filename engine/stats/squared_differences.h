@@ -38,9 +38,7 @@ class RatioSums {
   /// Precondition: 0 < conf_level < 1.
   Estimate estimate(double conf_level) const;
 
-  void state(Archive& archive);                                                    ///< Every bit of it.
-  void write(ByteWriter& to) const { write_state(*this, to); }                     ///< Its state.
-  static RatioSums read(ByteReader& from) { return read_state<RatioSums>(from); }  ///< Throws BytesError.
+  void state(Archive& archive);  ///< Every bit of it.
 
  private:
   std::uint64_t count_ = 0;

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <type_traits>
 
-#include "engine/base/archive.h"
 #include "engine/base/contract.h"
 
 /// Lists and arrays of accumulators, element by element.
@@ -20,24 +18,6 @@ void for_each_pair(Ones& ones, const Others& others, const Visit& visit) {
 template <class Sums>
 void merge_each(Sums& sums, const Sums& later) {
   for_each_pair(sums, later, [](auto& sum, const auto& other) { sum.merge(other); });
-}
-
-/// The state of every element, where both directions know how many there are.
-template <class Sums>
-void state_of_each(Archive& archive, Sums& sums) {
-  for (auto& sum : sums) archive.object(sum);
-}
-
-/// The same of elements whose class has no state, but write() and read().
-template <class Values>
-void packed_of_each(Archive& archive, Values& values) {
-  for (auto& value : values) {
-    if (archive.reads()) {
-      value = std::remove_reference_t<decltype(value)>::read(archive.reader());
-    } else {
-      value.write(archive.writer());
-    }
-  }
 }
 
 }  // namespace poesy

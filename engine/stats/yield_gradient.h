@@ -81,10 +81,7 @@ class ScoreSums {
   /// between -Y and 1 - Y. As gradient() in all else.
   std::vector<Estimate> change(double conf_level) const;
 
-  void state(Archive& archive);                                 ///< Every bit of the sums.
-  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Their state.
-  /// The same for these errors. Throws BytesError for what no machines give.
-  static ScoreSums read(ByteReader& from, const ErrorScores& scores) { return read_state<ScoreSums>(from, scores); }
+  void state(Archive& archive);  ///< Every bit of the sums.
 
  private:
   /// Of the score of one error, over all machines; that of the good ones is 0.

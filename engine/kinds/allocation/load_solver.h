@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/model/model.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
@@ -27,14 +27,10 @@ inline SolveCounts as_converged(std::uint64_t solves) {
   return counts;
 }
 
-/// Reads `count` loads that ByteWriter::reals() wrote. No load is negative; that of a machine without a solution is
-/// infinite. Throws BytesError.
-inline std::vector<double> read_loads(ByteReader& from, std::size_t count) {
-  std::vector<double> loads = from.reals(count);
-  if (!std::ranges::all_of(loads, [](double load) { return load >= 0.0; })) {
-    throw BytesError("has loads that no machine has");
-  }
-  return loads;
+/// So many loads. No load is negative; that of a machine without a solution is infinite.
+inline void loads_state(Archive& archive, std::vector<double>& loads, std::size_t count) {
+  archive.list(loads, count);
+  archive.expect(std::ranges::all_of(loads, [](double load) { return load >= 0.0; }), "has loads that no machine has");
 }
 
 /// Solves machines at all poses of a plan, and finds their loads. Owns the scratch of one thread.

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
+#include "engine/base/nan.h"
 #include "engine/kinds/allocation/load_solver.h"
 #include "engine/run/evaluate_unit.h"
-#include "engine/run/fold.h"
-#include "engine/stats/moments.h"
+#include "engine/run/unit_fold.h"
 
 namespace poesy {
 namespace {
 
-constexpr std::uint64_t kKind = 71;          ///< the first number of a state, which no other stage has
 constexpr std::size_t kNodes = 3;            ///< mu - sigma, 0, mu + sigma
 constexpr std::size_t kDrawsOfPiece = 16;    ///< draws of one piece of work
 constexpr double kUnsolvedOverLimit = 10.0;  ///< response over limit of a sample without a solution
@@ -21,12 +21,16 @@ constexpr double kLargestSum = 1e100;        ///< largest sum of squares in a st
 
 /// The result of a piece of work at its pose: K limits, P errors.
 struct AddedSquares {
-  std::vector<double> base;     ///< [K] y(0)^2 of the perfect mechanism; empty among others
+  std::vector<double> base;     ///< [K] y(0)^2 of the perfect mechanism; NaN where it is not solved, and among others
   std::vector<double> added;    ///< [K x P] sums over the draws
   std::vector<double> counted;  ///< [P] draws that were solved
 
   AddedSquares() = default;
-  AddedSquares(std::size_t limits, std::size_t errors) : added(limits * errors), counted(errors) {}
+  AddedSquares(std::size_t limits, std::size_t errors) : base(limits, kNaN), added(limits * errors), counted(errors) {}
+
+  void state(Archive& archive) {
+    for (auto* list : {&base, &added, &counted}) archive.reals(*list);
+  }
 };
 
 /// The pieces of work: at each pose one for each error alone, then some for each error among draws of the others.
@@ -110,7 +114,7 @@ class AddedSquaresEvaluator : private UnitSolver {
         continue;
       }
       const auto y = outcomes.responses.subspan(limits_[k].response * samples + pair * kNodes, kNodes);
-      if (alone && p == 0) found.base.push_back(y[1] * y[1]);
+      if (alone && p == 0) found.base[k] = y[1] * y[1];
       const bool moves = std::max(std::abs(y[0] - y[1]), std::abs(y[2] - y[1])) > rounding_[k];
       if (moves) sum += 0.5 * (y[0] * y[0] + y[2] * y[2]) - y[1] * y[1];
     }
@@ -122,133 +126,90 @@ class AddedSquaresEvaluator : private UnitSolver {
   std::vector<double> rounding_;  ///< [K]
 };
 
-/// All pieces in their order: the work of fold().
-class MeanSquareWork {
- public:
-  MeanSquareWork(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, std::size_t draws)
-      : plan_(plan),
-        model_(model),
-        limits_(limits),
-        pieces_{plan.poses().size(), draws},
-        base_(rows()),
-        alone_(rows() * errors()),
-        among_(rows() * errors()),
-        counted_(pieces_.poses * errors()) {}
-  MeanSquareWork(const MeanSquareWork&) = delete;
-  MeanSquareWork& operator=(const MeanSquareWork&) = delete;
+/// All pieces together: K limits at M poses, L rows in all.
+struct SquareSums {
+  const Pieces* pieces;
+  std::size_t errors;           ///< P
+  std::vector<double> base;     ///< [L]
+  std::vector<double> alone;    ///< [L x P]
+  std::vector<double> among;    ///< [L x P] summed over draws
+  std::vector<double> counted;  ///< [M x P] draws
 
-  std::size_t begin_round() {
-    begun_ = next_;
-    return pieces_.count() - next_;
-  }
-  AddedSquaresEvaluator worker() const { return {plan_, model_, limits_, pieces_}; }
-  AddedSquares solve(AddedSquaresEvaluator& evaluate, std::size_t n) const { return evaluate(begun_ + n); }
-  SolveCounts merge(std::size_t, const AddedSquares& found) {
-    const std::size_t m = pieces_.pose(next_).value;
-    const bool alone = pieces_.alone(next_);
-    for (std::size_t k = 0; k < limits_.size(); ++k) {
-      const std::size_t row = k * pieces_.poses + m;
-      if (alone && !found.base.empty()) base_[row] = found.base[k];
-      for (std::size_t p = 0; p < errors(); ++p) {
-        (alone ? alone_ : among_)[row * errors() + p] += found.added[k * errors() + p];
+  SquareSums(const Pieces& all, std::size_t limits, std::size_t error_count)
+      : pieces(&all),
+        errors(error_count),
+        base(limits * all.poses),
+        alone(base.size() * errors),
+        among(alone.size()),
+        counted(all.poses * errors) {}
+
+  void add(std::size_t n, const AddedSquares& found) {
+    const std::size_t m = pieces->pose(n).value;
+    const bool is_alone = pieces->alone(n);
+    for (std::size_t k = 0; k < found.base.size(); ++k) {
+      const std::size_t row = k * pieces->poses + m;
+      if (is_alone && !std::isnan(found.base[k])) base[row] = found.base[k];
+      for (std::size_t p = 0; p < errors; ++p) {
+        (is_alone ? alone : among)[row * errors + p] += found.added[k * errors + p];
       }
     }
-    for (std::size_t p = 0; p < errors() && !alone; ++p) counted_[m * errors() + p] += found.counted[p];
-    const SolveCounts solves = solves_of(next_);
-    solved_ += solves.total();
-    ++next_;
-    return solves;
-  }
-  static void write(std::size_t, const AddedSquares& found, ByteWriter& to) {
-    to.number(found.base.size());
-    for (const auto* list : {&found.base, &found.added, &found.counted}) to.reals(*list);
-  }
-  AddedSquares read(std::size_t, ByteReader& from) const {
-    AddedSquares found(limits_.size(), errors());
-    found.base = from.reals(static_cast<std::size_t>(from.number_up_to(limits_.size())));
-    for (auto* list : {&found.added, &found.counted}) from.reals(std::span(*list));
-    return found;
-  }
-  SolveCounts solved() const { return as_converged(solved_); }
-  std::uint64_t left() const {
-    std::uint64_t left = 0;
-    for (std::size_t n = next_; n < pieces_.count(); ++n) left += solves_of(n).total();
-    return left;
-  }
-  void write_state(ByteWriter& to) const {
-    for (const std::uint64_t size : sizes()) to.number(size);
-    to.number(next_);
-    to.number(solved_);
-    for (const auto* list : {&base_, &alone_, &among_, &counted_}) to.reals(*list);
-  }
-  void restore(std::span<const std::byte> state) {
-    ByteReader from(state);
-    for (const std::uint64_t size : sizes()) {
-      if (from.number() != size) throw BytesError("is the state of another kind or size of study");
-    }
-    next_ = static_cast<std::size_t>(from.number_up_to(pieces_.count()));
-    solved_ = from.number();
-    for (auto* list : {&base_, &alone_, &among_, &counted_}) from.reals(std::span(*list));
-    from.expect_end();
-    if (!is_possible()) throw BytesError("has sums that no responses give");
-  }
-  static bool next_round() { return false; }
-
-  MeanSquares result() const {
-    MeanSquares found{base_, std::vector<double>(rows() * errors())};
-    for (std::size_t row = 0; row < rows(); ++row) {
-      for (std::size_t p = 0; p < errors(); ++p) {
-        const std::size_t at = row * errors() + p;
-        const double draws = counted_[row % pieces_.poses * errors() + p];
-        const double among = draws > 0.0 ? among_[at] / draws : alone_[at];
-        const double sigma = plan_.distributions()[p].standard_deviation();
-        found.value[row] += 0.5 * (alone_[at] + among);
-        found.slope[at] = std::max(0.0, among) / (sigma * sigma);
-      }
-    }
-    return found;
+    for (std::size_t p = 0; p < errors && !is_alone; ++p) counted[m * errors + p] += found.counted[p];
   }
 
- private:
-  std::size_t errors() const { return plan_.factors().size(); }
-  std::size_t rows() const { return limits_.size() * pieces_.poses; }
-  std::array<std::uint64_t, 5> sizes() const { return {kKind, limits_.size(), pieces_.poses, pieces_.draws, errors()}; }
-  SolveCounts solves_of(std::size_t n) const {
-    return as_converged(kNodes * errors() * (pieces_.alone(n) ? 1 : pieces_.draws_of(n)));
-  }
-
-  /// Whether responses can give the state that was read.
-  bool is_possible() const {
+  void state(Archive& archive, const NumberRange&) {
+    for (auto* list : {&base, &alone, &among, &counted}) archive.reals(*list);
     const auto is_sum = [](double sum) { return std::abs(sum) <= kLargestSum; };
     const auto is_count = [&](double n) {
-      return n >= 0.0 && n <= static_cast<double>(pieces_.draws) && n == std::floor(n);
+      return n >= 0.0 && n <= static_cast<double>(pieces->draws) && n == std::floor(n);
     };
-    return solved_ + left() == mean_square_solves(plan_, pieces_.draws) &&
-           std::ranges::all_of(base_, [&](double y) { return is_sum(y) && y >= 0.0; }) &&
-           std::ranges::all_of(alone_, is_sum) && std::ranges::all_of(among_, is_sum) &&
-           std::ranges::all_of(counted_, is_count);
+    const bool is_possible = std::ranges::all_of(base, [&](double y) { return is_sum(y) && y >= 0.0; }) &&
+                             std::ranges::all_of(alone, is_sum) && std::ranges::all_of(among, is_sum) &&
+                             std::ranges::all_of(counted, is_count);
+    archive.expect(is_possible, "has sums that no responses give");
   }
-
-  const Plan& plan_;
-  const Model& model_;
-  std::span<const ResponseLimit> limits_;
-  Pieces pieces_;
-  std::size_t next_ = 0;
-  std::size_t begun_ = 0;
-  std::uint64_t solved_ = 0;
-  std::vector<double> base_;     ///< [L]
-  std::vector<double> alone_;    ///< [L x P]
-  std::vector<double> among_;    ///< [L x P] summed over draws
-  std::vector<double> counted_;  ///< [M x P] draws
 };
+
+/// A job of UnitFold: the pieces.
+struct SquareJob {
+  const Plan& plan;
+  const Model& model;
+  std::span<const ResponseLimit> limits;
+  Pieces pieces;
+
+  static constexpr std::string_view kName = "mean squares";
+  std::size_t errors() const { return plan.factors().size(); }
+  std::vector<std::uint64_t> sizes() const { return {limits.size(), pieces.poses, pieces.draws, errors()}; }
+  NumberRange units(const Shard& shard) const { return shard.of(pieces.count()); }
+  std::uint64_t expected(std::size_t n) const { return kNodes * errors() * (pieces.alone(n) ? 1 : pieces.draws_of(n)); }
+  AddedSquaresEvaluator worker() const { return {plan, model, limits, pieces}; }
+  AddedSquares unit(std::size_t) const { return {limits.size(), errors()}; }
+  SolveCounts solves(std::size_t n, const AddedSquares&) const { return as_converged(expected(n)); }
+  SquareSums sums() const { return {pieces, limits.size(), errors()}; }
+};
+
+MeanSquares mean_squares_of(const SquareSums& sums, const Plan& plan) {
+  MeanSquares found{sums.base, std::vector<double>(sums.alone.size())};
+  for (std::size_t row = 0; row < sums.base.size(); ++row) {
+    for (std::size_t p = 0; p < sums.errors; ++p) {
+      const std::size_t at = row * sums.errors + p;
+      const double draws = sums.counted[row % sums.pieces->poses * sums.errors + p];
+      const double among = draws > 0.0 ? sums.among[at] / draws : sums.alone[at];
+      const double sigma = plan.distributions()[p].standard_deviation();
+      found.value[row] += 0.5 * (sums.alone[at] + among);
+      found.slope[at] = std::max(0.0, among) / (sigma * sigma);
+    }
+  }
+  return found;
+}
 
 }  // namespace
 
 std::optional<MeanSquares> mean_squares(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                         std::size_t draws, const RunOptions& options) {
-  MeanSquareWork work(plan, model, limits, draws);
-  if (!fold(work, options)) return std::nullopt;
-  return work.result();
+  const SquareJob job{plan, model, limits, {plan.poses().size(), draws}};
+  const auto sums = fold_units(job, options);
+  if (!sums) return std::nullopt;
+  return mean_squares_of(*sums, plan);
 }
 
 std::uint64_t mean_square_solves(const Plan& plan, std::size_t draws) {

@@ -1,18 +1,17 @@
 #include "engine/kinds/allocation/variations.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/kinds/allocation/load_solver.h"
-#include "engine/run/fold.h"
+#include "engine/run/unit_fold.h"
 
 namespace poesy {
 namespace {
 
-constexpr std::uint64_t kKind = 73;  ///< the first number of a state, which no other stage has
 /// Machines that are varied together. They are few so that a piece of work ends soon however many variations there are.
 constexpr std::size_t kVariedAtOnce = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -36,10 +35,22 @@ struct VariedMachines {
   }
 };
 
-/// The loads of a piece of work.
-struct VariedPiece {
-  std::vector<double> load;  ///< [V x B]
+/// The loads of a piece of work, or of several, one after the other.
+struct VariedLoads {
+  const VariedMachines* varied = nullptr;
+  std::vector<double> load = {};  ///< of each piece [V x B]
   std::uint64_t solves = 0;
+
+  void add(std::size_t, const VariedLoads& later) {
+    load.insert(load.end(), later.load.begin(), later.load.end());
+    solves += later.solves;
+  }
+  void state(Archive& archive, const NumberRange& pieces) {
+    std::size_t count = 0;
+    for (std::size_t piece = pieces.first; piece < pieces.end; ++piece) count += varied->loads_of(piece);
+    archive.number(solves);
+    loads_state(archive, load, count);
+  }
 };
 
 /// Owns the scratch of one thread.
@@ -49,13 +60,13 @@ class VariationEvaluator : private LoadSolver {
                      const VariedMachines& varied)
       : LoadSolver(plan, model, limits), varied_(varied) {}
 
-  VariedPiece operator()(std::size_t piece) {
+  VariedLoads operator()(std::size_t piece) {
     const auto machines = varied_.machines_of(piece);
     numbers_.assign(machines.begin(), machines.end());
     count_ = machines.size();
     draw(numbers_);
     drawn_.assign(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(plan_->factors().size() * count_));
-    VariedPiece found{std::vector<double>(varied_.loads_of(piece)), 0};
+    VariedLoads found{&varied_, std::vector<double>(varied_.loads_of(piece)), 0};
     solve_without(found);
     change_.assign(varied_.variations.size(), 0.0);
     for (const bool deciding : {true, false}) {
@@ -66,7 +77,7 @@ class VariationEvaluator : private LoadSolver {
 
  private:
   /// Solves the machines without variations.
-  void solve_without(VariedPiece& found) {
+  void solve_without(VariedLoads& found) {
     at_pose_.assign(plan_->poses().size() * count_, 0.0);
     load_.assign(count_, 0.0);
     for (std::size_t m = 0; m < plan_->poses().size(); ++m) {
@@ -78,7 +89,7 @@ class VariationEvaluator : private LoadSolver {
 
   /// Solves variations at a pose, for machines that it decides. Or for the other machines the variations that change
   /// much in any of the machines, because what hardly acts at the pose that decides for one may act at another.
-  void solve_at(std::size_t m, bool deciding, VariedPiece& found) {
+  void solve_at(std::size_t m, bool deciding, VariedLoads& found) {
     pairs_.clear();
     for (std::size_t pair = 0; pair < found.load.size(); ++pair) {
       const std::size_t b = pair % count_;
@@ -91,7 +102,7 @@ class VariationEvaluator : private LoadSolver {
   }
 
   /// Solves the pairs of a variation and a machine that are waiting.
-  void solve_pairs(std::size_t m, VariedPiece& found) {
+  void solve_pairs(std::size_t m, VariedLoads& found) {
     const std::size_t count = pairs_.size();
     for (std::size_t p = 0; p < plan_->factors().size(); ++p) {
       for (std::size_t k = 0; k < count; ++k) values_[p * count + k] = drawn_[p * count_ + pairs_[k] % count_];
@@ -135,97 +146,38 @@ class VariationEvaluator : private LoadSolver {
   std::vector<std::uint8_t> beyond_;
 };
 
-/// All pieces in their order: the work of fold().
-class VariationWork {
- public:
-  VariationWork(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, VariedMachines varied)
-      : plan_(plan), model_(model), limits_(limits), varied_(varied) {}
-  VariationWork(const VariationWork&) = delete;
-  VariationWork& operator=(const VariationWork&) = delete;
+/// A job of UnitFold: the pieces of work.
+struct VariationJob {
+  const Plan& plan;
+  const Model& model;
+  std::span<const ResponseLimit> limits;
+  VariedMachines varied;
 
-  std::size_t begin_round() {
-    begun_ = next_;
-    return varied_.pieces() - next_;
+  static constexpr std::string_view kName = "variations";
+  std::vector<std::uint64_t> sizes() const {
+    return {varied.machines.size(), varied.variations.size(), plan.poses().size()};
   }
-  VariationEvaluator worker() const { return {plan_, model_, limits_, varied_}; }
-  VariedPiece solve(VariationEvaluator& evaluate, std::size_t n) const { return evaluate(begun_ + n); }
-  SolveCounts merge(std::size_t, const VariedPiece& found) {
-    loads_.insert(loads_.end(), found.load.begin(), found.load.end());
-    solves_ += found.solves;
-    ++next_;
-    return as_converged(found.solves);
-  }
-  static void write(std::size_t, const VariedPiece& found, ByteWriter& to) {
-    to.reals(found.load);
-    to.number(found.solves);
-  }
-  VariedPiece read(std::size_t n, ByteReader& from) const {
-    const std::size_t piece = begun_ + n;
-    VariedPiece found{read_loads(from, varied_.loads_of(piece)), 0};
-    found.solves = from.number_up_to(varied_.solves_of(piece, plan_.poses().size()));
-    return found;
-  }
-  SolveCounts solved() const { return as_converged(solves_); }
-  std::uint64_t left() const {
-    std::uint64_t left = 0;
-    for (std::size_t piece = next_; piece < varied_.pieces(); ++piece) {
-      left += varied_.solves_of(piece, plan_.poses().size());
-    }
-    return left / kOfPosesDecide;
-  }
-  void write_state(ByteWriter& to) const {
-    for (const std::uint64_t size : sizes()) to.number(size);
-    to.number(next_);
-    to.number(solves_);
-    to.reals(loads_);
-  }
-  void restore(std::span<const std::byte> state) {
-    ByteReader from(state);
-    for (const std::uint64_t size : sizes()) {
-      if (from.number() != size) throw BytesError("is the state of another kind or size of study");
-    }
-    next_ = static_cast<std::size_t>(from.number_up_to(varied_.pieces()));
-    std::size_t count = 0;
-    std::uint64_t most = 0;
-    for (std::size_t piece = 0; piece < next_; ++piece) {
-      count += varied_.loads_of(piece);
-      most += varied_.solves_of(piece, plan_.poses().size());
-    }
-    solves_ = from.number_up_to(most);
-    loads_ = read_loads(from, count);
-    from.expect_end();
-  }
-  static bool next_round() { return false; }
-
-  /// [V x n]
-  std::vector<double> result() const {
-    const std::size_t machines = varied_.machines.size();
-    std::vector<double> loads(varied_.variations.size() * machines);
-    std::size_t first = 0;
-    for (std::size_t piece = 0; piece < varied_.pieces(); ++piece) {
-      const std::size_t count = varied_.machines_of(piece).size();
-      for (std::size_t v = 0; v < varied_.variations.size(); ++v) {
-        std::copy_n(&loads_[first * varied_.variations.size() + v * count], count, &loads[v * machines + first]);
-      }
-      first += count;
-    }
-    return loads;
-  }
-
- private:
-  std::array<std::uint64_t, 4> sizes() const {
-    return {kKind, varied_.machines.size(), varied_.variations.size(), plan_.poses().size()};
-  }
-
-  const Plan& plan_;
-  const Model& model_;
-  std::span<const ResponseLimit> limits_;
-  VariedMachines varied_;
-  std::vector<double> loads_;  ///< of each piece [V x B]
-  std::uint64_t solves_ = 0;
-  std::size_t next_ = 0;
-  std::size_t begun_ = 0;
+  NumberRange units(const Shard& shard) const { return shard.of(varied.pieces()); }
+  std::uint64_t expected(std::size_t n) const { return varied.solves_of(n, plan.poses().size()) / kOfPosesDecide; }
+  VariationEvaluator worker() const { return {plan, model, limits, varied}; }
+  static SolveCounts solves(std::size_t, const VariedLoads& unit) { return as_converged(unit.solves); }
+  VariedLoads sums() const { return {.varied = &varied}; }
 };
+
+/// [V x n] of the loads of all pieces.
+std::vector<double> by_variation(const VariedMachines& varied, std::span<const double> load) {
+  const std::size_t machines = varied.machines.size();
+  std::vector<double> loads(load.size());
+  std::size_t first = 0;
+  for (std::size_t piece = 0; piece < varied.pieces(); ++piece) {
+    const std::size_t count = varied.machines_of(piece).size();
+    for (std::size_t v = 0; v < varied.variations.size(); ++v) {
+      std::copy_n(&load[first * varied.variations.size() + v * count], count, &loads[v * machines + first]);
+    }
+    first += count;
+  }
+  return loads;
+}
 
 }  // namespace
 
@@ -233,9 +185,10 @@ std::optional<std::vector<double>> try_variations(const Plan& plan, const Model&
                                                   std::span<const ResponseLimit> limits,
                                                   std::span<const std::uint32_t> machines,
                                                   std::span<const Variation> variations, const RunOptions& options) {
-  VariationWork work(plan, model, limits, {machines, variations});
-  if (!fold(work, options)) return std::nullopt;
-  return work.result();
+  const VariationJob job{plan, model, limits, {machines, variations}};
+  const auto loads = fold_units(job, options);
+  if (!loads) return std::nullopt;
+  return by_variation(job.varied, loads->load);
 }
 
 }  // namespace poesy

@@ -1,207 +1,155 @@
 #include "engine/kinds/coupling/worst_case.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
-#include "engine/run/fold.h"
+#include "engine/run/unit_fold.h"
 
 namespace poesy {
 namespace {
 
-constexpr std::uint64_t kKind = 5;  ///< no other state begins with this number
-
-void write_place(const WorstCases::Place& place, ByteWriter& to) {
-  to.real(place.value);
-  to.number(static_cast<std::uint64_t>(place.pose + 1));
-  to.text(place.signs);
-}
-
-/// Of so many blocks. Throws BytesError for other signs.
-Signs read_signs(ByteReader& from, std::size_t blocks) {
-  Signs signs = from.text();
+/// Signs of so many blocks, or none.
+void signs_state(Archive& archive, Signs& signs, std::size_t blocks) {
+  archive.text(signs);
   const auto is_sign = [](char sign) { return sign == '+' || sign == '-'; };
-  if (!std::ranges::all_of(signs, is_sign) || (!signs.empty() && signs.size() != blocks)) {
-    throw BytesError("has signs of other errors");
-  }
-  return signs;
+  archive.expect(std::ranges::all_of(signs, is_sign) && (signs.empty() || signs.size() == blocks),
+                 "has signs of other errors");
 }
 
-WorstCases::Place read_place(ByteReader& from, std::size_t poses, std::size_t blocks) {
-  WorstCases::Place place;
-  place.value = from.real();
-  place.pose = static_cast<std::int64_t>(from.number_up_to(poses)) - 1;
-  place.signs = read_signs(from, blocks);
-  if ((place.pose < 0) != place.signs.empty()) throw BytesError("has a corner without a pose");
-  return place;
+void place_state(Archive& archive, WorstCases::Place& place, std::size_t poses, std::size_t blocks) {
+  auto number = static_cast<std::uint64_t>(place.pose + 1);
+  archive.real(place.value);
+  archive.number(number, poses);
+  place.pose = static_cast<std::int64_t>(number) - 1;
+  signs_state(archive, place.signs, blocks);
+  archive.expect((place.pose < 0) == place.signs.empty(), "has a corner without a pose");
 }
 
-/// All sizes at all poses, pose by pose: the work of fold().
-class CornerWork {
- public:
-  CornerWork(const StudyRun& run, const CornerTable& table, const Array<double, axis::Response, axis::Size>& rounding,
-             const Shard& shard)
-      : run_(run),
-        table_(table),
-        rounding_(rounding),
-        poses_(run.poses.size()),
-        sizes_(table.size_of_error.size()),
-        subsets_(table.subsets.size()),
-        responses_(run.model.description().responses.size()),
-        cells_(shard.of(poses_ * sizes_)) {
-    clear();
+/// Of an earlier pose and a later one.
+void take_worse(WorstCases::Place& worst, WorstCases::Place later) {
+  if (later.signs.empty() || (worst.pose >= 0 && !(later.value > worst.value))) return;
+  worst = std::move(later);
+}
+void take_first(WorstCases::Place& first, WorstCases::Place later) {
+  if (first.pose < 0 && !later.signs.empty()) first = std::move(later);
+}
+
+/// Which ones the n-th unit has.
+std::pair<std::size_t, std::size_t> size_and_pose(const CornerTable& table, std::size_t n) {
+  return {n % table.size_of_error.size(), n / table.size_of_error.size()};
+}
+
+/// What was found at one size and pose, on its way to rank 0.
+struct CornerUnit : CornersAtPose {
+  const CornerTable* table = nullptr;
+
+  void state(Archive& archive) {
+    archive.object(solves);
+    for (std::size_t k = 0; k < subsets.size(); ++k) {
+      WorstCorners& corners = subsets[k];
+      const std::size_t blocks = table->subsets[k].size();
+      archive.reals(corners.value);
+      for (Signs& signs : corners.signs) signs_state(archive, signs, blocks);
+      archive.number(corners.tried);
+      archive.number(corners.unsolved, corners.tried);
+      signs_state(archive, corners.first_unsolved, blocks);
+    }
+  }
+};
+
+/// All sizes at all poses, pose by pose: R responses, Z sizes, K subsets, M poses.
+struct CornerSums : WorstCases {
+  const CornerTable* table;
+
+  CornerSums(const CornerTable& of, std::size_t responses, std::size_t poses) : table(&of) {
+    const std::size_t sizes = of.size_of_error.size();
+    const std::size_t subsets = of.subsets.size();
+    value = decltype(value)({responses, sizes, subsets, poses}, kNaN);
+    tried = decltype(tried)({sizes, subsets, poses});
+    unsolved = tried;
+    solves = decltype(solves)({sizes, poses});
+    worst = decltype(worst)({responses, sizes, subsets});
+    first_unsolved = decltype(first_unsolved)({sizes, subsets});
   }
 
-  std::size_t begin_round() {
-    begun_ = next_;
-    return cells_.end - next_;
-  }
-  CornerSearch worker() const { return {run_.model, run_.study.solver, run_.poses, table_, rounding_}; }
-  CornersAtPose solve(CornerSearch& search, std::size_t n) const {
-    return search((begun_ + n) / sizes_, (begun_ + n) % sizes_);
-  }
-  SolveCounts merge(std::size_t, CornersAtPose&& found) {
-    const std::size_t m = next_ / sizes_;
-    const std::size_t z = next_ % sizes_;
-    found_.solves(z, m) = found.solves;
-    for (std::size_t k = 0; k < subsets_; ++k) add(m, z, k, std::move(found.subsets[k]));
-    ++next_;
-    return found.solves;
-  }
-  static void write(std::size_t, const CornersAtPose& found, ByteWriter& to) {
-    found.solves.write(to);
-    for (const WorstCorners& corners : found.subsets) {
-      to.reals(corners.value);
-      for (const Signs& signs : corners.signs) to.text(signs);
-      to.number(corners.tried);
-      to.number(corners.unsolved);
-      to.text(corners.first_unsolved);
+  void add(std::size_t n, CornerUnit&& found) {
+    const auto [z, m] = size_and_pose(*table, n);
+    solves(z, m) = found.solves;
+    for (std::size_t k = 0; k < found.subsets.size(); ++k) {
+      WorstCorners& corners = found.subsets[k];
+      const auto pose = static_cast<std::int64_t>(m);
+      tried(z, k, m) = corners.tried;
+      unsolved(z, k, m) = corners.unsolved;
+      for (std::size_t r = 0; r < corners.value.size(); ++r) {
+        value(r, z, k, m) = corners.value[r];
+        take_worse(worst(r, z, k), {corners.value[r], pose, std::move(corners.signs[r])});
+      }
+      take_first(first_unsolved(z, k), {0.0, pose, std::move(corners.first_unsolved)});
     }
-  }
-  CornersAtPose read(std::size_t, ByteReader& from) const {
-    CornersAtPose found;
-    found.solves = SolveCounts::read(from);
-    for (const std::vector<std::size_t>& blocks : table_.subsets) {
-      WorstCorners& corners = found.subsets.emplace_back();
-      corners.value = from.reals(responses_);
-      for (std::size_t r = 0; r < responses_; ++r) corners.signs.push_back(read_signs(from, blocks.size()));
-      corners.tried = from.number();
-      corners.unsolved = from.number_up_to(corners.tried);
-      corners.first_unsolved = read_signs(from, blocks.size());
-    }
-    return found;
-  }
-  SolveCounts solved() const { return total_of(found_.solves.all()); }
-  std::uint64_t left() const {
-    const std::size_t done = next_ - cells_.first;
-    const double each = done == 0 ? expected_corners(table_, responses_)
-                                  : static_cast<double>(solved().total()) / static_cast<double>(done);
-    return static_cast<std::uint64_t>(each * static_cast<double>(cells_.end - next_));
-  }
-  void write_state(ByteWriter& to) const {
-    for (const std::uint64_t number : sizes()) to.number(number);
-    to.number(cells_.first);
-    to.number(next_);
-    for (std::size_t cell = cells_.first; cell < next_; ++cell) write_cell(cell, to);
-    for (const WorstCases::Place& place : found_.worst) write_place(place, to);
-    for (const WorstCases::Place& place : found_.first_unsolved) write_place(place, to);
-  }
-  void restore(std::span<const std::byte> state) {
-    clear();
-    ByteReader from(state);
-    while (from.left() > 0) restore_one(from);
-  }
-  static bool next_round() { return false; }
-
-  WorstCases result() && { return std::move(found_); }
-
- private:
-  /// Forgets all that was merged.
-  void clear() {
-    next_ = cells_.first;
-    found_.value = decltype(found_.value)({responses_, sizes_, subsets_, poses_}, kNaN);
-    make_room({sizes_, subsets_, poses_}, found_.tried, found_.unsolved);
-    make_room({sizes_, poses_}, found_.solves);
-    make_room({responses_, sizes_, subsets_}, found_.worst);
-    make_room({sizes_, subsets_}, found_.first_unsolved);
-  }
-  std::array<std::uint64_t, 6> sizes() const {
-    return {kKind, poses_, sizes_, subsets_, responses_, table_.blocks.size()};
-  }
-  void add(std::size_t m, std::size_t z, std::size_t k, WorstCorners&& corners) {
-    found_.tried(z, k, m) = corners.tried;
-    found_.unsolved(z, k, m) = corners.unsolved;
-    for (std::size_t r = 0; r < responses_; ++r) {
-      found_.value(r, z, k, m) = corners.value[r];
-      take_worse(found_.worst(r, z, k), {corners.value[r], static_cast<std::int64_t>(m), corners.signs[r]});
-    }
-    take_first(found_.first_unsolved(z, k), {0.0, static_cast<std::int64_t>(m), corners.first_unsolved});
-  }
-  /// Of an earlier pose and a later one.
-  static void take_worse(WorstCases::Place& worst, WorstCases::Place other) {
-    if (other.signs.empty() || (worst.pose >= 0 && !(other.value > worst.value))) return;
-    worst = std::move(other);
-  }
-  static void take_first(WorstCases::Place& first, WorstCases::Place other) {
-    if (first.pose < 0 && !other.signs.empty()) first = std::move(other);
   }
 
-  void write_cell(std::size_t cell, ByteWriter& to) const {
-    const std::size_t m = cell / sizes_;
-    const std::size_t z = cell % sizes_;
-    found_.solves(z, m).write(to);
-    for (std::size_t k = 0; k < subsets_; ++k) {
-      to.number(found_.tried(z, k, m));
-      to.number(found_.unsolved(z, k, m));
-      for (std::size_t r = 0; r < responses_; ++r) to.real(found_.value(r, z, k, m));
-    }
-  }
-  void read_cell(std::size_t cell, ByteReader& from) {
-    const std::size_t m = cell / sizes_;
-    const std::size_t z = cell % sizes_;
-    found_.solves(z, m) = SolveCounts::read(from);
-    for (std::size_t k = 0; k < subsets_; ++k) {
-      found_.tried(z, k, m) = from.number();
-      found_.unsolved(z, k, m) = from.number_up_to(found_.tried(z, k, m));
-      for (std::size_t r = 0; r < responses_; ++r) found_.value(r, z, k, m) = from.real();
-    }
-  }
-  WorstCases::Place read_place(ByteReader& from, std::size_t subset) const {
-    return poesy::read_place(from, poses_, table_.subsets[subset].size());
-  }
-  void restore_one(ByteReader& from) {
-    const auto expect = [&](std::uint64_t number) {
-      if (from.number() != number) throw BytesError("is the state of another kind, size or part of a study");
-    };
-    std::ranges::for_each(sizes(), expect);
-    expect(next_);
-    const auto end = static_cast<std::size_t>(from.number_up_to(cells_.end));
-    if (end < next_) throw BytesError("has poses that end before they begin");
-    for (; next_ < end; ++next_) read_cell(next_, from);
-    for (std::size_t r = 0; r < responses_; ++r) {
-      for (std::size_t z = 0; z < sizes_; ++z) {
-        for (std::size_t k = 0; k < subsets_; ++k) take_worse(found_.worst(r, z, k), read_place(from, k));
+  void state(Archive& archive, const NumberRange& units) {
+    for (std::size_t n = units.first; n < units.end; ++n) unit_state(archive, n);
+    const auto [responses, sizes, subsets] = worst.lengths();
+    for (std::size_t z = 0; z < sizes; ++z) {
+      for (std::size_t k = 0; k < subsets; ++k) {
+        for (std::size_t r = 0; r < responses; ++r) places_state(archive, k, worst(r, z, k), take_worse);
+        places_state(archive, k, first_unsolved(z, k), take_first);
       }
     }
-    for (std::size_t z = 0; z < sizes_; ++z) {
-      for (std::size_t k = 0; k < subsets_; ++k) take_first(found_.first_unsolved(z, k), read_place(from, k));
-    }
   }
 
-  const StudyRun& run_;
-  const CornerTable& table_;
-  const Array<double, axis::Response, axis::Size>& rounding_;
-  std::size_t poses_;
-  std::size_t sizes_;
-  std::size_t subsets_;
-  std::size_t responses_;
-  NumberRange cells_;      ///< the shard's: pose by pose, size by size
-  std::size_t next_ = 0;   ///< cell to be merged
-  std::size_t begun_ = 0;  ///< with which the round began
-  WorstCases found_;
+ private:
+  void unit_state(Archive& archive, std::size_t n) {
+    const auto [z, m] = size_and_pose(*table, n);
+    archive.object(solves(z, m));
+    for (std::size_t k = 0; k < table->subsets.size(); ++k) {
+      archive.number(tried(z, k, m));
+      archive.number(unsolved(z, k, m), tried(z, k, m));
+      for (std::size_t r = 0; r < value.length<axis::Response>(); ++r) archive.real(value(r, z, k, m));
+    }
+  }
+  /// take(place, later): of the place that is here and one of later units.
+  template <class Take>
+  void places_state(Archive& archive, std::size_t subset, Place& place, const Take& take) {
+    Place read = archive.reads() ? Place() : place;
+    place_state(archive, read, solves.length<axis::Pose>(), table->subsets[subset].size());
+    if (archive.reads()) take(place, std::move(read));
+  }
+};
+
+/// A job of UnitFold: each size at each pose, pose by pose.
+struct CornerJob {
+  const StudyRun& run;
+  const CornerTable& table;
+  const Array<double, axis::Response, axis::Size>& rounding;
+
+  static constexpr std::string_view kName = "corners";
+  std::size_t responses() const { return run.model.description().responses.size(); }
+  std::vector<std::uint64_t> sizes() const {
+    return {run.poses.size(), table.size_of_error.size(), table.subsets.size(), responses(), table.blocks.size()};
+  }
+  NumberRange units(const Shard& shard) const { return shard.of(run.poses.size() * table.size_of_error.size()); }
+  std::uint64_t expected(std::size_t) const {
+    return static_cast<std::uint64_t>(std::llround(expected_corners(table, responses())));
+  }
+  auto worker() const {
+    return [&table = table,
+            search = CornerSearch(run.model, run.study.solver, run.poses, table, rounding)](std::size_t n) mutable {
+      const auto [size, pose] = size_and_pose(table, n);
+      return CornerUnit{search(pose, size), &table};
+    };
+  }
+  CornerUnit unit(std::size_t) const {
+    const WorstCorners none{std::vector<double>(responses()), std::vector<Signs>(responses())};
+    return {{std::vector(table.subsets.size(), none), {}}, &table};
+  }
+  static SolveCounts solves(std::size_t, const CornerUnit& found) { return found.solves; }
+  CornerSums sums() const { return {table, responses(), run.poses.size()}; }
 };
 
 /// Fills in the signs of the errors at this place.
@@ -216,9 +164,7 @@ void fill_signs(const WorstCases::Place& place, std::size_t subset, const Corner
 std::optional<WorstCases> run_worst_cases(const StudyRun& run, const CornerTable& table,
                                           const Array<double, axis::Response, axis::Size>& rounding,
                                           const RunOptions& options) {
-  CornerWork work(run, table, rounding, options.shard.value_or(Shard()));
-  if (!fold(work, options) || options.shard) return std::nullopt;
-  return std::move(work).result();
+  return fold_units(CornerJob{run, table, rounding}, options);
 }
 
 void add_worst_cases(WorstCases found, const CornerTable& table, CouplingResult& result) {

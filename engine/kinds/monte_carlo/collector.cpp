@@ -1,19 +1,14 @@
 #include "engine/kinds/monte_carlo/collector.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "engine/base/contract.h"
 #include "engine/kinds/monte_carlo/yield.h"
 #include "engine/stats/moments.h"
+#include "engine/stats/sums.h"
 
 namespace poesy {
 namespace {
-
-constexpr std::uint64_t kKind = 2;  ///< no other state begins with this number
 
 /// All that a finished pose of a result knows from a response's sketch.
 void sketched_state(Archive& archive, MonteCarloResult& result, std::size_t response, std::size_t pose) {
@@ -25,31 +20,16 @@ void sketched_state(Archive& archive, MonteCarloResult& result, std::size_t resp
   if (!result.share_magnitude.empty()) archive.real(result.share_magnitude(response, pose));
 }
 
-/// Throws unless these are the solves of whole units, of so many samples at most.
-void check_whole(const SolveCounts& solves, std::size_t most_samples) {
+/// What is read must be the solves of whole units, of so many samples at most.
+void expect_whole(const Archive& archive, const SolveCounts& solves, std::size_t most_samples) {
   const std::uint64_t total = solves.total();
-  if (total == 0 || total % Plan::kUnitSamples != 0 || total > most_samples) {
-    throw BytesError("has a pose that is no number of whole units");
-  }
-}
-
-void effects_state(Archive& archive, std::optional<MainEffectSums>& effects, std::size_t errors,
-                   std::size_t responses) {
-  std::uint64_t has = effects ? 1 : 0;
-  archive.number(has, 1);
-  if (!archive.reads()) {
-    if (effects) effects->write(archive.writer());
-  } else if (has == 1) {
-    effects = MainEffectSums::read(archive.reader(), errors, responses);
-  } else {
-    effects.reset();
-  }
+  archive.expect(total > 0 && total % Plan::kUnitSamples == 0 && total <= most_samples,
+                 "has a pose that is no number of whole units");
 }
 
 }  // namespace
 
 void PoseSamples::add(const PoseUnit& unit) {
-  responses.resize(unit.responses.size());
   for (std::size_t r = 0; r < responses.size(); ++r) {
     responses[r].moments.merge(unit.responses[r].moments);
     responses[r].sketch.add(unit.responses[r].values);
@@ -64,24 +44,10 @@ void PoseSamples::add(const PoseUnit& unit) {
   }
 }
 
-void PoseSamples::state(Archive& archive, std::size_t errors) {
-  for (auto& [moments, sketch] : responses) {
-    archive.object(moments);
-    archive.object(sketch);
-  }
-  archive.object(solves);
-  failed.state(archive, solves.not_converged(), 0, solves.total());
-  effects_state(archive, effects, errors, responses.size());
-}
-
-void PoseSamples::write(ByteWriter& to) const { write_state(*this, to, std::size_t{0}); }
-
-PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses, std::size_t errors) {
-  PoseSamples samples;
-  samples.responses.resize(responses);
-  Archive archive(from);
-  samples.state(archive, errors);
-  return samples;
+void PoseSamples::state(Archive& archive) {
+  archive.object(responses);
+  ends_state(archive, solves, failed, 0);
+  archive.optional(effects, errors_, responses.size());
 }
 
 MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis,
@@ -91,6 +57,7 @@ MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses
       limits_(analysis.limits),
       asked_(asked_of<MonteCarloOptions>(analysis)),
       keep_checkpoint_(keep_checkpoint),
+      at_pose_(no_samples()),
       sketches_(responses),
       moments_({plan.poses().size(), responses}),
       columns_(plan.poses().size(), responses, analysis),
@@ -98,18 +65,19 @@ MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses
       failed_(plan.poses().size()),
       kept_(plan.poses().size()) {}
 
-void MonteCarloCollector::add(PoseIndex pose, const PoseUnit& unit) {
+void MonteCarloCollector::add(const WorkUnit& unit, const PoseUnit& found) {
+  const PoseIndex pose = unit.pose;
   if (at_pose_.solves.total() == 0) {
     open_ = pose;
     if (const Bytes& begun = kept_[pose.value].bytes; !begun.empty()) {
       ByteReader from(begun);
-      at_pose_ = PoseSamples::read(from, responses_, plan_->factors().size());
+      at_pose_ = read_state<PoseSamples>(from, responses_, plan_->factors().size());
     }
   }
   POESY_EXPECTS(pose == open_ && !is_finished(pose.value));
-  const bool whole = unit.solves.total() == Plan::kUnitSamples;
+  const bool whole = found.solves.total() == Plan::kUnitSamples;
   if (keep_checkpoint_ && !whole) keep();
-  at_pose_.add(unit);
+  at_pose_.add(found);
   if (at_pose_.solves.total() < plan_->samples()) return;
   if (keep_checkpoint_ && whole) keep();
   finish_pose();
@@ -118,7 +86,7 @@ void MonteCarloCollector::add(PoseIndex pose, const PoseUnit& unit) {
 void MonteCarloCollector::keep() {
   if (at_pose_.solves.total() == 0) return;
   ByteWriter to;
-  at_pose_.write(to);
+  write_state(at_pose_, to);
   Kept kept{at_pose_.solves, to.take()};
   kept.bytes.shrink_to_fit();
   set_kept(open_.value, std::move(kept));
@@ -147,12 +115,12 @@ void MonteCarloCollector::finish_pose() {
   columns_.result().solves[open_.value] = at_pose_.solves;
   failed_[open_.value] = std::move(at_pose_.failed);
   effects_[open_.value] = std::move(at_pose_.effects);
-  at_pose_ = {};
+  at_pose_ = no_samples();
 }
 
-std::size_t MonteCarloCollector::units_done(PoseIndex pose) const {
-  if (is_finished(pose.value)) return plan_->units_per_cell();
-  const SolveCounts& solves = is_open(pose.value) ? at_pose_.solves : kept_[pose.value].solves;
+std::size_t MonteCarloCollector::units_done(std::size_t pose) const {
+  if (is_finished(pose)) return plan_->units_per_cell();
+  const SolveCounts& solves = is_open(pose) ? at_pose_.solves : kept_[pose].solves;
   return static_cast<std::size_t>(solves.total() / Plan::kUnitSamples);
 }
 
@@ -210,84 +178,48 @@ void MonteCarloCollector::finished_state(Archive& archive, std::size_t pose, std
     if (archive.reads()) set_moments(r, pose, moments);
     sketched_state(archive, result, r, pose);
   }
-  archive.object(result.solves[pose]);
+  ends_state(archive, result.solves[pose], failed_[pose], 0);
   archive.expect(result.solves[pose].total() == samples, "has a finished pose with other samples");
-  failed_[pose].state(archive, result.solves[pose].not_converged(), 0, result.solves[pose].total());
-  effects_state(archive, effects_[pose], plan_->factors().size(), responses_);
+  archive.optional(effects_[pose], plan_->factors().size(), responses_);
 }
 
-void MonteCarloCollector::write_state(ByteWriter& to) const {
-  for (const std::uint64_t number : std::array<std::uint64_t, 5>{kKind, responses_, columns_.result().poses(),
-                                                                 columns_.result().levels.size(), plan_->samples()}) {
-    to.number(number);
-  }
+void MonteCarloCollector::state(Archive& archive, std::size_t samples) {
+  const bool is_shorter = archive.reads() && samples < plan_->samples();
   for (std::size_t m = 0; m < columns_.result().poses(); ++m) {
-    to.number(is_finished(m) ? 1 : 0);
-    if (is_finished(m)) {
-      Archive archive(to);
-      const_cast<MonteCarloCollector*>(this)->finished_state(archive, m, 0);  // it changes nothing where it writes
-    }
-    to.block(kept_[m].bytes);
+    const bool finished = archive.flag(is_finished(m));
+    archive.expect(!finished || (!is_finished(m) && !is_open(m)), "has a pose twice");
+    if (finished) finished_state(archive, m, samples);
+    kept_state(archive, m, finished ? samples : samples - 1);
+    if (!is_shorter) continue;
+    columns_.result().solves[m] = {};
+    effects_[m].reset();
   }
-  for (const QuantileSketch& sketch : sketches_) sketch.write(to);
-  to.number(at_pose_.solves.total() > 0 ? 1 : 0);
-  if (at_pose_.solves.total() == 0) return;
-  to.number(open_.value);
-  at_pose_.write(to);
+  std::vector<QuantileSketch> read(responses_);
+  archive.object(archive.reads() ? read : sketches_);
+  if (archive.reads() && !is_shorter) merge_each(sketches_, read);
+  if (archive.flag(at_pose_.solves.total() > 0)) open_state(archive, samples);
 }
 
-void MonteCarloCollector::restore(std::span<const std::byte> state) {
-  ByteReader from(state);
-  while (from.left() > 0) restore_one(from);
-}
-
-void MonteCarloCollector::restore_one(ByteReader& from) {
-  for (const std::uint64_t expected :
-       std::array<std::uint64_t, 4>{kKind, responses_, columns_.result().poses(), columns_.result().levels.size()}) {
-    if (from.number() != expected) throw BytesError("is the state of another kind or size of study");
-  }
-  const auto samples = static_cast<std::size_t>(from.number_up_to(plan_->samples()));
-  if (samples == 0) throw BytesError("has no samples");
-  const bool shorter = samples < plan_->samples();
-  for (std::size_t m = 0; m < columns_.result().poses(); ++m) {
-    const bool finished = from.number_up_to(1) == 1;
-    if (finished) {
-      if (is_finished(m) || is_open(m)) throw BytesError("has a pose twice");
-      Archive archive(from);
-      finished_state(archive, m, samples);
-    }
-    read_kept(from, m, finished ? samples : samples - 1);
-    if (shorter) {
-      columns_.result().solves[m] = {};
-      effects_[m].reset();
-    }
-  }
-  for (QuantileSketch& sketch : sketches_) {
-    const QuantileSketch read = QuantileSketch::read(from);
-    if (!shorter) sketch.merge(read);
-  }
-  if (from.number_up_to(1) == 1) read_open(from, samples);
-}
-
-void MonteCarloCollector::read_open(ByteReader& from, std::size_t samples) {
-  if (at_pose_.solves.total() > 0) throw BytesError("has two unfinished poses");
-  open_ = PoseIndex(static_cast<std::size_t>(from.number_up_to(columns_.result().poses() - 1)));
-  if (is_finished(open_.value)) throw BytesError("has a pose twice");
-  at_pose_ = PoseSamples::read(from, responses_, plan_->factors().size());
-  check_whole(at_pose_.solves, samples - 1);
-  if (samples == plan_->samples()) return;
+void MonteCarloCollector::open_state(Archive& archive, std::size_t samples) {
+  archive.expect(at_pose_.solves.total() == 0, "has two unfinished poses");
+  archive.number(open_.value, columns_.result().poses() - 1);
+  archive.expect(!is_finished(open_.value), "has a pose twice");
+  archive.object(at_pose_);
+  expect_whole(archive, at_pose_.solves, samples - 1);
+  if (!archive.reads() || samples == plan_->samples()) return;
   keep();
-  at_pose_ = {};
+  at_pose_ = no_samples();
 }
 
-void MonteCarloCollector::read_kept(ByteReader& from, std::size_t pose, std::size_t most_samples) {
-  const std::span<const std::byte> bytes = from.block();
-  if (bytes.empty()) return;
-  ByteReader unit(bytes);
-  const SolveCounts solves = PoseSamples::read(unit, responses_, plan_->factors().size()).solves;
-  unit.expect_end();
-  check_whole(solves, most_samples);
-  set_kept(pose, {solves, Bytes(bytes.begin(), bytes.end())});
+void MonteCarloCollector::kept_state(Archive& archive, std::size_t pose, std::size_t most_samples) {
+  Bytes read;
+  archive.block(archive.reads() ? read : kept_[pose].bytes);
+  if (read.empty()) return;
+  ByteReader from(read);
+  const SolveCounts solves = read_state<PoseSamples>(from, responses_, plan_->factors().size()).solves;
+  from.expect_end();
+  expect_whole(archive, solves, most_samples);
+  set_kept(pose, {solves, std::move(read)});
 }
 
 }  // namespace poesy

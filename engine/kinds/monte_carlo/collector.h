@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "engine/base/archive.h"
@@ -22,6 +21,8 @@ namespace poesy {
 struct ResponseSamples {
   Moments moments;        ///< exact
   QuantileSketch sketch;  ///< for quantiles
+
+  void state(Archive& archive) { archive.objects(moments, sketch); }  ///< Both.
 };
 
 /// Some samples, all or not, at one pose.
@@ -31,31 +32,33 @@ struct PoseSamples {
   FailedSamples failed;                    ///< the first of them
   std::optional<MainEffectSums> effects;   ///< at the poses where main effects are added up
 
+  /// No samples. errors: that vary.
+  PoseSamples(std::size_t response_count, std::size_t error_count) : responses(response_count), errors_(error_count) {}
   /// Precondition: its samples come after those that are here.
   void add(const PoseUnit& unit);
-  /// errors: that vary, which nobody looks at where it is written.
-  void state(Archive& archive, std::size_t errors);
-  void write(ByteWriter& to) const;  ///< Their state.
-  /// Their state. Throws BytesError for what no samples give.
-  static PoseSamples read(ByteReader& from, std::size_t responses, std::size_t errors);
+  void state(Archive& archive);  ///< Every bit.
+
+ private:
+  std::size_t errors_;
 };
 
 /// Puts units together, pose by pose. Holds the samples of one pose, as sketches, and of all finished poses together
-/// their sketches: memory grows neither with the samples nor, but for the result, with the poses. If a study with more
-/// samples is to go on from it, it also keeps the sketches of finished poses, packed, as many as kMostKeptBytes hold.
-/// The order in which poses are finished changes nothing.
+/// their sketches: memory grows neither with the samples nor, but for the result, with the poses. The sums of a
+/// PoseFold. If a study with more samples is to go on from it, it also keeps the sketches of finished poses, packed, as
+/// many as kMostKeptBytes hold. The order in which poses are finished changes nothing.
 class MonteCarloCollector {
  public:
   /// Of packed sketches; poses beyond are solved again when more samples are wanted.
   static constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20U;
+  static constexpr bool kOfRound = true;  ///< Finished poses are open again when more samples are wanted.
 
   /// keep_checkpoint: whether to keep sketches of finished poses.
   MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis, bool keep_checkpoint = true);
 
   /// Units of a pose come one after another.
-  void add(PoseIndex pose, const PoseUnit& unit);
+  void add(const WorkUnit& unit, const PoseUnit& found);
   /// Units of this pose that were added.
-  std::size_t units_done(PoseIndex pose) const;
+  std::size_t units_done(std::size_t pose) const;
   /// Over all that was added.
   SolveCounts total() const;
   /// Of the finished poses; without the overall numbers.
@@ -63,18 +66,15 @@ class MonteCarloCollector {
   /// Precondition: every unit was added.
   MonteCarloResult result() &&;
 
-  /// Everything added so far.
-  void write_state(ByteWriter& to) const;
-  /// Takes up a state of this plan, or of one that differs by fewer samples: then all its poses are open again, and
-  /// begin with what was kept of them. States that hold different poses may stand one behind the other. Throws
-  /// BytesError for anything else. Precondition: nothing was added.
-  void restore(std::span<const std::byte> state);
+  /// Writes all poses, or adds those of a plan with so many samples. If these are fewer than this plan's, all poses are
+  /// open again, and begin with what was kept of them.
+  void state(Archive& archive, std::size_t samples);
 
  private:
   /// Samples at a pose that make up whole units, packed.
   struct Kept {
     SolveCounts solves;
-    Bytes bytes;  ///< as PoseSamples::write gives them
+    Bytes bytes;  ///< their state
   };
 
   bool is_finished(std::size_t pose) const { return columns_.result().solves[pose].total() > 0; }
@@ -86,11 +86,11 @@ class MonteCarloCollector {
   void keep();
   void set_kept(std::size_t pose, Kept kept);
   void finished_state(Archive& archive, std::size_t pose, std::size_t samples);
-  void restore_one(ByteReader& from);
   /// The sums of some poses, whose draws are independent.
   EffectResult effects() const;
-  void read_open(ByteReader& from, std::size_t samples);
-  void read_kept(ByteReader& from, std::size_t pose, std::size_t most_samples);
+  PoseSamples no_samples() const { return {responses_, plan_->factors().size()}; }
+  void open_state(Archive& archive, std::size_t samples);
+  void kept_state(Archive& archive, std::size_t pose, std::size_t most_samples);
 
   const Plan* plan_;
   std::size_t responses_;

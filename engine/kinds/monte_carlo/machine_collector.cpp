@@ -1,27 +1,21 @@
 #include "engine/kinds/monte_carlo/machine_collector.h"
 
-#include <algorithm>
-#include <array>
 #include <utility>
 
-#include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "engine/kinds/monte_carlo/columns.h"
 #include "engine/kinds/monte_carlo/yield.h"
 #include "engine/kinds/monte_carlo/yield_by_map.h"
 
 namespace poesy {
-namespace {
-
-constexpr std::uint64_t kKind = 4;  ///< no other state begins with this number
-
-}  // namespace
 
 MachineCollector::Counts::Counts(std::size_t responses, std::size_t poses)
-    : at_pose({poses, responses}), largest(responses), rms(responses), solves(poses), failed(poses) {
-  make_room({responses}, machines.by_limit);
-  make_room({responses, poses}, machines.at_pose);
-}
+    : at_pose({poses, responses}),
+      largest(responses),
+      rms(responses),
+      solves(poses),
+      failed(poses),
+      machines(MachineCounts::of_none(responses, poses)) {}
 
 void MachineCollector::Counts::add(const MachineUnit& unit) {
   const auto add_block = [](QuantileSketch& sketch, const NumberBlock& block) { sketch.add(block); };
@@ -46,41 +40,19 @@ void MachineCollector::Counts::merge(const Counts& later) {
 
 void MachineCollector::Counts::state(Archive& archive, const MachineTable& table, const NumberRange& range) {
   const std::size_t count = range.end - range.first;
-  state_of_each(archive, at_pose);
-  state_of_each(archive, largest);
-  state_of_each(archive, rms);
-  for (std::size_t m = 0; m < solves.size(); ++m) {
-    archive.object(solves[m]);
-    archive.expect(solves[m].total() == count, "has a pose with other machines");
-    failed[m].state(archive, solves[m].not_converged(), range.first, range.end);
-  }
+  archive.objects(at_pose, largest, rms);
+  ends_state(archive, solves, failed, count, range.first, range.end);
   rejected_state(archive, rejected, table, range);
   archive.object(machines);
   archive.expect(machines.machines == count, "has counts of other machines");
 }
 
-MachineCollector::MachineCollector(const MachineTable& table, const Analysis& analysis, const NumberRange& units)
-    : table_(&table), analysis_(&analysis), units_(units), counts_(table.responses(), table.plan().poses().size()) {}
-
-std::size_t MachineCollector::next() const {
-  if (tail_) return table_->units();
-  return sums_.empty() ? units_.first : sums_.end();
-}
+MachineCollector::MachineCollector(const MachineTable& table, const Analysis& analysis)
+    : table_(&table), analysis_(&analysis), counts_(table.responses(), table.plan().poses().size()) {}
 
 void MachineCollector::add(std::size_t n, MachineUnit&& unit) {
-  POESY_EXPECTS(n == next() && units_.holds(n));
-  if (!table_->is_whole(n)) {
-    tail_ = std::move(unit);
-    return;
-  }
   counts_.add(unit);
   sums_.add(n, *std::move(unit.sums));
-}
-
-SolveCounts MachineCollector::total() const {
-  SolveCounts sum = total_of(counts_.solves);
-  if (tail_) sum.merge(tail_->total);
-  return sum;
 }
 
 std::vector<Estimate> MachineCollector::overall_means() const {
@@ -136,11 +108,6 @@ EffectResult MachineCollector::effects(const MachineSums& sums, std::span<const 
 }
 
 MonteCarloResult MachineCollector::result() && {
-  if (tail_) {
-    counts_.add(*tail_);
-    sums_.add(table_->units() - 1, *std::move(tail_->sums));
-    tail_.reset();
-  }
   const MachineSums sums = sums_.empty() ? MachineSums(*table_) : std::move(sums_).total();
   MonteCarloColumns columns(poses(), table_->responses(), *analysis_);
   MonteCarloResult& found = columns.result();
@@ -151,8 +118,8 @@ MonteCarloResult MachineCollector::result() && {
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(*analysis_);
   if (analysis_->limits.empty()) return std::move(found);
   if (asked.judge == Judge::yield) {
-    found.verdicts = judge_machines(analysis_->limits, asked.yield, *found.machines->yield, total(), counts_.machines,
-                                    counts_.largest);
+    found.verdicts = judge_machines(analysis_->limits, asked.yield, *found.machines->yield, total_of(counts_.solves),
+                                    counts_.machines, counts_.largest);
     return std::move(found);
   }
   std::vector<QuantileSketch> overall(table_->responses());
@@ -163,57 +130,21 @@ MonteCarloResult MachineCollector::result() && {
   return std::move(found);
 }
 
-void MachineCollector::write_state(ByteWriter& to) const {
-  for (const std::uint64_t number :
-       std::array<std::uint64_t, 5>{kKind, table_->responses(), poses(), table_->errors(), table_->plan().samples()}) {
-    to.number(number);
-  }
-  to.number(sums_.empty() ? 0 : 1);
-  if (!sums_.empty()) {
-    sums_.write(to);
-    to.number(sums_.first());
-    to.number(sums_.end());
-    poesy::write_state(counts_, to, *table_, NumberRange{0, 0});
-  }
-  to.number(tail_ ? 1 : 0);
-  if (tail_) tail_->write(to);
-}
-
-void MachineCollector::restore(std::span<const std::byte> state) {
-  ByteReader from(state);
-  while (from.left() > 0) restore_one(from);
-}
-
-void MachineCollector::restore_one(ByteReader& from) {
-  for (const std::uint64_t expected :
-       std::array<std::uint64_t, 4>{kKind, table_->responses(), poses(), table_->errors()}) {
-    if (from.number() != expected) throw BytesError("is the state of another kind or size of study");
-  }
-  if (tail_) throw BytesError("goes on after the last machine");
-  const auto samples = static_cast<std::size_t>(from.number_up_to(table_->plan().samples()));
+void MachineCollector::state(Archive& archive, const NumberRange& units) {
+  constexpr const char* kOthers = "has sums of other machines";
   const std::size_t each = MachineTable::unit_machines(poses());
-  if (from.number_up_to(1) == 1) {
-    const std::size_t before = next();
-    sums_.read(from, samples / each, [&](ByteReader& bytes, std::size_t, std::size_t leaves) {
-      auto sums = read_state<MachineSums>(bytes, *table_);
-      if (sums.effects.front().samples() > leaves * each) throw BytesError("has sums of other machines");
-      return sums;
-    });
-    const auto first = static_cast<std::size_t>(from.number_up_to(samples / each));
-    const auto end = static_cast<std::size_t>(from.number_up_to(samples / each));
-    if (first != before || end != sums_.end() || first >= end) throw BytesError("has sums of other machines");
-    Counts counts(table_->responses(), poses());
-    Archive archive(from);
-    counts.state(archive, *table_, {first * each, end * each});
-    counts_.merge(counts);
+  const std::size_t first = sums_.empty() ? units.first : sums_.first();
+  sums_.state(archive, table_->units(), MachineSums(*table_));
+  archive.expect(sums_.empty() ? units.first == units.end : sums_.first() == first && sums_.end() == units.end,
+                 kOthers);
+  for (const auto& node : sums_.nodes()) {
+    archive.expect(node.sum.effects.front().samples() <= node.leaves * each, kOthers);
   }
-  if (from.number_up_to(1) == 0) return;
-  const bool same = samples == table_->plan().samples();
-  if (samples % each == 0) throw BytesError("has a last unit that is whole");
-  MachineUnit tail = MachineUnit::read(from, *table_, {samples / each * each, samples});
-  if (!same) return;
-  if (next() != samples / each) throw BytesError("lacks units before the last");
-  tail_ = std::move(tail);
+  const NumberRange machines{units.first * each, units.end * each};
+  if (!archive.reads()) return counts_.state(archive, *table_, machines);
+  Counts counts(table_->responses(), poses());
+  counts.state(archive, *table_, machines);
+  counts_.merge(counts);
 }
 
 }  // namespace poesy

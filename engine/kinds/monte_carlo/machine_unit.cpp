@@ -17,12 +17,12 @@ std::size_t kept_of(const MachineTable& table, const NumberRange& machines) {
 
 void rejected_state(Archive& archive, std::vector<std::uint8_t>& rejected, const MachineTable& table,
                     const NumberRange& machines) {
-  if (!archive.reads()) {
-    archive.writer().block(std::as_bytes(std::span(rejected)));
-    return;
-  }
+  const std::span<const std::byte> flags = std::as_bytes(std::span(rejected));
+  Bytes bytes(flags.begin(), flags.end());
+  archive.block(bytes);
+  if (!archive.reads()) return;
   rejected.clear();
-  for (const std::byte flag : archive.reader().block()) rejected.push_back(std::to_integer<std::uint8_t>(flag));
+  for (const std::byte flag : bytes) rejected.push_back(std::to_integer<std::uint8_t>(flag));
   archive.expect(rejected.size() == kept_of(table, machines) &&
                      std::ranges::none_of(rejected, [](std::uint8_t flag) { return flag > 1; }),
                  "has flags of other machines");
@@ -52,21 +52,17 @@ void MachineSums::merge(const MachineSums& later) {
 }
 
 void MachineSums::state(Archive& archive) {
-  state_of_each(archive, at_pose);
-  for (auto* moments : {&mean, &largest, &rms}) state_of_each(archive, *moments);
+  archive.objects(at_pose, mean, largest, rms);
   if (scores) archive.object(*scores);
-  std::uint64_t fits = fit ? 1 : 0;
-  archive.number(fits, table_->vectors().rows() > 0 ? 1 : 0);
-  if (archive.reads() && fits == 1) {
-    fit.emplace(table_->errors(), table_->vectors().rows() * table_->plan().poses().size());
-  }
-  if (fit) archive.object(*fit);
+  archive.optional(fit, table_->errors(), table_->vectors().rows() * table_->plan().poses().size());
+  archive.expect(!fit || table_->vectors().rows() > 0, "has a fit of vectors that are not limited");
   if (parts) archive.object(*parts);
-  state_of_each(archive, effects);
+  archive.object(effects);
 }
 
 MachineUnit::MachineUnit(const MachineTable& table, const NumberRange& range)
     : sums(MachineSums(table)),
+      counts(MachineCounts::of_none(table.responses(), table.plan().poses().size())),
       at_pose({table.plan().poses().size(), table.responses()}),
       largest(table.responses()),
       rms(table.responses()),
@@ -74,23 +70,12 @@ MachineUnit::MachineUnit(const MachineTable& table, const NumberRange& range)
       solves(table.plan().poses().size()),
       failed(table.plan().poses().size()),
       table_(&table),
-      machines_(range) {
-  make_room({table.responses()}, counts.by_limit);
-  make_room({table.responses(), table.plan().poses().size()}, counts.at_pose);
-}
+      machines_(range) {}
 
 void MachineUnit::state(Archive& archive) {
-  archive.object(*sums);
-  archive.object(counts);
-  packed_of_each(archive, at_pose);
-  packed_of_each(archive, largest);
-  packed_of_each(archive, rms);
+  archive.objects(*sums, counts, at_pose, largest, rms);
   rejected_state(archive, rejected, *table_, machines_);
-  state_of_each(archive, solves);
-  for (std::size_t m = 0; m < solves.size(); ++m) {
-    archive.expect(solves[m].total() == machines_.end - machines_.first, "has a pose with other machines");
-    failed[m].state(archive, solves[m].not_converged(), machines_.first, machines_.end);
-  }
+  ends_state(archive, solves, failed, machines_.end - machines_.first, machines_.first, machines_.end);
   total = total_of(solves);
 }
 

@@ -40,8 +40,7 @@ struct MachineSums {
   /// Precondition: the machines of `later` come after those of this.
   void merge(const MachineSums& later);
 
-  void state(Archive& archive);                                 ///< Every bit.
-  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Its state.
+  void state(Archive& archive);  ///< Every bit.
 
  private:
   const MachineTable* table_;
@@ -67,12 +66,7 @@ struct MachineUnit {
   std::vector<FailedSamples> failed;   ///< the first of them at each pose
   SolveCounts total;                   ///< of all poses
 
-  void state(Archive& archive);                                 ///< For a message or a state.
-  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Its state.
-  /// Its state. Throws BytesError.
-  static MachineUnit read(ByteReader& from, const MachineTable& table, const NumberRange& range) {
-    return read_state<MachineUnit>(from, table, range);
-  }
+  void state(Archive& archive);  ///< For a message or a state.
 
  private:
   const MachineTable* table_ = nullptr;

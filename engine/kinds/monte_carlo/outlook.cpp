@@ -125,7 +125,8 @@ class PoseTrial {
   void fill() {
     collect_.emplace(plan_, model_.description().responses.size(), analysis_, plan_.adaptive().has_value());
     for (std::size_t m = 0; m < plan_.poses().size(); ++m) {
-      for (std::size_t u = 0; u < plan_.units_per_cell(); ++u) collect_->add(PoseIndex(m), unit_);
+      for (std::size_t u = 0; u < plan_.units_per_cell(); ++u)
+        collect_->add(plan_.unit(m * plan_.units_per_cell() + u), unit_);
     }
   }
 
@@ -169,8 +170,8 @@ class MachineTrial {
     for (std::size_t r = 0; r < responses_; ++r) sketches_[r].add(unit_.at_pose(0, r));
   }
   double merge() {
-    if (collect_->next() == table_.units() || !table_.is_whole(collect_->next())) begin();
-    collect_->add(collect_->next(), MachineUnit(unit_));
+    if (next_ == table_.units() || !table_.is_whole(next_)) begin();
+    collect_->add(next_++, MachineUnit(unit_));
     return share_of(table_.unit(0).count);
   }
   /// Reads off what is known of one pose. The share of all poses that this is.
@@ -191,7 +192,10 @@ class MachineTrial {
  private:
   static constexpr std::size_t kPoses = 150;
 
-  void begin() { collect_.emplace(table_, analysis_, NumberRange{0, table_.units()}); }
+  void begin() {
+    collect_.emplace(table_, analysis_);
+    next_ = 0;
+  }
   /// So many machines at the poses that are tried.
   double share_of(std::size_t machines) const {
     const double tried = static_cast<double>(machines) * static_cast<double>(plan_.poses().size());
@@ -210,6 +214,7 @@ class MachineTrial {
   MachineUnit unit_;
   std::vector<QuantileSketch> sketches_;  ///< of each response at one pose
   std::optional<MachineCollector> collect_;
+  std::size_t next_ = 0;  ///< unit to be merged
 };
 
 void add_pose_works(const Study& study, const Model& model, const PoseSet& poses,

@@ -22,6 +22,11 @@ UnitStats CellStats::at(std::size_t cell) const {
   return stats;
 }
 
+void CellStats::state(Archive& archive, std::size_t cell, std::uint64_t first) {
+  for (std::vector<Moments>& response : responses) archive.object(response[cell]);
+  ends_state(archive, solves[cell], failed[cell], first);
+}
+
 CellStats CellStats::part(const NumberRange& cells) const {
   CellStats some;
   for (const std::vector<Moments>& response : responses) some.responses.push_back(part_of(response, cells));

@@ -23,8 +23,10 @@ struct CellStats {
   CellStats(std::size_t response_count, std::size_t cells)
       : responses(response_count, std::vector<Moments>(cells)), solves(cells), failed(cells) {}
 
-  std::size_t size() const { return solves.size(); }    ///< Cells.
-  UnitStats at(std::size_t cell) const;                 ///< One cell.
+  std::size_t size() const { return solves.size(); }  ///< Cells.
+  UnitStats at(std::size_t cell) const;               ///< One cell.
+  /// One cell, of samples from `first` on.
+  void state(Archive& archive, std::size_t cell, std::uint64_t first);
   CellStats part(const NumberRange& cells) const;       ///< Some of them.
   void merge(std::size_t cell, const UnitStats& unit);  ///< Precondition: as for UnitStats::merge.
   /// The same cells: the samples of `later` come after those of this. Gives the memory of `later` back as it goes.

@@ -16,15 +16,6 @@ void append(const Estimate& estimate, EstimateCourse& history) {
   history.ci_high.push_back(estimate.interval.high);
 }
 
-constexpr std::uint64_t kKind = 1;  ///< no other state begins with this number
-
-// What a state holds of a cell.
-constexpr std::uint64_t kWhole = 1;
-constexpr std::uint64_t kPart = 2;
-
-/// In a cell of so many samples.
-std::size_t units_of(std::uint64_t samples) { return Plan::units_for(static_cast<std::size_t>(samples)); }
-
 }  // namespace
 
 HistoryCollector::HistoryCollector(const Plan& plan, std::size_t responses, double conf_level)
@@ -84,48 +75,26 @@ std::vector<std::size_t> HistoryCollector::poses_at(std::size_t slot, std::size_
   return list;
 }
 
-void HistoryCollector::write(ByteWriter& to, std::span<const std::size_t> units_done) const {
-  for (std::size_t slot = 0; slot < plan_->slots(); ++slot) {
-    for (std::size_t k = 0; k < points_.size(); ++k) {
-      const Look& at = looks_(slot, k);
-      for (const Estimate& index : at.global) {
-        to.reals(std::array{index.value, index.interval.low, index.interval.high});
-      }
-      if (at.local.empty()) continue;
-      for (const std::size_t m : poses_at(slot, k, units_done)) {
-        for (std::size_t r = 0; r < responses_; ++r) {
-          const LocalIndex& index = at.local(r, m);
-          to.reals(std::array{index.value, index.standard_error});
-        }
-      }
-    }
-  }
-}
-
-void HistoryCollector::read(ByteReader& from, std::span<const std::size_t> units_done, std::size_t samples) {
+void HistoryCollector::state(Archive& archive, std::span<const std::size_t> units_done, std::size_t samples) {
   const auto points = static_cast<std::size_t>(std::ranges::upper_bound(points_, samples) - points_.begin());
   // A first unit that is smaller than others is not the beginning of a longer study's, and is solved again.
   const bool begins_longer = samples == plan_->samples() || samples >= Plan::kUnitSamples;
+  const bool takes = archive.reads() && begins_longer;
   std::vector<LocalIndex> indices(responses_);
   for (std::size_t slot = 0; slot < plan_->slots(); ++slot) {
     for (std::size_t k = 0; k < points; ++k) {
       const std::vector<std::size_t> reached = poses_at(slot, k, units_done);
       if (reached.size() == poses()) {
-        Look whole{.reached = poses()};
-        for (std::size_t r = 0; r < responses_; ++r) {
-          const double value = from.real();
-          const double low = from.real();
-          whole.global.push_back({value, {low, from.real()}});
-        }
-        if (begins_longer) looks_(slot, k) = std::move(whole);
+        Look whole = looks_(slot, k);
+        if (archive.reads()) whole = {.reached = poses(), .global = std::vector<Estimate>(responses_)};
+        for (auto& [value, interval] : whole.global) archive.real(value, interval.low, interval.high);
+        if (takes) looks_(slot, k) = std::move(whole);
         continue;
       }
       for (const std::size_t m : reached) {
-        for (LocalIndex& index : indices) {
-          index.value = from.real();
-          index.standard_error = from.real();
-        }
-        if (begins_longer) add(slot * poses() + m, k, indices);
+        for (std::size_t r = 0; r < responses_ && !archive.reads(); ++r) indices[r] = looks_(slot, k).local(r, m);
+        archive.object(indices);
+        if (takes) add(slot * poses() + m, k, indices);
       }
     }
   }
@@ -133,109 +102,16 @@ void HistoryCollector::read(ByteReader& from, std::span<const std::size_t> units
 
 SensitivityCollector::SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level,
                                            const Shard& shard)
-    : plan_(&plan), responses_(responses), cells_(shard.of(plan.cells())), history_(plan, responses, conf_level) {}
+    : CellSums(plan, responses, shard), history_(plan, responses, conf_level) {}
 
 void SensitivityCollector::add(const WorkUnit& unit, const CellUnit& found) {
-  const std::size_t cell = cell_of(unit);
-  POESY_EXPECTS(cells_.holds(cell) && unit.first.value == units_done(cell) * Plan::kUnitSamples);
-  CellStats& stats = unit.count == Plan::kUnitSamples ? whole_ : parts_;
-  merge(stats, cell, found);
-  history_.add(unit, found.within, stats.at(cell - cells_.first));
+  CellSums::add(unit, found);
+  history_.add(unit, found.within, store_of(unit).at(cell_of(unit) - cells_.first));
 }
 
-void SensitivityCollector::merge(CellStats& stats, std::size_t cell, const UnitStats& unit) {
-  if (stats.size() == 0) stats = CellStats(responses_, cells_.end - cells_.first);
-  stats.merge(cell - cells_.first, unit);
-}
-
-std::uint64_t SensitivityCollector::samples_in(const CellStats& stats, std::size_t cell) const {
-  return stats.size() > 0 && cells_.holds(cell) ? stats.solves[cell - cells_.first].total() : 0;
-}
-
-std::size_t SensitivityCollector::units_done(std::size_t cell) const {
-  return static_cast<std::size_t>(whole_samples(cell) / Plan::kUnitSamples) + (part_samples(cell) > 0 ? 1 : 0);
-}
-
-SolveCounts SensitivityCollector::total() const {
-  SolveCounts sum = total_of(whole_.solves);
-  sum.merge(total_of(parts_.solves));
-  return sum;
-}
-
-CellStats SensitivityCollector::cells_of(std::size_t slot) const {
-  const std::size_t poses = plan_->poses().size();
-  const NumberRange range{slot * poses, (slot + 1) * poses};
-  POESY_EXPECTS(cells_.first == 0 && range.end <= cells_.end);
-  POESY_EXPECTS(whole_.size() > 0 || parts_.size() > 0);
-  if (whole_.size() == 0) return parts_.part(range);
-  CellStats cells = whole_.part(range);
-  if (parts_.size() > 0) cells.merge(parts_.part(range));
-  return cells;
-}
-
-CellStats SensitivityCollector::cells() && {
-  POESY_EXPECTS(cells_.first == 0 && cells_.end == plan_->cells());
-  POESY_EXPECTS(whole_.size() > 0 || parts_.size() > 0);
-  if (whole_.size() == 0) return std::exchange(parts_, {});
-  if (parts_.size() > 0) whole_.merge(std::exchange(parts_, {}));
-  return std::exchange(whole_, {});
-}
-
-void SensitivityCollector::write_state(ByteWriter& to) const {
-  to.number(kKind);
-  to.number(responses_);
-  to.number(plan_->cells());
-  to.number(plan_->samples());
-  std::vector<std::size_t> units;
-  units.reserve(plan_->cells());
-  for (std::size_t cell = 0; cell < plan_->cells(); ++cell) {
-    const bool has_whole = whole_samples(cell) > 0;
-    const bool has_part = part_samples(cell) > 0;
-    to.number((has_whole ? kWhole : 0) | (has_part ? kPart : 0));
-    if (has_whole) whole_.at(cell - cells_.first).write(to);
-    if (has_part) parts_.at(cell - cells_.first).write(to);
-    units.push_back(units_done(cell));
-  }
-  history_.write(to, units);
-}
-
-void SensitivityCollector::restore(std::span<const std::byte> state) {
-  ByteReader from(state);
-  while (from.left() > 0) restore_one(from);
-}
-
-void SensitivityCollector::restore_one(ByteReader& from) {
-  if (from.number() != kKind || from.number() != responses_ || from.number() != plan_->cells()) {
-    throw BytesError("is the state of another kind or size of study");
-  }
-  const auto samples = static_cast<std::size_t>(from.number_up_to(plan_->samples()));
-  std::vector<std::size_t> units;
-  for (std::size_t cell = 0; cell < plan_->cells(); ++cell) units.push_back(restore_cell(from, cell, samples));
-  history_.read(from, units, samples);
-}
-
-std::size_t SensitivityCollector::restore_cell(ByteReader& from, std::size_t cell, std::size_t samples) {
-  const std::uint64_t holds = from.number_up_to(kWhole | kPart);
-  if (holds == 0) return 0;
-  if (!cells_.holds(cell)) throw BytesError("has a cell of another shard");
-  if (units_done(cell) > 0) throw BytesError("has a cell twice");
-  std::uint64_t whole_solves = 0;
-  if ((holds & kWhole) != 0) {
-    const UnitStats whole = UnitStats::read(from, responses_, 0);
-    whole_solves = whole.solves.total();
-    if (whole_solves == 0 || whole_solves % Plan::kUnitSamples != 0 || whole_solves > samples) {
-      throw BytesError("has a cell that is no number of whole units");
-    }
-    merge(whole_, cell, whole);
-  }
-  if ((holds & kPart) == 0) return units_of(whole_solves);
-  const UnitStats part = UnitStats::read(from, responses_, whole_solves);
-  const std::uint64_t solves = part.solves.total();
-  if (solves == 0 || solves >= Plan::kUnitSamples || whole_solves + solves != samples) {
-    throw BytesError("has a last unit of the wrong size");
-  }
-  if (samples == plan_->samples()) merge(parts_, cell, part);
-  return units_of(samples);
+void SensitivityCollector::state(Archive& archive, std::size_t samples) {
+  const std::vector<std::size_t> units = CellSums::state(archive, samples);
+  history_.state(archive, units, samples);
 }
 
 }  // namespace poesy

@@ -4,10 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 #include "engine/kinds/sensitivity/cell_stats.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/run/evaluate_unit.h"
+#include "engine/run/pose_fold.h"
 #include "engine/run/result.h"
 #include "engine/run/shard.h"
 #include "engine/stats/indices.h"
@@ -31,11 +32,9 @@ class HistoryCollector {
   /// Precondition: all units of all cells were added. end: what they came to.
   EstimateCourse history(const SensitivityResult& end) const;
 
-  /// What was added, as the state of a collector whose cells hold so many units each.
-  void write(ByteWriter& to, std::span<const std::size_t> units_done) const;
-  /// Takes up what was written, of a plan with so many samples, at most this one's; of other cells than those that were
-  /// added. Throws BytesError.
-  void read(ByteReader& from, std::span<const std::size_t> units_done, std::size_t samples);
+  /// What was added, in cells that hold so many units each. Where it is read, it is of a plan with so many samples, at
+  /// most this one's, and of other cells than those that were added.
+  void state(Archive& archive, std::span<const std::size_t> units_done, std::size_t samples);
 
  private:
   /// One slot at one point.
@@ -61,54 +60,22 @@ class HistoryCollector {
   Array<Look, axis::Factor, Point> looks_;
 };
 
-/// Puts the units of a sensitivity study together, cell by cell. What a cell becomes depends on the order of its own
-/// units alone. A last unit with fewer than Plan::kUnitSamples samples is kept apart, for it is not the beginning of
-/// any unit of a study with more samples; all others are.
-class SensitivityCollector {
+/// Puts the units of a sensitivity study together, cell by cell: the sums of a PoseFold. What a cell becomes depends on
+/// the order of its own units alone.
+class SensitivityCollector : public CellSums<CellStats> {
  public:
   /// Of the cells that this shard of the plan has: no others are added. Refers to the plan.
   SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level, const Shard& shard = Shard());
 
   /// Precondition: the unit after those done in its cell.
   void add(const WorkUnit& unit, const CellUnit& found);
-
-  /// Units of this cell that were added.
-  std::size_t units_done(std::size_t cell) const;
-  /// Over all that was added.
-  SolveCounts total() const;
-  /// One slot at all poses, [M] cells, from what was added. Preconditions: the shard has them all; something was added.
-  CellStats cells_of(std::size_t slot) const;
-  /// From what was added, [cells]. Preconditions: likewise.
-  CellStats cells() &&;
   /// Of the indices, whose last are those of `end`. Precondition: all units were added, those of all cells; the study
   /// has a fixed number of samples.
   EstimateCourse history(const SensitivityResult& end) const { return history_.history(end); }
-
-  /// Everything added so far.
-  void write_state(ByteWriter& to) const;
-  /// Takes up a state of this plan, or of one that differs by fewer samples. States that hold different cells may stand
-  /// one behind the other. Throws BytesError for anything else. Precondition: nothing was added.
-  void restore(std::span<const std::byte> state);
+  /// Writes all cells, or adds those of a plan with so many samples.
+  void state(Archive& archive, std::size_t samples);
 
  private:
-  std::size_t cell_of(const WorkUnit& unit) const { return unit.slot * plan_->poses().size() + unit.pose.value; }
-  /// Samples in the cell's whole units; in its smaller last unit.
-  /// @{
-  std::uint64_t whole_samples(std::size_t cell) const { return samples_in(whole_, cell); }
-  std::uint64_t part_samples(std::size_t cell) const { return samples_in(parts_, cell); }
-  /// @}
-  std::uint64_t samples_in(const CellStats& stats, std::size_t cell) const;
-  /// Makes room in `stats` when it has none.
-  void merge(CellStats& stats, std::size_t cell, const UnitStats& unit);
-  void restore_one(ByteReader& from);
-  /// Gives the cell's units in that state.
-  std::size_t restore_cell(ByteReader& from, std::size_t cell, std::size_t samples);
-
-  const Plan* plan_;
-  std::size_t responses_;
-  NumberRange cells_;  ///< of the shard
-  CellStats whole_;    ///< [cells of the shard] units of full size; no cells before the first of them
-  CellStats parts_;    ///< [cells of the shard] the last unit where it is smaller; likewise
   HistoryCollector history_;
 };
 

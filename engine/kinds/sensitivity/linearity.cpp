@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <string_view>
+#include <utility>
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
@@ -14,10 +16,11 @@
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/display.h"
 #include "engine/run/evaluate_unit.h"
-#include "engine/run/fold.h"
 #include "engine/run/response_rounding.h"
 #include "engine/run/result.h"
+#include "engine/run/unit_fold.h"
 #include "engine/stats/indices.h"
+#include "engine/stats/sums.h"
 
 namespace poesy {
 namespace {
@@ -80,70 +83,56 @@ class CellEvaluator {
   UnitEvaluator solve_;
 };
 
-/// Collects cells, pose by pose, and fills in an error's changes when its poses are there: the work of fold().
-class ChangeWork {
- public:
-  ChangeWork(const Plan& plan, const Model& model)
-      : plan_(plan),
-        model_(model),
-        rounding_(response_rounding(model)),
-        at_poses_({kSizes, rounding_.size()}),
-        changes_({rounding_.size(), plan.slots()}, kNaN) {}
+/// Collects cells, pose by pose, and fills in an error's changes when its poses are there.
+struct ChangeSums {
+  const Plan* plan;
+  std::vector<double> rounding;  ///< of the responses
+  /// Of the error that is being collected.
+  Array<std::vector<LocalIndex>, ErrorSize, axis::Response> at_poses;
+  SensitivityResult::Indices changes;
 
-  std::size_t begin_round() const { return plan_.slots() * chosen_poses(plan_); }
-  CellEvaluator worker() const { return {plan_, model_}; }
-  static CellIndices solve(CellEvaluator& evaluate, std::size_t cell) { return evaluate(cell); }
-  SolveCounts merge(std::size_t cell, const CellIndices& indices) {
-    const std::size_t poses = chosen_poses(plan_);
-    for (std::size_t size = 0; size < kSizes; ++size) {
-      for (std::size_t r = 0; r < rounding_.size(); ++r) at_poses_(size, r).push_back(indices(size, r));
-    }
-    if ((cell + 1) % poses != 0) return {};
+  ChangeSums(const Plan& of, std::vector<double> of_responses)
+      : plan(&of),
+        rounding(std::move(of_responses)),
+        at_poses({kSizes, rounding.size()}),
+        changes({rounding.size(), of.slots()}, kNaN) {}
+
+  void add(std::size_t cell, const CellIndices& indices) {
+    const std::size_t poses = chosen_poses(*plan);
+    for_each_pair(at_poses, indices, [](auto& list, const LocalIndex& index) { list.push_back(index); });
+    if ((cell + 1) % poses != 0) return;
     const std::size_t slot = cell / poses;
-    for (std::size_t r = 0; r < rounding_.size(); ++r) changes_(r, slot) = change(r, slot);
-    for (std::vector<LocalIndex>& poses_of_one : at_poses_) poses_of_one.clear();
-    return {};
+    for (std::size_t r = 0; r < rounding.size(); ++r) changes(r, slot) = change(r, slot);
+    for (std::vector<LocalIndex>& poses_of_one : at_poses) poses_of_one.clear();
   }
-  static void write(std::size_t, const CellIndices& indices, ByteWriter& to) {
-    for (const LocalIndex& index : indices) to.reals(std::array{index.value, index.standard_error});
-  }
-  CellIndices read(std::size_t, ByteReader& from) const {
-    CellIndices indices(at_poses_.lengths());
-    for (LocalIndex& index : indices) {
-      index.value = from.real();
-      index.standard_error = from.real();
-    }
-    return indices;
-  }
-  static SolveCounts solved() { return {}; }
-  static std::uint64_t left() { return 0; }
-  void write_state(ByteWriter& to) const { to.reals(changes_.all()); }
-  void restore(std::span<const std::byte> state) {
-    ByteReader from(state);
-    from.reals(changes_.all());
-    from.expect_end();
-  }
-  static bool next_round() { return false; }
-
-  SensitivityResult::Indices result() && { return std::move(changes_); }
+  /// Of all cells: no checkpoint is kept of some.
+  void state(Archive& archive, const NumberRange&) { archive.reals(changes.all()); }
 
  private:
   double change(std::size_t response, std::size_t slot) const {
-    const double sigma = plan_.distributions()[slot].standard_deviation();
+    const double sigma = plan->distributions()[slot].standard_deviation();
     std::array<double, kSizes> index{};
     for (std::size_t size = 0; size < kSizes; ++size) {
-      index[size] = told_from_rounding(published_index(at_poses_(size, response)),
-                                       index_rounding(rounding_[response], kScales[size * kSigns] * sigma));
+      index[size] = told_from_rounding(published_index(at_poses(size, response)),
+                                       index_rounding(rounding[response], kScales[size * kSigns] * sigma));
     }
     return index[1] / index[0] - 1.0;
   }
+};
 
-  const Plan& plan_;
-  const Model& model_;
-  std::vector<double> rounding_;  ///< of the responses
-  /// Of the error that is being collected.
-  Array<std::vector<LocalIndex>, ErrorSize, axis::Response> at_poses_;
-  SensitivityResult::Indices changes_;
+/// A job of UnitFold: the cells. Its solves are not counted.
+struct ChangeJob {
+  const Plan& plan;
+  const Model& model;
+
+  static constexpr std::string_view kName = "index changes";
+  std::vector<std::uint64_t> sizes() const { return {}; }
+  NumberRange units(const Shard& shard) const { return shard.of(plan.slots() * chosen_poses(plan)); }
+  static std::uint64_t expected(std::size_t) { return 0; }
+  CellEvaluator worker() const { return {plan, model}; }
+  CellIndices unit(std::size_t) const { return CellIndices({kSizes, model.description().responses.size()}); }
+  static SolveCounts solves(std::size_t, const CellIndices&) { return {}; }
+  ChangeSums sums() const { return {plan, response_rounding(model)}; }
 };
 
 /// Names in one sentence, at most.
@@ -186,9 +175,9 @@ std::optional<SensitivityResult::Indices> index_changes(const Plan& plan, const 
   RunOptions without_state = options;
   without_state.checkpoints = nullptr;
   without_state.progress = {};
-  ChangeWork work(plan, model);
-  if (!fold(work, without_state)) return std::nullopt;
-  return std::move(work).result();
+  auto sums = fold_units(ChangeJob{plan, model}, without_state);
+  if (!sums) return std::nullopt;
+  return std::move(sums->changes);
 }
 
 double index_change_solves(const Plan& plan) {

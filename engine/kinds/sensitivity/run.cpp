@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
+#include <string_view>
 #include <utility>
 
 #include "engine/kinds/sensitivity/collector.h"
@@ -13,7 +13,7 @@
 #include "engine/kinds/sensitivity/separation.h"
 #include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/run/evaluate_unit.h"
-#include "engine/run/fold.h"
+#include "engine/run/pose_fold.h"
 #include "engine/run/response_rounding.h"
 #include "engine/run/rounds.h"
 
@@ -31,83 +31,31 @@ std::vector<double> index_roundings(const Plan& plan, const Model& model) {
   return list;
 }
 
-/// The draws of one error at one pose after the other, in rounds: the work of fold().
-class CellWork {
- public:
-  CellWork(const Plan& plan, const Model& model, double conf_level, const Shard& shard)
-      : plan_(plan),
-        model_(model),
-        responses_(model.description().responses.size()),
-        conf_level_(conf_level),
-        shard_(shard),
-        points_(history_points(plan)),
-        rule_{responses_, all_positions(responses_), conf_level, index_roundings(plan, model)},
-        rounds_(plan, rule_),
-        collect_(plan, responses_, conf_level, shard) {}
+/// A job of PoseFold: the draws of one error at one pose after the other.
+struct SensitivityJob {
+  const Plan& plan;
+  const Model& model;
+  double conf_level;
+  std::vector<std::size_t> points = history_points(plan);
 
-  std::size_t begin_round() {
-    const NumberRange cells = shard_.of(plan_.cells());
-    pending_.emplace(
-        plan_, [&](std::size_t cell) { return collect_.units_done(cell); },
-        [&](std::size_t cell) { return cells.holds(cell) ? rounds_.units(cell / plan_.poses().size()) : 0; });
-    return pending_->size();
+  static constexpr std::string_view kName = "sensitivity";
+  std::size_t responses() const { return model.description().responses.size(); }
+  std::vector<std::uint64_t> sizes() const { return {responses()}; }
+  Rounds::Rule rule() const {
+    return {responses(), all_positions(responses()), conf_level, index_roundings(plan, model)};
   }
-  UnitEvaluator worker() const { return {plan_, model_}; }
-  CellUnit solve(UnitEvaluator& evaluate, std::size_t n) const { return evaluate((*pending_)[n]); }
-  const SolveCounts& merge(std::size_t n, const CellUnit& found) {
-    collect_.add((*pending_)[n], found);
-    return found.solves;
-  }
-  static void write(std::size_t, const CellUnit& found, ByteWriter& to) { found.write(to); }
-  CellUnit read(std::size_t n, ByteReader& from) const {
-    const WorkUnit unit = (*pending_)[n];
-    return CellUnit::read(from, responses_, unit.first.value, points_within(unit, points_).size());
-  }
-  SolveCounts solved() const { return collect_.total(); }
-  std::uint64_t left() const { return rounds_.expected_left(solved(), pending_->samples()); }
-  void write_state(ByteWriter& to) const {
-    rounds_.write_state(to);
-    collect_.write_state(to);
-  }
-  void restore(std::span<const std::byte> state) {
-    collect_ = SensitivityCollector(plan_, responses_, conf_level_, shard_);
-    rounds_ = Rounds(plan_, rule_);
-    ByteReader from(state);
-    rounds_.restore(from);
-    collect_.restore(state.last(from.left()));
-    for (std::size_t cell = 0; cell < plan_.cells(); ++cell) {
-      if (!rounds_.may_hold(cell / plan_.poses().size(), collect_.units_done(cell))) {
-        throw BytesError("has a cell of another round");
-      }
+  UnitEvaluator worker() const { return {plan, model}; }
+  void unit_state(Archive& archive, const WorkUnit& unit, CellUnit& found) const {
+    if (archive.reads()) {
+      found.responses.resize(responses());
+      found.within.resize(points_within(unit, points).size() * responses());
     }
+    found.state(archive, unit.first.value);
   }
-  bool next_round() {
-    return rounds_.go_on([&](std::size_t slot) {
-      return global_indices(collect_.cells_of(slot), plan_.distributions()[slot].standard_deviation(), conf_level_);
-    });
+  SensitivityCollector sums(const Plan& of, const Shard& shard) const { return {of, responses(), conf_level, shard}; }
+  std::vector<Estimate> estimates(const SensitivityCollector& sums, std::size_t slot) const {
+    return global_indices(sums.cells_of(slot), plan.distributions()[slot].standard_deviation(), conf_level);
   }
-
-  /// Precondition: all cells of the plan are there, and no round follows.
-  SensitivityResult result() && {
-    SensitivityResult result =
-        sensitivity_result(plan_, std::move(collect_).cells(), background_responses(plan_, model_),
-                           response_rounding(model_), conf_level_);
-    result.convergence = rounds_.result();
-    if (!plan_.adaptive()) result.history = collect_.history(result);
-    return result;
-  }
-
- private:
-  const Plan& plan_;
-  const Model& model_;
-  std::size_t responses_;
-  double conf_level_;
-  Shard shard_;  ///< whose cells are solved
-  std::vector<std::size_t> points_;
-  Rounds::Rule rule_;
-  Rounds rounds_;
-  SensitivityCollector collect_;
-  std::optional<PendingUnits> pending_;  ///< of this round
 };
 
 std::vector<Dimension> response_dimensions(const ModelDescription& model) {
@@ -224,9 +172,14 @@ Outlook sensitivity_outlook(const Study& study, const Model& model, const PoseSe
 
 std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
                                                  const RunOptions& options) {
-  CellWork work(plan, model, conf_level, options.shard.value_or(Shard()));
+  const SensitivityJob job{plan, model, conf_level};
+  PoseFold work(plan, job, options);
   if (!fold(work, options) || options.shard) return std::nullopt;
-  return std::move(work).result();
+  SensitivityResult result = sensitivity_result(plan, std::move(work.sums()).cells(), background_responses(plan, model),
+                                                response_rounding(model), conf_level);
+  result.convergence = work.convergence();
+  if (!plan.adaptive()) result.history = work.sums().history(result);
+  return result;
 }
 
 constinit const Kind kSensitivityKind{.study = kSensitivityStudy,

@@ -82,10 +82,7 @@ void IndexSums::merge(const IndexSums& later) {
   first.merge(later.first);
 }
 
-void IndexSums::state(Archive& archive) {
-  archive.object(total);
-  archive.object(first);
-}
+void IndexSums::state(Archive& archive) { archive.objects(total, first); }
 
 PanelSums::PanelSums(const IndexPanel& panel)
     : at_poses({panel.responses, panel.groups.size(), panel.poses}),
@@ -123,13 +120,9 @@ PanelSums PanelSums::as_one() const {
 }
 
 void PanelSums::state(Archive& archive) {
-  state_of_each(archive, at_poses);
-  state_of_each(archive, aggregated);
-  state_of_each(archive, pairs);
-  state_of_each(archive, shapley);
-  state_of_each(archive, moments);
+  archive.objects(at_poses, aggregated, pairs, shapley, moments);
   archive.reals(least.all());
-  state_of_each(archive, solves);
+  archive.object(solves);
   for (std::size_t m = 0; m < failed.size(); ++m) {
     archive.number(failures[m], solves[m].not_converged());
     failed[m].state(archive, failures[m], 0, end);

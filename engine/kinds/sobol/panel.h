@@ -85,10 +85,7 @@ struct PanelSums {
   /// The same as one sample that is their mean, for a design whose samples depend on each other.
   PanelSums as_one() const;
 
-  void state(Archive& archive);                                 ///< Every bit of it.
-  void write(ByteWriter& to) const { write_state(*this, to); }  ///< Its state.
-  /// Its state. Throws BytesError.
-  static PanelSums read(ByteReader& from, const IndexPanel& panel) { return read_state<PanelSums>(from, panel); }
+  void state(Archive& archive);  ///< Every bit of it.
 };
 
 /// A block of correlated errors that are not all in one group.

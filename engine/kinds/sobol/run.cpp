@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "engine/base/contract.h"
@@ -13,15 +13,14 @@
 #include "engine/kinds/sobol/constant.h"
 #include "engine/kinds/sobol/kind.h"
 #include "engine/kinds/sobol/panel.h"
-#include "engine/run/fold.h"
 #include "engine/run/rounds.h"
+#include "engine/run/unit_fold.h"
 #include "engine/stats/merge_tree.h"
 
 namespace poesy {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::uint64_t kKind = 6;  ///< no other state begins with this number
 
 /// The group's ST, or its Shapley effect where it has no ST.
 Estimate headline_index(const IndexPanel& panel, const PanelSums& sums, std::size_t r, std::size_t g,
@@ -53,142 +52,84 @@ std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelS
   return list;
 }
 
-/// All units of a panel, in their order: the work of fold(). Of random draws each unit is a leaf of a tree; a replicate
-/// of another design is merged unit by unit, and then is one leaf. With adaptive samples there is a round for each
-/// milestone.
-class PanelWork {
- public:
-  PanelWork(const Plan& plan, const Model& model, const Study& study, const RunOptions& options)
-      : plan_(plan),
-        model_(model),
-        panel_(study, plan.poses().size()),
-        rounding_(row_rounding(panel_, plan, model)),
-        design_(plan, asked_of<SobolOptions>(study.analysis)),
-        units_per_leaf_(design_.independent() ? 1 : design_.units_per_replicate()),
-        leaves_(options.shard.value_or(Shard()).of(design_.units() / units_per_leaf_)),
-        conf_level_(study.analysis.conf_level),
-        rule_{panel_.responses,
-              study.model().headline.empty() ? all_positions(panel_.responses) : study.model().headline, conf_level_,
-              std::vector<double>(panel_.responses, 0.0)},
-        rounds_(plan, rule_),
-        next_(leaves_.first * units_per_leaf_) {}
+/// The units of a panel, in their order. Of random draws each unit is a leaf of a tree; a replicate of another design
+/// is merged unit by unit, and then is one leaf.
+struct PanelTree {
+  const IndexPanel* panel;
+  const PanelDesign* design;
+  MergeTree<PanelSums> leaves = {};
+  PanelSums open = {};  ///< of the replicate that is not complete
 
-  std::size_t begin_round() {
-    begun_ = next_;
-    return end() - next_;
-  }
-  PanelEvaluator worker() const { return {plan_, model_, panel_, design_}; }
-  PanelSums solve(PanelEvaluator& evaluate, std::size_t n) const { return evaluate(design_.unit(begun_ + n)); }
-  SolveCounts merge(std::size_t, const PanelSums& found) {
-    if (next_ % units_per_leaf_ == 0) {
-      open_ = found;
+  std::size_t units_per_leaf() const { return design->independent() ? 1 : design->units_per_replicate(); }
+  void add(std::size_t n, PanelSums&& found) {
+    if (design->independent()) return leaves.add(n, std::move(found));
+    if (n % units_per_leaf() == 0) {
+      open = std::move(found);
     } else {
-      open_.merge(found);
+      open.merge(found);
     }
-    ++next_;
-    if (!is_open()) close();
-    return total_of(found.solves);
-  }
-  static void write(std::size_t, const PanelSums& found, ByteWriter& to) { found.write(to); }
-  PanelSums read(std::size_t, ByteReader& from) const { return PanelSums::read(from, panel_); }
-  SolveCounts solved() const {
-    SolveCounts sum = closed_;
-    if (is_open()) sum.merge(total_of(open_.solves));
-    return sum;
-  }
-  std::uint64_t left() const {
-    std::uint64_t samples = 0;
-    for (std::size_t n = next_; n < end(); ++n) samples += design_.unit(n).count;
-    return rounds_.expected_left(solved(), samples * panel_.solves_of_sample() * panel_.poses);
-  }
-  void write_state(ByteWriter& to) const {
-    rounds_.write_state(to);
-    for (const std::uint64_t number : sizes()) to.number(number);
-    to.number(plan_.samples());
-    to.number(next_);
-    to.number(is_open() ? 1 : 0);
-    closed_.write(to);
-    tree_.write(to);
-    if (is_open()) open_.write(to);
-  }
-  void restore(std::span<const std::byte> state) {
-    ByteReader from(state);
-    rounds_ = Rounds(plan_, rule_);
-    rounds_.restore(from);
-    if (from.left() == 0) throw BytesError("is cut off");
-    tree_ = {};
-    closed_ = {};
-    while (from.left() > 0) restore_one(from);
-  }
-  bool next_round() {
-    return rounds_.go_on([&](std::size_t) { return largest_of_responses(panel_, sums(), rounding_, conf_level_); });
-  }
-
-  const IndexPanel& panel() const { return panel_; }
-  std::span<const double> rounding() const { return rounding_; }
-  std::optional<ConvergenceResult> convergence() const { return rounds_.result(); }
-  /// Everything merged so far. Precondition: a leaf was.
-  PanelSums sums() const {
-    MergeTree<PanelSums> all = tree_;
-    if (is_open()) all.add(all.end(), open_);
-    return std::move(all).total();
-  }
-
- private:
-  /// Where this round ends.
-  std::size_t end() const {
-    return plan_.adaptive() ? design_.units_for(rounds_.samples(0)) : leaves_.end * units_per_leaf_;
-  }
-  /// Whether what was merged last is no whole leaf: a part of a replicate, or a unit that a longer study makes larger.
-  bool is_open() const {
-    if (next_ % units_per_leaf_ != 0) return true;
-    return design_.independent() && next_ > 0 && design_.unit(next_ - 1).count < PanelDesign::kUnitSamples;
-  }
-  /// Makes a leaf of what is open.
-  void close() {
-    closed_.merge(total_of(open_.solves));
-    tree_.add(next_ / units_per_leaf_ - 1, design_.independent() ? std::move(open_) : open_.as_one());
-  }
-  /// What a state begins with.
-  std::array<std::uint64_t, 6> sizes() const {
-    return {kKind,        panel_.quantities(), panel_.groups.size(),
-            panel_.poses, panel_.pairs.size(), panel_.shapley ? 1U : 0U};
+    if ((n + 1) % units_per_leaf() == 0) leaves.add(n / units_per_leaf(), open.as_one());
   }
   /// Samples of a design that is not random belong together, so a longer study has others and cannot go on.
-  void restore_one(ByteReader& from) {
-    for (const std::uint64_t expected : sizes()) {
-      if (from.number() != expected) throw BytesError("is the state of another kind or size of study");
-    }
-    const bool longer = from.number_up_to(plan_.samples()) < plan_.samples();
-    if (longer && !design_.independent()) throw BytesError("is of a design with other samples");
-    next_ = static_cast<std::size_t>(from.number_up_to(design_.units()));
-    const bool has_open = from.number_up_to(1) == 1;
-    closed_.merge(SolveCounts::read(from));
-    const auto read_sums = [&](ByteReader& bytes, std::size_t, std::size_t) { return PanelSums::read(bytes, panel_); };
-    tree_.read(from, design_.units() / units_per_leaf_, read_sums);
-    if (has_open) open_ = PanelSums::read(from, panel_);
-    if (has_open && longer) --next_;  // the shorter study's last unit, of which this one has more
-    const bool open = has_open && !longer;
-    const std::size_t closed_units = design_.independent() && open ? next_ - 1 : next_;
-    const bool follows = tree_.empty() || tree_.end() == closed_units / units_per_leaf_;
-    if (open != is_open() || !follows) throw BytesError("has lost some of its samples");
+  void state(Archive& archive, const NumberRange& units) {
+    archive.known(design->independent() ? 0 : panel->samples, "is of a design with other samples");
+    leaves.state(archive, design->units() / units_per_leaf(), PanelSums(*panel));
+    const bool follows = leaves.empty() || leaves.end() == units.end / units_per_leaf();
+    archive.expect(follows, "has lost some of its samples");
+    if (units.end % units_per_leaf() == 0) return;
+    if (archive.reads()) open = PanelSums(*panel);
+    archive.object(open);
   }
+};
 
-  const Plan& plan_;
-  const Model& model_;
-  IndexPanel panel_;
-  std::vector<double> rounding_;  ///< of each row as row_rounding gives it
-  PanelDesign design_;
-  std::size_t units_per_leaf_;
-  NumberRange leaves_;  ///< of this shard
-  double conf_level_;
-  Rounds::Rule rule_;
-  Rounds rounds_;
-  std::size_t next_;  ///< unit to be merged
-  std::size_t begun_ = 0;
-  PanelSums open_;  ///< of the leaf that is not complete
-  MergeTree<PanelSums> tree_;
-  SolveCounts closed_;  ///< of the tree
+/// A job of UnitFold: the units of a panel.
+struct PanelJob {
+  const Plan& plan;
+  const Model& model;
+  const Study& study;
+  IndexPanel panel{study, plan.poses().size()};
+  std::vector<double> rounding = row_rounding(panel, plan, model);  ///< of each row
+  PanelDesign design{plan, asked_of<SobolOptions>(study.analysis)};
+
+  static constexpr std::string_view kName = "panel";
+  std::vector<std::uint64_t> sizes() const {
+    return {panel.quantities(), panel.groups.size(), panel.poses, panel.pairs.size(), panel.shapley ? 1U : 0U};
+  }
+  /// Of a design whole replicates.
+  NumberRange units(const Shard& shard) const {
+    const std::size_t each = sums().units_per_leaf();
+    const NumberRange leaves = shard.of(design.units() / each);
+    return {leaves.first * each, leaves.end * each};
+  }
+  std::uint64_t expected(std::size_t n) const {
+    return std::uint64_t{design.unit(n).count} * panel.solves_of_sample() * panel.poses;
+  }
+  auto worker() const {
+    return [&design = design, evaluate = PanelEvaluator(plan, model, panel, design)](std::size_t n) mutable {
+      return evaluate(design.unit(n));
+    };
+  }
+  PanelSums unit(std::size_t) const { return PanelSums(panel); }
+  static SolveCounts solves(std::size_t, const PanelSums& unit) { return total_of(unit.solves); }
+  PanelTree sums() const { return {&panel, &design}; }
+  Rounds rounds() const {
+    const std::vector<std::size_t>& headline = study.model().headline;
+    return {plan,
+            {panel.responses, headline.empty() ? all_positions(panel.responses) : headline, study.analysis.conf_level,
+             std::vector<double>(panel.responses, 0.0)}};
+  }
+  std::size_t samples() const { return plan.samples(); }
+  std::size_t units_for(std::size_t samples) const {
+    return design.independent() ? design.units_for(samples) : design.units();
+  }
+  bool is_whole(std::size_t n) const {
+    return !design.independent() || design.unit(n).count == PanelDesign::kUnitSamples;
+  }
+  std::vector<Estimate> estimates(const PanelTree& sums, const PanelSums* last) const {
+    MergeTree<PanelSums> all = sums.leaves;
+    if (last != nullptr) all.add(all.end(), *last);
+    return largest_of_responses(panel, std::move(all).total(), rounding, study.analysis.conf_level);
+  }
 };
 
 template <class Indices, class... Positions>
@@ -273,10 +214,12 @@ SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSu
 
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const Plan plan(run.study, run.poses);
-  PanelWork work(plan, run.model, run.study, run.options);
+  const PanelJob job{plan, run.model, run.study};
+  UnitFold work(job, run.options);
   if (!fold(work, run.options) || run.options.shard || !run.makes_result()) return std::nullopt;
-  SobolResult found = result_of(run.study, work.panel(), work.sums(), work.rounding());
-  found.convergence = work.convergence();
+  std::optional<ConvergenceResult> convergence = work.convergence();
+  SobolResult found = result_of(run.study, job.panel, std::move(work).sums().leaves.total(), job.rounding);
+  found.convergence = std::move(convergence);
   return StudyResult{std::move(found), std::nullopt, {}};
 }
 

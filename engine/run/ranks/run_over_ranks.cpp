@@ -226,7 +226,8 @@ class Leader {
       const std::span<const std::byte> output = from.block();
       if (n < next_to_merge_ || n >= next_to_give_ || done_[n % window_] != 0) throw BytesError("was not asked for");
       ByteReader bytes(output);
-      work_->unpack(n, n % window_, bytes);
+      Archive archive(bytes);
+      work_->state(n, n % window_, archive);
       bytes.expect_end();
       done_[n % window_] = 1;
       bytes_[n % window_] = output.size();
@@ -331,7 +332,8 @@ class Follower {
   /// On a thread of the pool.
   void deliver(std::size_t n, std::size_t slot) {
     ByteWriter output;
-    work_->pack(n, slot, output);
+    Archive archive(output);
+    work_->state(n, slot, archive);
     const Bytes bytes = output.take();
     const std::lock_guard lock(mutex_);
     outputs_.number(n);

@@ -48,13 +48,17 @@ TEST(FailedSamples, MergeInOrderUpToTheCap) {
 }
 
 TEST(FailedSamples, ReadBackWhatTheyWrote) {
-  const FailedSamples cell = failing({3, 500, 999});
+  FailedSamples cell = failing({3, 500, 999});
   ByteWriter to;
-  cell.write(to);
+  Archive archive(to);
+  cell.state(archive, 3, 0, 1000);
   const Bytes bytes = to.take();
   const auto read = [&](std::uint64_t failures, std::uint64_t first, std::uint64_t end) {
     ByteReader from(bytes);
-    return numbers(FailedSamples::read(from, failures, first, end));
+    Archive reading(from);
+    FailedSamples samples;
+    samples.state(reading, failures, first, end);
+    return numbers(samples);
   };
   EXPECT_EQ(read(3, 0, 1000), numbers(cell));
   EXPECT_THROW(read(4, 0, 1000), BytesError);

@@ -64,11 +64,10 @@ struct Squares {
           merged.push_back(first + n);
           stage.merged(state);
         },
-        [&](std::size_t, std::size_t output, ByteWriter& to) {
-          on_pack(rank);
-          to.number(output);
-        },
-        [](std::size_t, ByteReader& from) { return static_cast<std::size_t>(from.number()); });
+        [&](Archive& archive, std::size_t, std::size_t& output) {
+          if (!archive.reads()) on_pack(rank);
+          archive.number(output);
+        });
     stage.end(
         complete, [] { return SolveCounts(); }, state, restore);
     return complete ? std::optional(merged) : std::nullopt;

@@ -102,7 +102,7 @@ TEST(LinearFitSums, MergeWhateverTheirShifts) {
 }
 
 TEST(StoredLinearFitSums, GoOnWithTheSameBits) {
-  const auto read = [](ByteReader& from) { return LinearFitSums::read(from, kErrors, kRows); };
+  const auto read = [](ByteReader& from) { return read_state<LinearFitSums>(from, kErrors, kRows); };
   LinearFitSums sums = sums_of(Machines(30, 0.1, 6));
   LinearFitSums stored = test::read_all(test::written(sums), read);
   for (LinearFitSums* one : {&sums, &stored}) one->merge(sums_of(Machines(20, 0.1, 7)));

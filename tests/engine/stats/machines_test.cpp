@@ -121,15 +121,22 @@ TEST(MachineCounts, OfNothingTakeAndLeave) {
   EXPECT_EQ(counts, same);
 }
 
+MachineCounts read_counts(ByteReader& from, std::size_t responses, std::size_t poses) {
+  MachineCounts counts = MachineCounts::of_none(responses, poses);
+  Archive archive(from);
+  counts.state(archive);
+  return counts;
+}
+
 TEST(StoredMachineCounts, ComeBack) {
   const MachineCounts counts = in_blocks(600);
-  const auto read = [](ByteReader& from) { return MachineCounts::read(from, 3, 5); };
+  const auto read = [](ByteReader& from) { return read_counts(from, 3, 5); };
   EXPECT_EQ(read_all(written(counts), read), counts);
   expect_no_harm(written(counts), read);
 }
 
 TEST(StoredMachineCounts, OfNoMachinesAreRefused) {
-  const auto read = [](ByteReader& from) { return MachineCounts::read(from, 1, 1); };
+  const auto read = [](ByteReader& from) { return read_counts(from, 1, 1); };
   const auto counts_of = [](std::uint64_t unsolved, Rejects all, Rejects by_limit, Rejects at_pose) {
     return written(MachineCounts{9, unsolved, all, Array<Rejects, axis::Response>({1}, by_limit),
                                  Array<Rejects, axis::Response, axis::Pose>({1, 1}, at_pose)});

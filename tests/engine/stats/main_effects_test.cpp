@@ -179,7 +179,7 @@ TEST(MainEffectSums, SayNothingOfABinWithTooFewSamples) {
 
 TEST(StoredMainEffectSums, GoOnWithTheSameBits) {
   const Samples samples(3, 5, 900);
-  const auto read = [](ByteReader& from) { return MainEffectSums::read(from, 3, 5); };
+  const auto read = [](ByteReader& from) { return read_state<MainEffectSums>(from, 3, 5); };
   for (const MainEffectSums& begun : {MainEffectSums(3, 5), in_blocks(samples, 300)}) {
     MainEffectSums sums = begun;
     MainEffectSums stored = read_all(written(sums), read);
@@ -196,7 +196,7 @@ Bytes state(std::uint64_t first, std::uint64_t second, double square, double shi
   to.number(first);
   to.number(second);
   for (std::size_t b = 2; b < kEffectBins; ++b) to.number(0);
-  Moments::of(std::array{1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0}).write(to);
+  write_state(Moments::of(std::array{1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0}), to);
   to.real(shift);
   to.reals(std::array{4.0, square, 6.0, 6.0});
   to.reals(std::vector<double>(2 * (kEffectBins - 2)));
@@ -204,7 +204,7 @@ Bytes state(std::uint64_t first, std::uint64_t second, double square, double shi
 }
 
 TEST(StoredMainEffectSums, OfNoSamplesAreRefused) {
-  const auto read = [](ByteReader& from) { return MainEffectSums::read(from, 1, 1); };
+  const auto read = [](ByteReader& from) { return read_state<MainEffectSums>(from, 1, 1); };
   EXPECT_NO_THROW(read_all(state(4, 6, 4.0), read));
   EXPECT_THROW(read_all(state(4, 5, 4.0), read), BytesError);    // fewer in bins than in all
   EXPECT_THROW(read_all(state(10, 0, 4.0), read), BytesError);   // sums of no sample

@@ -15,7 +15,7 @@ struct Sum {
   double value = 0.0;
 
   void merge(const Sum& later) { value = 1.0000001 * value + later.value; }
-  void write(ByteWriter& to) const { to.real(value); }
+  void state(Archive& archive) { archive.real(value); }
 };
 
 Sum leaf(std::size_t n) { return {1.0 / (static_cast<double>(n) + 1.1)}; }
@@ -26,12 +26,18 @@ MergeTree<Sum> range(std::size_t first, std::size_t end) {
   return tree;
 }
 
-void append(MergeTree<Sum>& tree, const MergeTree<Sum>& later, std::size_t end) {
+Bytes written(MergeTree<Sum> tree) {
   ByteWriter to;
-  later.write(to);
-  const Bytes bytes = to.take();
+  Archive archive(to);
+  tree.state(archive, tree.end(), Sum());
+  return to.take();
+}
+
+void append(MergeTree<Sum>& tree, const MergeTree<Sum>& later, std::size_t end) {
+  const Bytes bytes = written(later);
   ByteReader from(bytes);
-  tree.read(from, end, [](ByteReader& reader, std::size_t, std::size_t) { return Sum{reader.real()}; });
+  Archive archive(from);
+  tree.state(archive, end, Sum());
   from.expect_end();
 }
 
@@ -63,24 +69,17 @@ TEST(MergeTree, MergesEightBranchesOneAfterTheOther) {
   EXPECT_EQ(range(0, 18).total().value, first.value);
 }
 
-std::uint64_t nodes(const MergeTree<Sum>& tree) {
-  ByteWriter to;
-  tree.write(to);
-  const Bytes bytes = to.take();
-  return ByteReader(bytes).number();
-}
-
 TEST(MergeTree, HoldsOneSumForEachOctalDigit) {
   for (const std::size_t leaves : {1U, 7U, 8U, 63U, 64U, 511U, 512U, 4095U, 100'000U}) {
     const auto most = static_cast<std::uint64_t>(std::floor(std::log2(static_cast<double>(leaves)) / 3.0 + 1.0));
     EXPECT_EQ(MergeTree<Sum>::most_nodes(leaves), most) << leaves;
-    EXPECT_LE(nodes(range(0, leaves)), most) << leaves;
+    EXPECT_LE(range(0, leaves).nodes().size(), most) << leaves;
   }
-  EXPECT_EQ(nodes(range(0, 511)), 3u);
+  EXPECT_EQ(range(0, 511).nodes().size(), 3u);
 }
 
 TEST(MergeTree, HoldsSevenMoreForEachDigitWhereItBeginsLater) {
-  for (const std::size_t first : {1U, 9U, 73U, 585U}) EXPECT_LE(nodes(range(first, 4000)), 8u * 4u) << first;
+  for (const std::size_t first : {1U, 9U, 73U, 585U}) EXPECT_LE(range(first, 4000).nodes().size(), 8u * 4u) << first;
 }
 
 TEST(MergeTree, RefusesWhatDoesNotFollow) {
@@ -97,7 +96,8 @@ void read_node(std::uint64_t first, std::uint64_t leaves) {
   to.real(1.0);
   const Bytes bytes = to.take();
   ByteReader from(bytes);
-  MergeTree<Sum>().read(from, 1000, [](ByteReader& reader, std::size_t, std::size_t) { return Sum{reader.real()}; });
+  Archive archive(from);
+  MergeTree<Sum>().state(archive, 1000, Sum());
 }
 
 TEST(MergeTree, RefusesSumsOfNoBranches) {

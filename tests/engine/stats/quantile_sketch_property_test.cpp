@@ -59,7 +59,7 @@ QuantileSketch of(std::span<const double> values) {
 }
 
 Bytes written(const QuantileSketch& sketch) {
-  return bytes_of([&](ByteWriter& to) { sketch.write(to); });
+  return bytes_of([&](ByteWriter& to) { write_state(sketch, to); });
 }
 
 class SketchOf : public testing::TestWithParam<std::size_t> {};

@@ -95,10 +95,10 @@ TEST(RatioSums, MergesAsIfAllHadBeenAddedOneByOne) {
 TEST(RatioSums, IsReadAsItWasWritten) {
   const RatioSums sums = sums_of({1.0, 2.0, 6.0, 3.0}, {4.0, 5.0, 9.0, 6.0});
   ByteWriter to;
-  sums.write(to);
+  write_state(sums, to);
   const Bytes bytes = to.take();
   ByteReader from(bytes);
-  const RatioSums read = RatioSums::read(from);
+  const RatioSums read = read_state<RatioSums>(from);
   EXPECT_EQ(read.count(), sums.count());
   EXPECT_EQ(read.estimate(0.95).interval.high, sums.estimate(0.95).interval.high);
 }
@@ -110,7 +110,7 @@ TEST(RatioSums, RefusesSumsThatNoPairsGive) {
     to.reals(std::vector{1.0, w, 1.0, 1.0, 1.0});
     const Bytes bytes = to.take();
     ByteReader from(bytes);
-    EXPECT_THROW(RatioSums::read(from), BytesError) << w;
+    EXPECT_THROW(read_state<RatioSums>(from), BytesError) << w;
   }
 }
 

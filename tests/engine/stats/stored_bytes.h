@@ -2,14 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/base/bytes.h"
+#include "engine/base/archive.h"
 
 namespace poesy::test {
 
 template <class Stats>
 Bytes written(const Stats& stats) {
   ByteWriter to;
-  stats.write(to);
+  write_state(stats, to);
   return to.take();
 }
 

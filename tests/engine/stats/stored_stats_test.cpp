@@ -12,14 +12,14 @@ namespace {
 template <class Stats>
 Bytes written(const Stats& stats) {
   ByteWriter to;
-  stats.write(to);
+  write_state(stats, to);
   return to.take();
 }
 
 template <class Stats>
 Stats read_back(const Bytes& bytes) {
   ByteReader from(bytes);
-  Stats stats = Stats::read(from);
+  Stats stats = read_state<Stats>(from);
   from.expect_end();
   return stats;
 }

@@ -320,7 +320,7 @@ TEST(ScoreSums, DoNotDependOnBlocks) {
 }
 
 TEST(StoredScoreSums, GoOnWithTheSameBits) {
-  const auto read = [](ByteReader& from) { return ScoreSums::read(from, Sum{}.errors()); };
+  const auto read = [](ByteReader& from) { return read_state<ScoreSums>(from, Sum{}.errors()); };
   ScoreSums scores = in_blocks(100, true);
   ScoreSums stored = read_all(written(scores), read);
   for (ScoreSums* sums : {&scores, &stored}) sums->merge(in_blocks(8, true));
@@ -331,7 +331,7 @@ TEST(StoredScoreSums, GoOnWithTheSameBits) {
 TEST(StoredScoreSums, OfEveryShapeGoOnWithTheSameBits) {
   const ErrorScores scores{{test::score_of(Distribution::uniform(0.5)), BlockScore{0.05}, BlockScore{0.2}},
                            {{{1, 2}, lower_triangle(std::array{1.0, 0.5, 0.5, 1.0})}}};
-  const auto read = [&](ByteReader& from) { return ScoreSums::read(from, scores); };
+  const auto read = [&](ByteReader& from) { return read_state<ScoreSums>(from, scores); };
   const Machines machines(Sum{}, 300, 7);
   ScoreSums sums(scores);
   sums.add(machines.errors, machines.rejected);
@@ -351,7 +351,7 @@ TEST(StoredScoreSums, OfNoMachinesAreRefused) {
     const Bytes bytes = to.take();
     ByteReader from(bytes);
     try {
-      ScoreSums::read(from, {{NormalScore{1.0, kInfinity}}});
+      read_state<ScoreSums>(from, ErrorScores{{NormalScore{1.0, kInfinity}}, {}});
     } catch (const BytesError&) {
       return true;
     }

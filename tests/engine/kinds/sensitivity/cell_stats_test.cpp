@@ -18,8 +18,11 @@ constexpr std::size_t kPoses = 3;
 constexpr std::size_t kCells = 2 * kPoses;
 
 /// Every bit of a cell.
-Bytes bits(const UnitStats& stats) {
-  return bytes_of([&](ByteWriter& to) { stats.write(to); });
+Bytes bits(UnitStats stats) {
+  ByteWriter to;
+  Archive archive(to);
+  stats.state(archive, 0);
+  return to.take();
 }
 
 /// A study of two errors at three poses some of whose samples fail, and its units, solved.
@@ -66,8 +69,19 @@ struct Solved {
   std::vector<CellUnit> found;  ///< [units]
 };
 
-Bytes state_of(const SensitivityCollector& collect) {
-  return bytes_of([&](ByteWriter& to) { collect.write_state(to); });
+/// Of a study with so many samples.
+Bytes state_of(SensitivityCollector collect, std::size_t samples) {
+  ByteWriter to;
+  Archive archive(to);
+  collect.state(archive, samples);
+  return to.take();
+}
+
+/// Takes up states of a study with so many samples.
+void take_up(SensitivityCollector& collect, const Bytes& states, std::size_t samples) {
+  ByteReader from(states);
+  Archive archive(from);
+  while (archive.is_left()) collect.state(archive, samples);
 }
 
 void expect_units_one_by_one(const CellStats& cells, const Solved& solved) {
@@ -78,9 +92,9 @@ void expect_units_one_by_one(const CellStats& cells, const Solved& solved) {
 }
 
 /// Why the collector refuses it; nothing where it takes it up.
-std::string refusal(SensitivityCollector collect, const Bytes& state) {
+std::string refusal(SensitivityCollector collect, const Bytes& state, std::size_t samples) {
   try {
-    collect.restore(state);
+    take_up(collect, state, samples);
     return "";
   } catch (const BytesError& error) {
     return error.what();
@@ -147,18 +161,18 @@ TEST_P(Collector, HasTheUnitsOneByOne) {
 
 TEST_P(Collector, GoesOnFromAStateAfterAnyUnit) {
   const Solved solved(GetParam());
-  const Bytes end = state_of(solved.collected());
+  const Bytes end = state_of(solved.collected(), GetParam());
   SensitivityCollector collect = solved.collector();
   for (std::size_t u = 0; u < solved.plan().units(); ++u) {
     collect.add(solved.plan().unit(u), solved.found[u]);
-    const Bytes state = state_of(collect);
+    const Bytes state = state_of(collect, GetParam());
     SensitivityCollector resumed = solved.collector();
-    resumed.restore(state);
-    EXPECT_EQ(state_of(resumed), state) << u;
+    take_up(resumed, state, GetParam());
+    EXPECT_EQ(state_of(resumed, GetParam()), state) << u;
     for (std::size_t cell = 0; cell < kCells; ++cell) EXPECT_EQ(resumed.units_done(cell), collect.units_done(cell));
     EXPECT_EQ(resumed.total().total(), collect.total().total());
     for (std::size_t k = u + 1; k < solved.plan().units(); ++k) resumed.add(solved.plan().unit(k), solved.found[k]);
-    EXPECT_EQ(state_of(resumed), end) << u;
+    EXPECT_EQ(state_of(resumed, GetParam()), end) << u;
     expect_units_one_by_one(std::move(resumed).cells(), solved);
   }
 }
@@ -167,12 +181,12 @@ TEST_P(Collector, TakesUpTheStatesOfAllShards) {
   const Solved solved(GetParam());
   Bytes states;
   for (const std::size_t shard : {2UL, 0UL, 1UL}) {
-    const Bytes state = state_of(solved.collected({shard, 3}));
+    const Bytes state = state_of(solved.collected({shard, 3}), GetParam());
     states.insert(states.end(), state.begin(), state.end());
   }
   SensitivityCollector whole = solved.collector();
-  whole.restore(states);
-  EXPECT_EQ(state_of(whole), state_of(solved.collected()));
+  take_up(whole, states, GetParam());
+  EXPECT_EQ(state_of(whole, GetParam()), state_of(solved.collected(), GetParam()));
   expect_units_one_by_one(std::move(whole).cells(), solved);
 }
 
@@ -180,7 +194,7 @@ TEST_P(Collector, RefusesTheCellsOfAnotherShard) {
   const Solved solved(GetParam());
   for (std::size_t of = 0; of < 3; ++of) {
     for (std::size_t by = 0; by < 3; ++by) {
-      EXPECT_EQ(refusal(solved.collector({by, 3}), state_of(solved.collected({of, 3}))),
+      EXPECT_EQ(refusal(solved.collector({by, 3}), state_of(solved.collected({of, 3}), GetParam()), GetParam()),
                 of == by ? "" : "has a cell of another shard");
     }
   }
@@ -188,9 +202,9 @@ TEST_P(Collector, RefusesTheCellsOfAnotherShard) {
 
 TEST_P(Collector, RefusesACellTwice) {
   const Solved solved(GetParam());
-  Bytes state = state_of(solved.collected({1, 3}));
+  Bytes state = state_of(solved.collected({1, 3}), GetParam());
   state.insert(state.end(), state.begin(), state.end());
-  EXPECT_EQ(refusal(solved.collector(), state), "has a cell twice");
+  EXPECT_EQ(refusal(solved.collector(), state, GetParam()), "has a cell twice");
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, Collector, testing::Values(2 * Plan::kUnitSamples, 300, 2 * Plan::kUnitSamples + 300),
@@ -200,7 +214,7 @@ TEST(SensitivityCollector, OfMoreSamplesLeavesTheSmallerUnitOut) {
   const Solved more(2 * Plan::kUnitSamples + 300);
   for (const std::size_t samples : {std::size_t{300}, Plan::kUnitSamples, Plan::kUnitSamples + 300}) {
     SensitivityCollector collect = more.collector();
-    collect.restore(state_of(Solved(samples).collected()));
+    take_up(collect, state_of(Solved(samples).collected(), samples), samples);
     const std::size_t whole = samples / Plan::kUnitSamples;
     for (std::size_t u = 0; u < more.plan().units(); ++u) {
       const std::size_t number = u % more.plan().units_per_cell();
@@ -209,7 +223,8 @@ TEST(SensitivityCollector, OfMoreSamplesLeavesTheSmallerUnitOut) {
       }
       if (number >= whole) collect.add(more.plan().unit(u), more.found[u]);
     }
-    EXPECT_EQ(state_of(collect), state_of(more.collected())) << samples;
+    const std::size_t all = more.plan().samples();
+    EXPECT_EQ(state_of(collect, all), state_of(more.collected(), all)) << samples;
   }
 }
 

@@ -1,0 +1,250 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "engine/base/contract.h"
+#include "engine/run/fold.h"
+#include "engine/run/rounds.h"
+#include "engine/run/shard.h"
+#include "engine/study/plan.h"
+
+namespace poesy {
+
+/// The work of fold() for the units of a plan, which are samples of a cell: a slot at a pose. It knows which units are
+/// still to come, in rounds where samples are adaptive, which of them are a shard's, and what a state says of that. A
+/// job has what is left:
+///
+///     static constexpr std::string_view kName     the name with which its states begin, which no other job has
+///     std::vector<std::uint64_t> sizes() const    what must be equal where a state is taken up
+///     Rounds::Rule rule() const                   when adaptive samples end
+///     Worker worker() const                       solves units, and owns the scratch of one thread: worker(unit)
+///     void unit_state(Archive&, const WorkUnit&, Unit&) const   what a unit came to, its `solves` among it
+///     Sums sums(const Plan&, const Shard&) const  of no units
+///     std::vector<Estimate> estimates(const Sums&, std::size_t slot) const   what decides after a round
+///
+/// The sums have what CellSums has:
+///
+///     static constexpr bool kOfRound              whether they are of the samples of one round, and made anew for each
+///     void add(const WorkUnit&, const Unit&)      takes the next unit of its cell
+///     std::size_t units_done(std::size_t cell) const
+///     SolveCounts total() const
+///     void state(Archive&, std::size_t samples)   writes all cells, or adds those of a plan with so many samples
+template <class Job>
+class PoseFold {
+ public:
+  using Worker = std::remove_cvref_t<decltype(std::declval<const Job&>().worker())>;  ///< Of one thread.
+  using Unit = std::invoke_result_t<Worker&, const WorkUnit&>;                        ///< What a unit came to.
+  using Sums =
+      decltype(std::declval<const Job&>().sums(std::declval<const Plan&>(), {}));  ///< What units are added to.
+
+  /// Of the options' shard, if they have one. Refers to the plan and the job.
+  PoseFold(const Plan& plan, const Job& job, const RunOptions& options)
+      : plan_(plan), job_(job), shard_(options.shard.value_or(Shard())), rounds_(plan, job.rule()) {
+    begin_sums();
+  }
+
+  /// As fold() wants it.
+  /// @{
+  std::size_t begin_round() {
+    const NumberRange cells = shard_.of(plan_.cells());
+    pending_.emplace(
+        plan_, [&](std::size_t cell) { return sums_->units_done(cell); },
+        [&](std::size_t cell) { return cells.holds(cell) ? rounds_.units(slot_of(cell)) : 0; });
+    return pending_->size();
+  }
+  Worker worker() const { return job_.worker(); }
+  Unit solve(Worker& worker, std::size_t n) const { return worker((*pending_)[n]); }
+  void piece_state(Archive& archive, std::size_t n, Unit& unit) const {
+    job_.unit_state(archive, (*pending_)[n], unit);
+  }
+  SolveCounts merge(std::size_t n, const Unit& found) {
+    sums_->add((*pending_)[n], found);
+    if constexpr (std::is_same_v<decltype(found.solves), SolveCounts>) {
+      return found.solves;
+    } else {
+      return total_of(found.solves);
+    }
+  }
+  SolveCounts solved() const { return sums_->total(); }
+  std::uint64_t left() const { return rounds_.expected_left(solved(), pending_->samples()); }
+  void state(Archive& archive) {
+    if (archive.reads()) rounds_ = Rounds(plan_, job_.rule());
+    archive.object(rounds_);
+    if (archive.reads()) begin_sums();
+    do {
+      part_state(archive);
+    } while (archive.is_left());
+    for (std::size_t cell = 0; cell < plan_.cells() && !Sums::kOfRound; ++cell) {
+      archive.expect(rounds_.may_hold(slot_of(cell), sums_->units_done(cell)), "has a cell of another round");
+    }
+  }
+  bool next_round() {
+    if (!rounds_.go_on([&](std::size_t slot) { return job_.estimates(*sums_, slot); })) return false;
+    if constexpr (Sums::kOfRound) {
+      const Bytes kept = bytes_of([&](ByteWriter& to) {
+        Archive archive(to);
+        part_state(archive);
+      });
+      begin_sums();
+      ByteReader from(kept);
+      Archive archive(from);
+      part_state(archive);
+    }
+    return true;
+  }
+  /// @}
+
+  Sums& sums() { return *sums_; }  ///< Everything that was solved.
+  /// When the samples of the study ended; empty where their number was fixed. Precondition: no round follows.
+  std::optional<ConvergenceResult> convergence() const { return rounds_.result(); }
+
+ private:
+  std::size_t slot_of(std::size_t cell) const { return cell / plan_.poses().size(); }
+  const Plan& plan_of_sums() const { return part_ ? *part_ : plan_; }
+  void begin_sums() {
+    sums_.reset();
+    if constexpr (Sums::kOfRound) part_.emplace(plan_.with_samples(rounds_.samples(0)));
+    sums_.emplace(job_.sums(plan_of_sums(), shard_));
+  }
+  /// All that was added; of the states of several shards, one of them.
+  void part_state(Archive& archive) {
+    head_state(archive, Job::kName, job_.sizes());
+    archive.known(plan_.cells(), "has other cells");
+    std::size_t samples = plan_of_sums().samples();
+    archive.number(samples, samples);
+    archive.expect(samples > 0, "has no samples");
+    sums_->state(archive, samples);
+  }
+
+  const Plan& plan_;
+  const Job& job_;
+  Shard shard_;
+  Rounds rounds_;
+  std::optional<Plan> part_;             ///< the plan with the samples of the round, where the sums are of a round
+  std::optional<Sums> sums_;             ///< refer to it
+  std::optional<PendingUnits> pending_;  ///< of the round
+};
+
+/// What the cells of a plan came to, of which those of a shard are held. A last unit with fewer than Plan::kUnitSamples
+/// samples is kept apart, for it is not the beginning of any unit of a study with more samples; all others are. A store
+/// holds something of R responses for each of some cells:
+///
+///     Store(std::size_t responses, std::size_t cells)    without samples; and Store() without cells
+///     std::vector<SolveCounts> solves                    of each cell
+///     void merge(std::size_t cell, const Unit&)          takes later samples of a cell
+///     void merge(Store later)                            takes later samples of each cell
+///     void state(Archive&, std::size_t cell, std::uint64_t first)   a cell, of samples from `first` on
+///     Store part(const NumberRange& cells) const
+template <class Store>
+class CellSums {
+ public:
+  static constexpr bool kOfRound = false;  ///< They stay from round to round.
+
+  /// Refers to the plan.
+  CellSums(const Plan& plan, std::size_t responses, const Shard& shard)
+      : plan_(&plan), responses_(responses), cells_(shard.of(plan.cells())) {}
+
+  /// Precondition: the unit after those done in its cell.
+  template <class Unit>
+  void add(const WorkUnit& unit, const Unit& found) {
+    const std::size_t cell = cell_of(unit);
+    POESY_EXPECTS(cells_.holds(cell) && unit.first.value == units_done(cell) * Plan::kUnitSamples);
+    with_room(unit.count == Plan::kUnitSamples ? whole_ : parts_).merge(cell - cells_.first, found);
+  }
+  /// Units of this cell that were added.
+  std::size_t units_done(std::size_t cell) const {
+    return static_cast<std::size_t>(samples_in(whole_, cell) / Plan::kUnitSamples) +
+           (samples_in(parts_, cell) > 0 ? 1 : 0);
+  }
+  /// Over all that was added.
+  SolveCounts total() const {
+    SolveCounts sum = total_of(whole_.solves);
+    sum.merge(total_of(parts_.solves));
+    return sum;
+  }
+  /// One slot at all poses. Preconditions: the shard has them all; something was added.
+  Store cells_of(std::size_t slot) const {
+    const NumberRange range{slot * plan_->poses().size(), (slot + 1) * plan_->poses().size()};
+    POESY_EXPECTS(cells_.first == 0 && range.end <= cells_.end && (!whole_.solves.empty() || !parts_.solves.empty()));
+    if (whole_.solves.empty()) return parts_.part(range);
+    Store some = whole_.part(range);
+    if (!parts_.solves.empty()) some.merge(parts_.part(range));
+    return some;
+  }
+  /// All of them. Preconditions: likewise.
+  Store cells() && {
+    POESY_EXPECTS(cells_.first == 0 && cells_.end == plan_->cells());
+    POESY_EXPECTS(!whole_.solves.empty() || !parts_.solves.empty());
+    if (whole_.solves.empty()) return std::exchange(parts_, {});
+    if (!parts_.solves.empty()) whole_.merge(std::exchange(parts_, {}));
+    return std::exchange(whole_, {});
+  }
+
+  /// Writes all cells, or adds those of a plan with so many samples. Gives the units of each cell in that state.
+  std::vector<std::size_t> state(Archive& archive, std::size_t samples) {
+    std::vector<std::size_t> units;
+    units.reserve(plan_->cells());
+    for (std::size_t cell = 0; cell < plan_->cells(); ++cell) units.push_back(cell_state(archive, cell, samples));
+    return units;
+  }
+
+ protected:
+  /// Where the unit's cell is.
+  std::size_t cell_of(const WorkUnit& unit) const { return unit.slot * plan_->poses().size() + unit.pose.value; }
+  /// The samples of a cell among units of this size, to which one was added.
+  const Store& store_of(const WorkUnit& unit) const { return unit.count == Plan::kUnitSamples ? whole_ : parts_; }
+
+  const Plan* plan_;       ///< Whose cells they are.
+  std::size_t responses_;  ///< R.
+  NumberRange cells_;      ///< Of the shard.
+
+ private:
+  std::uint64_t samples_in(const Store& store, std::size_t cell) const {
+    return !store.solves.empty() && cells_.holds(cell) ? store.solves[cell - cells_.first].total() : 0;
+  }
+  /// Makes room when there is none.
+  Store& with_room(Store& store) const {
+    if (store.solves.empty()) store = Store(responses_, cells_.end - cells_.first);
+    return store;
+  }
+  /// Of samples from `first` on; gives their number.
+  std::uint64_t store_state(Archive& archive, Store& store, std::size_t cell, std::uint64_t first) const {
+    with_room(store).state(archive, cell, first);
+    return store.solves[cell].total();
+  }
+  std::size_t cell_state(Archive& archive, std::size_t cell, std::size_t samples) {
+    const bool has_whole = archive.flag(samples_in(whole_, cell) > 0);
+    const bool has_part = archive.flag(samples_in(parts_, cell) > 0);
+    if (!has_whole && !has_part) return 0;
+    archive.expect(cells_.holds(cell), "has a cell of another shard");
+    archive.expect(units_done(cell) == 0, "has a cell twice");
+    std::uint64_t whole = 0;
+    if (has_whole) {
+      whole = store_state(archive, whole_, cell - cells_.first, 0);
+      const bool is_whole = whole > 0 && whole % Plan::kUnitSamples == 0 && whole <= samples;
+      archive.expect(is_whole, "has a cell that is no number of whole units");
+    }
+    if (!has_part) return Plan::units_for(static_cast<std::size_t>(whole));
+    std::uint64_t part = 0;
+    if (samples == plan_->samples()) {
+      part = store_state(archive, parts_, cell - cells_.first, whole);
+    } else {
+      Store left_out(responses_, 1);  // it is no unit of a study with more samples
+      part = store_state(archive, left_out, 0, whole);
+    }
+    const bool is_part = part > 0 && part < Plan::kUnitSamples && whole + part == samples;
+    archive.expect(is_part, "has a last unit of the wrong size");
+    return Plan::units_for(samples);
+  }
+
+  Store whole_;  ///< [cells of the shard] units of full size; no cells before the first of them
+  Store parts_;  ///< [cells of the shard] the last unit where it is smaller; likewise
+};
+
+}  // namespace poesy

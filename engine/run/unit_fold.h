@@ -1,0 +1,206 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "engine/run/fold.h"
+#include "engine/run/rounds.h"
+#include "engine/run/shard.h"
+
+namespace poesy {
+
+/// Whose units are samples, so that rounds may ask for more of them and a longer study goes on from a shorter one.
+template <class Job>
+concept SampledUnits = requires(const Job& job) {
+  job.rounds();
+};
+
+/// The work of fold() for a row of units, which are solved on any thread and added up in their order. It knows which
+/// units are still to come, which of them are a shard's, and what a state says of that. A job has what is left:
+///
+///     static constexpr std::string_view kName       the name with which its states begin, which no other job has
+///     std::vector<std::uint64_t> sizes() const      what must be equal where a state is taken up
+///     NumberRange units(const Shard&) const         the shard's of all its units, 0 .. N - 1
+///     std::uint64_t expected(std::size_t n) const   solves of unit n, as far as that is known beforehand
+///     Worker worker() const                         owns the scratch of one thread: worker(n) solves unit n
+///     Unit unit(std::size_t n) const                an empty one, with state(Archive&); not where units are Sums
+///     SolveCounts solves(std::size_t n, const Unit&) const   how a unit's solves ended
+///     Sums sums() const                             of no units
+///
+/// The sums have add(std::size_t n, Unit&&), which takes the next unit, and state(Archive&, const NumberRange& units),
+/// which writes what these units came to, and where it reads, adds that to what is there. Units may be Sums themselves:
+/// then a state is read like a unit, and added. A job of samples has besides:
+///
+///     Rounds rounds() const                         at their beginning
+///     std::size_t samples() const                   of the whole study
+///     std::size_t units_for(std::size_t samples) const   units of so many samples
+///     bool is_whole(std::size_t n) const            whether unit n is as large as in any longer study
+///     std::vector<Estimate> estimates(const Sums&, const Unit* last) const   what decides after a round
+///
+/// A last unit that is not whole is kept apart until the end, so that a longer study goes on without it.
+template <class Job>
+class UnitFold {
+ public:
+  using Sums = decltype(std::declval<const Job&>().sums());      ///< What units are added to.
+  using Worker = decltype(std::declval<const Job&>().worker());  ///< Of one thread.
+  using Unit = std::invoke_result_t<Worker&, std::size_t>;       ///< What a unit came to.
+
+  /// Of the options' shard, if they have one. Refers to the job.
+  UnitFold(const Job& job, const RunOptions& options)
+      : job_(job), units_(job.units(options.shard.value_or(Shard()))), sums_(job.sums()) {
+    clear();
+  }
+
+  /// As fold() wants it.
+  /// @{
+  std::size_t begin_round() {
+    begun_ = next_;
+    end_ = units_.end;
+    if constexpr (SampledUnits<Job>) end_ = std::clamp(job_.units_for(rounds_->samples(0)), next_, units_.end);
+    return end_ - begun_;
+  }
+  Worker worker() const { return job_.worker(); }
+  Unit solve(Worker& worker, std::size_t n) const { return worker(begun_ + n); }
+  void piece_state(Archive& archive, std::size_t n, Unit& unit) const { unit_state(archive, begun_ + n, unit); }
+  SolveCounts merge(std::size_t, Unit&& unit) {
+    const SolveCounts solves = job_.solves(next_, unit);
+    if (is_whole(next_)) {
+      sums_.add(next_, std::move(unit));
+      solved_.merge(solves);
+    } else {
+      last_.emplace(std::move(unit));
+    }
+    ++next_;
+    return solves;
+  }
+  SolveCounts solved() const {
+    SolveCounts solves = solved_;
+    if (last_) solves.merge(job_.solves(next_ - 1, *last_));
+    return solves;
+  }
+  std::uint64_t left() const {
+    const std::uint64_t left = expected({next_, end_});
+    if constexpr (SampledUnits<Job>) return rounds_->expected_left(solved(), left);
+    const std::uint64_t expected_so_far = expected({units_.first, next_});
+    if (expected_so_far == 0) return left;
+    const double took = static_cast<double>(solved().total()) / static_cast<double>(expected_so_far);
+    return static_cast<std::uint64_t>(std::llround(took * static_cast<double>(left)));
+  }
+  void state(Archive& archive) {
+    if (archive.reads()) clear();
+    if constexpr (SampledUnits<Job>) archive.object(*rounds_);
+    do {
+      part_state(archive);
+    } while (archive.is_left());
+  }
+  bool next_round() {
+    if constexpr (SampledUnits<Job>) {
+      return rounds_->go_on([&](std::size_t) { return job_.estimates(sums_, last_ ? &*last_ : nullptr); });
+    }
+    return false;
+  }
+  /// @}
+
+  /// Everything that was solved. Precondition: no round follows.
+  Sums sums() && {
+    if (last_) sums_.add(next_ - 1, *std::exchange(last_, std::nullopt));
+    return std::move(sums_);
+  }
+  /// When the samples of the study ended; empty where their number was fixed. Precondition: no round follows.
+  std::optional<ConvergenceResult> convergence() const { return rounds_ ? rounds_->result() : std::nullopt; }
+
+ private:
+  /// Forgets all that was merged.
+  void clear() {
+    sums_ = job_.sums();
+    next_ = units_.first;
+    solved_ = {};
+    last_.reset();
+    if constexpr (SampledUnits<Job>) rounds_.emplace(job_.rounds());
+  }
+  bool is_whole(std::size_t n) const {
+    if constexpr (SampledUnits<Job>) return job_.is_whole(n);
+    return true;
+  }
+  std::uint64_t expected(const NumberRange& units) const {
+    std::uint64_t solves = 0;
+    for (std::size_t n = units.first; n < units.end; ++n) solves += job_.expected(n);
+    return solves;
+  }
+  void unit_state(Archive& archive, std::size_t n, Unit& unit) const {
+    if constexpr (std::is_same_v<Unit, Sums>) {
+      if (archive.reads()) unit = job_.sums();
+      unit.state(archive, {n, n + 1});
+    } else {
+      if (archive.reads()) unit = job_.unit(n);
+      archive.object(unit);
+    }
+  }
+
+  /// All that was merged; of the states of several shards, one of them.
+  void part_state(Archive& archive) {
+    head_state(archive, Job::kName, job_.sizes());
+    NumberRange units{archive.reads() ? next_ : units_.first, last_ ? next_ - 1 : next_};
+    archive.known(units.first, "does not follow what was solved before");
+    archive.number(units.end, units_.end);
+    archive.expect(units.end >= units.first, "has units that end before they begin");
+    SolveCounts solves = solved_;
+    archive.object(solves);
+    sums_state(archive, units);
+    if (archive.reads()) {
+      solved_.merge(solves);
+      next_ = units.end;
+    }
+    if constexpr (SampledUnits<Job>) last_state(archive);
+  }
+  void sums_state(Archive& archive, const NumberRange& units) {
+    if constexpr (std::is_same_v<Unit, Sums>) {
+      if (archive.reads()) {
+        Sums part = job_.sums();
+        part.state(archive, units);
+        return sums_.add(units.first, std::move(part));
+      }
+    }
+    sums_.state(archive, units);
+  }
+  /// A last unit that is not whole, which is no unit of a longer study.
+  void last_state(Archive& archive) {
+    std::size_t samples = job_.samples();
+    archive.number(samples, job_.samples());
+    Bytes bytes;
+    if (last_) bytes = bytes_of([&](ByteWriter& to) { write_state(*last_, to); });
+    archive.block(bytes);
+    if (!archive.reads() || bytes.empty() || samples < job_.samples()) return;
+    archive.expect(next_ + 1 == units_.end && !is_whole(next_), "has a last unit of another size");
+    ByteReader from(bytes);
+    Archive of_last(from);
+    unit_state(of_last, next_, last_.emplace());
+    from.expect_end();
+    ++next_;
+  }
+
+  const Job& job_;
+  NumberRange units_;  ///< of the shard
+  std::size_t next_ = 0;
+  std::size_t begun_ = 0;  ///< with which the round began
+  std::size_t end_ = 0;    ///< of the round
+  Sums sums_;              ///< of whole units
+  SolveCounts solved_;     ///< in them
+  std::optional<Unit> last_;
+  std::optional<Rounds> rounds_;
+};
+
+/// What all units of a job come to. Empty when stopped, and of a shard.
+template <class Job>
+std::optional<typename UnitFold<Job>::Sums> fold_units(const Job& job, const RunOptions& options) {
+  UnitFold work(job, options);
+  if (!fold(work, options) || options.shard) return std::nullopt;
+  return std::move(work).sums();
+}
+
+}  // namespace poesy
