@@ -30,6 +30,7 @@ SECTIONS = {
     "How to": [("Use it: user guide", "engine/docs/guide.md"), ("Read results", "results/README.md"),
                ("Run long and on clusters", "engine/docs/long-runs.md"), ("Start from a mechanism", "results/gallery/README.md"),
                ("Add a mechanism", "models/README.md"), ("Add a response", "engine/docs/adding-a-response.md"),
+               ("Add a kind of study", "engine/docs/adding-a-kind.md"),
                ("Contribute", "CONTRIBUTING.md")],
     "Reference": [("Study files", "engine/docs/study-file.md"), ("Result files", "engine/docs/result-file.md"),
                   ("Security", "engine/docs/security.md"),
