@@ -34,8 +34,7 @@ std::vector<std::string_view> known_responses() {
     }
   };
   for (const CatalogEntry& entry : registry()) {
-    add(entry);
-    if (entry.other_metric) add(*entry.other_metric);
+    for (const CatalogEntry* by = &entry; by != nullptr; by = by->other_metric.get()) add(*by);
   }
   return names;
 }

@@ -141,9 +141,9 @@ class Archive {
   ByteReader* from_ = nullptr;
 };
 
-/// Writes an object's state. context: what its state() is told in addition.
-template <class Object, class... Context>
-void write_state(const Object& object, ByteWriter& to, const Context&... context) {
+/// Writes an object's state.
+template <class Object>
+void write_state(const Object& object, ByteWriter& to) {
   Archive archive(to);
   archive.object(const_cast<Object&>(object));  // it changes nothing where it writes
 }

@@ -62,6 +62,13 @@ Matrix orthogonal_complement(const ConstMatrix& A) {
   return last_columns(Eigen::HouseholderQR<Matrix>(A).householderQ(), A.rows(), A.cols());
 }
 
+RangeAndComplement range_and_complement(const ConstMatrix& A, std::size_t rank) {
+  if (A.cols() == 0) return {Matrix(A.rows(), 0), Matrix::Identity(A.rows(), A.rows())};
+  const Matrix Q = Eigen::ColPivHouseholderQR<Matrix>(A).householderQ();
+  const auto first = static_cast<Eigen::Index>(rank);
+  return {Q.leftCols(first), Q.rightCols(A.rows() - first)};
+}
+
 Matrix upper_triangle(const ConstMatrix& A) {
   const Eigen::HouseholderQR<Matrix> qr(A);
   const Eigen::Index rows = std::min(A.rows(), A.cols());

@@ -47,6 +47,15 @@ Matrix orthogonal_complement(const ConstMatrix& A, double threshold);
 /// The same where the columns are known to be independent: [rows x (rows - columns)], without pivoting.
 Matrix orthogonal_complement(const ConstMatrix& A);
 
+/// Orthonormal bases of what the columns of A span and of what is at right angles to it.
+struct RangeAndComplement {
+  Matrix range;       ///< [rows x rank]
+  Matrix complement;  ///< [rows x (rows - rank)]
+};
+
+/// Of a matrix of known rank: pivots behind that many count as 0.
+RangeAndComplement range_and_complement(const ConstMatrix& A, std::size_t rank);
+
 /// The upper triangle R [columns x columns] with |R y| = |A y| for every y. Rows beyond those of A are 0.
 Matrix upper_triangle(const ConstMatrix& A);
 

@@ -18,7 +18,10 @@ const FactorSet* ModelDescription::find_set(std::string_view set_name) const {
 }
 
 const CatalogEntry& by_metric(const CatalogEntry& entry, std::string_view metric) {
-  return entry.description.metric != metric && entry.other_metric ? *entry.other_metric : entry;
+  const CatalogEntry* found = &entry;
+  while (found->description.metric != metric && found->other_metric) found = found->other_metric.get();
+  const std::string& reached = found->description.metric;
+  return reached == metric || reached.empty() ? *found : entry;
 }
 
 const CatalogEntry* find(const Catalog& catalog, std::string_view model_name) {

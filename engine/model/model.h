@@ -320,6 +320,8 @@ class Model {
   /// @}
 };
 
+class StudyValue;  ///< What a key of a file has (engine/schema).
+
 /// A mechanism that a study may name.
 struct CatalogEntry {
   ModelDescription description;  ///< with the published geometry
@@ -327,8 +329,8 @@ struct CatalogEntry {
   /// among description.fidelities, 0 where there is no choice.
   /// Throws std::invalid_argument with a clause that names the parameter and the rule it breaks.
   std::function<std::unique_ptr<Model>(std::span<const double> geometry, std::size_t fidelity)> build;
-  /// The same mechanism by the other metric, with responses of its own; null where no angle is weighed against a
-  /// length, and in that entry itself.
+  /// The same mechanism by another metric, with responses of its own, and so on; null where there is none besides
+  /// these.
   std::shared_ptr<const CatalogEntry> other_metric = nullptr;
   /// Where the description's metric is "platform": builds it with other points of the platform, at least three (its
   /// frame, m). Throws std::invalid_argument as build does.
@@ -336,9 +338,14 @@ struct CatalogEntry {
                                        std::span<const PlatformPoint> points)>
       build_with_points = nullptr;
   std::string file = {};  ///< path of the file that describes it; empty for those of the catalog
+  /// Of a mechanism of a file: the same under the loads of another table `[load]`, by all its metrics. Throws
+  /// InputError as Catalog::from_text does.
+  std::function<CatalogEntry(const StudyValue& load)> with_load = nullptr;
+  std::string load = {};  ///< the keys of that table, as TOML; empty: the loads are the file's
 };
 
-/// The entry or its other_metric, whichever weighs by this metric; the entry where nothing is weighed.
+/// The entry or one of its other metrics, whichever weighs by this one; else the last of them that weighs nothing, or
+/// the entry.
 const CatalogEntry& by_metric(const CatalogEntry& entry, std::string_view metric);
 
 /// Mechanisms by name, in the order in which they are listed, and the way to those that somebody describes in a file.

@@ -46,9 +46,21 @@ struct SketchedError {
   std::vector<SketchTwist> motions;
 };
 
+/// A body between limbs.
+struct SketchedBody {
+  std::string name;     ///< as the mechanism's file has it
+  SketchVector origin;  ///< of its frame
+};
+
+/// Between which bodies a limb is: positions among Sketch::bodies.
+struct SketchedEnds {
+  std::size_t from = 0;  ///< the base, or where it begins
+  std::size_t to = 1;    ///< the platform, or where it ends
+};
+
 /// A mechanism as a picture shows it, at one pose.
 struct Sketch {
-  std::vector<std::vector<SketchedJoint>> limbs;  ///< base to platform
+  std::vector<std::vector<SketchedJoint>> limbs;  ///< base to platform, or from one body to another
   SketchVector platform;                          ///< its origin, P
   std::vector<SketchVector> tool;                 ///< the tool's tip; none or one
   /// Of each limb: the base, its joints' axes, the platform; with errors_at_joints the origins of base and platform are
@@ -57,6 +69,11 @@ struct Sketch {
   std::vector<SketchedError> errors = {};  ///< [F], in the order of ModelDescription::factors
   bool errors_at_joints = false;           ///< whether angles of first and last frames turn there
   bool z_is_down = false;                  ///< whether the base's z axis points to the ground
+  std::vector<SketchedEnds> ends = {};     ///< [limbs]; empty: all lead from the base to the platform
+  std::vector<SketchedBody> bodies = {};   ///< base, platform, those between; empty where there are none between
+
+  /// Of a limb.
+  SketchedEnds ends_of(std::size_t limb) const { return ends.empty() ? SketchedEnds{} : ends[limb]; }
 };
 
 }  // namespace poesy

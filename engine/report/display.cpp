@@ -100,6 +100,10 @@ std::string metric_text(const StoredResult& result) {
   if (result.metric == "platform") {
     return fmt::format("platform, by displacement of {}", counted(result.metric_points.size(), "point", "points"));
   }
+  if (result.metric == "stiffness") {
+    return "stiffness: equilibrium of the bodies, without masses of limbs and without geometric stiffness; forces of "
+           "exact solves are good to two digits";
+  }
   if (result.metric == "published") return "published, radians against metres at the base's origin";
   return result.metric;
 }

@@ -96,7 +96,9 @@ std::string model_text(const CatalogEntry& entry) {
     text += fmt::format("  {:<16} {:>8} {}\n", factor.name, si_unit(factor.dimension), factor.description);
   }
   text += responses_text(model, entry.other_metric != nullptr);
-  if (entry.other_metric) text += responses_text(entry.other_metric->description, false);
+  for (const CatalogEntry* by = entry.other_metric.get(); by != nullptr; by = by->other_metric.get()) {
+    text += responses_text(by->description, false);
+  }
   if (!model.details.empty()) text += "\ndetails (given by `poesy evaluate`)\n";
   for (const Detail& detail : model.details) {
     text += fmt::format("  {:<20} {:>4} {}\n", detail.name, detail.components.size(), detail.description);

@@ -14,6 +14,8 @@
 namespace poesy {
 namespace {
 
+constexpr std::size_t kBase = 0;      // among bodies
+constexpr std::size_t kPlatform = 1;  // likewise
 constexpr double kTick = 15.0;        // pixels, half of a joint's axis
 constexpr double kAxis = 36.0;        // pixels, axes of a frame
 constexpr double kThinnest = 2.0;     // pixels of a link without share
@@ -41,6 +43,32 @@ std::string numbers_of(std::span<const SketchVector> points) {
     text += fmt::format("{}{},{},{}", text.empty() ? "" : " ", number(point[0]), number(point[1]), number(point[2]));
   }
   return text;
+}
+
+double dot(const SketchVector& a, const SketchVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// In the order in which they go round their middle, seen across the plane of the first and of the one farthest from
+/// the line to it.
+void go_round(std::vector<SketchVector>& points) {
+  SketchVector centre{};
+  for (const SketchVector& point : points) centre = plus(centre, 1.0 / static_cast<double>(points.size()), point);
+  const SketchVector first = plus(points.front(), -1.0, centre);
+  if (!(dot(first, first) > 0.0)) return;
+  const auto beside = [&](const SketchVector& point) {
+    const SketchVector from = plus(point, -1.0, centre);
+    return plus(from, -dot(from, first) / dot(first, first), first);
+  };
+  const auto farther = [&](const SketchVector& a, const SketchVector& b) {
+    return dot(beside(a), beside(a)) < dot(beside(b), beside(b));
+  };
+  const SketchVector across = beside(*std::ranges::max_element(points, farther));
+  if (!(dot(across, across) > 0.0)) return;
+  const auto angle = [&](const SketchVector& point) {
+    const SketchVector from = plus(point, -1.0, centre);
+    return std::atan2(dot(from, across) / std::sqrt(dot(across, across)),
+                      dot(from, first) / std::sqrt(dot(first, first)));
+  };
+  std::ranges::stable_sort(points, {}, angle);
 }
 
 /// One picture while it is drawn.
@@ -86,7 +114,7 @@ class Drawing {
     add_group(point, attributes, svg_text(offset, what));
   }
 
-  /// Axes of the base, the bodies between the first and between the last joints, the platform's origin and its tool.
+  /// Axes of the base, the bodies between the joints that they hold, the platform's origin and its tool.
   void bodies() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       SketchVector end{};
@@ -95,14 +123,9 @@ class Drawing {
       add_line({}, end, "class=\"frame-axis\"");
       add_text(end, {3, -3}, std::string(1, "xyz"[axis]), "class=\"frame-name\"");
     }
-    std::vector<SketchVector> base;
-    std::vector<SketchVector> platform;
-    for (const auto& limb : sketch_->limbs) {
-      base.push_back(limb.front().point);
-      platform.push_back(limb.back().point);
-    }
-    add_path(base, "class=\"base\"");
-    add_path(platform, "class=\"platform\"");
+    add_path(joints_at(kBase), "class=\"base\"");
+    add_path(joints_at(kPlatform), "class=\"platform\"");
+    for (std::size_t b = kPlatform + 1; b < sketch_->bodies.size(); ++b) add_path(joints_at(b), "class=\"platform\"");
     if (is_still()) add_text(sketch_->platform, {5, -5}, "P", "class=\"frame-name\"");
     for (const SketchVector& tip : sketch_->tool) {
       add_line(sketch_->platform, tip, "class=\"tool\"");
@@ -110,18 +133,34 @@ class Drawing {
     }
   }
 
-  /// In the base's middle, from where the links to the first joints go.
-  SketchVector base_middle() const {
+  /// The joints by which limbs hold a body.
+  std::vector<SketchVector> joints_at(std::size_t body) const {
+    std::vector<SketchVector> points;
+    for (std::size_t i = 0; i < sketch_->limbs.size(); ++i) {
+      const SketchedEnds ends = sketch_->ends_of(i);
+      if (ends.from == body) points.push_back(sketch_->limbs[i].front().point);
+      if (ends.to == body) points.push_back(sketch_->limbs[i].back().point);
+    }
+    if (!sketch_->bodies.empty() && points.size() > 3) go_round(points);
+    return points;
+  }
+
+  /// Where links to the joints of a body come from: its origin, or the middle of the base's joints.
+  SketchVector middle_of(std::size_t body) const {
+    if (body == kPlatform) return sketch_->platform;
+    if (body != kBase) return sketch_->bodies[body].origin;
     SketchVector sum{};
-    for (const auto& limb : sketch_->limbs) sum = plus(sum, 1.0, limb.front().point);
-    return plus({}, 1.0 / static_cast<double>(sketch_->limbs.size()), sum);
+    const std::vector<SketchVector> points = joints_at(kBase);
+    for (const SketchVector& point : points) sum = plus(sum, 1.0, point);
+    return plus({}, 1.0 / static_cast<double>(points.size()), sum);
   }
 
   void limb(std::size_t i) {
     const std::vector<SketchedJoint>& joints = sketch_->limbs[i];
-    std::vector<SketchVector> places = places_of(joints);
-    places.insert(places.begin(), base_middle());
-    places.push_back(sketch_->platform);
+    const SketchedEnds ends = sketch_->ends_of(i);
+    std::vector<SketchVector> places = places_of(joints, middle_of(ends.to));
+    places.insert(places.begin(), middle_of(ends.from));
+    places.push_back(middle_of(ends.to));
     if (is_still()) text_ += fmt::format("<g color=\"{}\">\n", kLimbs[i % kLimbs.size()]);
     for (std::size_t j = 0; j + 1 < places.size(); ++j) {
       add_line(places[j], places[j + 1],
@@ -171,15 +210,15 @@ class Drawing {
   }
 
   /// Where the joints' glyphs are: at their points. Several at one point are in a row from there; a slide that begins
-  /// at another joint is between the two that it connects.
-  std::vector<SketchVector> places_of(std::span<const SketchedJoint> joints) const {
+  /// at another joint is between the two that it connects. last: where the limb ends.
+  std::vector<SketchVector> places_of(std::span<const SketchedJoint> joints, const SketchVector& last) const {
     std::vector<SketchVector> places;
     while (places.size() < joints.size()) {
       const std::size_t begin = places.size();
       std::size_t end = begin + 1;
       while (end < joints.size() && distance(joints[end].point, joints[begin].point) < view_->metres(kSamePoint)) ++end;
       const SketchVector& here = joints[begin].point;
-      const SketchVector& next = end < joints.size() ? joints[end].point : sketch_->platform;
+      const SketchVector& next = end < joints.size() ? joints[end].point : last;
       const bool slides = end - begin > 1 && end < joints.size() && joints[end - 1].type == 'P';
       add_row(joints.subspan(begin, end - begin - (slides ? 1 : 0)), next, places);
       if (slides) places.push_back(middle(here, next));

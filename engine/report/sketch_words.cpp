@@ -4,10 +4,19 @@
 
 namespace poesy {
 
+namespace {
+
+std::string body_words(const Sketch& sketch, std::size_t body) {
+  if (body == 0) return "the base";
+  return body == 1 ? "the platform" : sketch.bodies[body].name;
+}
+
+}  // namespace
+
 std::string joint_words(const Sketch& sketch, std::size_t limb, std::size_t joint) {
   const std::vector<SketchedJoint>& joints = sketch.limbs[limb];
-  if (joint == 0) return "the base";
-  if (joint > joints.size()) return "the platform";
+  if (joint == 0) return body_words(sketch, sketch.ends_of(limb).from);
+  if (joint > joints.size()) return body_words(sketch, sketch.ends_of(limb).to);
   const char type = joints[joint - 1].type;
   return type == 'F' ? fmt::format("fixed frame {}", joint) : fmt::format("{} joint {}", type, joint);
 }
@@ -22,14 +31,15 @@ std::string between_words(const Sketch& sketch, std::size_t limb, std::size_t af
 }
 
 std::string axis_words(const Sketch& sketch, const SketchedError& error, Dimension dimension) {
-  const std::size_t platform = sketch.frames[error.limb].size() - 1;
-  const std::string frame = error.frame == 0          ? "the base"
-                            : error.frame == platform ? "the platform"
-                                                      : fmt::format("frame {}", error.frame);
+  const std::size_t last = sketch.frames[error.limb].size() - 1;
+  const SketchedEnds ends = sketch.ends_of(error.limb);
+  const std::string frame = error.frame == 0      ? body_words(sketch, ends.from)
+                            : error.frame == last ? body_words(sketch, ends.to)
+                                                  : fmt::format("frame {}", error.frame);
   const bool turns = dimension == Dimension::angle;
   std::string at;
   if (turns && sketch.errors_at_joints && error.frame == 0) at = ", at the first joint";
-  if (turns && sketch.errors_at_joints && error.frame == platform) at = ", at the last joint";
+  if (turns && sketch.errors_at_joints && error.frame == last) at = ", at the last joint";
   return fmt::format("{} {} of {}{}", turns ? "rotation about" : "displacement along", "xyz"[error.axis], frame, at);
 }
 

@@ -8,8 +8,8 @@
 
 namespace poesy {
 
-/// "U joint 1": a joint of a limb (from 0) by its kind and its number from the base; "the base" for 0, "the platform"
-/// for one more than there are joints.
+/// "U joint 1": a joint of a limb (from 0) by its kind and its number from the base; the body where the limb begins
+/// for 0, that where it ends for one more than there are joints.
 std::string joint_words(const Sketch& sketch, std::size_t limb, std::size_t joint);
 
 /// "q", "q, driven by motor_1": the joint's name, and the drive's where it has one.

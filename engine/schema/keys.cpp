@@ -16,7 +16,7 @@ namespace {
 std::string_view without_number(std::string_view name) { return name.substr(0, name.find('[')); }
 
 bool stands_for_names(std::string_view name) {
-  return !name.empty() && std::ranges::all_of(name, [](unsigned char letter) { return std::isupper(letter) != 0; });
+  return name.size() > 1 && std::ranges::all_of(name, [](unsigned char letter) { return std::isupper(letter) != 0; });
 }
 
 bool is_name_of_model(const StudyKey& key) { return stands_for_names(key.name); }

@@ -24,7 +24,7 @@ struct StudyWord {
 
 /// What is said of one key.
 struct StudyKey {
-  std::string_view name;              ///< in capitals what stands for a name of the model's: "FACTOR"
+  std::string_view name;              ///< in capitals what stands for a name of the model's: "FACTOR", not "E"
   std::string type;                   ///< "integer", "length", "list of numbers", ...
   std::string bounds = {};            ///< "at least 1"; empty where the type says all
   std::vector<StudyWord> words = {};  ///< that it takes, where it takes no others

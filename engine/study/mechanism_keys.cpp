@@ -57,6 +57,21 @@ void read_geometry(const StudyValue& value, Study& study, const Reading&) {
   });
 }
 
+/// Takes the entry of the mechanism under other loads.
+void read_load(const StudyValue& value, Study& study, const Reading&) {
+  MechanismChoice& choice = study.mechanism;
+  if (!choice.entry->with_load) {
+    value.fail("is for mechanisms of files", "remove it, or describe the mechanism in a file");
+  }
+  choice.file->entry = std::make_shared<const CatalogEntry>(choice.entry->with_load(value));
+  choice.entry = choice.file->entry.get();
+}
+
+std::string load_lines(const Study& study) {
+  const std::string& load = study.mechanism.entry->load;
+  return load.empty() ? "" : "\n[mechanism.load]\n" + load;
+}
+
 /// Sets `fidelity`, and `compared` for "both", which a model with two fidelities offers.
 void read_fidelity(const StudyValue& value, Study& study, const Reading& reading) {
   const ModelDescription& model = study.model();
@@ -118,6 +133,13 @@ const StudyRows& mechanism_keys() {
                    .reader = read_geometry,
                    .lines = geometry_lines,
                    .late = 1},
+          StudyRow{.name = "load",
+                   .value = {.type = "table"},
+                   .usual = "as in the file",
+                   .meaning = "Loads in the place of those of the mechanism's file.",
+                   .reader = read_load,
+                   .lines = load_lines,
+                   .late = 1},
           StudyRow{.name = "fidelity",
                    .value = {.type = "text"},
                    .usual = "the first of them",
@@ -137,7 +159,14 @@ StudyTables mechanism_tables() {
            .keys = {{.name = "PARAMETER",
                      .type = "quantity",
                      .usual = "its published value",
-                     .meaning = "A parameter of the geometry."}}}};
+                     .meaning = "A parameter of the geometry."}}},
+          {.paths = {"mechanism.load"},
+           .meaning = "As [load] of a mechanism file has them; where the mechanism has stiffness.",
+           .keys = {{.name = "gravity", .type = "vector", .usual = "none", .meaning = "Acceleration on every mass."},
+                    {.name = "body", .type = "text", .usual = "`\"platform\"`", .meaning = "The body that is loaded."},
+                    {.name = "at", .type = "point", .usual = "the tool, or its origin", .meaning = "Where."},
+                    {.name = "force", .type = "vector", .usual = "none", .meaning = "In the base's axes."},
+                    {.name = "moment", .type = "vector", .usual = "none", .meaning = "In the base's axes."}}}};
 }
 
 void read_mechanism(Study& study, const Reading& reading) {

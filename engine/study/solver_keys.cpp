@@ -44,11 +44,19 @@ void require_metric(std::string_view key, const Study& study, const Reading& rea
       key, "model \"" + study.model().name + "\", whose responses weigh no angles against lengths");
 }
 
-/// Takes the entry of the mechanism by its platform's metric where the study asks for it.
+/// Takes the entry of the mechanism by the metric that the study asks for.
 void read_metric(const StudyValue& value, Study& study, const Reading& reading) {
   require_metric("metric", study, reading);
   const std::vector<std::string_view> known = names(row_of(solver_keys(), "metric").value.words);
-  study.mechanism.entry = &by_metric(*study.mechanism.entry, known[value.word(known)]);
+  const std::string_view metric = known[value.word(known)];
+  const CatalogEntry& entry = by_metric(*study.mechanism.entry, metric);
+  const std::string& found = entry.description.metric;
+  if (found != metric && !(found.empty() && metric == "platform")) {
+    value.fail("is '" + std::string(metric) + "', which the mechanism has not",
+               metric == "stiffness" ? "give its joints, links or limbs stiffness, or write metric = \"platform\""
+                                     : "write metric = " + in_quotes(study.model().metric));
+  }
+  study.mechanism.entry = &entry;
 }
 
 /// A point of the platform: three lengths.
@@ -119,8 +127,11 @@ std::vector<StudyRow> solver_rows() {
                          .words = {{"platform",
                                     "by how far points of the platform are moved: a length, whatever the unit and the "
                                     "frame"},
-                                   {"published", "as in the paper: radians against metres, at the base's origin"}}},
-               .usual = "`\"published\"`, for mechanisms from files `\"platform\"`",
+                                   {"published", "as in the paper: radians against metres, at the base's origin"},
+                                   {"stiffness",
+                                    "by the stiffness of joints, links and limbs: in equilibrium, with "
+                                    "forces and loads"}}},
+               .usual = "`\"published\"`, for mechanisms from files `\"platform\"`, with stiffness `\"stiffness\"`",
                .meaning = "How mismatch of angle is weighed against mismatch of position where limbs work against each "
                           "other; only for models that have such a mismatch.",
                .reader = read_metric,

@@ -136,7 +136,7 @@ std::string sets_comment(const ModelDescription& model) {
 std::string template_text(const CatalogEntry& entry, const StudyKind& kind, const StudyKinds& kinds) {
   const TemplateLines lines(kinds.tables, kind.name);
   Study shown;
-  shown.mechanism.entry = &by_metric(entry, "platform");
+  shown.mechanism.entry = entry.description.metric == "published" ? &by_metric(entry, "platform") : &entry;
   shown.analysis.kind = &kind;
   POESY_EXPECTS(kind.no_template == nullptr || !kind.no_template(shown.model()));
   return head(lines, shown) + mechanism_section(lines, shown) + "\n[poses]\n" + charts_comment(shown.model()) +

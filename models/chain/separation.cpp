@@ -27,45 +27,18 @@ constexpr double kRounding = 1e-12;
 /// A column of length 1 of which others leave less depends on them.
 constexpr double kDependent = 1e-9;
 
-/// A limb where the perfect mechanism holds its platform.
-struct LimbJoints {
-  Vector3 end = Vector3::Zero();         ///< where its last joint is (m)
-  Columns passive;                       ///< twists of the platform by the passive joints
-  Columns driven;                        ///< and by the drives, each with all joints that it moves in this limb
-  std::vector<std::size_t> drives = {};  ///< of these columns: Joint::drive
-};
-
 /// Room for one column more.
 auto next_column(Columns& columns) {
   columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
   return columns.rightCols<1>();
 }
 
-/// Adds a driven joint's twist to what its drive does in the limb.
-void add_driven(std::size_t drive, const Screw& twist, LimbJoints& limb) {
-  const auto known = drive == 0 ? limb.drives.end() : std::ranges::find(limb.drives, drive);
-  if (known != limb.drives.end()) {
-    limb.driven.col(known - limb.drives.begin()) += twist;
-  } else {
-    next_column(limb.driven) = twist;
-    limb.drives.push_back(drive);
-  }
-}
-
-LimbJoints joints_of(const Limb& limb, std::span<const double> displacements) {
-  LimbJoints found;
+LimbMotions motions_of(const Limb& limb, std::span<const double> displacements) {
+  LimbMotions found;
   lie::Transform<double> g = limb.home.front();
   for (std::size_t j = 0; j < limb.joints.size(); ++j) {
-    const Joint& joint = limb.joints[j];
-    if (!joint.fixed) {
-      found.end = g.p;
-      if (joint.actuated) {
-        add_driven(joint.drive, spatial_column(joint, g), found);
-      } else {
-        next_column(found.passive) = spatial_column(joint, g);
-      }
-    }
-    move_joint(joint, displacements[j], g);
+    found.add(limb.joints[j], spatial_column(limb.joints[j], g), g.p);
+    move_joint(limb.joints[j], displacements[j], g);
     g = g * limb.home[j + 1];
   }
   return found;
@@ -111,11 +84,11 @@ struct Parts {
 /// Tells apart what errors of one limb do.
 class LimbSeparation {
  public:
-  /// to_displacement: from twists of the limb to Parts. radius: rho.
-  LimbSeparation(const LimbJoints& joints, const Matrix6& to_displacement, double radius) {
+  /// root, radius: see separation_of().
+  LimbSeparation(const LimbMotions& joints, const Matrix6& root, double radius) {
     lengths_ << radius * lie::Matrix3<double>::Identity(), lie::Matrix3<double>::Zero(), -lie::hat<double>(joints.end),
         lie::Matrix3<double>::Identity();
-    from_lengths_ = to_displacement * linalg::inverse(lengths_);
+    from_lengths_ = root * joints.platform * linalg::inverse(lengths_);
     Columns passive = lengths_ * joints.passive;
     passive.colwise().normalize();
     beyond_passive_ = beyond(passive);
@@ -160,17 +133,22 @@ Matrix6 root_of_metric(const DeformationModel& model, std::span<const double> di
   return linalg::cholesky_root(platform_metric(model.chain, model.platform->points, displacements).W);
 }
 
-std::vector<LimbSeparation> limb_separations(const DeformationModel& model, std::span<const double> displacements,
-                                             FirstOrder& first_order) {
-  const Matrix6 root = root_of_metric(model, displacements);
-  std::vector<LimbSeparation> limbs;
+std::vector<LimbMotions> limb_motions(const DeformationModel& model, std::span<const double> displacements,
+                                      FirstOrder& first_order) {
+  std::vector<LimbMotions> limbs;
   for (std::size_t i = 0; i < model.chain.limbs.size(); ++i) {
     const std::size_t joints = model.chain.limbs[i].joints.size();
-    limbs.emplace_back(joints_of(model.chain.limbs[i], displacements.first(joints)),
-                       root * platform_by_limb(model.chain, first_order, i), radius_of(model.platform->points));
+    limbs.push_back(motions_of(model.chain.limbs[i], displacements.first(joints)));
+    limbs.back().platform = platform_by_limb(model.chain, first_order, i);
     displacements = displacements.subspan(joints);
   }
   return limbs;
+}
+
+std::vector<LimbSeparation> separations(const std::vector<LimbMotions>& limbs, const Matrix6& root, double radius) {
+  std::vector<LimbSeparation> list;
+  for (const LimbMotions& limb : limbs) list.emplace_back(limb, root, radius);
+  return list;
 }
 
 /// What drives of several limbs do in all of them, as columns that are comparable with LimbSeparation::motions().
@@ -239,15 +217,41 @@ Separation separation(const DeformationModel& model, std::span<const double> pos
     const std::vector<double> unknown(model.slots.size(), kNaN);
     return {unknown, unknown, unknown, unknown};
   }
-  const std::vector<LimbSeparation> limbs = limb_separations(model, displacements, first_order);
+  std::vector<EndTwist> errors;
+  for (const ErrorSlot& slot : model.slots) {
+    errors.push_back({slot.limb, slot.scale * first_order.motion(model.entry(slot))});
+  }
+  return separation_of(limb_motions(model, displacements, first_order), root_of_metric(model, displacements),
+                       radius_of(model.platform->points), errors);
+}
+
+void LimbMotions::add(const Joint& joint, const Screw& twist, const Vector3& at) {
+  if (joint.fixed) return;
+  end = at;
+  if (!joint.actuated) {
+    next_column(passive) = twist;
+    return;
+  }
+  const auto known = joint.drive == 0 ? drives.end() : std::ranges::find(drives, joint.drive);
+  if (known != drives.end()) {
+    driven.col(known - drives.begin()) += twist;
+  } else {
+    next_column(driven) = twist;
+    drives.push_back(joint.drive);
+  }
+}
+
+Separation separation_of(const std::vector<LimbMotions>& motions, const Matrix6& root, double radius,
+                         std::span<const EndTwist> errors) {
+  const std::vector<LimbSeparation> limbs = separations(motions, root, radius);
   const Matrix6 uncorrected = beyond_all_drives(limbs);
   Separation found;
-  for (const ErrorSlot& slot : model.slots) {
-    const auto [drive, constraint] = limbs[slot.limb].parts(slot.scale * first_order.motion(model.entry(slot)));
+  for (const EndTwist& error : errors) {
+    const auto [drive, constraint] = limbs[error.limb].parts(error.twist);
     found.drive.push_back(drive.norm());
     found.constraint.push_back(constraint.norm());
     found.effect.push_back((drive + constraint).norm());
-    const Screw left = drives_are_its_own(limbs, slot.limb) ? constraint : Screw(drive + constraint);
+    const Screw left = drives_are_its_own(limbs, error.limb) ? constraint : Screw(drive + constraint);
     found.residual.push_back(left_of(left, uncorrected).norm());
   }
   return found;
@@ -262,8 +266,10 @@ std::optional<Matrix6> left_by_drives(const DeformationModel& model, std::span<c
   // From [theta; displacement of the origin] to lengths: first to the twist, whose v is that of the base's origin.
   Matrix6 to_lengths = Matrix6::Identity();
   to_lengths.bottomLeftCorner<3, 3>() = lie::hat<double>(model.platform_points(displacements)->platform.p);
-  to_lengths = root_of_metric(model, displacements) * to_lengths;
-  const Matrix6 left = beyond_all_drives(limb_separations(model, displacements, first_order));
+  const Matrix6 root = root_of_metric(model, displacements);
+  to_lengths = root * to_lengths;
+  const Matrix6 left = beyond_all_drives(
+      separations(limb_motions(model, displacements, first_order), root, radius_of(model.platform->points)));
   return linalg::solve(to_lengths, left * to_lengths);
 }
 

@@ -37,6 +37,31 @@ Separation separation(const DeformationModel& model, std::span<const double> pos
 /// a singular configuration. Precondition as for separation().
 std::optional<lie::Matrix6<double>> left_by_drives(const DeformationModel& model, std::span<const double> pose);
 
+/// A limb as separation sees it, where the perfect mechanism holds its end.
+struct LimbMotions {
+  using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;  ///< twists, one a column
+
+  lie::Vector3<double> end = lie::Vector3<double>::Zero();  ///< where its last joint is (m)
+  Columns passive;                                          ///< twists of its end by the passive joints
+  Columns driven;                        ///< and by the drives, each with all joints that it moves in this limb
+  std::vector<std::size_t> drives = {};  ///< of these columns: Joint::drive
+  lie::Matrix6<double> platform;         ///< B: by how much a twist of its end moves the platform
+
+  /// Adds a joint with this twist. at: its point.
+  void add(const Joint& joint, const lie::Screw<double>& twist, const lie::Vector3<double>& at);
+};
+
+/// What a unit of an error does to its limb's end, where no joint gives way.
+struct EndTwist {
+  std::size_t limb;         ///< position
+  lie::Screw<double> twist;  ///< of the end
+};
+
+/// separation() of limbs that are known so. root: twists of the platform times it have the root mean square
+/// displacement of its points as their norm; radius: rho.
+Separation separation_of(const std::vector<LimbMotions>& limbs, const lie::Matrix6<double>& root, double radius,
+                         std::span<const EndTwist> errors);
+
 /// Without classes of the literature; none where the model has no platform->points.
 std::optional<SeparationDescription> separation_description(const DeformationModel& model);
 

@@ -19,12 +19,6 @@ SketchedFrame sketched(const Transform& frame) {
   return {sketched(frame.p), {sketched(frame.R.col(0)), sketched(frame.R.col(1)), sketched(frame.R.col(2))}};
 }
 
-/// A limb's frames before and after each joint has moved.
-struct LimbFrames {
-  std::vector<Transform> before;  ///< [n] of its joints
-  std::vector<Transform> after;   ///< [n + 2] base, joints, platform
-};
-
 LimbFrames frames_of(const Limb& limb, std::span<const double> displacements) {
   LimbFrames frames;
   Transform g;
@@ -77,20 +71,36 @@ void add_errors(Sketch& sketch, const DeformationModel& model, std::span<const d
   FirstOrder first_order(model.chain);
   const bool regular = first_order.prepare(displacements, metric ? &metric->W : nullptr);
   for (const ErrorSlot& slot : model.slots) {
-    const std::vector<SketchedJoint>& joints = sketch.limbs[slot.limb];
-    const std::size_t last = model.chain.limbs[slot.limb].joints.size();
-    const std::size_t platform = last + 1;
-    sketch.errors.push_back({.limb = slot.limb,
-                             .frame = slot.frame == last ? platform : slot.frame,
-                             .axis = slot.component % 3,
-                             .after = joint_of(joints, slot.frame, platform),
-                             .before = joint_of(joints, slot.frame + 1, platform),
-                             .motions = regular ? motions(model.chain, first_order, model.entry(slot), slot.scale)
-                                                : std::vector<SketchTwist>()});
+    sketch.errors.push_back(sketched_error(sketch, slot));
+    if (regular) sketch.errors.back().motions = motions(model.chain, first_order, model.entry(slot), slot.scale);
   }
 }
 
 }  // namespace
+
+void place_limb(Sketch& sketch, const LimbFrames& frames, bool errors_at_joints) {
+  for (SketchedJoint& joint : sketch.limbs[sketch.frames.size()]) {
+    joint.point = sketched(frames.before[joint.frame - 1].p);
+    joint.axis = sketched(frames.before[joint.first - 1].R.col(2));
+  }
+  std::vector<SketchedFrame>& list = sketch.frames.emplace_back();
+  for (const Transform& frame : frames.after) list.push_back(sketched(frame));
+  sketch.errors_at_joints = errors_at_joints;
+  if (!errors_at_joints) return;
+  list.front().origin = sketched(frames.before.front().p);
+  list.back().origin = list[frames.before.size()].origin;
+}
+
+SketchedError sketched_error(const Sketch& sketch, const ErrorSlot& slot) {
+  const std::vector<SketchedJoint>& joints = sketch.limbs[slot.limb];
+  const std::size_t end = sketch.frames[slot.limb].size() - 1;  // of the body where the limb ends
+  return {.limb = slot.limb,
+          .frame = slot.frame + 1 == end ? end : slot.frame,
+          .axis = slot.component % 3,
+          .after = joint_of(joints, slot.frame, end),
+          .before = joint_of(joints, slot.frame + 1, end),
+          .motions = {}};
+}
 
 void place(Sketch& sketch, const DeformationModel& model, std::span<const double> displacements) {
   sketch.frames.clear();
@@ -101,16 +111,7 @@ void place(Sketch& sketch, const DeformationModel& model, std::span<const double
     const LimbFrames frames = frames_of(limb, left.first(limb.joints.size()));
     left = left.subspan(limb.joints.size());
     if (i == 0) platform = frames.after.back();
-    for (SketchedJoint& joint : sketch.limbs[i]) {
-      joint.point = sketched(frames.before[joint.frame - 1].p);
-      joint.axis = sketched(frames.before[joint.first - 1].R.col(2));
-    }
-    std::vector<SketchedFrame>& list = sketch.frames.emplace_back();
-    for (const Transform& frame : frames.after) list.push_back(sketched(frame));
-    sketch.errors_at_joints = limb.errors_at_joints;
-    if (!limb.errors_at_joints) continue;
-    list.front().origin = sketched(frames.before.front().p);
-    list.back().origin = list[limb.joints.size()].origin;
+    place_limb(sketch, frames, limb.errors_at_joints);
   }
   sketch.platform = sketched(platform.p);
   sketch.tool.clear();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "engine/model/sketch.h"
 #include "models/chain/deformation_model.h"
@@ -13,5 +14,17 @@ namespace poesy::chain {
 /// platform are shown where errors turn, at the first and the last joint. Precondition: SketchedJoint::first and frame
 /// are those of the model's chain.
 void place(Sketch& sketch, const DeformationModel& model, std::span<const double> displacements);
+
+/// A limb's frames (base_T_frame) before and after each joint has moved.
+struct LimbFrames {
+  std::vector<lie::Transform<double>> before;  ///< [n] of its joints
+  std::vector<lie::Transform<double>> after;   ///< [n + 2] of the body where it begins, its joints, that where it ends
+};
+
+/// Puts the joints and frames of one limb there. sketch.frames has those of the limbs before it.
+void place_limb(Sketch& sketch, const LimbFrames& frames, bool errors_at_joints);
+
+/// An error of a limb that has been placed, without its motions.
+SketchedError sketched_error(const Sketch& sketch, const ErrorSlot& slot);
 
 }  // namespace poesy::chain

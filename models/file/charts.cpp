@@ -19,7 +19,11 @@ constexpr double kSameOfRounded = 100.0;
 /// With the platform's frame elsewhere on the platform.
 Mechanism with_platform_at(Mechanism mechanism, const Transform& platform_T_new) {
   mechanism.platform = mechanism.platform * platform_T_new;
-  for (Limb& limb : mechanism.limbs) limb.home.back() = limb.home.back() * platform_T_new;
+  mechanism.bodies[kPlatform].home = mechanism.platform;
+  for (Limb& limb : mechanism.limbs) {
+    if (limb.to == kPlatform) limb.home.back() = limb.home.back() * platform_T_new;
+    if (limb.from == kPlatform) limb.home.front() = platform_T_new.inverse() * limb.home.front();
+  }
   for (Vector3& point : mechanism.points) point = platform_T_new.R.transpose() * (point - platform_T_new.p);
   return mechanism;
 }

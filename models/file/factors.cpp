@@ -30,21 +30,23 @@ struct Parts {
   std::string text() const { return behind + " against " + before; }
 };
 
-Parts parts_of(const Limb& limb, std::size_t frame) {
-  return {frame == limb.joints.size() ? "platform" : joint_text(limb.joints, frame),
-          frame == 0 ? "base" : joint_text(limb.joints, frame - 1)};
+Parts parts_of(const Mechanism& mechanism, const Limb& limb, std::size_t frame) {
+  return {frame == limb.joints.size() ? mechanism.bodies[limb.to].name : joint_text(limb.joints, frame),
+          frame == 0 ? mechanism.bodies[limb.from].name : joint_text(limb.joints, frame - 1)};
 }
 
 std::string description(const Mechanism& mechanism, const ErrorSlot& slot) {
   const Limb& limb = mechanism.limbs[slot.limb];
   const std::size_t last = limb.joints.size();
-  const Parts parts = parts_of(limb, slot.frame);
-  const std::string axes = slot.frame == 0      ? "the base"
-                           : slot.frame == last ? "the platform"
+  const Parts parts = parts_of(mechanism, limb, slot.frame);
+  const auto the = [&](std::size_t body) {
+    return (body <= kPlatform ? "the " : "body ") + mechanism.bodies[body].name;
+  };
+  const std::string axes = slot.frame == 0      ? the(limb.from)
+                           : slot.frame == last ? the(limb.to)
                                                 : "frame " + std::to_string(slot.frame);
   const std::string kind = slot.component < 3 ? "angular error about " : "linear error along ";
-  std::string text = "limb " + std::to_string(slot.limb + 1) + ", " + parts.text() + ": " + kind +
-                     axis_of(slot.component) + " of " + axes;
+  std::string text = "limb " + limb.label + ", " + parts.text() + ": " + kind + axis_of(slot.component) + " of " + axes;
   const bool at_joint = mechanism.errors_at_joints && (slot.frame == 0 || slot.frame == last);
   if (slot.component < 3 && at_joint) text += " at " + (slot.frame == 0 ? parts.behind : parts.before);
   return text;
@@ -114,12 +116,12 @@ void add_listed(const std::vector<Reference>& patterns, const FrameErrors& all, 
 
 void add_named(const ErrorLines& error, double scale, Mechanism& mechanism) {
   const bool vector = error.components.size() > 1;
-  for (const std::size_t i : error.limbs) {
+  for (std::size_t k = 0; k < error.limbs.size(); ++k) {
+    const std::string number = error.numbers[k] == 0 ? "" : "_" + std::to_string(error.numbers[k]);
     for (const std::size_t component : error.components) {
       const std::string axis = vector ? std::string(1, axis_of(component)) : "";
-      const std::string name =
-          error.name.name + (vector ? "_" + axis : "") + (error.numbered ? "_" + std::to_string(i + 1) : "");
-      const ErrorSlot slot{i, error.frame, component, scale};
+      const std::string name = error.name.name + (vector ? "_" + axis : "") + number;
+      const ErrorSlot slot{error.limbs[k], error.frames[k], component, scale};
       Factor made = factor(mechanism, slot, name, axis);
       if (!error.description.empty()) made.description = error.description;
       if (std::ranges::find(mechanism.factors, name, &Factor::name) != mechanism.factors.end()) {
@@ -142,9 +144,12 @@ bool are_alike(const Limb& a, const Limb& b) {
 EachLimb each_limb(const ErrorLines& error, const Mechanism& mechanism) {
   EachLimb each{"error " + error.name.name + " with limb = \"each\" is", true};
   for (std::size_t i = 0; i < error.limbs.size();) {
-    const std::string parts = parts_of(mechanism.limbs[i], error.frame).text();
+    const auto parts_in = [&](std::size_t limb) {
+      return parts_of(mechanism, mechanism.limbs[limb], error.frames[limb]).text();
+    };
+    const std::string parts = parts_in(i);
     const std::size_t first = i;
-    while (i < error.limbs.size() && parts_of(mechanism.limbs[i], error.frame).text() == parts) ++i;
+    while (i < error.limbs.size() && parts_in(i) == parts) ++i;
     each.text += std::string(first == 0 ? "" : ";") + " in limb" + (i - first == 1 ? "" : "s");
     for (std::size_t k = first; k < i; ++k) {
       each.text += (k == first ? " " : k + 1 == i ? " and " : ", ") + std::to_string(k + 1);

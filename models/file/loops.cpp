@@ -14,29 +14,48 @@ namespace {
 using Eigen::Index;
 using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
+/// Where the pose of a body begins in a state.
+Index place_of(const Mechanism& unit, std::size_t body) { return static_cast<Index>(unit.moving() + 6 * (body - 1)); }
+
 }  // namespace
 
-PlatformPose pose_of(const State& state) {
+State home_state(const Mechanism& unit) {
+  State state = State::Zero(static_cast<Index>(unit.moving() + 6 * (unit.bodies.size() - 1)));
+  for (std::size_t b = kPlatform; b < unit.bodies.size(); ++b) {
+    std::ranges::copy(home_pose(unit, b), state.begin() + place_of(unit, b));
+  }
+  return state;
+}
+
+PlatformPose pose_of(const Mechanism& unit, const State& state, std::size_t body) {
   PlatformPose pose;
-  std::ranges::copy(state.tail<6>(), pose.begin());
+  std::copy_n(state.begin() + place_of(unit, body), pose.size(), pose.begin());
   return pose;
 }
 
+Transform transform_of(const Mechanism& unit, const State& state, std::size_t body) {
+  return body == kBase ? Transform() : body_transform(unit, body, pose_of(unit, state, body));
+}
+
 LoopEquations loop_equations(const Mechanism& unit, const State& state) {
-  const PlatformPose pose = pose_of(state);
   const auto rows = 6 * static_cast<Index>(unit.limbs.size());
   LoopEquations made{Eigen::MatrixXd::Zero(rows, state.size()), Eigen::VectorXd(rows)};
-  const Transform wanted = platform_transform(unit, pose);
-  const lie::Matrix6<double> by_pose = platform_columns(unit, pose);
+  std::vector<Transform> bodies(unit.bodies.size());
+  std::vector<lie::Matrix6<double>> by_pose(unit.bodies.size());
+  for (std::size_t b = kPlatform; b < bodies.size(); ++b) {
+    bodies[b] = transform_of(unit, state, b);
+    by_pose[b] = body_columns(unit, b, pose_of(unit, state, b));
+  }
   Index row = 0;
   Index begin = 0;
   for (const Limb& limb : unit.limbs) {
     const auto moving = static_cast<Index>(limb.moving());
     Columns columns(6, moving);
-    const Transform g = limb_transform(limb, {state.data() + begin, limb.moving()}, &columns);
+    const Transform g = limb_transform(limb, {state.data() + begin, limb.moving()}, &columns, bodies[limb.from]);
     made.columns.block(row, begin, 6, moving) = columns;
-    made.columns.block<6, 6>(row, state.size() - 6) = -by_pose;
-    made.residual.segment<6>(row) = lie::log(wanted * g.inverse());
+    made.columns.block<6, 6>(row, place_of(unit, limb.to)) = -by_pose[limb.to];
+    if (limb.from != kBase) made.columns.block<6, 6>(row, place_of(unit, limb.from)) = by_pose[limb.from];
+    made.residual.segment<6>(row) = lie::log(bodies[limb.to] * g.inverse());
     begin += moving;
     row += 6;
   }

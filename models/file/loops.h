@@ -7,20 +7,28 @@
 /// The equations that close a mechanism's loops, with lengths in units of its reach.
 namespace poesy::file {
 
-/// Displacements [moving], limb by limb, then the platform's pose [6]; lengths in units of the reach.
+/// Displacements [moving], limb by limb, then the poses [6] of the platform and of all other bodies but the base;
+/// lengths in units of the reach.
 using State = Eigen::VectorXd;
 
-/// Every limb's platform moves to where the pose says: J_i dq_i - C dpose = log(T g_i^-1), twists at the base's origin.
+/// Home.
+State home_state(const Mechanism& unit);
+
+/// Every limb, from body a to b, puts its end where the pose of b says: C_a dpose_a + J dq - C_b dpose_b =
+/// log(T_b (T_a g)^-1), twists at the base's origin.
 struct LoopEquations {
-  Eigen::MatrixXd columns;   ///< [6 limbs x (moving + 6)]
+  Eigen::MatrixXd columns;   ///< [6 limbs x (moving + 6 bodies)]
   Eigen::VectorXd residual;  ///< [6 limbs]
 };
 
 /// unit: a mechanism in_reaches().
 LoopEquations loop_equations(const Mechanism& unit, const State& state);
 
-/// The platform's pose of a state.
-PlatformPose pose_of(const State& state);
+/// The pose of a body that is not the base.
+PlatformPose pose_of(const Mechanism& unit, const State& state, std::size_t body = kPlatform);
+
+/// base_T_body of a body.
+Transform transform_of(const Mechanism& unit, const State& state, std::size_t body);
 
 /// U with |U xi| the root mean square displacement of the metric's points by the twist xi, where the platform has this
 /// pose.

@@ -8,13 +8,13 @@
 #include "engine/base/contract.h"
 #include "engine/base/text.h"
 #include "models/chain/metric.h"
+#include "models/file/bodies.h"
 #include "models/file/factors.h"
+#include "models/file/numbers.h"
+#include "models/file/stiffness.h"
 
 namespace poesy::file {
 namespace {
-
-constexpr double kSamePoint = 1e-9;  ///< of the reach
-constexpr double kParallel = 1e-6;   ///< rad
 
 /// What a limb's joint is before frames are known.
 struct Element {
@@ -24,19 +24,6 @@ struct Element {
   Vector3 point;
   Vector3 z = Vector3::Zero();  ///< of S it follows from the joints before
 };
-
-/// The frame's rotation from perpendicular unit vectors.
-lie::Matrix3<double> frame_of(const Vector3& x, const Vector3& z) {
-  lie::Matrix3<double> R;
-  R << x, z.cross(x), z;
-  return R;
-}
-
-bool parallel(const Vector3& a, const Vector3& b) { return a.cross(b).norm() <= kParallel; }
-
-Vector3 perpendicular(const Vector3& direction, const Vector3& z) {
-  return (direction - direction.dot(z) * z).normalized();
-}
 
 Motion motion_of(JointKind kind, std::size_t position) {
   switch (kind) {
@@ -91,59 +78,37 @@ void check_drives(const Mechanism& mechanism) {
 
 class Builder {
  public:
-  Builder(const MechanismFile& file, std::span<const double> values) : file_(file), values_(values) {}
+  Builder(const MechanismFile& file, std::span<const double> values)
+      : file_(file), values_(values), numbers_(file, values) {}
 
   Mechanism whole() {
     const PlatformLines& lines = file_.platform;
     Mechanism made{.name = file_.name,
                    .title = file_.title,
-                   .platform = {lie::Matrix3<double>::Identity(), point(*lines.origin)},
+                   .platform = {lie::Matrix3<double>::Identity(), numbers_.point(*lines.origin)},
                    .rotation = lines.rotation,
                    .coordinates_place = lines.coordinates_place,
                    .reach = 0.0};
     platform_point_ = made.platform.p;
     std::vector<std::vector<Vector3>> points;
     for (const LimbLines& limb : file_.limbs) points.push_back(joint_points(limb));
-    made.reach = reach_ = reach_of(points);
-    if (lines.x) made.platform.R = platform_axes(*lines.x, *lines.z);
+    made.reach = reach_of(points);
+    numbers_.set_reach(made.reach);
+    if (lines.x) made.platform.R = numbers_.axes(*lines.x, *lines.z);
+    made.bodies = bodies_of(numbers_, made.platform);
     for (std::size_t n = 0; n < file_.limbs.size(); ++n) add_limbs(file_.limbs[n], points[n], made);
+    check_branches(file_, made);
     for (const CoordinateLines& coordinate : lines.coordinates) made.coordinates.push_back(coordinate_of(coordinate));
     check_drives(made);
-    if (lines.tool) made.tool = point(*lines.tool);
+    if (lines.tool) made.tool = numbers_.point(*lines.tool);
     add_metric_points(made);
+    made.load = load_of(numbers_, made);
     made.errors_at_joints = file_.about == ErrorsAbout::joint;
     add_factors(file_, values_, made);
     return made;
   }
 
  private:
-  double length(const Expression& expression) const {
-    return evaluate(expression, Dimension::length, file_.geometry, values_);
-  }
-
-  Vector3 point(const Triple& triple) const {
-    return {length(triple.entries[0]), length(triple.entries[1]), length(triple.entries[2])};
-  }
-
-  /// Of unit length. Throws where the entries have several dimensions or are all zero.
-  Vector3 direction(const Triple& triple) const {
-    Vector3 vector;
-    Value first{.any = true};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Value value = evaluate(triple.entries[k], file_.geometry, values_);
-      if (!value.like(first)) {
-        throw InputError(triple.entries[k].place,
-                         triple.key + " mixes " + dimension_text(first) + " and " + dimension_text(value),
-                         "the entries of a direction must have one dimension");
-      }
-      if (first.any) first = value;
-      vector[static_cast<Eigen::Index>(k)] = value.si;
-    }
-    const double smallest = kSamePoint * (first.powers.length == 1 ? reach_ : 1.0);
-    if (vector.norm() > smallest) return vector.stableNormalized();
-    throw InputError(triple.place, triple.key + " is zero and has no direction", "give it a length, e.g. [0, 0, 1]");
-  }
-
   // ---- points
 
   /// Null where the limb and the file have no point of this name.
@@ -158,7 +123,7 @@ class Builder {
   Vector3 place_of(const LimbLines& limb, const Reference& reference, std::size_t depth) const {
     const auto joint = std::ranges::find(limb.joints, reference.name, &JointLines::name);
     if (joint != limb.joints.end()) return joint_point(limb, *joint, depth + 1);
-    if (const NamedPoint* named = named_point(limb, reference.name)) return point(named->point);
+    if (const NamedPoint* named = named_point(limb, reference.name)) return numbers_.point(named->point);
     std::vector<std::string_view> known = names(limb.joints);
     for (const NamedPoint& named : limb.points) known.push_back(named.name);
     for (const NamedPoint& named : file_.points) known.push_back(named.name);
@@ -173,7 +138,7 @@ class Builder {
       throw InputError(joint.place, joint.key + " '" + joint.name + "' takes its point from itself",
                        "write at = [x, y, z] for one of them");
     }
-    if (joint.at) return point(*joint.at);
+    if (joint.at) return numbers_.point(*joint.at);
     if (joint.at_point) return place_of(limb, *joint.at_point, depth);
     const bool slides =
         joint.kind == JointKind::prismatic || joint.kind == JointKind::helical || joint.kind == JointKind::cylindrical;
@@ -200,8 +165,6 @@ class Builder {
                      "write where they are at home");
   }
 
-  bool same(const Vector3& a, const Vector3& b) const { return (a - b).norm() <= kSamePoint * reach_; }
-
   // ---- axes and frames
 
   /// The axis of a joint that is not S: as written, or from one point to another.
@@ -209,14 +172,14 @@ class Builder {
     if (joint.axis && joint.to) {
       throw InputError(joint.axis->place, joint.axis->key + " is given besides `to`", "remove one of them");
     }
-    if (joint.axis) return direction(*joint.axis);
+    if (joint.axis) return numbers_.direction(*joint.axis);
     if (!joint.from || !joint.to) {
       throw InputError(joint.place, joint.key + " '" + joint.name + "' has no direction",
                        "write axis = \"z\", or from = and to = with names of joints or points");
     }
     const Vector3 from = place_of(limb, *joint.from, 0);
     const Vector3 to = place_of(limb, *joint.to, 0);
-    if (!same(from, to)) return (to - from).stableNormalized();
+    if (!numbers_.same(from, to)) return (to - from).stableNormalized();
     throw InputError(joint.to->place,
                      joint.to->key + " '" + joint.to->name + "' and '" + joint.from->name +
                          "' are one point at home, so no direction goes from one to the other",
@@ -232,7 +195,7 @@ class Builder {
         list.push_back({&joint, k, motion_of(joint.kind, k), points[n], axis});
       }
       if (joint.kind != JointKind::universal) continue;
-      list.back().z = direction(*joint.axis2);
+      list.back().z = numbers_.direction(*joint.axis2);
       if (!parallel(axis, list.back().z)) continue;
       throw InputError(joint.axis2->place, joint.axis2->key + " is parallel to the first axis",
                        "a universal joint has two axes; one alone is a revolute joint, type = \"R\"");
@@ -240,16 +203,17 @@ class Builder {
     return list;
   }
 
-  /// The first axis of S: along the line from the last other point before it, or to the first one after it.
-  Vector3 first_axis_of_s(const std::vector<Element>& elements, std::size_t e) const {
+  /// The first axis of S: along the line from the last other point before it, or to the first one after it, of which
+  /// the last is the origin of the body where the limb ends.
+  Vector3 first_axis_of_s(const std::vector<Element>& elements, std::size_t e, const Vector3& end) const {
     const Vector3& own = elements[e].point;
     for (std::size_t k = e; k-- > 0;) {
-      if (!same(elements[k].point, own)) return (own - elements[k].point).stableNormalized();
+      if (!numbers_.same(elements[k].point, own)) return (own - elements[k].point).stableNormalized();
     }
     for (std::size_t k = e + 1; k < elements.size(); ++k) {
-      if (!same(elements[k].point, own)) return (elements[k].point - own).stableNormalized();
+      if (!numbers_.same(elements[k].point, own)) return (elements[k].point - own).stableNormalized();
     }
-    if (!same(platform_point_, own)) return (platform_point_ - own).stableNormalized();
+    if (!numbers_.same(end, own)) return (end - own).stableNormalized();
     const JointLines& joint = *elements[e].lines;
     throw InputError(joint.place, joint.key + " '" + joint.name + "' has no other joint to point to",
                      "its first axis is along the line to another joint; write three R instead");
@@ -259,11 +223,11 @@ class Builder {
   Vector3 x_of(const Element& element, const Vector3& z, const Vector3& next) const {
     const JointLines& joint = *element.lines;
     if (joint.x && element.position == 0) {
-      const Vector3 x = direction(*joint.x);
+      const Vector3 x = numbers_.direction(*joint.x);
       if (!parallel(x, z)) return perpendicular(x, z);
       throw InputError(joint.x->place, joint.x->key + " is parallel to the joint's axis", "give another direction");
     }
-    if (!same(next, element.point)) {
+    if (!numbers_.same(next, element.point)) {
       const Vector3 towards = (next - element.point).stableNormalized();
       if (!parallel(towards, z)) return perpendicular(towards, z);
     }
@@ -273,7 +237,8 @@ class Builder {
     return perpendicular(Vector3::UnitZ(), z);
   }
 
-  std::vector<Joint> joints_of(const LimbLines& limb, const std::vector<Vector3>& points) const {
+  /// end: origin of the body where the limb ends.
+  std::vector<Joint> joints_of(const LimbLines& limb, const std::vector<Vector3>& points, const Vector3& end) const {
     std::vector<Element> elements = elements_of(limb, points);
     std::vector<Joint> joints;
     for (std::size_t e = 0; e < elements.size(); ++e) {
@@ -281,9 +246,9 @@ class Builder {
       const JointLines& lines = *element.lines;
       if (lines.kind == JointKind::spherical) {
         const std::size_t k = element.position;  // the second axis is the first frame's x, the third its y = z cross x
-        element.z = k == 0 ? first_axis_of_s(elements, e) : Vector3(joints[e - k].at_home.R.col(k == 1 ? 0 : 1));
+        element.z = k == 0 ? first_axis_of_s(elements, e, end) : Vector3(joints[e - k].at_home.R.col(k == 1 ? 0 : 1));
       }
-      const Vector3 next = e + 1 < elements.size() ? elements[e + 1].point : platform_point_;
+      const Vector3 next = e + 1 < elements.size() ? elements[e + 1].point : end;
       const Vector3 x = x_of(element, element.z, next);
       const bool actuated =
           element.motion != Motion::fixed && lines.kind != JointKind::spherical && lines.actuated[element.position];
@@ -294,7 +259,8 @@ class Builder {
                         actuated,
                         pitch_of(lines),
                         {frame_of(x, element.z), element.point},
-                        lines.drive ? lines.drive->name : ""});
+                        lines.drive ? lines.drive->name : "",
+                        lines.reaction});
     }
     return joints;
   }
@@ -302,42 +268,46 @@ class Builder {
   /// M/rad.
   double pitch_of(const JointLines& joint) const {
     if (!joint.pitch) return 0.0;
-    const double pitch = length(*joint.pitch);
+    const double pitch = numbers_.length(*joint.pitch);
     if (pitch != 0.0) return pitch / (2.0 * std::numbers::pi);
     throw InputError(joint.pitch->place, joint.pitch->key + " is zero, so the joint does not slide",
                      "write type = \"R\", or its pitch");
   }
 
   void add_limbs(const LimbLines& lines, const std::vector<Vector3>& points, Mechanism& made) const {
-    const std::vector<Joint> first = joints_of(lines, points);
-    if (std::ranges::none_of(first, &Joint::moves)) {
+    const std::size_t first_end = body_of(file_, lines, lines.to, kPlatform, 0);
+    const std::vector<Joint> first = joints_of(lines, points, made.bodies[first_end].home.p);
+    const bool holds_platform_alone = made.bodies.size() == 2;
+    if (holds_platform_alone && std::ranges::none_of(first, &Joint::moves)) {
       throw InputError(lines.joints.front().place, lines.joints.front().key + ": no joint of this limb moves",
                        "add one");
     }
-    for (std::size_t copy = 0; copy < lines.copies; ++copy) {
-      const double angle = 2.0 * std::numbers::pi * static_cast<double>(copy) / static_cast<double>(lines.copies);
-      const Transform turn = lie::rotation<double>(static_cast<lie::Axis>(lines.about), angle);
+    for (std::size_t copy = 0; copy < lines.copies.count; ++copy) {
+      const Transform turn = turned(lines.copies, copy);
       Limb limb{first, {}};
-      Transform before;
+      limb.from = body_of(file_, lines, lines.from, kBase, copy);
+      limb.to = body_of(file_, lines, lines.to, kPlatform, copy);
+      limb.label = label_of(lines, copy, made.limbs.size());
+      Transform before = made.bodies[limb.from].home;
       for (Joint& joint : limb.joints) {
         if (copy > 0) joint.at_home = turn * joint.at_home;
         joint.drive = of_copy(joint.drive, copy + 1);
         limb.home.push_back(before.inverse() * joint.at_home);
         before = joint.at_home;
       }
-      limb.home.push_back(before.inverse() * made.platform);
+      limb.home.push_back(before.inverse() * made.bodies[limb.to].home);
+      add_stiffness(numbers_, lines, turn, made.bodies, limb);
       made.limbs.push_back(std::move(limb));
     }
   }
 
-  // ---- platform
-
-  lie::Matrix3<double> platform_axes(const Triple& x_lines, const Triple& z_lines) const {
-    const Vector3 x = direction(x_lines);
-    const Vector3 z = direction(z_lines);
-    if (!parallel(x, z)) return frame_of(perpendicular(x, z), z);
-    throw InputError(x_lines.place, x_lines.key + " is parallel to platform.z", "give another direction");
+  /// before: limbs before it in the file.
+  static std::string label_of(const LimbLines& lines, std::size_t copy, std::size_t before) {
+    if (lines.name.empty()) return std::to_string(before + 1);
+    return lines.copies.count == 1 ? lines.name : lines.name + "_" + std::to_string(copy + 1);
   }
+
+  // ---- platform
 
   Coordinate coordinate_of(const CoordinateLines& lines) const {
     constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "rx", "ry", "rz"};
@@ -351,13 +321,21 @@ class Builder {
                      "write the lowest value first");
   }
 
+  /// The point of the first joint of these that moves; of the first one where none does.
+  template <class Iterator>
+  static Vector3 last_moving(Iterator begin, Iterator end) {
+    const auto found = std::find_if(begin, end, [](const Joint& joint) { return joint.moves(); });
+    return found == end ? begin->at_home.p : found->at_home.p;
+  }
+
   void add_metric_points(Mechanism& made) const {
-    for (const Triple& triple : file_.platform.points) made.points.push_back(point(triple));
+    for (const Triple& triple : file_.platform.points) made.points.push_back(numbers_.point(triple));
     if (made.points.empty()) {
       for (const Limb& limb : made.limbs) {
-        const auto last =
-            std::find_if(limb.joints.rbegin(), limb.joints.rend(), [](const Joint& j) { return j.moves(); });
-        made.points.push_back(made.platform.R.transpose() * (last->at_home.p - made.platform.p));
+        if (limb.to != kPlatform && limb.from != kPlatform) continue;
+        const Vector3 at = limb.to == kPlatform ? last_moving(limb.joints.rbegin(), limb.joints.rend())
+                                                : last_moving(limb.joints.begin(), limb.joints.end());
+        made.points.push_back(made.platform.R.transpose() * (at - made.platform.p));
       }
     }
     const std::string why = chain::why_no_metric(made.points, made.reach);
@@ -369,7 +347,7 @@ class Builder {
   const MechanismFile& file_;
   std::span<const double> values_;
   Vector3 platform_point_ = Vector3::Zero();
-  double reach_ = 1.0;
+  Numbers numbers_;
 };
 
 /// Axes of the three rotations, in the order of their product. Precondition: not "vector".
@@ -387,6 +365,12 @@ chain::Joint Joint::of_chain() const {
 }
 
 std::size_t Limb::moving() const { return static_cast<std::size_t>(std::ranges::count_if(joints, &Joint::moves)); }
+
+bool Mechanism::is_elastic() const {
+  return std::ranges::any_of(limbs, [](const Limb& limb) {
+    return !limb.bearings.empty() || !limb.links.empty() || limb.compliance.has_value();
+  });
+}
 
 std::size_t Mechanism::moving() const {
   std::size_t sum = 0;
@@ -419,11 +403,18 @@ Mechanism in_reaches(Mechanism mechanism) {
     coordinate.lower /= unit;
     coordinate.upper /= unit;
   }
+  for (assembly::Body& body : mechanism.bodies) body.home.p /= unit;
   for (Vector3& point : mechanism.points) point /= unit;
   if (mechanism.tool) *mechanism.tool /= unit;
   mechanism.platform.p /= unit;
   mechanism.reach = 1.0;
   return mechanism;
+}
+
+std::string limb_text(const Mechanism& mechanism, std::size_t limb) {
+  const std::string number = std::to_string(limb + 1);
+  const std::string& label = mechanism.limbs[limb].label;
+  return "limb " + number + (label == number ? "" : " (" + label + ")");
 }
 
 std::vector<const Joint*> moving_joints(const Mechanism& mechanism) {
@@ -467,14 +458,21 @@ std::vector<JointDisplacement> displacement_names(const Mechanism& mechanism) {
   return list;
 }
 
-PlatformPose home_pose(const Mechanism& mechanism) {
-  const Vector3& p = mechanism.platform.p;
+PlatformPose home_pose(const Mechanism& mechanism) { return home_pose(mechanism, kPlatform); }
+
+PlatformPose home_pose(const Mechanism& mechanism, std::size_t body) {
+  const Vector3& p = body == kPlatform ? mechanism.platform.p : mechanism.bodies[body].home.p;
   return {p.x(), p.y(), p.z(), 0.0, 0.0, 0.0};
 }
 
 Transform platform_transform(const Mechanism& mechanism, const PlatformPose& pose) {
-  Transform made{mechanism.platform.R, {pose[0], pose[1], pose[2]}};
-  if (mechanism.rotation == Rotation::vector) {
+  return body_transform(mechanism, kPlatform, pose);
+}
+
+Transform body_transform(const Mechanism& mechanism, std::size_t body, const PlatformPose& pose) {
+  const bool is_platform = body == kPlatform;
+  Transform made{is_platform ? mechanism.platform.R : mechanism.bodies[body].home.R, {pose[0], pose[1], pose[2]}};
+  if (!is_platform || mechanism.rotation == Rotation::vector) {
     made.R = lie::exp<double>(Vector3(pose[3], pose[4], pose[5])) * made.R;
     return made;
   }
@@ -487,10 +485,14 @@ Transform platform_transform(const Mechanism& mechanism, const PlatformPose& pos
 }
 
 lie::Matrix6<double> platform_columns(const Mechanism& mechanism, const PlatformPose& pose) {
+  return body_columns(mechanism, kPlatform, pose);
+}
+
+lie::Matrix6<double> body_columns(const Mechanism& mechanism, std::size_t body, const PlatformPose& pose) {
   lie::Matrix6<double> columns = lie::Matrix6<double>::Zero();
   columns.bottomLeftCorner<3, 3>().setIdentity();
   lie::Matrix3<double> turns;
-  if (mechanism.rotation == Rotation::vector) {
+  if (body != kPlatform || mechanism.rotation == Rotation::vector) {
     turns = lie::left_jacobian<double>(Vector3(pose[3], pose[4], pose[5]));
   } else {
     lie::Matrix3<double> before = lie::Matrix3<double>::Identity();
@@ -505,10 +507,14 @@ lie::Matrix6<double> platform_columns(const Mechanism& mechanism, const Platform
   return columns;
 }
 
+std::vector<std::size_t> placing_limbs(const Mechanism& mechanism) {
+  return assembly::placing_limbs(mechanism.bodies.size(), mechanism.limbs);
+}
+
 Transform limb_transform(const Limb& limb, std::span<const double> displacements,
-                         Eigen::Matrix<double, 6, Eigen::Dynamic>* columns) {
+                         Eigen::Matrix<double, 6, Eigen::Dynamic>* columns, const Transform& from) {
   POESY_EXPECTS(displacements.size() == limb.moving());
-  Transform g = limb.home.front();
+  Transform g = from * limb.home.front();
   std::size_t k = 0;
   for (std::size_t j = 0; j < limb.joints.size(); ++j) {
     const Joint& joint = limb.joints[j];

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
+#include "models/assembly/assembly.h"
 #include "models/chain/limb.h"
 #include "models/file/mechanism_file.h"
 #include "models/lie/se3.h"
@@ -32,6 +33,7 @@ struct Joint {
   double pitch;            ///< of a helical one, m/rad; positive is right-handed
   Transform at_home;       ///< base_T_joint at home
   std::string drive = {};  ///< name of the drive, where the file names it; joints of one name move together
+  bool reaction = false;   ///< whether the reaction of the joint that it belongs to is a response
 
   /// Whether it has a displacement.
   bool moves() const { return motion != Motion::fixed; }
@@ -39,10 +41,22 @@ struct Joint {
   chain::Joint of_chain() const;
 };
 
-/// A limb in local product-of-exponentials form, as chain::Limb has it.
+/// Positions of bodies that every mechanism has.
+/// @{
+using assembly::kBase;
+using assembly::kPlatform;
+/// @}
+
+/// A limb in local product-of-exponentials form, as chain::Limb has it, from one body to another.
 struct Limb {
-  std::vector<Joint> joints;    ///< [n], base to platform
-  std::vector<Transform> home;  ///< [n + 1]: base to first joint, joint to joint, last joint to platform, at home
+  std::vector<Joint> joints;    ///< [n], in the order from the body where it begins to that where it ends
+  std::vector<Transform> home;  ///< [n + 1]: body to first joint, joint to joint, last joint to body, at home
+  std::size_t from = kBase;     ///< position of the body where it begins
+  std::size_t to = kPlatform;   ///< and of that where it ends
+  std::string label = {};       ///< its number, counted from 1, or its name with that of the copy
+  std::vector<assembly::Bearing> bearings = {};      ///< that give way
+  std::vector<assembly::Link> links = {};            ///< likewise
+  std::optional<assembly::Matrix6> compliance = {};  ///< of the whole limb, in the frame of the body where it ends
 
   /// That have a displacement.
   std::size_t moving() const;
@@ -106,6 +120,7 @@ struct EachLimb {
 struct Mechanism {
   std::string name;                          ///< as the file has it
   std::string title;                         ///< likewise
+  std::vector<assembly::Body> bodies = {};   ///< base, platform, and the others, copies included
   std::vector<Limb> limbs = {};              ///< copies included
   Transform platform;                        ///< base_T_platform at home
   Rotation rotation;                         ///< what rx, ry, rz mean
@@ -120,9 +135,14 @@ struct Mechanism {
   bool errors_at_joints = true;              ///< see chain::Limb
   double reach;                              ///< m: the largest distance between joints' points, before copies, and P
   Precision precision = {};                  ///< of its numbers
+  assembly::Load load = {};                  ///< acts where there is stiffness
 
   /// That have a displacement, of all limbs.
   std::size_t moving() const;
+  /// Whether there are bodies besides base and platform.
+  bool is_branched() const { return bodies.size() > 2; }
+  /// Whether anything has stiffness.
+  bool is_elastic() const;
 };
 
 /// The parameters' defaults, in the order of the file.
@@ -140,6 +160,9 @@ Mechanism in_reaches(Mechanism mechanism);
 /// joints and fixed frames of the limb.
 std::vector<JointDisplacement> displacement_names(const Mechanism& mechanism);
 
+/// "limb 4", with a name "limb 4 (left_1)", for messages. limb: position, counts from 0.
+std::string limb_text(const Mechanism& mechanism, std::size_t limb);
+
 /// The joints that have a displacement, limb by limb.
 std::vector<const Joint*> moving_joints(const Mechanism& mechanism);
 
@@ -149,15 +172,27 @@ std::vector<Drive> drives_of(const Mechanism& mechanism);
 /// base_T_platform for R = Rot(rx, ry, rz) R_home and P = (x, y, z).
 Transform platform_transform(const Mechanism& mechanism, const PlatformPose& pose);
 
+/// base_T_body of a body that is not the base. Of the platform as above; of others rx, ry, rz are the rotation vector.
+Transform body_transform(const Mechanism& mechanism, std::size_t body, const PlatformPose& pose);
+
+/// Twist [omega; v] of the body, at the base's origin, by each component of its pose: [6 x 6].
+lie::Matrix6<double> body_columns(const Mechanism& mechanism, std::size_t body, const PlatformPose& pose);
+
+/// The body's pose at home, without rotation.
+PlatformPose home_pose(const Mechanism& mechanism, std::size_t body);
+
+/// The limbs by which bodies can be placed one after the other: of each body but the base one that ends there.
+std::vector<std::size_t> placing_limbs(const Mechanism& mechanism);
+
 /// The pose at home: P, and no rotation.
 PlatformPose home_pose(const Mechanism& mechanism);
 
 /// Twist [omega; v] of the platform, at the base's origin, by each component of its pose: [6 x 6].
 lie::Matrix6<double> platform_columns(const Mechanism& mechanism, const PlatformPose& pose);
 
-/// Platform pose by the limb's moving joints [moving]. columns: null, or [6 x moving], set to the twists of the
-/// platform, at the base's origin, by each of them.
+/// Pose of the body where the limb ends by its moving joints [moving], where the body at which it begins is at `from`.
+/// columns: null, or [6 x moving], set to the twists of its end, at the base's origin, by each of them.
 Transform limb_transform(const Limb& limb, std::span<const double> displacements,
-                         Eigen::Matrix<double, 6, Eigen::Dynamic>* columns = nullptr);
+                         Eigen::Matrix<double, 6, Eigen::Dynamic>* columns = nullptr, const Transform& from = {});
 
 }  // namespace poesy::file

@@ -6,144 +6,20 @@
 
 #include "engine/base/text.h"
 #include "engine/schema/toml_text.h"
+#include "models/file/file_rows.h"
 #include "models/file/mechanism.h"
 
 namespace poesy::file {
 namespace {
 
-constexpr std::int64_t kMostCopies = 100;
 /// Of all limbs. Ranks take time with the cube of the axes, descriptions with the square of the frames.
 /// @{
 constexpr std::size_t kMostMovingAxes = 120;
 constexpr std::size_t kMostFrames = 1000;
 /// @}
 constexpr std::array<std::string_view, 6> kCoordinates{"x", "y", "z", "rx", "ry", "rz"};
-constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
 constexpr std::array<std::string_view, 6> kComponents{"epsilon_x", "epsilon_y", "epsilon_z",
                                                       "delta_x",   "delta_y",   "delta_z"};
-
-/// The scope of tables whose rows need the value alone.
-struct Nothing {};
-
-template <class Object>
-using Row = Key<Object, Nothing>;
-
-/// A value that `read` makes of a StudyValue, in the member at this path.
-template <class Read, class... Path>
-auto kept(std::string type, Read read, Path... path) {
-  using Object = OwnerOf<Path...>;
-  return KeyValue<Object>{.type = std::move(type), .read = [=](const StudyValue& value, Object& object) {
-                            detail::at(object, path...) = read(value);
-                          }};
-}
-
-/// A value that `read` makes of a StudyValue and of what the object has already.
-template <class Object>
-KeyValue<Object> read_by(std::string type, void (*read)(const StudyValue&, Object&)) {
-  return {.type = std::move(type), .read = read};
-}
-
-/// A row that must be there where it holds: for all words of the table's chooser, or for these.
-template <class Object>
-Row<Object> needed(std::string_view name, KeyValue<Object> value, std::string example, std::string_view meaning,
-                   std::vector<std::string_view> only_for = {}) {
-  Row<Object> row{.name = name, .value = std::move(value), .missing = "write {}", .meaning = meaning};
-  row.example = std::move(example);
-  row.only_for = std::move(only_for);
-  return row;
-}
-
-/// A row that may be left out. usual: what holds then.
-template <class Object>
-Row<Object> optional(std::string_view name, KeyValue<Object> value, std::string usual, std::string_view meaning,
-                     std::vector<std::string_view> only_for = {}) {
-  Row<Object> row{.name = name, .value = std::move(value), .usual = std::move(usual), .meaning = meaning};
-  row.only_for = std::move(only_for);
-  return row;
-}
-
-Expression expression(const StudyValue& value) {
-  if (value.is_text()) return {value.text(), value.full_name(), value.place(), true};
-  return {shortest(value.number()), value.full_name(), value.place(), false};
-}
-
-Triple point(const StudyValue& value) {
-  const std::vector<StudyValue> list = value.list();
-  if (list.size() != 3) {
-    value.fail("has " + std::to_string(list.size()) + " values", "write three, e.g. [\"60 mm\", 0, 0]");
-  }
-  return {{expression(list[0]), expression(list[1]), expression(list[2])}, value.full_name(), value.place()};
-}
-
-/// "x", "-z", or three numbers or expressions.
-Triple direction(const StudyValue& value) {
-  if (!value.is_text()) return point(value);
-  std::string word = value.text();
-  const bool back = word.starts_with('-');
-  if (back) word.erase(0, 1);
-  const auto axis = std::ranges::find(kAxes, word);
-  if (axis == kAxes.end()) {
-    value.fail("is '" + printable(value.text()) + "'",
-               "write \"x\", \"y\", \"z\", a minus before it, or [x, y, z] for a direction");
-  }
-  Triple triple{{}, value.full_name(), value.place()};
-  triple.entries.fill({"0", value.full_name(), value.place(), false});
-  triple.entries[static_cast<std::size_t>(axis - kAxes.begin())].text = back ? "-1" : "1";
-  return triple;
-}
-
-Reference reference(const StudyValue& value) { return {value.text(), value.full_name(), value.place()}; }
-
-std::vector<Reference> references(const StudyValue& value) {
-  if (value.is_text()) return {reference(value)};
-  std::vector<Reference> list;
-  for (const StudyValue& element : value.list()) list.push_back(reference(element));
-  return list;
-}
-
-/// Letters that a name may have, so that messages and tables show it whole, with what is appended to it.
-constexpr std::size_t kLongestName = 48;
-
-void check_name(const Reference& reference) {
-  const auto allowed = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '-'); };
-  if (reference.name.size() > kLongestName) {
-    throw InputError(reference.place, reference.key + " '" + printable(reference.name) + "' is too long",
-                     "write at most " + std::to_string(kLongestName) + " letters");
-  }
-  if (!reference.name.empty() && !reference.name.starts_with('-') && std::ranges::all_of(reference.name, allowed)) {
-    return;
-  }
-  throw InputError(reference.place, reference.key + " '" + printable(reference.name) + "' is no name",
-                   "write letters, digits, _ and -, and do not begin with -");
-}
-
-/// Throws where the name is taken already.
-template <class Named>
-void check_new(const Reference& reference, const std::vector<Named>& taken, std::string_view whose) {
-  check_name(reference);
-  const auto same = [&](const Named& other) { return other.name == reference.name; };
-  if (std::ranges::none_of(taken, same)) return;
-  throw InputError(reference.place,
-                   reference.key + " '" + reference.name + "' is the name of another " + std::string(whose),
-                   "give it a name of its own");
-}
-
-std::string read_name(const StudyValue& value) {
-  check_name(reference(value));
-  return value.text();
-}
-
-/// The keys of a table whose names the file chooses, in the order of the file.
-std::vector<Reference> keys_in_order(const StudySection& section) {
-  std::vector<Reference> list;
-  for (const std::string& key : section.keys()) {
-    const StudyValue value = *section.find(key);
-    list.push_back({key, value.full_name(), value.place()});
-    check_name(list.back());
-  }
-  std::ranges::sort(list, {}, [](const Reference& at) { return std::tuple(at.place.line, at.place.column); });
-  return list;
-}
 
 std::vector<NamedPoint> points(const StudyValue& value) {
   const StudySection section = value.section();
@@ -237,7 +113,14 @@ const Keys<JointLines, Nothing>& joint_keys() {
               "Of R, P and H a text is the name of its drive: joints of one name, in any limbs, are moved by one "
               "drive, all by the same displacement from home. A * in the name is the number of the limb's copy; "
               "without it all copies have one drive.",
-              {"R", "P", "H", "C", "U"})}};
+              {"R", "P", "H", "C", "U"}),
+          optional("stiffness", kept("table", read_stiffness, &J::stiffness), "rigid",
+                   "Of its bearing and drive, in its first frame before its motion."),
+          optional("reaction",
+                   kept(
+                       "true or false", [](const StudyValue& value) { return value.yes_or_no(); }, &J::reaction),
+                   "`false`",
+                   "Whether what its side of `from` exerts on that of `to` is a response, where there is stiffness.")}};
   return keys;
 }
 
@@ -257,49 +140,45 @@ std::vector<JointLines> joints(const StudyValue& value) {
   return list;
 }
 
-const Keys<LimbLines, Nothing>& copies_keys() {
-  const auto axis = [](const StudyValue& value) { return value.word(kAxes); };
-  static const Keys<LimbLines, Nothing> keys{
-      .paths = {"limb.copies"},
-      .meaning = "Limbs alike: limb k of them is the first turned by (k - 1) 360 deg / count.",
-      .rows = {needed("count", whole_at(1, kMostCopies, &LimbLines::copies), "3", "How many there are."),
-               needed("about", kept("text", axis, &LimbLines::about), "\"z\"",
-                      "About which axis of the base they are turned: x, y or z.")}};
-  return keys;
-}
-
-void read_copies(const StudyValue& value, LimbLines& limb) {
-  read_keys(copies_keys(), value.section(), limb, Nothing{});
-}
-
 /// What [[error]] calls all limbs.
 constexpr std::string_view kEach = "each";
 
 std::string read_limb_name(const StudyValue& value) {
-  if (value.text() == kEach) value.fail("is 'each', which means all limbs", "give the limb another name");
-  return read_name(value);
+  const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
+  const std::string name = read_name(value);
+  if (std::ranges::none_of(name, is_letter)) {
+    value.fail("is '" + name + "', which a number could be", "give it a name with a letter");
+  }
+  if (name == kEach) value.fail("is 'each', which means all limbs", "give the limb another name");
+  return name;
 }
 
 const Keys<LimbLines, Nothing>& limb_keys() {
   static const Keys<LimbLines, Nothing> keys{
       .paths = {"limb"},
-      .meaning = "A limb, [[limb]], between base and platform.",
+      .meaning = "A limb, [[limb]], between two bodies.",
       .rows = {
           optional("name", kept("text", read_limb_name, &LimbLines::name), "none",
                    "Its name, by which [[error]] may call it and its copies."),
-          optional("copies", read_by("table", read_copies), "one", "Limbs alike, turned about an axis of the base."),
+          optional("from", kept("text", reference, &LimbLines::from), "`\"base\"`",
+                   "The body where it begins; its frame 0 leads from that body's frame to the first joint."),
+          optional("to", kept("text", reference, &LimbLines::to), "`\"platform\"`",
+                   "The body where it ends. At every body at least one limb ends."),
+          optional("copies", kept("table", read_copies, &LimbLines::copies), "one",
+                   "Limbs alike, turned about an axis of the base."),
           optional("points", kept("table", points, &LimbLines::points), "none",
                    "Points of this limb alone, as in [points]."),
           needed(
               "joints", kept("list of tables", joints, &LimbLines::joints),
               "[ { name = \"A\", type = \"R\", at = [0, 0, 0], axis = \"y\" } ]",
-              "Its joints, from base to platform. All limbs together have at most 120 moving axes and 1000 frames.")}};
+              "Its joints, in the order from `from` to `to`. All limbs together have at most 120 moving axes and 1000 "
+              "frames."),
+          optional("links", kept("list of tables", read_links, &LimbLines::links), "rigid",
+                   "Parts between its joints that give way."),
+          optional("compliance", kept("list of lists", read_compliance, &LimbLines::compliance), "none",
+                   "Of the whole limb, besides joints and links: 6 x 6 bare SI numbers, [rotation; translation] from "
+                   "[moment; force] in the frame of `to`.")}};
   return keys;
-}
-
-std::vector<StudyValue> tables(const StudyValue& value) {
-  if (value.is_section()) value.fail("is one table", "write double brackets: [[" + value.full_name() + "]]");
-  return value.list();
 }
 
 /// What all limbs have together.
@@ -309,9 +188,9 @@ struct Extent {
   std::size_t frames = 0;  ///< of joints
 
   void add(const LimbLines& limb) {
-    limbs += limb.copies;
+    limbs += limb.copies.count;
     for (const JointLines& joint : limb.joints) {
-      const std::size_t count = limb.copies * elements(joint.kind);
+      const std::size_t count = limb.copies.count * elements(joint.kind);
       frames += count;
       if (joint.kind != JointKind::fixed) axes += count;
     }
@@ -334,6 +213,8 @@ std::vector<LimbLines> limbs(const StudyValue& value) {
   Extent extent;
   for (const StudyValue& element : tables(value)) {
     LimbLines limb;
+    limb.key = element.full_name();
+    limb.place = element.place();
     read_keys(limb_keys(), element.section(), limb, Nothing{});
     for (const NamedPoint& named : limb.points) {
       check_new({named.name, named.point.key, named.point.place}, limb.joints, "joint of this limb");
@@ -425,7 +306,9 @@ const Keys<PlatformLines, Nothing>& platform_keys() {
                    "A point of the platform frame whose displacement is reported in addition."),
           optional("points", read_by("list of points", read_metric_points),
                    "the point of each limb's last joint that moves",
-                   "Points of the platform frame by which mismatch of limbs is weighed.")}};
+                   "Points of the platform frame by which mismatch of limbs is weighed."),
+          optional("mass", kept("mass", expression, &P::mass), "none", "Its mass, on which gravity acts: \"3 kg\"."),
+          optional("centre", kept("point", point, &P::centre), "its origin", "Its centre of mass, in its frame.")}};
   return keys;
 }
 
@@ -461,15 +344,16 @@ const Keys<ErrorLines, Nothing>& error_keys() {
       .rows = {
           needed("name", kept("text", reference, &E::name), "\"l\"",
                  "Its name; components of a vector append _x, _y, _z, and an error of several limbs _1, _2, ... behind "
-                 "that, the limb's number."),
+                 "that: the copy's number where the limb is named, else the limb's."),
           needed<E>("limb", {.type = "integer, text or list"}, "\"each\"",
                     "The limb: its number, counted from 1, or its name, which also means its copies; a list of numbers "
                     "and names; or \"each\", where all limbs have the frame. Each limb has an error of its own."),
           needed<E>(
-              "frame", {.type = "integer", .bounds = "at least 0"}, "0",
-              "The fixed frame: 0 before the first joint, the last one to the platform. An error acts in the axes of "
-              "the joint before it, and its angles turn about that joint's point; in the first frame the axes are the "
-              "base's, in the last one the platform's. About what angles turn there, `about` in [errors] says."),
+              "frame", {.type = "integer or text"}, "0",
+              "The fixed frame: 0 before the first joint, the last one to the body where the limb ends; or the name of "
+              "a joint: the frame behind it. An error acts in the axes of the joint before it, and its angles turn "
+              "about that joint's point; in the first frame the axes are those of the body where the limb begins, in "
+              "the last one those of the body where it ends. About what angles turn there, `about` in [errors] says."),
           needed(
               "component", kept("text or list", components, &E::components), "\"delta_z\"",
               "delta_x, delta_y, delta_z (lengths) or epsilon_x, epsilon_y, epsilon_z (angles) of the frame; several "
@@ -481,16 +365,38 @@ const Keys<ErrorLines, Nothing>& error_keys() {
 
 /// A limb, copies included, as an error may name it.
 struct NamedLimb {
-  std::string_view name;  ///< empty: none
-  std::size_t frames;     ///< one more than its elementary joints
+  const LimbLines* lines;
+  std::size_t copy;  ///< counts from 1
+
+  /// Behind the joint of this name; none where it has no such joint.
+  std::optional<std::size_t> frame_behind(std::string_view joint) const {
+    std::size_t frame = 0;
+    for (const JointLines& one : lines->joints) {
+      frame += elements(one.kind);
+      if (one.name == joint) return frame;
+    }
+    return std::nullopt;
+  }
+
+  /// "left_1"; empty where it has no name.
+  std::string label() const {
+    return lines->name.empty() || lines->copies.count == 1 ? lines->name : lines->name + "_" + std::to_string(copy);
+  }
+
+  /// "limb 4", with a name "limb 4 (left_1)". position: counts from 0.
+  std::string text(std::size_t position) const {
+    const std::string number = "limb " + std::to_string(position + 1);
+    return lines->name.empty() ? number : number + " (" + label() + ")";
+  }
+
+  /// The one to the body where it ends.
+  std::size_t last_frame() const { return *frame_behind(lines->joints.back().name); }
 };
 
 std::vector<NamedLimb> named_limbs(const MechanismFile& file) {
   std::vector<NamedLimb> list;
   for (const LimbLines& limb : file.limbs) {
-    std::size_t frames = 1;
-    for (const JointLines& joint : limb.joints) frames += elements(joint.kind);
-    list.insert(list.end(), limb.copies, {limb.name, frames});
+    for (std::size_t copy = 1; copy <= limb.copies.count; ++copy) list.push_back({&limb, copy});
   }
   return list;
 }
@@ -509,7 +415,7 @@ std::string limbs_text(const std::vector<std::size_t>& limbs) {
 void add_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, ErrorLines& error) {
   const auto add = [&](std::size_t limb) {
     if (std::ranges::find(error.limbs, limb) != error.limbs.end()) {
-      value.fail("names limb " + std::to_string(limb + 1) + " a second time", "remove it");
+      value.fail("names " + known[limb].text(limb) + " a second time", "remove it");
     }
     error.limbs.push_back(limb);
   };
@@ -519,7 +425,7 @@ void add_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, Err
   const std::string name = value.text();
   const std::size_t before = error.limbs.size();
   for (std::size_t i = 0; i < known.size(); ++i) {
-    if (!name.empty() && known[i].name == name) add(i);
+    if (!name.empty() && (known[i].lines->name == name || known[i].label() == name)) add(i);
   }
   if (error.limbs.size() > before) return;
   value.fail("is '" + printable(name) + "', which no limb is named",
@@ -527,16 +433,30 @@ void add_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, Err
 }
 
 void read_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, ErrorLines& error) {
+  bool by_copy = false;
   if (value.is_text() && value.text() == kEach) {
     for (std::size_t i = 0; i < known.size(); ++i) error.limbs.push_back(i);
-    error.each = error.numbered = true;
+    error.each = true;
   } else if (value.is_list()) {
     for (const StudyValue& element : value.list()) add_limbs(element, known, error);
     if (error.limbs.empty()) value.fail("is empty", "write the limbs' numbers, e.g. [1, 2, 3]");
-    error.numbered = true;
   } else {
     add_limbs(value, known, error);
-    error.numbered = error.limbs.size() > 1;
+    by_copy = true;
+  }
+  const bool alone = by_copy && error.limbs.size() == 1;
+  for (const std::size_t i : error.limbs) error.numbers.push_back(alone ? 0 : by_copy ? known[i].copy : i + 1);
+}
+
+/// The frame behind a joint of each limb.
+void read_frame_by_name(const StudyValue& frame, const std::vector<NamedLimb>& known, ErrorLines& error) {
+  for (const std::size_t i : error.limbs) {
+    const std::optional<std::size_t> behind = known[i].frame_behind(frame.text());
+    if (!behind) {
+      frame.fail("is '" + printable(frame.text()) + "', which no joint of " + known[i].text(i) + " is named",
+                 suggestion(frame.text(), names(known[i].lines->joints)));
+    }
+    error.frames.push_back(*behind);
   }
 }
 
@@ -544,22 +464,23 @@ void read_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, Er
 void read_slot(const StudySection& section, const std::vector<NamedLimb>& known, ErrorLines& error) {
   read_limbs(section.require("limb"), known, error);
   const StudyValue frame = section.require("frame");
-  error.frame = static_cast<std::size_t>(frame.whole_number(0));
+  if (frame.is_text()) return read_frame_by_name(frame, known, error);
+  const auto number = static_cast<std::size_t>(frame.whole_number(0));
+  error.frames.assign(error.limbs.size(), number);
   std::vector<std::size_t> with;
   std::vector<std::size_t> without;
-  for (const std::size_t i : error.limbs) (error.frame < known[i].frames ? with : without).push_back(i);
+  for (const std::size_t i : error.limbs) (number <= known[i].last_frame() ? with : without).push_back(i);
   if (without.empty()) return;
-  const std::string last = std::to_string(known[without.front()].frames - 1);
+  const std::string last = std::to_string(known[without.front()].last_frame());
   if (error.each && !with.empty()) {
     std::string list;
     for (const std::size_t i : with) list += (list.empty() ? "" : ", ") + std::to_string(i + 1);
-    frame.fail("is " + std::to_string(error.frame) + ", which " + limbs_text(with) + " have, and " +
-                   limbs_text(without) + " not: the last frame of limb " + std::to_string(without.front() + 1) +
-                   " is " + last,
+    frame.fail("is " + std::to_string(number) + ", which " + limbs_text(with) + " have, and " + limbs_text(without) +
+                   " not: the last frame of limb " + std::to_string(without.front() + 1) + " is " + last,
                "name the limbs that are meant: limb = [" + list + "]");
   }
-  frame.fail("is " + std::to_string(error.frame),
-             "the last frame of limb " + std::to_string(without.front() + 1) + " is " + last);
+  frame.fail("is " + std::to_string(number),
+             "the last frame of " + known[without.front()].text(without.front()) + " is " + last);
 }
 
 void read_named_errors(const StudyValue& value, MechanismFile& file) {
@@ -671,22 +592,26 @@ const Keys<MechanismFile, Nothing>& file_keys() {
   static const Keys<F, Nothing> keys{
       .paths = {""},
       .meaning = "A mechanism: everything stands in one base frame, at the home pose, as on a drawing.",
-      .rows = {needed("format", read_by("text", read_format), "\"poesy-mechanism\"", "\"poesy-mechanism\"."),
-               needed("version", read_by("integer", read_version), "1", "1."),
-               needed("name", kept("text", read_name, &F::name), "\"rps3\"",
-                      "Its name: letters, digits, _ and -; it does not begin with -."),
-               optional("title", text_at(&F::title), "the name", "For people."),
-               optional("geometry", read_by("table", read_geometry), "none",
-                        "Lengths and angles that expressions name; a study may change each."),
-               optional("points", kept("table", points, &F::points), "none",
-                        "Points of the base frame, at home, that joints may name; those of a limb go before."),
-               needed("platform", kept("table", platform, &F::platform), "{ origin =, coordinates =, workspace = }",
-                      "What the limbs hold."),
-               needed("limb", kept("tables", limbs, &F::limbs), "[{ joints = }], or [[limb]] for each", "The limbs."),
-               optional("error", read_by("tables", read_named_errors), "none", "Errors with names of their own."),
-               optional("errors", read_by("table", read_errors), "`{}`", "Errors of fixed frames."),
-               optional("sets", read_by("table", read_sets), "none besides `all`",
-                        "Sets of errors that a study may name.")}};
+      .rows = {
+          needed("format", read_by("text", read_format), "\"poesy-mechanism\"", "\"poesy-mechanism\"."),
+          needed("version", read_by("integer", read_version), "1", "1."),
+          needed("name", kept("text", read_name, &F::name), "\"rps3\"",
+                 "Its name: letters, digits, _ and -; it does not begin with -."),
+          optional("title", text_at(&F::title), "the name", "For people."),
+          optional("geometry", read_by("table", read_geometry), "none",
+                   "Lengths and angles that expressions name; a study may change each."),
+          optional("points", kept("table", points, &F::points), "none",
+                   "Points of the base frame, at home, that joints may name; those of a limb go before."),
+          needed("platform", kept("table", platform, &F::platform), "{ origin =, coordinates =, workspace = }",
+                 "What the limbs hold."),
+          optional("body", kept("tables", read_bodies, &F::bodies), "none", "Rigid parts besides base and platform."),
+          needed("limb", kept("tables", limbs, &F::limbs), "[{ joints = }], or [[limb]] for each", "The limbs."),
+          optional("load", kept("table", read_load, &F::load), "none",
+                   "Loads, which act where the mechanism has stiffness; [mechanism.load] of a study replaces them."),
+          optional("error", read_by("tables", read_named_errors), "none", "Errors with names of their own."),
+          optional("errors", read_by("table", read_errors), "`{}`", "Errors of fixed frames."),
+          optional("sets", read_by("table", read_sets), "none besides `all`",
+                   "Sets of errors that a study may name.")}};
   return keys;
 }
 
@@ -745,21 +670,26 @@ std::string_view name(Rotation rotation) {
 std::string_view name(ErrorsAbout about) { return about == ErrorsAbout::joint ? "joint" : "frame"; }
 
 const StudyTables& mechanism_file_tables() {
-  static const StudyTables tables{
-      described(file_keys()),
-      of_names({"geometry"}, "PARAMETER", "length or angle, or table", "A parameter: its default, or a table with it."),
-      described(parameter_keys()),
-      of_names({"points", "limb.points"}, "POINT", "point", "A point: [x, y, z]."),
-      described(platform_keys()),
-      of_names({"platform.coordinates"}, "COORDINATE", "text", "A coordinate's name, and which it is: x, ..., rz."),
-      of_names({"platform.workspace"}, "COORDINATE", "list", "The lowest and the highest value of a coordinate.",
-               "write {}", "[\"-20 deg\", \"20 deg\"]"),
-      described(limb_keys()),
-      described(copies_keys()),
-      described(joint_keys()),
-      described(errors_keys()),
-      described(error_keys()),
-      of_names({"sets"}, "SET", "list", "A set: names or patterns of errors.")};
+  static const StudyTables tables = [] {
+    StudyTables list{
+        described(file_keys()),
+        of_names({"geometry"}, "PARAMETER", "length or angle, or table",
+                 "A parameter: its default, or a table with it."),
+        described(parameter_keys()),
+        of_names({"points", "limb.points"}, "POINT", "point", "A point: [x, y, z]."),
+        described(platform_keys()),
+        of_names({"platform.coordinates"}, "COORDINATE", "text", "A coordinate's name, and which it is: x, ..., rz."),
+        of_names({"platform.workspace"}, "COORDINATE", "list", "The lowest and the highest value of a coordinate.",
+                 "write {}", "[\"-20 deg\", \"20 deg\"]"),
+        described(limb_keys()),
+        copies_table(),
+        described(joint_keys()),
+        described(errors_keys()),
+        described(error_keys()),
+        of_names({"sets"}, "SET", "list", "A set: names or patterns of errors.")};
+    for (StudyTable& part : part_tables()) list.push_back(std::move(part));
+    return list;
+  }();
   return tables;
 }
 

@@ -11,31 +11,12 @@
 #include "engine/base/error.h"
 #include "engine/model/model.h"
 #include "engine/schema/keys.h"
-#include "models/file/expression.h"
+#include "models/file/lines.h"
+#include "models/file/part_lines.h"
 
 /// A mechanism file as it is written: expressions, names and their places, without any number that depends on the
 /// geometry. mechanism.h makes numbers of it.
 namespace poesy::file {
-
-/// A name that stands for something else, and where it is written.
-struct Reference {
-  std::string name;  ///< as written
-  std::string key;   ///< for messages: "limb[0].joints[1].from"
-  Place place;       ///< of the value
-};
-
-/// A point or a direction.
-struct Triple {
-  std::array<Expression, 3> entries;  ///< x, y, z
-  std::string key;                    ///< for messages
-  Place place;                        ///< of the value
-};
-
-/// A point with a name.
-struct NamedPoint {
-  std::string name;  ///< as references have it
-  Triple point;      ///< in the base frame, at home
-};
 
 /// The types of joints.
 enum class JointKind { fixed, revolute, prismatic, helical, cylindrical, universal, spherical };
@@ -47,29 +28,36 @@ std::size_t elements(JointKind kind);
 
 /// A joint as written.
 struct JointLines {
-  JointKind kind = JointKind::revolute;  ///< what it is
-  std::string name;                      ///< unique in the limb
-  std::string key;                       ///< for messages: "limb[0].joints[1]"
-  Place place;                           ///< of its table
-  std::optional<Triple> at;              ///< where it stands
-  std::optional<Reference> at_point;     ///< or the point where it stands
-  std::optional<Reference> from;         ///< its direction begins here
-  std::optional<Reference> to;           ///< and points here
-  std::optional<Triple> axis;            ///< its direction, without from and to
-  std::optional<Triple> axis2;           ///< of U: the second
-  std::optional<Triple> x;               ///< of its first frame
-  std::optional<Expression> pitch;       ///< of H, per turn
-  std::array<bool, 2> actuated{};        ///< its elementary joints
-  std::optional<Reference> drive;        ///< that holds it and others; "*" in it: the number of the limb's copy
+  JointKind kind = JointKind::revolute;     ///< what it is
+  std::string name;                         ///< unique in the limb
+  std::string key;                          ///< for messages: "limb[0].joints[1]"
+  Place place;                              ///< of its table
+  std::optional<Triple> at;                 ///< where it stands
+  std::optional<Reference> at_point;        ///< or the point where it stands
+  std::optional<Reference> from;            ///< its direction begins here
+  std::optional<Reference> to;              ///< and points here
+  std::optional<Triple> axis;               ///< its direction, without from and to
+  std::optional<Triple> axis2;              ///< of U: the second
+  std::optional<Triple> x;                  ///< of its first frame
+  std::optional<Expression> pitch;          ///< of H, per turn
+  std::array<bool, 2> actuated{};           ///< its elementary joints
+  std::optional<Reference> drive;           ///< that holds it and others; "*" in it: the number of the limb's copy
+  std::optional<StiffnessLines> stiffness;  ///< of its bearing and drive; none: rigid
+  bool reaction = false;                    ///< whether its reaction is a response
 };
 
 /// A limb as written, and how often.
 struct LimbLines {
-  std::string name;                ///< of it and its copies; empty: none
-  std::vector<JointLines> joints;  ///< base to platform
-  std::vector<NamedPoint> points;  ///< its own
-  std::size_t copies = 1;          ///< at least 1
-  std::size_t about = 2;           ///< base axis about which copies are turned: 0, 1, 2
+  std::string name;                           ///< of it and its copies; empty: none
+  std::string key;                            ///< for messages: "limb[0]"
+  Place place;                                ///< of its table
+  std::optional<Reference> from;              ///< the body where it begins; none: the base
+  std::optional<Reference> to;                ///< the body where it ends; none: the platform
+  std::vector<JointLines> joints;             ///< base to platform
+  std::vector<NamedPoint> points;             ///< its own
+  Copies copies;                              ///< how many
+  std::vector<LinkLines> links;               ///< that give way
+  std::optional<ComplianceLines> compliance;  ///< in the frame of the body where it ends
 };
 
 /// A pose coordinate as written.
@@ -98,6 +86,8 @@ struct PlatformLines {
   std::optional<Triple> tool;                ///< a point of the platform, in its frame
   std::vector<Triple> points;                ///< of the metric, in the platform's frame; none: by the limbs' ends
   Place place;                               ///< of [platform] or its points
+  std::optional<Expression> mass;            ///< none: 0
+  std::optional<Triple> centre;              ///< of mass, in its frame; none: its origin
 };
 
 /// About what an angle of a limb's first and of its last frame turns; the axes are the base's and the platform's.
@@ -110,11 +100,12 @@ std::string_view name(ErrorsAbout about);
 
 /// An error that a mechanism file names, `[[error]]`.
 struct ErrorLines {
-  Reference name;                            ///< without numbers
-  std::vector<std::size_t> limbs;            ///< that have it, counted from 0
-  bool each = false;                         ///< whether they are meant by "each"
-  bool numbered = false;                     ///< whether the limb's number is appended to the name
-  std::size_t frame = 0;                     ///< counts from 0
+  Reference name;                  ///< without numbers
+  std::vector<std::size_t> limbs;  ///< that have it, counted from 0
+  bool each = false;               ///< whether they are meant by "each"
+  /// [limbs] what is appended to the name: the limb's number, or that of its copy; 0: nothing.
+  std::vector<std::size_t> numbers;
+  std::vector<std::size_t> frames;           ///< [limbs] of each, counts from 0
   std::vector<std::size_t> components;       ///< of [epsilon; delta]
   Expression scale{"1", "scale", {}, true};  ///< the entry of the frame's error is the error times this
   std::string description;                   ///< empty: the frame's
@@ -134,6 +125,8 @@ struct MechanismFile {
   std::vector<GeometryParameter> geometry;       ///< in the order of the file, with defaults
   std::vector<NamedPoint> points;                ///< of all limbs
   PlatformLines platform;                        ///< what the limbs hold
+  std::vector<BodyLines> bodies;                 ///< besides base and platform, without copies
+  LoadLines load;                                ///< that act where there is stiffness
   std::vector<LimbLines> limbs;                  ///< as written, without copies
   std::optional<std::vector<Reference>> frames;  ///< frame errors: names and patterns; none: see all_frames()
   bool all = false;                              ///< whether `frames = "all"` is written

@@ -42,7 +42,7 @@ struct PoseEquations {
 PoseEquations equations_at(const Mechanism& unit, double reach, const Tracked& tracked) {
   PoseEquations made;
   const std::vector<double> q = scaled_displacements(unit, tracked.displacements, 1.0 / reach);
-  made.state.resize(static_cast<Index>(q.size()) + 6);
+  made.state.resize(static_cast<Index>(q.size()) + 6);  // a mechanism without bodies between
   std::ranges::copy(q, made.state.begin());
   for (std::size_t c = 0; c < 6; ++c) {
     made.state[static_cast<Index>(q.size() + c)] = tracked.pose[c] / (c < 3 ? reach : 1.0);
@@ -54,7 +54,7 @@ PoseEquations equations_at(const Mechanism& unit, double reach, const Tracked& t
                                             unit.coordinates.end();
     if (!given) free.push_back(k);
   }
-  made.root = metric_root(unit, pose_of(made.state));
+  made.root = metric_root(unit, pose_of(unit, made.state));
   made.rest =
       linalg::orthogonal_complement(weighed(made.root, loops.columns(Eigen::all, free)), unit.precision.rank_threshold);
   made.mismatch = made.rest.transpose() * weighed(made.root, loops.residual);

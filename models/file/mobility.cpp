@@ -36,36 +36,56 @@ Decomposed decomposed(const Matrix& matrix, double threshold, double largest = 0
 
 std::size_t size(Index count) { return static_cast<std::size_t>(count); }
 
-/// Loop Jacobian, and the platform's twists by limb 1, in units of the reach.
+/// Loop Jacobian, and bodies' twists, in units of the reach.
 struct Jacobians {
   Matrix loops;
-  Columns platform;                  ///< [6 x joints]: zero but for limb 1
+  std::vector<Columns> bodies;       ///< [bodies][6 x joints] their twists by the limbs that place them; the base's: 0
   std::vector<const Joint*> joints;  ///< of the columns
-  std::vector<std::size_t> limbs;    ///< of the columns, counted from 1
+  std::vector<std::string> limbs;    ///< of the columns, as messages name them
+
+  const Columns& platform() const { return bodies[kPlatform]; }
 };
 
+/// Every body has the twist of the first limb that ends there, and limbs that end there too have theirs less it.
 Jacobians jacobians(const Mechanism& unit, std::span<const double> q) {
   const auto joints = static_cast<Index>(unit.moving());
-  const auto loops = static_cast<Index>(unit.limbs.size()) - 1;
-  Jacobians made{Matrix::Zero(6 * loops, joints), Columns::Zero(6, joints), {}, {}};
+  const std::size_t bodies = unit.bodies.size();
+  const auto loops = static_cast<Index>(unit.limbs.size() - (bodies - 1));
+  Jacobians made{Matrix::Zero(6 * loops, joints), std::vector<Columns>(bodies, Columns::Zero(6, joints)), {}, {}};
+  std::vector<Index> first;
   Index column = 0;
   for (std::size_t i = 0; i < unit.limbs.size(); ++i) {
-    const Limb& limb = unit.limbs[i];
-    const auto count = static_cast<Index>(limb.moving());
-    Columns columns(6, count);
-    limb_transform(limb, q.subspan(size(column), limb.moving()), &columns);
-    if (i == 0) {
-      made.platform.leftCols(count) = columns;
-      for (Index row = 0; row < loops; ++row) made.loops.block(6 * row, 0, 6, count) = -columns;
-    } else {
-      made.loops.block(6 * static_cast<Index>(i - 1), column, 6, count) = columns;
-    }
-    for (const Joint& joint : limb.joints) {
+    first.push_back(column);
+    column += static_cast<Index>(unit.limbs[i].moving());
+    for (const Joint& joint : unit.limbs[i].joints) {
       if (!joint.moves()) continue;
       made.joints.push_back(&joint);
-      made.limbs.push_back(i + 1);
+      made.limbs.push_back(limb_text(unit, i));
     }
-    column += count;
+  }
+  std::vector<Transform> at(bodies);
+  /// The twist of the limb's end, without that of the body where it begins, and its pose.
+  const auto add_limb = [&](std::size_t i, Eigen::Ref<Matrix> to, double sign) {
+    const Limb& limb = unit.limbs[i];
+    Columns columns(6, static_cast<Index>(limb.moving()));
+    const Transform end = limb_transform(limb, q.subspan(size(first[i]), limb.moving()), &columns, at[limb.from]);
+    to += sign * made.bodies[limb.from];
+    to.middleCols(first[i], columns.cols()) += sign * columns;
+    return end;
+  };
+  std::vector<bool> places(unit.limbs.size(), false);
+  for (const std::size_t i : placing_limbs(unit)) {
+    places[i] = true;
+    Matrix twists = Matrix::Zero(6, joints);
+    at[unit.limbs[i].to] = add_limb(i, twists, 1.0);
+    made.bodies[unit.limbs[i].to] = twists;
+  }
+  Index row = 0;
+  for (std::size_t i = 0; i < unit.limbs.size(); ++i) {
+    if (places[i]) continue;
+    add_limb(i, made.loops.middleRows(row, 6), 1.0);
+    made.loops.middleRows(row, 6) -= made.bodies[unit.limbs[i].to];
+    row += 6;
   }
   return made;
 }
@@ -78,7 +98,7 @@ Jacobians with_one_column_a_drive(Jacobians all, const std::vector<Drive>& drive
     const auto first = static_cast<Index>(drive.joints.front());
     for (const std::size_t other : std::span(drive.joints).subspan(1)) {
       all.loops.col(first) += all.loops.col(static_cast<Index>(other));
-      all.platform.col(first) += all.platform.col(static_cast<Index>(other));
+      for (Columns& body : all.bodies) body.col(first) += body.col(static_cast<Index>(other));
       follows[other] = true;
     }
   }
@@ -90,7 +110,7 @@ Jacobians with_one_column_a_drive(Jacobians all, const std::vector<Drive>& drive
     made.limbs.push_back(all.limbs[k]);
   }
   made.loops = all.loops(Eigen::all, kept);
-  made.platform = all.platform(Eigen::all, kept);
+  for (const Columns& body : all.bodies) made.bodies.emplace_back(body(Eigen::all, kept));
   return made;
 }
 
@@ -113,7 +133,7 @@ std::string vector_text(const Vector3& vector) {
   return "(" + entry(vector.x()) + ", " + entry(vector.y()) + ", " + entry(vector.z()) + ")";
 }
 
-/// "limb 2: joint 'A' ..., so that the platform turns about (0, 0, 1)" for a motion of the passive joints.
+/// "joint 'A' of limb 2 is loose, and the platform turns about (0, 0, 1)" for a motion of the passive joints.
 void describe_loose(const Jacobians& all, const Eigen::VectorXd& motion, const lie::Screw<double>& twist,
                     Mobility& found) {
   Index largest = 0;
@@ -128,23 +148,28 @@ void describe_loose(const Jacobians& all, const Eigen::VectorXd& motion, const l
   const Vector3 along = turns ? twist.head<3>() : twist.tail<3>();
   const Vector3 direction = along / along.norm();
   found.loose_place = all.joints[size(column)]->place;
-  found.loose_text = "joint '" + all.joints[size(column)]->name + "' of limb " +
-                     std::to_string(all.limbs[size(column)]) + " is loose, and the platform " +
+  found.loose_text = "joint '" + all.joints[size(column)]->name + "' of " + all.limbs[size(column)] +
+                     " is loose, and " + found.loose_body + " " +
                      (turns ? "turns about " + vector_text(direction) : "slides along " + vector_text(direction));
 }
 
-void find_loose(const Jacobians& all, double threshold, Mobility& found) {
+/// bodies: of the mechanism.
+void find_loose(const Jacobians& all, const std::vector<assembly::Body>& bodies, double threshold, Mobility& found) {
   const Matrix loops = passive(all.loops, all);
   const double largest = found.singular_values.empty() ? 0.0 : found.singular_values[0];
   const Decomposed locked = decomposed(loops, threshold, largest);
   found.passive_rank = size(locked.rank);
   found.left_when_locked = size(locked.null.cols());
-  const Matrix moved = passive(all.platform, all) * locked.null;
-  const Decomposed platform = decomposed(moved, threshold, 1.0);
-  found.loose = size(platform.rank);
-  if (platform.rank == 0) return;
-  const Eigen::VectorXd freedom = platform.V.col(0);
-  describe_loose(all, locked.null * freedom, moved * freedom, found);
+  for (std::size_t b = kPlatform; b < bodies.size(); ++b) {
+    const Matrix moved = passive(all.bodies[b], all) * locked.null;
+    const Decomposed body = decomposed(moved, threshold, 1.0);
+    if (body.rank == 0) continue;
+    found.loose = size(body.rank);
+    found.loose_body = b == kPlatform ? "the platform" : "body '" + bodies[b].name + "'";
+    const Eigen::VectorXd freedom = body.V.col(0);
+    describe_loose(all, locked.null * freedom, moved * freedom, found);
+    return;
+  }
 }
 
 /// The first coordinate without which the others have the same rank.
@@ -184,7 +209,7 @@ Mobility mobility_of(const Mechanism& unit, std::span<const double> q, const Pla
   const std::vector<Drive> drives = drives_of(unit);
   const Jacobians all = with_one_column_a_drive(of_joints, drives);
   const Decomposed loops = decomposed(all.loops, threshold, largest_of(of_joints.loops, drives));
-  const Matrix twists = all.platform * loops.null;
+  const Matrix twists = all.platform() * loops.null;
   Mobility found{.joints = of_joints.joints.size(), .drives = drives.size(), .loop_equations = size(all.loops.rows())};
   for (const Drive& drive : drives) found.actuated += drive.joints.size();
   found.singular_values.assign(loops.values.begin(), loops.values.end());
@@ -194,7 +219,7 @@ Mobility mobility_of(const Mechanism& unit, std::span<const double> q, const Pla
   found.platform_freedoms = size(decomposed(twists, threshold, 1.0).rank);
   found.platform_rotates = size(decomposed(twists.topRows(3), threshold, 1.0).rank);
   found.idle = found.freedoms - found.platform_freedoms;
-  find_loose(all, threshold, found);
+  find_loose(all, unit.bodies, threshold, found);
   find_coordinates(unit, pose, twists, found);
   return found;
 }
@@ -270,8 +295,10 @@ std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::si
 
 namespace {
 
-/// " in limb 2, which has none" where some limbs have a drive and that one has not; else empty.
+/// " in limb 2, which has none" where some limbs have a drive and that one has not; else empty. Empty also where limbs
+/// branch, because many of them have no drive then.
 std::string limb_without_drive(const Mechanism& mechanism) {
+  if (mechanism.is_branched()) return {};
   const auto has_none = [](const Limb& limb) { return std::ranges::none_of(limb.joints, &Joint::actuated); };
   const auto first = std::ranges::find_if(mechanism.limbs, has_none);
   if (first == mechanism.limbs.end() || std::ranges::all_of(mechanism.limbs, has_none)) return {};
@@ -283,9 +310,13 @@ void check_held(const Mechanism& mechanism, const Mobility& found, const std::st
   if (found.loose == 0) return;
   throw InputError(
       found.loose_place,
-      "the drives do not hold the platform" + where + ", which has " + count_text(found.platform_freedoms, "freedom") +
-          " and " + count_text(found.drives, "drive") + ": " + found.loose_text,
-      found.drives < found.platform_freedoms
+      "the drives do not hold " + found.loose_body + where +
+          (found.loose_body == "the platform" ? ", which has " + count_text(found.platform_freedoms, "freedom") +
+                                                    " and " + count_text(found.drives, "drive")
+                                              : "") +
+          ": " + found.loose_text,
+      found.loose_body != "the platform" ? "fix or drive that joint, or hold " + found.loose_body + " by another limb"
+      : found.drives < found.platform_freedoms
           ? "write actuated = true at one more joint" + limb_without_drive(mechanism) + ", or correct the axes"
           : "correct the axes, drive another joint, or draw it at a pose that is not singular");
 }

@@ -10,15 +10,16 @@
 
 namespace poesy::file {
 
-/// How a mechanism can move at one configuration, by the singular values of its loop Jacobian: 6 (limbs - 1) rows, the
-/// twists of limb k's platform less those of limb 1's at the base's origin, and a column for each motion: of a joint
+/// How a mechanism can move at one configuration, by the singular values of its loop Jacobian: 6 (limbs - bodies) rows,
+/// bodies without the base, the twists of a limb's end less those of the first limb that ends at the same body, at the
+/// base's origin, and a column for each motion: of a joint
 /// that moves, or of all joints of one drive together; lengths are in units of the reach. Below which share of the
 /// largest a singular value counts as zero, the mechanism's Precision says.
 struct Mobility {
   std::size_t joints = 0;             ///< that move
   std::size_t actuated = 0;           ///< of them
   std::size_t drives = 0;             ///< that move these
-  std::size_t loop_equations = 0;     ///< 6 (limbs - 1)
+  std::size_t loop_equations = 0;     ///< 6 (limbs - bodies)
   std::size_t rank = 0;               ///< of the loop Jacobian
   std::size_t freedoms = 0;           ///< motions - rank
   std::size_t over_constraints = 0;   ///< loop_equations - rank
@@ -27,7 +28,8 @@ struct Mobility {
   std::size_t idle = 0;               ///< freedoms that leave the platform where it is
   std::size_t passive_rank = 0;       ///< of the passive joints' columns; below loop_equations limbs deform each other
   std::size_t left_when_locked = 0;   ///< freedoms of the passive joints alone
-  std::size_t loose = 0;              ///< of them, that move the platform
+  std::size_t loose = 0;              ///< of them, that move the platform, or another body that the platform does not
+  std::string loose_body = {};        ///< which: "the platform", "body 'carriage_1'"
   std::string loose_text = {};        ///< which: "the platform turns about (0, 0, 1)"; empty: none
   Place loose_place = {};             ///< of the joint that moves most then
   std::size_t coordinates_rank = 0;   ///< of the pose's coordinates as functions of the joints

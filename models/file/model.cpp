@@ -18,52 +18,12 @@
 #include "models/chain/passive_condition.h"
 #include "models/chain/separation.h"
 #include "models/chain/sketch.h"
-#include "models/file/charts.h"
-#include "models/file/mobility.h"
-#include "models/file/rounding.h"
+#include "models/file/branched_model.h"
 #include "models/file/structure.h"
-#include "models/file/tracking.h"
+#include "models/file/tracked_model.h"
 
 namespace poesy::file {
 namespace {
-
-/// drives: of each joint that moves, as chain::Joint has it; those of the limb are taken off.
-chain::Limb chain_limb(const Limb& limb, bool errors_at_joints, std::span<const std::size_t>& drives) {
-  chain::Limb of_chain;
-  for (const Joint& joint : limb.joints) {
-    of_chain.joints.push_back(joint.of_chain());
-    if (!joint.moves()) continue;
-    of_chain.joints.back().drive = drives.front();
-    drives = drives.subspan(1);
-  }
-  of_chain.home = limb.home;
-  of_chain.errors_at_joints = errors_at_joints;
-  return of_chain;
-}
-
-/// Of each joint that moves, the number of its drive where that moves others too, else 0.
-std::vector<std::size_t> shared_drives(const Mechanism& mechanism) {
-  std::vector<std::size_t> numbers(mechanism.moving(), 0);
-  std::size_t number = 0;
-  for (const Drive& drive : drives_of(mechanism)) {
-    ++number;
-    if (!drive.is_shared()) continue;
-    for (const std::size_t joint : drive.joints) numbers[joint] = number;
-  }
-  return numbers;
-}
-
-/// A displacement for each joint and fixed frame, from those of the joints that move.
-std::vector<double> with_fixed(const Mechanism& mechanism, std::span<const double> moving) {
-  std::vector<double> all;
-  for (const Limb& limb : mechanism.limbs) {
-    for (const Joint& joint : limb.joints) {
-      all.push_back(joint.moves() ? moving.front() : 0.0);
-      if (joint.moves()) moving = moving.subspan(1);
-    }
-  }
-  return all;
-}
 
 /// Displacements of joints and fixed frames at a pose.
 std::function<std::vector<double>(std::span<const double>)> displacements_by(const Mechanism& mechanism,
@@ -102,49 +62,6 @@ chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<
   return model;
 }
 
-/// Positions of the responses with these names.
-std::vector<std::size_t> positions(const std::vector<Response>& responses, std::span<const std::string_view> names) {
-  std::vector<std::size_t> list;
-  for (const std::string_view name : names) {
-    const auto found = std::ranges::find(responses, name, &Response::name);
-    if (found != responses.end()) list.push_back(static_cast<std::size_t>(found - responses.begin()));
-  }
-  return list;
-}
-
-ModelDescription describe(const MechanismFile& file, const Mechanism& mechanism, const chain::DeformationModel& model,
-                          std::span<const Chart> charts) {
-  ModelDescription description;
-  description.name = file.name;
-  description.title = file.title;
-  description.geometry = file.geometry;
-  for (const Coordinate& coordinate : mechanism.coordinates) {
-    description.pose_coordinates.push_back({coordinate.name, coordinate.dimension(), coordinate_text(coordinate)});
-    description.pose_lower.push_back(coordinate.lower);
-    description.pose_upper.push_back(coordinate.upper);
-  }
-  description.structure = structure_text(mechanism);
-  description.workspace_note = "This workspace is the mechanism file's.";
-  description.factors = mechanism.factors;
-  description.factor_sets = mechanism.sets;
-  description.responses = chain::responses_of(model);
-  description.joints = displacement_names(mechanism);
-  for (const Chart& chart : charts) description.charts.push_back(chart.description());
-  description.fidelities = {"exact", "first-order"};
-  description.tolerance = chain::kToleranceByMetric;
-  constexpr std::array<std::string_view, 5> kHeadline{"gap", "deformation_max", "position", "rotation", "tip_position"};
-  constexpr std::array<std::string_view, 6> kSigned{"x", "y", "z", "theta_x", "theta_y", "theta_z"};
-  description.headline = positions(description.responses, kHeadline);
-  description.signed_headline = positions(description.responses, kSigned);
-  description.separation = chain::separation_description(model);
-  if (model.chain.meets) return description;
-  description.metric = model.points.empty() ? "published" : "platform";
-  if (model.points.empty()) description.tolerance = SolverOptions().tolerance;
-  description.deformation = chain::deformation_measure(model);
-  description.details = chain::deformation_details(model.chain);
-  return description;
-}
-
 /// What rounded numbers leave of the deformation, at the most, at poses of the workspace.
 double nominal_deformation(const Mechanism& mechanism, const chain::DeformationModel& model, std::size_t response) {
   const std::vector<double> no_errors(model.slots.size(), 0.0);
@@ -156,42 +73,27 @@ double nominal_deformation(const Mechanism& mechanism, const chain::DeformationM
   return largest;
 }
 
-class FileModel final : public Model {
+/// Limbs between base and platform alone, without stiffness.
+class ChainModel final : public TrackedModel {
  public:
   /// points: of the platform's metric; none: as published.
-  FileModel(const MechanismFile& file, Checked found, std::vector<Vector3> points, chain::Fidelity fidelity)
-      : mechanism_(std::move(found.mechanism)),
-        mismatch_(found.mismatch),
-        tracker_(std::make_shared<const Tracker>(mechanism_)),
-        charts_(charts_of(mechanism_)),
-        model_(chain_model(mechanism_, tracker_, found.home, std::move(points))),
-        description_(describe(file, mechanism_, model_, charts_)),
+  ChainModel(const MechanismFile& file, Checked found, std::vector<Vector3> points, chain::Fidelity fidelity)
+      : TrackedModel(file, found),
+        model_(chain_model(mechanism(), tracker(), found.home, std::move(points))),
         fidelity_(fidelity) {
-    if (!model_.chain.rounded || !description_.deformation) return;
-    DeformationMeasure& measure = *description_.deformation;
-    measure.rounding =
-        std::max(measure.rounding, kNominalShare * nominal_deformation(mechanism_, model_, measure.response));
-  }
-
-  const ModelDescription& description() const override { return description_; }
-
-  std::optional<std::string> unreachable(std::span<const double> pose) const override {
-    std::string why = tracker_->track(pose).unreachable;
-    return why.empty() ? std::nullopt : std::optional(std::move(why));
-  }
-
-  std::vector<double> joint_displacements(std::span<const double> pose) const override {
-    return tracker_->track(pose).displacements;
-  }
-
-  std::optional<std::vector<double>> pose_from_chart(std::size_t chart,
-                                                     std::span<const double> coordinates) const override {
-    const Tracked found = charts_.at(chart).track(coordinates);
-    return found.unreachable.empty() ? std::optional(coordinates_of(mechanism_, found.pose)) : std::nullopt;
-  }
-
-  std::string no_pose_because(std::size_t chart, std::span<const double> coordinates) const override {
-    return charts_.at(chart).track(coordinates).unreachable;
+    set_responses(chain::responses_of(model_));
+    ModelDescription& description = described();
+    description.separation = chain::separation_description(model_);
+    if (model_.chain.meets) return;
+    description.metric = model_.points.empty() ? "published" : "platform";
+    if (model_.points.empty()) description.tolerance = SolverOptions().tolerance;
+    DeformationMeasure measure = chain::deformation_measure(model_);
+    if (model_.chain.rounded) {
+      measure.rounding =
+          std::max(measure.rounding, kNominalShare * nominal_deformation(mechanism(), model_, measure.response));
+    }
+    description.deformation = measure;
+    description.details = chain::deformation_details(model_.chain);
   }
 
   double condition(std::span<const double> pose) const override {
@@ -205,7 +107,7 @@ class FileModel final : public Model {
   }
 
   std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
-    return description_.separation ? chain::calibrated_evaluator(model_, options, fidelity_) : nullptr;
+    return description().separation ? chain::calibrated_evaluator(model_, options, fidelity_) : nullptr;
   }
 
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
@@ -214,20 +116,8 @@ class FileModel final : public Model {
     return chain::deformation_trace(model_, pose, errors, options);
   }
 
-  std::vector<std::string> mobility() const override {
-    return mobility_lines(mechanism_, home_mobility(mechanism_), workspace_mobility(mechanism_));
-  }
-
-  std::vector<std::string> remarks() const override { return rounding_remarks(mechanism_, mismatch_); }
-
-  std::vector<std::string> unusual_geometry() const override {
-    std::vector<std::string> list = home_outside(mechanism_);
-    for (std::string& unlike : unlike_limbs(mechanism_)) list.push_back(std::move(unlike));
-    return list;
-  }
-
   std::optional<Sketch> sketch(std::span<const double> pose) const override {
-    Sketch sketch = sketch_of(mechanism_);
+    Sketch sketch = sketch_of(mechanism());
     chain::place(sketch, model_,
                  pose.empty() ? std::vector(model_.chain.joints(), 0.0) : model_.joint_displacements(pose));
     return sketch;
@@ -248,33 +138,11 @@ class FileModel final : public Model {
     return points;
   }
 
-  /// The shortest link of the error's limb, the mechanism's reach where it has none, or half a turn.
-  ErrorBound error_bound(FactorIndex factor) const override {
-    const Factor& error = description_.factors[factor.value];
-    if (error.dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
-    const Limb& limb = mechanism_.limbs[error.limb - 1];
-    ErrorBound bound{mechanism_.reach, "the mechanism's reach"};
-    for (std::size_t j = 1; j < limb.home.size(); ++j) {
-      const double length = limb.home[j].p.norm();
-      if (length < kShortestLink * mechanism_.reach || length >= bound.size) continue;
-      const std::string to = j < limb.joints.size() ? limb.joints[j].name : "the platform's origin";
-      bound = {length, "the distance from " + limb.joints[j - 1].name + " to " + to};
-    }
-    return bound;
-  }
-
  private:
   /// Errors change what rounded numbers leave by less than this factor.
   static constexpr double kNominalShare = 2.0;
-  /// Of the reach; joints that are closer are one part, whose errors may well be as large as that.
-  static constexpr double kShortestLink = 0.02;
 
-  Mechanism mechanism_;
-  double mismatch_;  ///< m: of perfect limbs, at the most
-  std::shared_ptr<const Tracker> tracker_;
-  std::vector<Chart> charts_;
   chain::DeformationModel model_;
-  ModelDescription description_;
   chain::Fidelity fidelity_;
 };
 
@@ -290,32 +158,41 @@ struct Read {
   }
 };
 
-/// The mechanism with these values, by the metric of these points; none: the file's own, or published.
-struct Wanted {
-  bool by_platform = true;                          ///< or as published
-  std::optional<std::vector<Vector3>> points = {};  ///< instead of the file's
-};
+/// By what mismatch is weighed, or forces are found.
+enum class By { stiffness, platform, published };
 
-std::unique_ptr<Model> built(const Read& read, std::span<const double> values, std::size_t fidelity,
-                             const Wanted& wanted) {
+/// The mechanism with these values. points: of the platform's metric; none: the file's own.
+std::unique_ptr<Model> built(const Read& read, std::span<const double> values, std::size_t fidelity, By by,
+                             std::optional<std::vector<Vector3>> points = {}) {
   Checked found = read.with(values);
-  std::vector<Vector3> points;
-  if (wanted.by_platform) points = wanted.points.value_or(found.mechanism.points);
-  if (wanted.points) {
-    const std::string why = chain::why_no_metric(points, found.mechanism.reach);
+  if (points) {
+    const std::string why = chain::why_no_metric(*points, found.mechanism.reach);
     if (!why.empty()) throw std::invalid_argument(why);
   }
-  return std::make_unique<FileModel>(read.file, std::move(found), std::move(points),
-                                     static_cast<chain::Fidelity>(fidelity));
+  const auto wanted = static_cast<chain::Fidelity>(fidelity);
+  if (found.mechanism.is_branched() || by == By::stiffness) {
+    const auto metric = by == By::stiffness ? assembly::Metric::stiffness : assembly::Metric::platform;
+    if (points) found.mechanism.points = *std::move(points);
+    return branched_model(read.file, std::move(found), metric, wanted);
+  }
+  std::vector<Vector3> own = by == By::platform ? points.value_or(found.mechanism.points) : std::vector<Vector3>();
+  return std::make_unique<ChainModel>(read.file, std::move(found), std::move(own), wanted);
 }
 
-CatalogEntry entry_by(const std::shared_ptr<const Read>& read, const std::string& path, bool by_platform) {
+CatalogEntry entry_by(const std::shared_ptr<const Read>& read, const std::string& path, By by) {
   CatalogEntry entry;
-  entry.build = [read, by_platform](std::span<const double> values, std::size_t fidelity) {
-    return built(*read, values, fidelity, {.by_platform = by_platform});
+  entry.build = [read, by](std::span<const double> values, std::size_t fidelity) {
+    return built(*read, values, fidelity, by);
   };
   entry.description = entry.build(read->defaults, 0)->description();
   entry.file = path;
+  if (entry.description.metric != "platform") return entry;
+  entry.build_with_points = [read](std::span<const double> values, std::size_t fidelity,
+                                   std::span<const PlatformPoint> points) {
+    std::vector<Vector3> own;
+    for (const PlatformPoint& point : points) own.emplace_back(point[0], point[1], point[2]);
+    return built(*read, values, fidelity, By::platform, std::move(own));
+  };
   return entry;
 }
 
@@ -336,22 +213,45 @@ std::string reference() {
          tables_reference(mechanism_file_tables());
 }
 
-CatalogEntry catalog_entry(const std::string& text, const std::string& path) {
-  MechanismFile file = read_mechanism_file(text, path);
+namespace {
+
+/// Of a file that has been read.
+CatalogEntry entry_of(MechanismFile file, const std::string& path) {
   const std::vector<double> defaults = default_geometry(file);
   Checked found = checked(mechanism(file, defaults), Workspace::in_reach);
+  const Mechanism& at_defaults = found.mechanism;
   const bool meets = found.home.passive_rank == found.home.loop_equations;
+  std::vector<By> ways;
+  if (at_defaults.is_elastic()) ways.push_back(By::stiffness);
+  ways.push_back(By::platform);
+  if (!at_defaults.is_branched() && !meets) ways.push_back(By::published);
   const auto read = std::make_shared<const Read>(std::move(file), defaults, std::move(found));
-  CatalogEntry entry = entry_by(read, path, true);
-  if (meets) return entry;
-  entry.other_metric = std::make_shared<const CatalogEntry>(entry_by(read, path, false));
-  entry.build_with_points = [read](std::span<const double> values, std::size_t fidelity,
-                                   std::span<const PlatformPoint> points) {
-    std::vector<Vector3> own;
-    for (const PlatformPoint& point : points) own.emplace_back(point[0], point[1], point[2]);
-    return built(*read, values, fidelity, {.points = std::move(own)});
+  std::shared_ptr<const CatalogEntry> other;
+  for (auto by = ways.rbegin(); by != ways.rend(); ++by) {
+    CatalogEntry entry = entry_by(read, path, *by);
+    entry.other_metric = std::move(other);
+    other = std::make_shared<const CatalogEntry>(std::move(entry));
+  }
+  return *other;
+}
+
+/// Gives the entry, by all its metrics, the way to other loads.
+CatalogEntry with_loads(CatalogEntry entry, const MechanismFile& file, const std::string& path) {
+  entry.with_load = [file, path](const StudyValue& value) {
+    MechanismFile loaded = file;
+    loaded.load = read_load(value);
+    CatalogEntry other = with_loads(entry_of(loaded, path), file, path);
+    other.load = load_text(loaded.load);
+    return other;
   };
   return entry;
+}
+
+}  // namespace
+
+CatalogEntry catalog_entry(const std::string& text, const std::string& path) {
+  const MechanismFile file = read_mechanism_file(text, path);
+  return with_loads(entry_of(file, path), file, path);
 }
 
 }  // namespace poesy::file

@@ -115,6 +115,7 @@ Checked checked(Mechanism mechanism, Workspace workspace) {
     if (workspace == Workspace::in_reach) check_mobility(mechanism, home, poses);
   });
   if (!problem && !open) return {std::move(mechanism), std::move(home)};
+  if (mechanism.is_branched() && problem) throw *problem;  // numbers of branched limbs are taken as exact
   std::optional<InputError> nearly;
   for (Gap gap : gaps_of(home.singular_values)) {
     for (const double margin : kMargins) {

@@ -81,6 +81,19 @@ bool has_errors(const Mechanism& mechanism, std::size_t limb, std::size_t first,
   });
 }
 
+/// A line for each limb, where some begin or end at other bodies.
+std::string limb_lines(const Mechanism& mechanism) {
+  std::string text;
+  if (!mechanism.is_branched()) return text;
+  for (std::size_t i = 0; i < mechanism.limbs.size(); ++i) {
+    const Limb& limb = mechanism.limbs[i];
+    text += fmt::format("  Limb {}{} leads from {} to {}.\n", i + 1,
+                        limb.label == std::to_string(i + 1) ? "" : ", " + limb.label + ",",
+                        mechanism.bodies[limb.from].name, mechanism.bodies[limb.to].name);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string triple_text(const Vector3& value) {
@@ -116,6 +129,9 @@ Sketch sketch_of(const Mechanism& mechanism) {
     }
     sketch.limbs.push_back(std::move(limb));
   }
+  if (!mechanism.is_branched()) return sketch;
+  for (const Limb& limb : mechanism.limbs) sketch.ends.push_back({limb.from, limb.to});
+  for (const assembly::Body& body : mechanism.bodies) sketch.bodies.push_back({body.name, sketched(body.home.p)});
   return sketch;
 }
 
@@ -139,7 +155,7 @@ std::string joints_text(const Mechanism& mechanism, const Drive& drive) {
     for (const Joint& joint : mechanism.limbs[i].joints) {
       if (!joint.moves()) continue;
       if (std::ranges::find(drive.joints, k++) == drive.joints.end()) continue;
-      list.push_back(fmt::format("joint {} of limb {}", joint.name, i + 1));
+      list.push_back(fmt::format("joint {} of limb {}", joint.name, mechanism.limbs[i].label));
     }
   }
   return fmt::format("{}", fmt::join(list, " and "));
@@ -171,14 +187,21 @@ std::string structure_text(const Mechanism& mechanism) {
     }
   }
   text += frame_line("platform", "P", "", mechanism.platform);
+  for (std::size_t b = kPlatform + 1; b < mechanism.bodies.size(); ++b) {
+    text += frame_line("body", mechanism.bodies[b].name, "", mechanism.bodies[b].home);
+  }
+  text += limb_lines(mechanism);
   text += drive_lines(mechanism);
   text +=
       "  Frame i_j is that of joint j of limb i, with z about or along the joint and x towards the next joint's\n"
       "  point, made perpendicular to z; S is three R, of which the first lies along the line from the joint "
-      "before.\n"
-      "  An error of frame i_j (j = 0 .. n) moves frame i_(j+1), or the platform, against frame i_j.\n" +
-      fmt::format("  Angles of a limb's first and last frame turn about the {}.\n",
-                  mechanism.errors_at_joints ? "points of its first and last joint" : "origins of base and platform");
+      "before.\n";
+  text += fmt::format("  An error of frame i_j (j = 0 .. n) moves frame i_(j+1), or the {}, against frame i_j.\n",
+                      mechanism.is_branched() ? "body at the limb's end" : "platform");
+  text += fmt::format("  Angles of a limb's first and last frame turn about the {}.\n",
+                      mechanism.errors_at_joints ? "points of its first and last joint"
+                      : mechanism.is_branched()  ? "origins of the bodies there"
+                                                 : "origins of base and platform");
   for (const EachLimb& each : mechanism.each) text += "  " + each.text + ".\n";
   return text;
 }
@@ -192,6 +215,10 @@ std::vector<std::string> mobility_lines(const Mechanism& mechanism, const Mobili
                               counted(home.joints, "joint", "joints"), home.actuated, by, home.rank,
                               home.loop_equations, counted(home.freedoms, "freedom", "freedoms"),
                               counted(home.over_constraints, "over-constraint", "over-constraints")));
+  const std::size_t locked = home.loop_equations - home.passive_rank;
+  if (locked != home.over_constraints) {
+    lines.back() += fmt::format(", {} with the drives locked", locked);
+  }
   lines.push_back(
       fmt::format("the platform has {}, of which {} rotate; {}; locking the drives leaves {}",
                   counted(home.platform_freedoms, "freedom", "freedoms"), home.platform_rotates,

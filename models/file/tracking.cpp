@@ -51,7 +51,7 @@ Tracker::Tracker(const Mechanism& mechanism, Given given)
   };
   const std::vector<const Joint*> joints = moving_joints(unit_);
   std::vector<bool> is_given(joints.size(), false);
-  std::vector<bool> follows(joints.size() + 6, false);
+  std::vector<bool> follows(static_cast<std::size_t>(home_state(unit_).size()), false);
   std::vector<bool> is_settled(joints.size(), true);
   for (const Drive& drive : drives_of(unit_)) {
     const std::size_t first = drive.joints.front();
@@ -71,7 +71,7 @@ Tracker::Tracker(const Mechanism& mechanism, Given given)
       if (is_settled[begin + k]) free.push_back(k);
     }
     Columns columns(6, index(moving));
-    limb_transform(limb, std::vector<double>(moving, 0.0), &columns);
+    limb_transform(limb, std::vector<double>(moving, 0.0), &columns, unit_.bodies[limb.from].home);
     limb_ranks_.push_back(linalg::rank(columns(Eigen::all, free), unit_.precision.rank_threshold));
     idle_ += free.size() - limb_ranks_.back();
     limb_joints_.push_back(std::move(free));
@@ -80,7 +80,7 @@ Tracker::Tracker(const Mechanism& mechanism, Given given)
   if (given == Given::coordinates) {
     for (const Coordinate& coordinate : unit_.coordinates) give(begin + coordinate.component, coordinate.component < 3);
   }
-  for (std::size_t place = 0; place < begin + 6; ++place) {
+  for (std::size_t place = 0; place < follows.size(); ++place) {
     if (!follows[place] && std::ranges::find(given_, place) == given_.end()) free_.push_back(place);
   }
 }
@@ -102,7 +102,7 @@ Vector Tracker::step(const LoopEquations& equations, const State& state) const {
   const Matrix matrix = matrix_of(equations);
   if (!unit_.precision.rounded()) return linalg::least_squares(matrix, equations.residual, kRankThreshold);
   const Matrix ways = linalg::right_singular_vectors(matrix).V.leftCols(matrix.cols() - index(idle_));
-  const lie::Matrix6<double> root = metric_root(unit_, pose_of(state));
+  const lie::Matrix6<double> root = metric_root(unit_, pose_of(unit_, state));
   const Vector wanted = weighed(root, equations.residual);
   return ways * linalg::least_squares(weighed(root, matrix * ways), wanted, kDependent);
 }
@@ -110,7 +110,7 @@ Vector Tracker::step(const LoopEquations& equations, const State& state) const {
 bool Tracker::is_closed(const State& state) const {
   const LoopEquations equations = loop_equations(unit_, state);
   if (!unit_.precision.rounded()) return equations.residual.lpNorm<Eigen::Infinity>() <= kClosed;
-  return mismatch(unit_, metric_root(unit_, pose_of(state)), equations.residual) <= unit_.precision.closed &&
+  return mismatch(unit_, metric_root(unit_, pose_of(unit_, state)), equations.residual) <= unit_.precision.closed &&
          is_regular(state);
 }
 
@@ -148,10 +148,11 @@ Tracker::Ending Tracker::close(State& state) const {
 
 namespace {
 
-/// A limb that holds the platform where it is and still moves: the displacements with the least sum of squares, by
+/// A limb that holds its end where it is and still moves: the displacements with the least sum of squares, by
 /// Newton's method on min |q|^2 / 2 where log(g(q) g^-1) is given. To second order that is sum xi_j dq_j +
-/// sum_{i<j} [xi_i, xi_j] dq_i dq_j / 2. free: the joints that may move; rank: of their columns.
-bool settle_limb(const Limb& limb, const std::vector<std::size_t>& free, Index rank, const Transform& platform,
+/// sum_{i<j} [xi_i, xi_j] dq_i dq_j / 2. free: the joints that may move; rank: of their columns; end: its end, seen
+/// from the body where it begins.
+bool settle_limb(const Limb& limb, const std::vector<std::size_t>& free, Index rank, const Transform& end,
                  Eigen::Ref<Vector> q) {
   const Index joints = index(free.size());
   Columns all(6, q.size());
@@ -163,7 +164,7 @@ bool settle_limb(const Limb& limb, const std::vector<std::size_t>& free, Index r
     const Matrix inverse =
         V.leftCols(rank) * values.head(rank).cwiseInverse().asDiagonal() * U.leftCols(rank).transpose();
     const Matrix idle = V.rightCols(joints - rank);
-    const Vector closing = inverse * lie::log(platform * g.inverse());
+    const Vector closing = inverse * lie::log(end * g.inverse());
     const lie::Screw<double> multiplier = -inverse.transpose() * now;
     Matrix hessian = Matrix::Identity(joints, joints);
     for (Index i = 0; i < joints; ++i) {
@@ -186,22 +187,23 @@ bool settle_limb(const Limb& limb, const std::vector<std::size_t>& free, Index r
 }  // namespace
 
 bool Tracker::settle(State& state) const {
-  Transform platform = platform_transform(unit_, pose_of(state));
   std::size_t begin = 0;
   for (std::size_t i = 0; i < unit_.limbs.size(); ++i) {
     const Limb& limb = unit_.limbs[i];
     Eigen::Ref<Vector> q = state.segment(index(begin), index(limb.moving()));
     begin += limb.moving();
     if (limb_ranks_[i] == limb_joints_[i].size()) continue;
+    Transform end = transform_of(unit_, state, limb.to);
+    if (limb.from != kBase) end = transform_of(unit_, state, limb.from).inverse() * end;
     // Of rounded numbers the limb keeps its own share of the mismatch.
-    if (unit_.precision.rounded()) platform = limb_transform(limb, {q.data(), limb.moving()});
-    if (!settle_limb(limb, limb_joints_[i], index(limb_ranks_[i]), platform, q)) return false;
+    if (unit_.precision.rounded()) end = limb_transform(limb, {q.data(), limb.moving()});
+    if (!settle_limb(limb, limb_joints_[i], index(limb_ranks_[i]), end, q)) return false;
   }
   return true;
 }
 
 std::string Tracker::why(const State& state, Ending ending, double share) const {
-  // That are solved for; components of the platform's pose come behind them.
+  // That are solved for; components of the bodies' poses come behind them.
   const auto joints = std::ranges::count_if(free_, [&](std::size_t place) { return place < unit_.moving(); });
   const std::string where =
       "the way there from home ends after " + readable_text({100.0 * share, Dimension::number}, 3) + " %: ";
@@ -217,7 +219,7 @@ std::string Tracker::why(const State& state, Ending ending, double share) const 
   for (std::size_t i = 0; i < unit_.limbs.size() && blamed.empty(); ++i) {
     for (const Joint& joint : unit_.limbs[i].joints) {
       if (joint.moves() && place-- == 0) {
-        blamed = "joint '" + joint.name + "' of limb " + std::to_string(i + 1);
+        blamed = "joint '" + joint.name + "' of " + limb_text(unit_, i);
         break;
       }
     }
@@ -232,8 +234,7 @@ std::string Tracker::why(const State& state, Ending ending, double share) const 
 
 Tracked Tracker::track(std::span<const double> numbers) const {
   POESY_EXPECTS(numbers.size() == given_.size());
-  State home = Vector::Zero(index(unit_.moving() + 6));
-  std::ranges::copy(home_pose(unit_), home.tail<6>().begin());
+  const State home = home_state(unit_);
   State state = home;
   bool finite = true;
   for (const double number : numbers) finite = finite && std::isfinite(number);
@@ -259,7 +260,7 @@ Tracked Tracker::track(std::span<const double> numbers) const {
       stride *= 0.5;
     }
   }
-  Tracked tracked{{}, pose_of(state), {}, share, {}};
+  Tracked tracked{{}, pose_of(unit_, state), {}, share, {}};
   if (share < 1.0) tracked.unreachable = finite ? why(state, ending, share) : "a coordinate is not a finite number";
   tracked.open = ending == Ending::open && share < 1.0 && is_regular(state);
   if (unit_.precision.rounded()) {

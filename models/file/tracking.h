@@ -30,7 +30,7 @@ struct Tracked {
 enum class Given { coordinates, drives };
 
 /// Nominal joint displacements at a pose. Tracked from home along the straight line in the given numbers, by Newton's
-/// method on all other joints and components of the platform's pose, in steps that are halved until Newton converges at
+/// method on all other joints and components of the bodies' poses, in steps that are halved until Newton converges at
 /// once: so the limbs stay in the working mode of home. Steps are of least norm in the rank that the mechanism has at
 /// home, so redundant loop equations do no harm. The joints of one drive are one unknown. Of all displacements at a
 /// pose those are taken whose squares (rad, and lengths in units of the reach) have the least sum nearby, so that idle

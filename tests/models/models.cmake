@@ -28,5 +28,13 @@ poesy_test(mechanism_file_test LABELS property
                    models/file/mobility_test.cpp models/file/oracle_test.cpp models/file/rounding_test.cpp
                    models/file/tracking_test.cpp
            LINKS poesy_models nlohmann_json::nlohmann_json DATA)
+poesy_test(assembly_oracle_test LABELS unit SOURCES models/assembly/closure_test.cpp models/assembly/oracle_test.cpp
+           LINKS poesy_models nlohmann_json::nlohmann_json DATA)
+poesy_test(assembly_properties_test LABELS property
+           SOURCES models/assembly/balance_test.cpp models/assembly/block_solver_test.cpp
+                   models/assembly/closed_forms_test.cpp models/assembly/cuts_test.cpp
+                   models/assembly/properties_test.cpp
+           LINKS poesy_models DATA)
+poesy_test(branched_file_test LABELS property SOURCES models/file/branched_file_test.cpp LINKS poesy_models DATA)
 poesy_test(file_poses_test LABELS property SOURCES models/file/charts_test.cpp models/file/workspace_test.cpp
            LINKS poesy_models DATA)

@@ -174,10 +174,11 @@ void add_worst_cases(WorstCases found, const CornerTable& table, CouplingResult&
   result.worst_case = std::move(found.value);
   result.corners = std::move(found.tried);
   result.unsolved_corners = std::move(found.unsolved);
-  make_room(found.worst.lengths(), result.worst_case_max, result.worst_case_max_pose);
-  make_room({responses, sizes, subsets, errors}, result.worst_case_signs);
-  make_room({sizes, subsets}, result.unsolved_pose);
-  make_room({sizes, subsets, errors}, result.unsolved_signs);
+  result.worst_case_max = decltype(result.worst_case_max)(found.worst.lengths());
+  result.worst_case_max_pose = decltype(result.worst_case_max_pose)(found.worst.lengths());
+  result.worst_case_signs = decltype(result.worst_case_signs)({responses, sizes, subsets, errors});
+  result.unsolved_pose = decltype(result.unsolved_pose)({sizes, subsets});
+  result.unsolved_signs = decltype(result.unsolved_signs)({sizes, subsets, errors});
   for (std::size_t z = 0; z < sizes; ++z) {
     for (std::size_t k = 0; k < subsets; ++k) {
       for (std::size_t r = 0; r < responses; ++r) {

@@ -34,7 +34,8 @@ inline constexpr char kInitText[] =
 mechanism   a name of the catalog (`poesy models` lists them), or a mechanism's file: a path object, or a text that
             ends in ".toml" or holds a "/".
 metric      "platform" or "published": how mismatch of angle is weighed against mismatch of position. "platform" is
-            passed over where nothing is weighed. (A study file without the key may take "published".)
+            passed over where nothing is weighed. (A study file without the key may take "published".) "stiffness", for
+            a file whose parts have it: in equilibrium, with forces. (A study file without the key takes it there.)
 fidelity    "exact", or "first-order" where the mechanism has it.
 factors     the errors that are given, in the order of the rows of an array: a factor set, "all", or a list of names.
             The others are zero.

@@ -174,7 +174,8 @@ std::string description(const Sketch& sketch, const PartShares& parts, const std
     for (const SketchedJoint& joint : limb) kind += joint.type;
     kinds.push_back(std::move(kind));
   }
-  std::string text = fmt::format("{} from base to platform, with joints", counted(kinds.size(), "limb", "limbs"));
+  std::string text = fmt::format("{} {}, with joints", counted(kinds.size(), "limb", "limbs"),
+                                 sketch.ends.empty() ? "from base to platform" : "between bodies");
   for (std::size_t i = 0; i < kinds.size(); ++i) text += (i == 0 ? " " : ", ") + kinds[i];
   text += ".";
   const std::vector<RankedPart> ranked = ranked_parts(parts);

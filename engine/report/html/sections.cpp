@@ -136,7 +136,8 @@ std::vector<RunFact> run_facts(const ReportKind& kind, const ReportedResult& rep
   const StoredResult& result = reported.stored;
   const RunFacts& run = result.facts;
   const StudyWords words = kind.words(result);
-  const std::string tolerance_unit = result.metric == "platform" ? "of the reach" : "rad, m";
+  const bool by_reach = result.metric == "platform" || result.metric == "stiffness";
+  const std::string tolerance_unit = by_reach ? "of the reach" : "rad, m";
   return {
       {"result file", reported.path},
       {"title", result.title},

@@ -280,9 +280,9 @@ TEST(LimbsOfErrors, EachNeedsTheFrameInAllOfThem) {
   EXPECT_EQ(problem_with(each + "frame = 6\n"),
             "error[0].frame is 6, which limbs 1, 2 and 3 have, and limb 4 not: the last frame of limb 4 is 3; name the "
             "limbs that are meant: limb = [1, 2, 3]");
-  EXPECT_EQ(problem_with(each + "frame = 7\n"), "error[0].frame is 7; the last frame of limb 1 is 6");
+  EXPECT_EQ(problem_with(each + "frame = 7\n"), "error[0].frame is 7; the last frame of limb 1 (leg_1) is 6");
   EXPECT_EQ(problem_with("limb = [2, 4]\nname = \"foot\"\ncomponent = \"delta_x\"\nframe = 5\n"),
-            "error[0].frame is 5; the last frame of limb 4 is 3");
+            "error[0].frame is 5; the last frame of limb 4 (post) is 3");
   EXPECT_EQ(problem_with("limb = \"leg\"\nname = \"foot\"\ncomponent = \"delta_x\"\nframe = 5\n"),
             "error[0].limb is 'leg', which no limb is named; write a limb's number, its name, a list of these, or "
             "\"each\"");

@@ -14,6 +14,7 @@ const SUB_SIZE = 0.78;
 /// {letter, index} of a letter with indices, or of a Greek letter's name; undefined for any other word.
 function symbolOf(word) {
   const [first, ...indices] = word.split("_");
+  if (word === "delta") return undefined; // a robot, in prose
   const letter = GREEK[first] ?? (first.length === 1 && indices.length ? first : undefined);
   const shown = indices.map((index) => GREEK[index] ?? index);
   const fits = indices.every((index) => index in GREEK || INDEX.test(index));

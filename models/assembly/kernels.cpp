@@ -1,0 +1,14 @@
+// Compiled once for each instruction set.
+#include "models/assembly/kernels.h"
+
+#include "models/assembly/kernel.h"
+#include "models/simd/lanes.h"
+
+namespace poesy::assembly {
+
+template <>
+KernelSolve kernel<simd::Isa::POESY_KERNEL_ISA>() {
+  return solve_assemblies<simd::Lanes>;
+}
+
+}  // namespace poesy::assembly
