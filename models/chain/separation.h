@@ -53,7 +53,7 @@ struct LimbMotions {
 
 /// What a unit of an error does to its limb's end, where no joint gives way.
 struct EndTwist {
-  std::size_t limb;         ///< position
+  std::size_t limb;          ///< position
   lie::Screw<double> twist;  ///< of the end
 };
 

@@ -95,7 +95,7 @@ std::size_t body_of(const MechanismFile& file, const LimbLines& limb, const std:
   std::vector<std::string> known{"base", "platform"};
   for (const BodyLines& lines : file.bodies) {
     const std::size_t count = lines.copies.count;
-    known.push_back(lines.name);
+    if (count > 1) known.push_back(lines.name);
     if (lines.name == reference->name) return first + (count == 1 ? 0 : same_copy(limb, lines, *reference, copy));
     for (std::size_t k = 0; k < count; ++k) {
       known.push_back(name_of(lines, k));

@@ -31,7 +31,8 @@ assembly::Assembly assembly_of(const Mechanism& mechanism, assembly::Metric metr
   return made;
 }
 
-/// The joint's name, with the direction behind it where two drives hold it, as they may a cylindrical one: "q_rz", "q_z".
+/// The joint's name, with the direction behind it where two drives hold it, as they may a cylindrical one: "q_rz",
+/// "q_z".
 std::string drive_name(const std::vector<Joint>& joints, std::size_t j) {
   const auto is_of_it = [&](const Joint& one) { return one.name == joints[j].name && one.actuated; };
   if (std::ranges::count_if(joints, is_of_it) == 1) return joints[j].name;

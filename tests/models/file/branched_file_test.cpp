@@ -193,7 +193,8 @@ TEST(BranchedFile, RefusesWhatIsWrongWithLimbsBetweenBodies) {
           {"from = \"platform\"\nto = \"head\"", "from = \"platform\"\nto = \"haed\"",
            "m.toml:56:6: limb[3].to 'haed' names no body; did you mean 'head'?"},
           {"from = \"platform\"\nto = \"head\"", "from = \"platform\"\nto = \"nut\"",
-           "m.toml:56:6: limb[3].to 'nut' names no body; known: base, platform, carriage_1, carriage_2, carriage_3, "
+           "m.toml:56:6: limb[3].to 'nut' names no body; known: base, platform, carriage, carriage_1, carriage_2, "
+           "carriage_3, "
            "head"},
           {"from = \"platform\"\nto = \"head\"", "from = \"carriage\"\nto = \"head\"",
            "m.toml:55:8: limb[3].from 'carriage' has copies, 3 about z, and the limb has none; name one of them, "
@@ -519,7 +520,7 @@ TEST(BranchedFile, RefusesWhatIsWrongWithLoads) {
           {"body = \"head\"\nat", "body = \"haed\"\nat",
            "m.toml:66:8: load.body 'haed' names no body; did you mean 'head'?"},
           {"body = \"head\"\nat", "body = \"carriage\"\nat",
-           "m.toml:66:8: load.body 'carriage' has copies, 3 about z, and the limb has none; name one of them, "
+           "m.toml:66:8: load.body 'carriage' has copies, 3 about z; name one of them, "
            "\"carriage_1\""},
           {"body = \"head\"\nat", "body = 2\nat",
            "m.toml:66:8: load.body is the whole number 2; write a text in quotes"},
