@@ -156,7 +156,7 @@ double energy(const Nominal& pose, const Balance& balance) {
   return sum;
 }
 
-TEST(AssemblyBalance, TheEnergyChangesByTheForceOnTheErrorAndByThatOfTheDrive) {
+TEST(AssemblyBalance, TheEnergyChangesByForcesOnErrorsAndDrives) {
   for_each_case([](const AssemblyModel& model, const Nominal& pose) {
     const FirstOrder first_order(model.assembly, pose, model.ranks);
     Eigen::MatrixXd twists(row_of(model.assembly.limbs.size()),
@@ -179,7 +179,7 @@ TEST(AssemblyBalance, TheEnergyChangesByTheForceOnTheErrorAndByThatOfTheDrive) {
   });
 }
 
-TEST(AssemblyBalance, ErrorsLoadNoDriveWhereThereAreAsManyAsFreedoms) {
+TEST(AssemblyBalance, ErrorsLoadNoDriveUnlessThereAreTooMany) {
   for (const char* name : {"upr2-rpu-beams", "delta-parallelogram", "tripteron-msa"}) {
     SCOPED_TRACE(name);
     const auto one = std::ranges::find(cases(), std::string(name), &Case::name);
