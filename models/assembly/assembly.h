@@ -122,9 +122,9 @@ struct Assembly {
 template <class AnyLimb>
 std::vector<std::size_t> placing_limbs(std::size_t bodies, const std::vector<AnyLimb>& limbs) {
   std::vector<bool> is_placed(bodies, false);
-  is_placed[kBase] = true;
   std::vector<std::size_t> order;
-  const auto places = [&](const AnyLimb& limb) { return is_placed[limb.from] && !is_placed[limb.to]; };
+  const auto is_there = [&](std::size_t body) { return body == kBase || is_placed[body]; };
+  const auto places = [&](const AnyLimb& limb) { return is_there(limb.from) && !is_there(limb.to); };
   for (auto next = limbs.begin(); (next = std::ranges::find_if(limbs, places)) != limbs.end();) {
     is_placed[next->to] = true;
     order.push_back(static_cast<std::size_t>(next - limbs.begin()));

@@ -88,7 +88,8 @@ class LimbSeparation {
   LimbSeparation(const LimbMotions& joints, const Matrix6& root, double radius) {
     lengths_ << radius * lie::Matrix3<double>::Identity(), lie::Matrix3<double>::Zero(), -lie::hat<double>(joints.end),
         lie::Matrix3<double>::Identity();
-    from_lengths_ = root * joints.platform * linalg::inverse(lengths_);
+    const Matrix6 to_displacement = root * joints.platform;
+    from_lengths_ = to_displacement * linalg::inverse(lengths_);
     Columns passive = lengths_ * joints.passive;
     passive.colwise().normalize();
     beyond_passive_ = beyond(passive);
