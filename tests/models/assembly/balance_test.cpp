@@ -67,7 +67,7 @@ Eigen::VectorXd vector_of(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
-TEST(AssemblyBalance, ExactForcesBalanceAndPassiveJointsFeelNone) {
+TEST(AssemblyBalance, ExactForcesBalance) {
   for_each_case([](const AssemblyModel& model, const Nominal& pose) {
     for (const double size : {0.1, 1.0}) {
       const std::vector<double> errors = random_errors(model, size, 5);
@@ -78,7 +78,7 @@ TEST(AssemblyBalance, ExactForcesBalanceAndPassiveJointsFeelNone) {
   });
 }
 
-TEST(AssemblyBalance, ForcesOfTheKernelBalanceAndPassiveJointsFeelNone) {
+TEST(AssemblyBalance, KernelForcesBalance) {
   for_each_case([](const AssemblyModel& model, const Nominal& pose) {
     BlockSolver solver(model, kOptions);
     const std::vector<double> errors = random_errors(model, 0.1, 5);
@@ -90,7 +90,7 @@ TEST(AssemblyBalance, ForcesOfTheKernelBalanceAndPassiveJointsFeelNone) {
   });
 }
 
-TEST(AssemblyBalance, FirstOrderForcesBalanceAndPassiveJointsFeelNone) {
+TEST(AssemblyBalance, FirstOrderForcesBalance) {
   for_each_case([](const AssemblyModel& model, const Nominal& pose) {
     const FirstOrder first_order(model.assembly, pose, model.ranks);
     Balance sum = first_order.effect(error_twists(model, pose) * vector_of(random_errors(model, 0.1, 6)));
@@ -156,7 +156,7 @@ double energy(const Nominal& pose, const Balance& balance) {
   return sum;
 }
 
-TEST(AssemblyBalance, TheEnergyChangesByForcesOnErrorsAndDrives) {
+TEST(AssemblyBalance, EnergyChangesByForcesOnErrorsDrives) {
   for_each_case([](const AssemblyModel& model, const Nominal& pose) {
     const FirstOrder first_order(model.assembly, pose, model.ranks);
     Eigen::MatrixXd twists(row_of(model.assembly.limbs.size()),
@@ -179,7 +179,7 @@ TEST(AssemblyBalance, TheEnergyChangesByForcesOnErrorsAndDrives) {
   });
 }
 
-TEST(AssemblyBalance, ErrorsLoadNoDriveUnlessThereAreTooMany) {
+TEST(AssemblyBalance, ErrorsLoadNoDriveUnlessTooMany) {
   for (const char* name : {"upr2-rpu-beams", "delta-parallelogram", "tripteron-msa"}) {
     SCOPED_TRACE(name);
     const auto one = std::ranges::find(cases(), std::string(name), &Case::name);

@@ -87,7 +87,7 @@ TEST_P(AssemblyKernel, AgreesWithPlainNewton) {
   }
 }
 
-TEST_P(AssemblyKernel, ASampleDoesNotDependOnItsPlace) {
+TEST_P(AssemblyKernel, IsTheSameAtAnyPlace) {
   constexpr std::size_t kCount = 37;
   for (const Case& one : cases()) {
     const AssemblyModel model = made(one.text(), Metric::stiffness);

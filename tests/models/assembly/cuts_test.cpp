@@ -66,7 +66,7 @@ links  = [
   return text;
 }
 
-TEST(AssemblyCuts, ALimbTheOtherWayRoundIsTheSameToFirstOrder) {
+TEST(AssemblyCuts, ALimbTurnedRoundIsTheSame) {
   for (const Metric metric : kMetrics) {
     const AssemblyModel one = made(parallelograms(false), metric);
     const AssemblyModel other = made(parallelograms(true), metric);

@@ -38,7 +38,7 @@ class AssemblyOracle : public testing::TestWithParam<const char*> {
   const json& expected() const { return oracle()[GetParam()]; }
 };
 
-TEST_P(AssemblyOracle, HomeFramesOfEveryJointAndBody) {
+TEST_P(AssemblyOracle, HomeFrames) {
   const Mechanism mechanism = from_file(GetParam());
   const auto near = [](const Vector3& found, const json& wanted) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -102,7 +102,7 @@ std::map<std::string, double> wanted_of(const json& solution, const std::string&
   return list;
 }
 
-TEST_P(AssemblyOracle, EveryResponseOfEveryCase) {
+TEST_P(AssemblyOracle, Responses) {
   for (const json& one : expected()["cases"]) {
     const std::string metric = one["metric"];
     const std::string text = with_load(text_of(GetParam()), one.value("load", json::object()));
