@@ -226,13 +226,7 @@ const Solution& BlockSolver::read(const Nominal& pose, std::span<const double> e
   check_closed(pose, solution_);
   solution_.limbs.clear();
   if (assembly.metric != Metric::stiffness) return solution_;
-  const std::vector<std::vector<Transform>>& frames = frames_.with(errors);
-  for (std::size_t e = 0; e < assembly.limbs.size(); ++e) {
-    const Limb& limb = assembly.limbs[e];
-    const std::span<const double> own(solution_.displacements);
-    solution_.limbs.push_back(limb_state(limb, solution_.bodies[limb.from], frames[e],
-                                         own.subspan(assembly.first_joint(e), limb.chain.joints.size())));
-  }
+  solution_.limbs = limb_states(assembly, solution_.bodies, frames_.with(errors), solution_.displacements);
   return solution_;
 }
 

@@ -38,7 +38,7 @@ class Descent {
   void take_step() { here_ = tried_; }
 
   double try_step(double damping) {
-    const Eigen::MatrixXd B = matrix();
+    const Eigen::MatrixXd B = motion_columns(assembly_, here_.limbs, root_);
     Eigen::MatrixXd normal = B.transpose() * B;
     normal.diagonal() *= 1.0 + damping;
     const std::optional<Eigen::VectorXd> step =
@@ -68,38 +68,12 @@ class Descent {
  private:
   Index bodies() const { return static_cast<Index>(assembly_.bodies.size()) - 1; }
 
-  /// W^(1/2) times the columns of joints and bodies: [6 limbs x unknowns], with B x = V_b - V_a - J dq.
-  Eigen::MatrixXd matrix() const {
-    Index joints = 0;
-    for (const LimbState& limb : here_.limbs) joints += limb.passive.cols();
-    const auto limbs = static_cast<Index>(here_.limbs.size());
-    Eigen::MatrixXd B = Eigen::MatrixXd::Zero(6 * limbs, joints + 6 * bodies());
-    Index column = 0;
-    for (Index e = 0; e < limbs; ++e) {
-      const Limb& limb = assembly_.limbs[static_cast<std::size_t>(e)];
-      const auto& passive = here_.limbs[static_cast<std::size_t>(e)].passive;
-      B.block(6 * e, column, 6, passive.cols()) = -root_ * passive;
-      column += passive.cols();
-      const auto touch = [&](std::size_t body, double sign) {
-        if (body != kBase) B.block<6, 6>(6 * e, joints + 6 * (static_cast<Index>(body) - 1)) = sign * root_;
-      };
-      touch(limb.from, -1.0);
-      touch(limb.to, 1.0);
-    }
-    return B;
-  }
-
   void place(Configuration& at) const {
-    at.limbs.clear();
-    at.open.resize(6 * static_cast<Index>(assembly_.limbs.size()));
-    std::span<const double> displacements = at.displacements;
-    for (std::size_t e = 0; e < assembly_.limbs.size(); ++e) {
-      const Limb& limb = assembly_.limbs[e];
-      const std::size_t joints = limb.chain.joints.size();
-      at.limbs.push_back(limb_state(limb, at.bodies[limb.from], frames_[e], displacements.first(joints)));
+    at.limbs = limb_states(assembly_, at.bodies, frames_, at.displacements);
+    at.open.resize(6 * static_cast<Index>(at.limbs.size()));
+    for (std::size_t e = 0; e < at.limbs.size(); ++e) {
       at.open.segment<6>(6 * static_cast<Index>(e)) =
-          root_ * lie::log(at.limbs.back().end * at.bodies[limb.to].inverse());
-      displacements = displacements.subspan(joints);
+          root_ * lie::log(at.limbs[e].end * at.bodies[assembly_.limbs[e].to].inverse());
     }
   }
 

@@ -25,6 +25,15 @@ struct LimbState {
 LimbState limb_state(const Limb& limb, const Transform& from, std::span<const Transform> frames,
                      std::span<const double> displacements);
 
+/// All limbs, with their bodies [bodies] there and joints [joints of all limbs] so displaced. frames: [limbs][n + 1].
+std::vector<LimbState> limb_states(const Assembly& assembly, std::span<const Transform> bodies,
+                                   std::span<const std::vector<Transform>> frames,
+                                   std::span<const double> displacements);
+
+/// B of B x = V_b - V_a - J dq for a limb from a to b, with the rows of each limb times `root`: [6 limbs x (passive
+/// joints + 6 bodies)], bodies without the base.
+Eigen::MatrixXd motion_columns(const Assembly& assembly, std::span<const LimbState> limbs, const Matrix6& root);
+
 /// The end's twist by a unit of an entry of a frame's error, to first order: a column of G (Ad(F) before the error,
 /// -Ad(F) in the last frame, where the inverse multiplies from the right). component: of [omega; v].
 Screw error_twist(const Limb& limb, const Transform& from, const LimbState& state, std::size_t frame,

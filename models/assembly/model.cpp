@@ -153,20 +153,7 @@ SolveTrace assembly_trace(const AssemblyModel& model, std::span<const double> po
 
 double condition(const AssemblyModel& model, std::span<const double> pose) {
   const Nominal at = model.at(pose);
-  const Matrix6 root = linalg::cholesky_root(at.W);
-  const std::size_t limbs = at.limbs.size();
-  Index joints = 0;
-  for (const LimbState& limb : at.limbs) joints += limb.passive.cols();
-  Matrix B = Matrix::Zero(6 * index(limbs), joints + 6 * index(at.bodies.size() - 1));
-  Index column = 0;
-  for (std::size_t e = 0; e < limbs; ++e) {
-    const Limb& limb = model.assembly.limbs[e];
-    const Index row = 6 * index(e);
-    B.block(row, column, 6, at.limbs[e].passive.cols()) = -root * at.limbs[e].passive;
-    column += at.limbs[e].passive.cols();
-    if (limb.from != kBase) B.block<6, 6>(row, joints + 6 * index(limb.from - 1)) = -root;
-    B.block<6, 6>(row, joints + 6 * index(limb.to - 1)) = root;
-  }
+  Matrix B = motion_columns(model.assembly, at.limbs, linalg::cholesky_root(at.W));
   B.colwise().normalize();
   const Eigen::VectorXd values = linalg::singular_values(B);
   const double smallest = values[values.size() - 1 - index(model.idle)];

@@ -27,13 +27,9 @@ void Solver::prepare(const Nominal& pose) { pose_ = &pose; }
 
 /// Brings limbs and mismatch to the present bodies and displacements.
 void Solver::place(std::span<const std::vector<Transform>> frames, Solution& at) const {
-  std::span<const double> displacements = at.displacements;
+  at.limbs = limb_states(*assembly_, at.bodies, frames, at.displacements);
   for (std::size_t e = 0; e < frames.size(); ++e) {
-    const Limb& limb = assembly_->limbs[e];
-    const std::size_t joints = limb.chain.joints.size();
-    at.limbs[e] = limb_state(limb, at.bodies[limb.from], frames[e], displacements.first(joints));
-    at.mismatch[e] = lie::log(at.limbs[e].end * at.bodies[limb.to].inverse());
-    displacements = displacements.subspan(joints);
+    at.mismatch[e] = lie::log(at.limbs[e].end * at.bodies[assembly_->limbs[e].to].inverse());
   }
 }
 
