@@ -329,8 +329,8 @@ struct CatalogEntry {
   /// among description.fidelities, 0 where there is no choice.
   /// Throws std::invalid_argument with a clause that names the parameter and the rule it breaks.
   std::function<std::unique_ptr<Model>(std::span<const double> geometry, std::size_t fidelity)> build;
-  /// The same mechanism by another metric, with responses of its own, and so on; null where there is none besides
-  /// these.
+  /// The same mechanism by another metric, with responses of its own, which may have another one in turn; null where
+  /// there are no more.
   std::shared_ptr<const CatalogEntry> other_metric = nullptr;
   /// Where the description's metric is "platform": builds it with other points of the platform, at least three (its
   /// frame, m). Throws std::invalid_argument as build does.

@@ -132,8 +132,8 @@ class PoseFold {
 };
 
 /// What the cells of a plan came to, of which those of a shard are held. A last unit with fewer than Plan::kUnitSamples
-/// samples is kept apart, for it is not the beginning of any unit of a study with more samples; all others are. A store
-/// holds something of R responses for each of some cells:
+/// samples is kept apart, because a study with more samples has another unit in its place. A store holds something of R
+/// responses for each of some cells:
 ///
 ///     Store(std::size_t responses, std::size_t cells)    without samples; and Store() without cells
 ///     std::vector<SolveCounts> solves                    of each cell
@@ -235,7 +235,7 @@ class CellSums {
     if (samples == plan_->samples()) {
       part = store_state(archive, parts_, cell - cells_.first, whole);
     } else {
-      Store left_out(responses_, 1);  // it is no unit of a study with more samples
+      Store left_out(responses_, 1);  // a study with more samples has another unit there
       part = store_state(archive, left_out, 0, whole);
     }
     const bool is_part = part > 0 && part < Plan::kUnitSamples && whole + part == samples;

@@ -34,7 +34,7 @@ concept SampledUnits = requires(const Job& job) {
 ///
 /// The sums have add(std::size_t n, Unit&&), which takes the next unit, and state(Archive&, const NumberRange& units),
 /// which writes what these units came to, and where it reads, adds that to what is there. Units may be Sums themselves:
-/// then a state is read like a unit, and added. A job of samples has besides:
+/// then a state is read like a unit, and added. A job of samples also has:
 ///
 ///     Rounds rounds() const                         at their beginning
 ///     std::size_t samples() const                   of the whole study
@@ -168,7 +168,7 @@ class UnitFold {
     }
     sums_.state(archive, units);
   }
-  /// A last unit that is not whole, which is no unit of a longer study.
+  /// A last unit that is not whole: a longer study has another unit in its place.
   void last_state(Archive& archive) {
     std::size_t samples = job_.samples();
     archive.number(samples, job_.samples());

@@ -75,7 +75,7 @@ struct Limb {
   std::string label = {};              ///< "2", "rod_1"
   std::vector<Bearing> bearings = {};  ///< that give way
   std::vector<Link> links = {};        ///< that give way
-  std::optional<Matrix6> end = {};     ///< compliance in the frame of the body `to`, besides bearings and links
+  std::optional<Matrix6> end = {};     ///< compliance in the frame of the body `to`, added to bearings and links
 
   /// Whether anything of it gives way to a wrench.
   bool is_elastic() const { return !bearings.empty() || !links.empty() || end; }

@@ -25,7 +25,7 @@ struct KernelJoint {
 /// A fixed frame, before * error * behind, or before * error^-1 * behind.
 struct KernelFrame {
   KernelMotion before;  ///< of the error
-  KernelMotion behind;  ///< the whole frame stands in `before` where there is no error
+  KernelMotion behind;  ///< of the error; without one the whole frame is in `before`
   bool has_error;       ///< whether any entry varies or is not 0
   bool turns;           ///< whether an angle does
   bool inverted;        ///< the limb's last one
