@@ -4,6 +4,7 @@
 
 #include "engine/linalg/decompositions.h"
 #include "models/assembly/kernels.h"
+#include "models/chain/assembly.h"
 
 namespace poesy::assembly {
 namespace {
@@ -101,7 +102,7 @@ BlockSolver::BlockSolver(const AssemblyModel& model, const SolverOptions& option
       options_(options),
       kernel_(simd::for_selected_isa([]<simd::Isa isa>() { return kernel<isa>(); })),
       solver_(model.assembly, model.ranks, options),
-      closure_(model.assembly),
+      closure_(model),
       frames_(model),
       problem_{},
       solution_{} {}
@@ -111,6 +112,7 @@ void BlockSolver::prepare_pose(const Nominal& pose) {
   const Assembly& assembly = model_->assembly;
   pose_ = &pose;
   solver_.prepare(pose);
+  closure_.prepare(pose);
   equations_.emplace(assembly, pose);
   equations_->set(pose.limbs, model_->ranks);
   problem_ = {};
@@ -223,7 +225,7 @@ const Solution& BlockSolver::read(const Nominal& pose, std::span<const double> e
   for (Screw& mismatch : solution_.mismatch) mismatch = equations_->twist_from_units(next_screw());
   solution_.status = SolveStatus::converged;
   solution_.iterations = iterations_[sample];
-  check_closed(pose, solution_);
+  check_closed(errors, solution_);
   solution_.limbs.clear();
   if (assembly.metric != Metric::stiffness) return solution_;
   solution_.limbs = limb_states(assembly, solution_.bodies, frames_.with(errors), solution_.displacements);
@@ -231,19 +233,20 @@ const Solution& BlockSolver::read(const Nominal& pose, std::span<const double> e
 }
 
 /// Of a sample that the kernel left.
-Solution BlockSolver::solve_one(const Nominal& pose, std::span<const double> errors) {
-  const std::vector<std::vector<Transform>>& frames = frames_.with(errors);
-  Solution found = solver_.solve(frames);
-  const bool may_be_open = !model_->over_constrained && !solved(found.status);
-  if (may_be_open && closure_.is_impossible(pose, frames)) found.status = SolveStatus::not_assembled;
-  check_closed(pose, found);
+Solution BlockSolver::solve_one(std::span<const double> errors) {
+  Solution found = solver_.solve(frames_.with(errors));
+  check_closed(errors, found);
   return found;
 }
 
-/// Where no stiffness is known, a machine in which loops stay open has come to rest with a mismatch.
-void BlockSolver::check_closed(const Nominal& pose, Solution& found) const {
-  const bool may_be_open = !model_->over_constrained && model_->assembly.metric == Metric::platform;
-  if (may_be_open && solved(found.status) && closure_.is_open(pose, found.mismatch)) {
+/// Where limbs deform each other, and where a sample is not solved, Closure decides; else loops that stay open show as
+/// a mismatch, unless stiffness holds it.
+void BlockSolver::check_closed(std::span<const double> errors, Solution& found) {
+  const bool is_doubted =
+      !solved(found.status) || (model_->over_constrained && closure_.nearing(errors) < chain::kNearing);
+  const bool has_no_mismatch = !model_->over_constrained && model_->assembly.metric == Metric::platform;
+  if ((is_doubted && closure_.is_impossible(frames_.with(errors))) ||
+      (has_no_mismatch && solved(found.status) && closure_.is_open(found.mismatch))) {
     found.status = SolveStatus::not_assembled;
   }
 }
@@ -260,7 +263,7 @@ void BlockSolver::solve(const Nominal& pose, const SampleBlock& samples,
     if (ends_[b] == KernelEnd::converged) {
       found(b, read(pose, errors, b));
     } else {
-      found(b, solve_one(pose, errors));
+      found(b, solve_one(errors));
     }
   }
 }

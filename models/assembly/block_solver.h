@@ -46,8 +46,8 @@ class BlockSolver {
   void prepare_limbs(const Nominal& pose);
   void prepare_errors(const SampleBlock& samples);
   void run(std::size_t count);
-  void check_closed(const Nominal& pose, Solution& found) const;
-  Solution solve_one(const Nominal& pose, std::span<const double> errors);
+  void check_closed(std::span<const double> errors, Solution& found);
+  Solution solve_one(std::span<const double> errors);
   const Solution& read(const Nominal& pose, std::span<const double> errors, std::size_t sample);
 
   const AssemblyModel* model_;

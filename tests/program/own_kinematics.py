@@ -39,6 +39,12 @@ class FiveBar:
         return reach - np.linalg.norm(elbows[1] - elbows[0], axis=-1)
 
 
+class FiveBarWithArm(FiveBar):
+    """The same with the link behind an elbow as a body between two limbs, and a bearing that gives way."""
+
+    file = "five-bar-arm.toml"
+
+
 class ThreeRpr:
     """For each rotation of the platform two legs place it, and the third is too long or too short. It fits somewhere if
     it is too short where it is least too long."""

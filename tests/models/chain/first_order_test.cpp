@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "models/chain/loops.h"
 #include "models/chain/metric.h"
 #include "tests/models/chain/closed_chain.h"
 
