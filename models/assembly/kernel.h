@@ -12,7 +12,7 @@ namespace poesy::assembly {
 ///
 /// in which p is carried as an unknown: in its place C^-1 xi would turn rounding into force, and converge for small
 /// errors alone. Where limbs do not deform each other and no load acts, p is 0 and is left out. A lane depends on its
-/// own sample only: one that has settled stays where it is.
+/// own sample only: one that has settled stays where it is. The start is where first order leads.
 template <class T>
 class AssemblyKernel {
  public:
@@ -20,6 +20,7 @@ class AssemblyKernel {
   AssemblyKernel(const KernelProblem& problem, const KernelBlock& block)
       : problem_(problem),
         block_(block),
+        mapper_(problem, block, KernelMapper<T>::kAllRows),
         reporter_(problem, block),
         outcome_(problem),
         bodies_(problem.bodies.size()),
@@ -46,8 +47,15 @@ class AssemblyKernel {
   using Mask = typename T::MaskType;
   using Motion = LaneMotion<T>;
 
+  /// Squares of what a round changed.
+  struct Change {
+    T places;    ///< of a body or joint, the largest
+    T wrenches;  ///< of all
+  };
+
   void solve_batch(std::size_t at) {
     begin(at);
+    before_ = {T(1.0), T(1e300)};
     Mask active = T(0.0) < T(1.0);
     T iterations(0.0);
     for (int n = 0; n < problem_.most_rounds && any(active); ++n) {
@@ -57,16 +65,23 @@ class AssemblyKernel {
     end(at, active, iterations);
   }
 
+  /// Where first order leads.
   void begin(std::size_t at) {
+    const T* coordinates = mapper_.coordinates(at);
+    for (std::size_t b = 1; b < bodies_.size(); ++b) {
+      bodies_[b] = product(motion_of(coordinates + 6 * (b - 1)), in_lanes<T>(problem_.bodies[b]));
+    }
+    if (problem_.carries) mapper_.wrenches(coordinates, wrenches_.data());
     const LaneErrors<T> errors(block_, at);
-    for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b] = in_lanes<T>(problem_.bodies[b]);
-    for (T& wrench : wrenches_) wrench = T(0.0);
+    const T* dq = coordinates + mapper_.first_joint();
     std::size_t segment = 0;
     std::size_t joint = 0;
     for (const KernelLimb& limb : problem_.limbs) {
       for (const KernelSegment& one : limb.segments) segments_[segment++] = errors.segment(one);
       for (const KernelJoint& one : limb.joints) {
-        if (one.passive >= 0) displacements_[joint++] = T(one.displacement);
+        if (one.passive < 0) continue;
+        displacements_[joint] = T(one.displacement) + dq[joint];
+        ++joint;
       }
     }
   }
@@ -184,34 +199,32 @@ class AssemblyKernel {
     return square;
   }
 
-  /// Moves wrench and joints of a limb in the lanes that go on. Returns the square of the wrench's change.
-  T step(std::size_t e, Mask active) {
+  /// Moves wrench and joints of a limb in the lanes that go on.
+  void step(std::size_t e, Mask active, Change& change) {
     const KernelLimb& limb = problem_.limbs[e];
     T wanted[6];
     for (std::size_t k = 0; k < 6; ++k) {
       wanted[k] = twists_[6 * limb.to + k] - twists_[6 * limb.from + k] - mismatch_[6 * e + k];
     }
-    const T square = problem_.carries ? step_wrench(e, active, wanted) : T(0.0);
+    if (problem_.carries) change.wrenches = change.wrenches + step_wrench(e, active, wanted);
     for (std::size_t j = 0; j < limb.passive; ++j) {
       T& q = displacements_[limb.first_joint + j];
       T dq = T(limb.give[6 * j]) * wanted[0];
       for (std::size_t k = 1; k < 6; ++k) dq = madd(T(limb.give[6 * j + k]), wanted[k], dq);
       q = select(active, q + dq, q);
+      change.places = max(change.places, dq * dq);
     }
-    return square;
   }
 
-  /// Moves the bodies in the lanes that go on. Returns the largest square of a move.
-  T move_bodies(Mask active) {
-    T largest(0.0);
+  /// Moves the bodies in the lanes that go on.
+  void move_bodies(Mask active, Change& change) {
     for (std::size_t b = 1; b < bodies_.size(); ++b) {
       const T* twist = &twists_[6 * b];
-      largest = max(largest, dot6(twist, twist));
+      change.places = max(change.places, dot6(twist, twist));
       const Motion moved = product(motion_of(twist), bodies_[b]);
       for (int k = 0; k < 9; ++k) bodies_[b].r[k] = select(active, moved.r[k], bodies_[b].r[k]);
       for (int k = 0; k < 3; ++k) bodies_[b].p[k] = select(active, moved.p[k], bodies_[b].p[k]);
     }
-    return largest;
   }
 
   /// One round. Returns the lanes that settled in it.
@@ -223,16 +236,28 @@ class AssemblyKernel {
     for (std::size_t e = 0; e < problem_.limbs.size(); ++e) visit(e);
     solve_linear();
     for (std::size_t k = 6; k < twists_.size(); ++k) twists_[k] = found_[first_body_row() + k - 6];
-    T change(0.0);
-    for (std::size_t e = 0; e < problem_.limbs.size(); ++e) change = change + step(e, active);
-    const T moved = move_bodies(active);
-    Mask settled = !(moved > T(problem_.tolerance * problem_.tolerance));
+    Change change{T(0.0), T(0.0)};
+    for (std::size_t e = 0; e < problem_.limbs.size(); ++e) step(e, active, change);
+    move_bodies(active, change);
+    const Mask settled = has_settled(change);
+    before_ = change;
+    return settled;
+  }
+
+  /// Whether the next round would change no more than rounding: by this one's change, or where that is small enough to
+  /// shrink on as it did in this round.
+  Mask has_settled(const Change& change) const {
+    const T tolerance(problem_.tolerance * problem_.tolerance);
+    const auto rests = [](T now, T before, T limit, T small) {
+      return !(now > limit) | ((now * now < T(kNext) * limit * before) & (now < small));
+    };
+    Mask settled = rests(change.places, before_.places, tolerance, T(kShort) * tolerance);
     if (problem_.wants_wrenches) {
       T whole(0.0);
       for (const T& wrench : wrenches_) whole = madd(wrench, wrench, whole);
-      settled = settled & !(change > T(kWrenches * kWrenches) * whole);
+      settled = settled & rests(change.wrenches, before_.wrenches, T(kWrenches) * whole, T(kShort * kWrenches) * whole);
     }
-    return settled & (moved < T(kFarthest));
+    return settled & (change.places < T(kFarthest));
   }
 
   // ---- what comes of it
@@ -283,11 +308,14 @@ class AssemblyKernel {
     }
   }
 
-  static constexpr double kWrenches = 1e-12;  ///< a change of all wrenches by this share is rounding
+  static constexpr double kWrenches = 1e-24;  ///< square of the share of all wrenches that is rounding
+  static constexpr double kNext = 1e-2;       ///< square of the share of the tolerance that a next round may change
+  static constexpr double kShort = 1e10;      ///< square of a change over the tolerance up to which it is foreseen
   static constexpr double kFarthest = 100.0;  ///< square of a move beyond which a lane has diverged
 
   const KernelProblem& problem_;
   const KernelBlock& block_;
+  KernelMapper<T> mapper_;
   KernelReporter<T> reporter_;
   LaneOutcome<T> outcome_;
   std::vector<std::size_t> first_segment_;  ///< [limbs] among all
@@ -300,6 +328,7 @@ class AssemblyKernel {
   std::vector<T> right_;
   std::vector<T> found_;
   std::vector<T> twists_;  ///< [6 x bodies]
+  Change before_;          ///< of the last round
 };
 
 /// Solves a block with batches of T.

@@ -2,6 +2,8 @@
 
 // Included only by kernels.cpp, which is compiled once for each instruction set.
 
+#include <algorithm>
+
 #include "models/assembly/kernel_report.h"
 
 namespace poesy::assembly {
@@ -10,11 +12,15 @@ namespace poesy::assembly {
 template <class T>
 class KernelMapper {
  public:
+  static constexpr std::size_t kAllRows = static_cast<std::size_t>(-1);  ///< all coordinates
+
   /// Both must outlive it. rows: coordinates that are wanted.
   KernelMapper(const KernelProblem& problem, const KernelBlock& block, std::size_t rows)
-      : problem_(problem), map_(problem.map), block_(block), blocks_((rows + kRows - 1) / kRows) {
-    coordinates_.resize(blocks_ * kRows);
-  }
+      : problem_(problem),
+        map_(problem.map),
+        block_(block),
+        blocks_((std::min(rows, first_joint() + problem.joints) + kRows - 1) / kRows),
+        coordinates_(blocks_ * kRows) {}
 
   /// Of the lanes from sample `at` on, until the next call.
   const T* coordinates(std::size_t at) {
