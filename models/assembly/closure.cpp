@@ -1,6 +1,8 @@
 #include "models/assembly/closure.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "engine/base/nan.h"
@@ -102,11 +104,6 @@ class Descent {
 
 }  // namespace
 
-void Closure::prepare(const Nominal& pose) {
-  pose_ = &pose;
-  loops_.reset();
-}
-
 /// From then on slopes are known at this pose.
 bool Closure::is_regular() {
   if (loops_) return loops_->is_regular();
@@ -114,18 +111,25 @@ bool Closure::is_regular() {
   if (!loops_->is_regular()) return false;
   const std::vector<std::vector<Screw>> slopes = loops_->determinant_slopes();
   const Eigen::MatrixXd twists = error_twists(*model_, *pose_);
-  nearing_.resize(twists.cols());
   for (std::size_t f = 0; f < model_->slots.size(); ++f) {
     const chain::ErrorSlot& slot = model_->slots[f];
     const auto row = 6 * static_cast<Index>(slot.limb);
-    nearing_[static_cast<Index>(f)] = slopes[slot.limb][slot.frame].dot(twists.block<6, 1>(row, static_cast<Index>(f)));
+    nearing_.push_back(slopes[slot.limb][slot.frame].dot(twists.block<6, 1>(row, static_cast<Index>(f))));
   }
   return true;
 }
 
-double Closure::nearing(std::span<const double> errors) {
-  if (!is_regular()) return 0.0;
-  return nearing_.dot(Eigen::Map<const Eigen::VectorXd>(errors.data(), static_cast<Index>(errors.size())));
+void Closure::find_nearing(const SampleBlock& samples, std::span<double> nearing) {
+  std::ranges::fill(nearing, 0.0);
+  if (!is_regular()) return;
+  std::vector<double> constant(samples.errors.begin(), samples.errors.end());
+  for (const FactorIndex factor : samples.varied) constant[factor.value] = 0.0;
+  std::ranges::fill(nearing, std::inner_product(constant.begin(), constant.end(), nearing_.begin(), 0.0));
+  for (std::size_t v = 0; v < samples.varied.size(); ++v) {
+    const double slope = nearing_[samples.varied[v].value];
+    const std::span<const double> values = samples.values.subspan(v * samples.count, samples.count);
+    for (std::size_t b = 0; b < samples.count; ++b) nearing[b] += slope * values[b];
+  }
 }
 
 bool Closure::is_open(std::span<const Screw> mismatch) const {

@@ -15,18 +15,15 @@ namespace poesy::assembly {
 /// (bend), a machine cannot be assembled where N - 2 C(r) is not positive definite: the rule of chain::Assembly.
 /// Stiffness plays no part in it.
 ///
-/// Plain double arithmetic, for samples that a solver did not solve or whose errors bring loops near their end. Owns
-/// what belongs to one pose.
+/// Plain double arithmetic, for samples that a solver did not solve or whose errors bring loops near their end.
 class Closure {
  public:
-  explicit Closure(const AssemblyModel& model) : model_(&model) {}  ///< The model must outlive it.
+  /// At this pose. Both must outlive it.
+  Closure(const AssemblyModel& model, const Nominal& pose) : model_(&model), pose_(&pose) {}
 
-  /// At this pose, which must outlive what follows.
-  void prepare(const Nominal& pose);
-
-  /// The first-order change of ln det N by these errors [F]: machines with less than chain::kNearing may be ones that
-  /// cannot be assembled. 0 where the perfect loops are singular.
-  double nearing(std::span<const double> errors);
+  /// The first-order change of ln det N by the errors of each sample, [B]: machines with less than chain::kNearing may
+  /// be ones that cannot be assembled. 0 where the perfect loops are singular.
+  void find_nearing(const SampleBlock& samples, std::span<double> nearing);
 
   /// Whether this mismatch [limbs] is more than rounding.
   bool is_open(std::span<const Screw> mismatch) const;
@@ -39,9 +36,9 @@ class Closure {
   bool is_regular();
 
   const AssemblyModel* model_;
-  const Nominal* pose_ = nullptr;
-  std::optional<Loops> loops_;  ///< once asked for at this pose
-  Eigen::VectorXd nearing_;     ///< [F] of a unit of each error
+  const Nominal* pose_;
+  std::optional<Loops> loops_;   ///< once asked for
+  std::vector<double> nearing_;  ///< [F] of a unit of each error
 };
 
 }  // namespace poesy::assembly
