@@ -28,8 +28,9 @@ program_test(mechanism_file regression)
 program_test(shared_drive statistical)
 program_test(assembly regression)
 program_test(branched statistical)
-set_property(TEST program.mechanism_file program.shared_drive program.assembly program.branched APPEND PROPERTY ENVIRONMENT
-             POESY_DATA=${CMAKE_CURRENT_SOURCE_DIR}/data)
+program_test(load regression)
+set_property(TEST program.mechanism_file program.shared_drive program.assembly program.branched program.load
+             APPEND PROPERTY ENVIRONMENT POESY_DATA=${CMAKE_CURRENT_SOURCE_DIR}/data)
 program_test(determinism determinism)
 program_test(adaptive determinism)
 program_test(fidelity unit)
