@@ -170,6 +170,49 @@ limits = {{ {", ".join(f'{name} = "{limit}"' for name, limit in limits.items())}
         self.assert_yield(self.run_yield(words, {"rotation": "0.2 deg", "position": "0.3 mm"}), own)
 
 
+class UniversalJoints(Branched):
+    """One rod with universal joints is no pair of rods: it holds the effector against turning about the rod itself, and a
+    pair about what is square to the rods and to the line between their balls."""
+
+    FILE = "printer-universal.toml"
+
+    def displacements(self, **errors):
+        """Of the effector on rods with universal joints, and on pairs, whose rods have the same errors."""
+        pairs = {}
+        for name, value in errors.items():
+            for twin in ((f"rod_left_{name[-1]}", f"rod_right_{name[-1]}") if name.startswith("rod") else (name,)):
+                pairs[twin] = value
+        places = columns(PLACES, "xyz")
+        return self.evaluated(self.FILE, places, errors), self.evaluated(Printer.FILE, places, pairs)
+
+    def test_matched_pairs(self):
+        """Where no carriage is turned, both move alike, and tilt nothing."""
+        generator = np.random.default_rng(8)
+        names = [f"{name}_{k}" for name in ("tower_x", "tower_y", "endstop", "rod") for k in (1, 2, 3)]
+        universal, pairs = self.displacements(**{name: 0.5e-3 * generator.standard_normal(20) for name in names})
+        self.assert_same(universal, pairs)
+        self.assertLess(np.abs(pairs[..., 3:]).max(), 1e-13)
+        self.assertGreater(np.abs(pairs[..., :3]).min(), 1e-7)
+
+    def test_turned_carriages(self):
+        """To first order: of the turning of each carriage the effector takes over what its rods hold."""
+        size = 1e-5
+        generator = np.random.default_rng(9)
+        names = [f"lean_{axis}_{k}" for k in (1, 2, 3) for axis in "xy"]
+        leans = size * generator.standard_normal((20, 6))
+        universal, pairs = self.displacements(**dict(zip(names, leans.T)))
+        rods = SixRods()
+        for place, point in enumerate(PLACES):
+            legs = (rods.down + point)[:3] - np.concatenate([rods.up[:3, :2], rods.heights(point[None]).T], axis=1)
+            bars = rods.up[:3] - rods.up[3:]
+            across = np.cross(bars, legs)
+            for found, held in ((universal, np.cross(across, bars)), (pairs, across)):
+                turned_by = np.concatenate([leans.reshape(20, 3, 2), np.zeros((20, 3, 1))], -1)
+                expected = np.linalg.solve(held, np.sum(held * turned_by, -1).T).T
+                self.assertLess(np.abs(found[place, :, 3:] - expected).max(), 100.0 * size ** 2)
+        self.assertGreater(np.abs(universal - pairs)[..., 3:].max(), size)
+
+
 class Crank(Branched):
     """A loop that holds the crank on the arm, and one that holds the effector on the crank."""
 
