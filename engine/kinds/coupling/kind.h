@@ -4,10 +4,10 @@
 
 namespace poesy {
 
-/// Coupling: what sources of errors of fixed size do one by one and together.
+/// Runs and reports coupling studies: the effects of error sources of fixed size, alone and together.
 extern const Kind kCouplingKind;
 
-/// How result files and reports know them.
+/// Reads and writes what is special to results of coupling studies.
 /// @{
 extern const FileKind kCouplingFile;
 extern const ReportKind kCouplingReport;

@@ -4,10 +4,10 @@
 
 namespace poesy {
 
-/// Identification: which errors deform the mechanism at all.
+/// Runs and reports identification studies: which errors deform the mechanism at all.
 extern const Kind kIdentificationKind;
 
-/// How result files and reports know them.
+/// Reads and writes what is special to results of identification studies.
 /// @{
 extern const FileKind kIdentificationFile;
 extern const ReportKind kIdentificationReport;
