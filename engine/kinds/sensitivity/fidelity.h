@@ -18,11 +18,11 @@ namespace poesy {
 ///
 ///     discrepancy           global of the second - global of the first
 ///     relative_discrepancy  discrepancy / effect
-///     nonlinearity          root mean square over the poses of hypot(m1 - m2, s1 - s2) / sigma, over effect; m is the
-///     mean
-///                           less the response to the background alone, and s the standard deviation of the response.
-///                           It includes a shift of the mean, where a second-order effect shows that hardly changes the
-///                           spread. It is at most the root mean square difference of the samples themselves.
+///     nonlinearity          root mean square over the poses of hypot(m1 - m2, s1 - s2) / sigma, over effect
+///
+/// with m the mean, less the response to the background alone, and s the standard deviation of the response.
+/// Nonlinearity includes a shift of the mean, where a second-order effect shows that hardly changes the spread. It is
+/// at most the root mean square difference of the samples themselves.
 ///
 /// An error is linear if no response has a nonlinearity or a magnitude of relative discrepancy above `linearity`. An
 /// effect below 1e-10 in SI, or one with a spread below 1e-13 in SI, is rounding. If the first fidelity has only
