@@ -55,14 +55,14 @@ inline void head_state(Archive& archive, std::string_view name, std::span<const 
 ///     std::size_t begin_round()              numbers the round's pieces of work 0 .. count - 1, and gives count
 ///     Worker worker() const                  solves pieces, and owns the scratch of one thread
 ///     Piece solve(Worker&, std::size_t n)    solves the n-th piece, on any thread
-///     void piece_state(Archive&, std::size_t n, Piece&)   a piece on its way to rank 0, where an empty one is filled
-///     SolveCounts merge(std::size_t n, Piece&&)   takes the n-th piece, in order; how its solves ended
-///     SolveCounts solved() const             of all that was merged, in earlier runs as well
-///     std::uint64_t left() const             solves that are still to come, as far as is known in this round
-///     void state(Archive&)                   everything merged so far; reading takes up a state in place of its own
-///     bool next_round()                      ends the round; whether another one follows
+///     void piece_state(Archive&, std::size_t n, Piece&)   writes a piece, or reads it into an empty one on rank 0
+///     SolveCounts merge(std::size_t n, Piece&&)   adds the n-th piece, in order; returns how its solves ended
+///     SolveCounts solved() const             solves of all merged pieces, including those of earlier runs
+///     std::uint64_t left() const             solves that are still expected in this round
+///     void state(Archive&)                   writes everything merged so far, or reads it in place of the present
+///     state bool next_round()                      ends the round; returns whether another one follows
 ///
-/// unit_fold and pose_fold have all of it but what a kind of study solves and adds up.
+/// UnitFold and PoseFold implement all of it except what a kind of study solves and sums.
 template <class Work>
 bool fold(Work& work, const RunOptions& options) {
   const auto restore = [&](std::span<const std::byte> bytes) {

@@ -19,21 +19,22 @@ namespace poesy {
 /// The work of fold() for the units of a plan. A unit has samples of a cell, which is a slot at a pose. PoseFold
 /// manages the pending units, the rounds of adaptive samples, shards, and states. A job provides the rest:
 ///
-///     static constexpr std::string_view kName     the name with which its states begin, which no other job has
-///     std::vector<std::uint64_t> sizes() const    what must be equal where a state is taken up
-///     Rounds::Rule rule() const                   when adaptive samples end
+///     static constexpr std::string_view kName     name of its states, unique among all jobs
+///     std::vector<std::uint64_t> sizes() const    sizes that a state must have to be read
+///     Rounds::Rule rule() const                   the rule of adaptive samples
 ///     Worker worker() const                       solves units, and owns the scratch of one thread: worker(unit)
-///     void unit_state(Archive&, const WorkUnit&, Unit&) const   what a unit came to, its `solves` among it
-///     Sums sums(const Plan&, const Shard&) const  of no units
-///     std::vector<Estimate> estimates(const Sums&, std::size_t slot) const   what decides after a round
+///     void unit_state(Archive&, const WorkUnit&, Unit&) const   reads or writes a unit, which has a member `solves`
+///     Sums sums(const Plan&, const Shard&) const  empty sums
+///     std::vector<Estimate> estimates(const Sums&, std::size_t slot) const   estimates that decide after a round
 ///
 /// The sums have the interface of CellSums:
 ///
-///     static constexpr bool kOfRound              whether they are of the samples of one round, and made anew for each
-///     void add(const WorkUnit&, const Unit&)      takes the next unit of its cell
+///     static constexpr bool kOfRound              whether sums are of one round only and made anew for each
+///     void add(const WorkUnit&, const Unit&)      adds the next unit of its cell
 ///     std::size_t units_done(std::size_t cell) const
 ///     SolveCounts total() const
-///     void state(Archive&, std::size_t samples)   writes all cells, or adds those of a plan with so many samples
+///     void state(Archive&, std::size_t samples)   writes all cells, or reads and adds those of a plan with other
+///     samples
 template <class Job>
 class PoseFold {
  public:
@@ -130,16 +131,16 @@ class PoseFold {
   std::optional<PendingUnits> pending_;  ///< units of the round
 };
 
-/// What the cells of a plan came to, of which those of a shard are held. A last unit with fewer than Plan::kUnitSamples
-/// samples is kept apart, because a study with more samples has another unit in its place. A store holds something of R
-/// responses for each of some cells:
+/// The sums of the cells of a plan, or of a shard's cells. A last unit with fewer than Plan::kUnitSamples samples is
+/// kept apart, because a study with more samples has another unit in its place. A store has values of R responses for
+/// each of some cells:
 ///
-///     Store(std::size_t responses, std::size_t cells)    without samples; and Store() without cells
-///     std::vector<SolveCounts> solves                    of each cell
-///     void merge(std::size_t cell, const Unit&)          takes later samples of a cell
-///     void merge(Store later)                            takes later samples of each cell
-///     void state(Archive&, std::size_t cell, std::uint64_t first)   a cell, of samples from `first` on
-///     Store part(const NumberRange& cells) const
+///     Store(std::size_t responses, std::size_t cells)    without samples; also Store() without cells
+///     std::vector<SolveCounts> solves                    [cells]
+///     void merge(std::size_t cell, const Unit&)          adds later samples of a cell
+///     void merge(Store later)                            adds later samples of each cell
+///     void state(Archive&, std::size_t cell, std::uint64_t first)   reads or writes a cell with samples from `first`
+///     on Store part(const NumberRange& cells) const
 template <class Store>
 class CellSums {
  public:

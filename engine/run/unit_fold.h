@@ -23,24 +23,24 @@ concept SampledUnits = requires(const Job& job) {
 /// The work of fold() for a sequence of units, which are solved on any thread and merged in order. UnitFold manages the
 /// pending units, shards, and states. A job provides the rest:
 ///
-///     static constexpr std::string_view kName       the name with which its states begin, which no other job has
-///     std::vector<std::uint64_t> sizes() const      what must be equal where a state is taken up
-///     NumberRange units(const Shard&) const         the shard's of all its units, 0 .. N - 1
-///     std::uint64_t expected(std::size_t n) const   solves of unit n, as far as that is known beforehand
+///     static constexpr std::string_view kName       name of its states, unique among all jobs
+///     std::vector<std::uint64_t> sizes() const      sizes that a state must have to be read
+///     NumberRange units(const Shard&) const         the shard's part of all units, 0 .. N - 1
+///     std::uint64_t expected(std::size_t n) const   solves of unit n, as far as known beforehand
 ///     Worker worker() const                         owns the scratch of one thread: worker(n) solves unit n
-///     Unit unit(std::size_t n) const                an empty one, with state(Archive&); not where units are Sums
+///     Unit unit(std::size_t n) const                an empty unit, with state(Archive&); not needed if units are Sums
 ///     SolveCounts solves(std::size_t n, const Unit&) const   how a unit's solves ended
-///     Sums sums() const                             of no units
+///     Sums sums() const                             empty sums
 ///
 /// The sums have add(std::size_t n, Unit&&), which adds the next unit, and state(Archive&, const NumberRange& units),
 /// which writes the sums of these units, or reads and adds them. Units may be Sums themselves: then a state is read
 /// like a unit, and added. A job of samples also has:
 ///
-///     Rounds rounds() const                         at their beginning
-///     std::size_t samples() const                   of the whole study
-///     std::size_t units_for(std::size_t samples) const   units of so many samples
+///     Rounds rounds() const                         the rounds at their beginning
+///     std::size_t samples() const                   samples of the whole study
+///     std::size_t units_for(std::size_t samples) const   number of units for these samples
 ///     bool is_whole(std::size_t n) const            whether unit n is as large as in any longer study
-///     std::vector<Estimate> estimates(const Sums&, const Unit* last) const   what decides after a round
+///     std::vector<Estimate> estimates(const Sums&, const Unit* last) const   estimates that decide after a round
 ///
 /// A last unit that is not whole is kept apart until the end, so that a longer study can continue without it.
 template <class Job>
