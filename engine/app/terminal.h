@@ -54,8 +54,8 @@ int complain(const std::string& problem, ExitCode code);
 /// Runs the action and returns its exit code, or that of an exception, whose message is printed on stderr.
 int exit_code_of(const std::function<int()>& action);
 
-/// Afterwards, Ctrl-C, SIGTERM and SIGHUP set the returned flag instead of ending the program. A second Ctrl-C ends it
-/// as usual. SIGTERM may come any number of times, because batch systems send it several times.
+/// Afterwards, Ctrl-C, SIGTERM and SIGHUP set the returned flag instead of ending the program. A Ctrl-C after any of
+/// them ends it as usual. Further SIGTERMs have no effect, because batch systems send it several times.
 const std::atomic<bool>& catch_interrupts();
 
 /// Sets the flag.

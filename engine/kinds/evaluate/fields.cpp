@@ -189,7 +189,7 @@ void add_errors(ResultBuilder& result, const Evaluation& found, const std::strin
   result.file().set_attribute(kLabels, "column", found.labels.column);
 }
 
-/// Throws if a verdict names a row that does not exist, or misses rows: every row of errors was tried.
+/// Throws unless all rows of errors were tried for every verdict.
 void check_rows(const std::vector<LimitVerdict>& limits, std::size_t rows) {
   const bool fits = std::ranges::all_of(limits, [rows](const LimitVerdict& one) { return one.tried == rows; });
   if (!fits) throw h5::Error("/limits/tried is not the number of rows of errors");

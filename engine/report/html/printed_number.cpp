@@ -32,7 +32,7 @@ int digits_of(std::string_view text) {
 /// The number with this many significant digits, including trailing zeros.
 std::string with_digits(double value, int digits) { return fmt::format("{:#.{}g}", value, digits); }
 
-/// The number of digits, at most `most`, to which zeros can be appended without changing the rounded number.
+/// The number of digits, at most `most`, to which the text can be padded with zeros and still be correctly rounded.
 int full_digits(const Cell& cell, int most) {
   const int shown = digits_of(cell.text);
   const double as_shown = std::strtod(cell.text.c_str(), nullptr);
