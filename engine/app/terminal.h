@@ -58,7 +58,7 @@ int exit_code_of(const std::function<int()>& action);
 /// them ends it as usual. Further SIGTERMs have no effect, because batch systems send it several times.
 const std::atomic<bool>& catch_interrupts();
 
-/// Sets the flag.
+/// Sets the flag of catch_interrupts().
 void interrupt();
 
 }  // namespace poesy::app

@@ -24,7 +24,7 @@ RangeChange change_in(const ErrorRange& error, double low, double high) {
 
 Estimate estimate_of(const PowerSums& powers, std::uint64_t machines, const ScoreMoments& score, double conf_level) {
   const auto n = static_cast<double>(machines);
-  const ScoreMoments added{kAddedRejects * score.square / n, 0.0};  // for both kinds of wrong judgement
+  const ScoreMoments added{kAddedRejects * score.square / n, 0.0};  // extra machines that the map judges wrongly
   return skewed_mean(powers, machines, added, n - 1.0, conf_level);
 }
 

@@ -29,7 +29,7 @@ constexpr double kMostUsual = 20e6;
 /// The default number of machines.
 std::size_t usual_samples(double yield) {
   constexpr double kThousand = 1000.0;
-  constexpr double kRounding = 1e-11;  // of 1 - yield, so that 0.9 takes 4000 and not 5000
+  constexpr double kRounding = 1e-11;  // relative; without it a yield of 0.9 would take 5000 machines instead of 4000
   const double machines = std::ceil(kUsualRejects / (1.0 - yield) * (1.0 - kRounding));
   return static_cast<std::size_t>(std::clamp(std::ceil(machines / kThousand) * kThousand, kFewestUsual, kMostUsual));
 }

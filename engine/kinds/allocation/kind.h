@@ -4,7 +4,7 @@
 
 namespace poesy {
 
-/// Reads and writes what is special to results of studies that find tolerances under limits.
+/// How results of studies that find tolerances under limits are stored and reported.
 /// @{
 extern const FileKind kAllocationFile;
 extern const ReportKind kAllocationReport;

@@ -200,7 +200,7 @@ std::vector<std::string> subset_names(std::span<const ErrorSource> sources);
 /// effects are known. An effect of at least one source must be known.
 std::vector<std::size_t> responses_without_effect(const CouplingResult& found);
 
-/// The coupling result that a result contains. Precondition: the result is of that kind.
+/// The coupling result in a stored result. Precondition: the result is of that kind.
 inline const CouplingResult& coupling_of(const StoredResult& result) { return found_of<CouplingResult>(result); }
 
 /// For each size and each response that a summary shows: a table with a row for each subset of

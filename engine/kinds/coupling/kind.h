@@ -7,7 +7,7 @@ namespace poesy {
 /// Runs and reports coupling studies: the effects of error sources of fixed size, alone and together.
 extern const Kind kCouplingKind;
 
-/// Reads and writes what is special to results of coupling studies.
+/// How results of coupling studies are stored and reported.
 /// @{
 extern const FileKind kCouplingFile;
 extern const ReportKind kCouplingReport;

@@ -64,7 +64,7 @@ Evaluation evaluation(EvaluationResult solves, const ErrorTable& errors, Pairing
 Evaluation evaluation_of_cases(EvaluationResult solves, std::span<const ErrorCase> cases, const ModelDescription& model,
                                NotConverged policy);
 
-/// The evaluation that a result contains. Precondition: the result is an evaluation.
+/// The evaluation in a stored result. Precondition: the result is an evaluation.
 inline const Evaluation& evaluation_of(const StoredResult& result) { return found_of<Evaluation>(result); }
 
 /// The errors of the solves of an evaluation.

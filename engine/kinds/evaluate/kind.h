@@ -7,7 +7,7 @@ namespace poesy {
 /// Runs and reports studies of named cases: the responses to fixed errors.
 extern const Kind kEvaluateKind;
 
-/// Reads and writes what is special to results of evaluations.
+/// How results of evaluations are stored and reported.
 /// @{
 extern const FileKind kEvaluationFile;
 extern const ReportKind kEvaluationReport;

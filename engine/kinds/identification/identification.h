@@ -88,7 +88,7 @@ using SolveTable = std::function<std::optional<EvaluationResult>(const ErrorTabl
 std::optional<IdentificationResult> identify(const Analysis& analysis, const ModelDescription& model,
                                              const SolveTable& solve);
 
-/// The identification that a result contains. Precondition: the result is an identification.
+/// The identification in a stored result. Precondition: the result is an identification.
 inline const IdentificationResult& identification_of(const StoredResult& result) {
   return found_of<IdentificationResult>(result);
 }

@@ -7,7 +7,7 @@ namespace poesy {
 /// Runs and reports identification studies: which errors deform the mechanism at all.
 extern const Kind kIdentificationKind;
 
-/// Reads and writes what is special to results of identification studies.
+/// How results of identification studies are stored and reported.
 /// @{
 extern const FileKind kIdentificationFile;
 extern const ReportKind kIdentificationReport;

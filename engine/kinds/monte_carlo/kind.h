@@ -17,7 +17,7 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
 /// Runs and reports Monte Carlo studies: the effect of all errors together.
 extern const Kind kMonteCarloKind;
 
-/// Reads and writes what is special to Monte Carlo results.
+/// How Monte Carlo results are stored and reported.
 /// @{
 extern const FileKind kMonteCarloFile;
 extern const ReportKind kMonteCarloReport;

@@ -200,7 +200,7 @@ struct MonteCarloResult {
 /// Bytes of the numbers of a result with axes of these lengths. machines: whether errors are drawn per machine.
 std::size_t monte_carlo_bytes(const AxisLengths& lengths, bool machines);
 
-/// The Monte Carlo result that a result contains; StoredResult has its failures, convergence and verdicts.
+/// The Monte Carlo result in a stored result; StoredResult has its failures, convergence and verdicts.
 /// Precondition: the result is of that kind.
 inline const MonteCarloResult& monte_carlo_of(const StoredResult& result) { return found_of<MonteCarloResult>(result); }
 

@@ -22,7 +22,7 @@ std::size_t sensitivity_bytes(const AxisLengths& lengths);
 /// Runs and reports sensitivity studies: the effect of each error alone.
 extern const Kind kSensitivityKind;
 
-/// Reads and writes what is special to sensitivity results.
+/// How sensitivity results are stored and reported.
 /// @{
 extern const FileKind kSensitivityFile;
 extern const ReportKind kSensitivityReport;

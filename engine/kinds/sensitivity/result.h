@@ -125,7 +125,7 @@ struct SensitivityResult {
   SolveCounts total() const { return total_of(solves.all()); }
 };
 
-/// The sensitivity result that a result contains. Precondition: the result is of that kind.
+/// The sensitivity result in a stored result. Precondition: the result is of that kind.
 inline const SensitivityResult& sensitivity_of(const StoredResult& result) {
   return found_of<SensitivityResult>(result);
 }

@@ -9,7 +9,7 @@ namespace poesy {
 /// interactions.
 extern const Kind kSobolKind;
 
-/// Reads and writes what is special to results of Sobol' indices.
+/// How results of Sobol' indices are stored and reported.
 /// @{
 extern const FileKind kSobolFile;
 extern const ReportKind kSobolReport;

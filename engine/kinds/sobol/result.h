@@ -139,7 +139,7 @@ struct SobolResult {
 /// length 0 without second-order indices.
 std::size_t sobol_bytes(const AxisLengths& lengths);
 
-/// The result of Sobol' indices that a result contains. Precondition: the result is of that kind.
+/// The Sobol' indices in a stored result. Precondition: the result is of that kind.
 inline const SobolResult& sobol_of(const StoredResult& result) { return found_of<SobolResult>(result); }
 
 /// Tables of first-order and total indices over the workspace for each response of the headline, then of the signed

@@ -99,8 +99,8 @@ std::vector<std::size_t> ranks(std::span<const double> values) {
   return rank;
 }
 
-/// The relative change from a to b. Differences of equal values by rounding of solvers, about 1e-14 rad or m of 1e-3,
-/// count as none.
+/// The relative change from a to b. Zero for differences that may be rounding of solvers (about 1e-14 of 1e-3 rad or
+/// m).
 double change_of(double a, double b) {
   constexpr double kRounding = 1e-10;
   const double change = (b - a) / std::abs(a);

@@ -161,7 +161,7 @@ struct Robot {
   /// [K x E x L x 6] The motion of the platform by each limb for an error of its size, [rotation; displacement at the
   /// base's origin]; empty if not known.
   ArrayName motions = {};
-  double exaggeration = 1.0;  ///< first factor on the motions
+  double exaggeration = 1.0;  ///< initial factor by which motions are enlarged
 };
 
 using Figure = std::variant<Bars, HeatMap, WorkspaceMap, Lines, Scatter, Robot>;  ///< Any kind of figure.
