@@ -23,7 +23,7 @@
 namespace poesy::app {
 namespace {
 
-/// What a trajectory asks of the mechanism; empty for other poses.
+/// The speeds that a trajectory requires of the mechanism; empty for other poses.
 std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& model) {
   if (poses.time.empty()) return {};
   std::string text = fmt::format("# trajectory: {} poses from {:.6g} s to {:.6g} s", poses.poses.size(),
@@ -40,14 +40,14 @@ std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& 
 
 using Clock = std::chrono::steady_clock;
 
-/// Seconds that one thread takes for this work: pieces of it are done for so long, at least one and at most 64.
+/// Seconds that one thread takes for this work, measured on 1 to 64 pieces within about `longest` seconds.
 double measured_seconds(const WorkOutlook& work, double longest) {
   constexpr std::size_t kPieces = 64;
   if (work.prepare) work.prepare();
   const Clock::time_point start = Clock::now();
   double done = 0.0;
   for (std::size_t n = 0; n < kPieces && (n == 0 || seconds_since(start) < longest); ++n) {
-    // From the middle on; the golden ratio spreads any number of pieces evenly.
+    // Starts in the middle; steps of the golden ratio spread any number of pieces evenly.
     const double at = 0.5 + static_cast<double>(n) * 0.6180339887498949;
     done += work.do_piece(at - std::floor(at));
   }
@@ -60,7 +60,7 @@ double measured_seconds(const std::vector<WorkOutlook>& all, double longest) {
   return sum;
 }
 
-/// Seconds that one thread takes for each byte of a result file: HDF5 composes it, and it is hashed.
+/// Seconds that one thread takes to compose and hash one byte of a result file.
 double composing_seconds() {
   constexpr std::size_t kNumbers = 1 << 17U;
   const std::vector<double> numbers(kNumbers, 1.0);
@@ -76,9 +76,9 @@ std::string time_text(const ExpectedTime& time) {
   return time.least == time.most ? most : "at least about " + readable_duration(time.least) + ", at most " + most;
 }
 
-/// Bytes that this process has had in memory at its peak: with the model, the poses and a solver, as a run has them.
+/// The peak memory of this process in bytes, which includes the model, the poses and a solver, as in a run.
 double own_peak() {
-  constexpr double kUnit = 1024.0;  // of ru_maxrss
+  constexpr double kUnit = 1024.0;  // unit of ru_maxrss, bytes
   struct rusage usage {};
   getrusage(RUSAGE_SELF, &usage);
   return kUnit * static_cast<double>(usage.ru_maxrss);
@@ -86,7 +86,7 @@ double own_peak() {
 
 std::string cost_text(const Outlook& expected) {
   const std::size_t threads = resolved_threads(0);
-  const ExpectedTime time = expected_time(expected, threads, 0.25);  // first: a solver has its memory then
+  const ExpectedTime time = expected_time(expected, threads, 0.25);  // first, because a solver then has its memory
   return fmt::format(
       "# memory: about {:.3g} MB at the peak, when the result file of about {:.3g} MB is written\n"
       "# time: {} on {} threads of this machine{}\n",

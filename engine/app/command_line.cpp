@@ -20,8 +20,8 @@ std::string shown_name(const CLI::Option& option) {
 
 bool is_option(const std::string& word) { return word.size() > 1 && word.front() == '-'; }
 
-/// "did you mean 'run'? " where one is near, or begins like this. An option of one letter has no suggestion, because
-/// any other letter is as near.
+/// "did you mean 'run'? " if a known word is similar or begins like this one, otherwise empty. An option of one letter
+/// gets no suggestion, because all other letters are equally similar.
 std::string nearest_text(const std::string& word, const std::vector<std::string>& known) {
   if (is_option(word) && word.size() == 2) return {};
   const std::vector<std::string_view> views(known.begin(), known.end());
@@ -36,9 +36,9 @@ std::string unknown_option(const std::string& word, const CLI::App& command) {
                      nearest_text(name, option_names(command)), see_help(command));
 }
 
-// Each says what is wrong, if that is it.
+// Each of these functions describes one kind of mistake; none if it was not made.
 
-/// What the command cannot do without was not given.
+/// A required argument is missing.
 std::optional<std::string> missing(const CLI::App& command) {
   std::vector<std::string> list;
   for (const CLI::Option* option : command.get_options()) {
@@ -50,7 +50,7 @@ std::optional<std::string> missing(const CLI::App& command) {
                      see_help(command));
 }
 
-/// Two do not go together, which each of them knows.
+/// Two options exclude each other.
 std::optional<std::string> excluded(const CLI::App& command) {
   for (const CLI::Option* one : command.get_options()) {
     for (const CLI::Option* other : one->get_excludes()) {
@@ -62,7 +62,7 @@ std::optional<std::string> excluded(const CLI::App& command) {
   return std::nullopt;
 }
 
-/// An option has no value, or is there twice.
+/// An option has no value, or is given twice.
 std::optional<std::string> wrong_number_of_values(const CLI::App& command, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr) return std::nullopt;
   for (const CLI::Option* option : command.get_options()) {
@@ -78,7 +78,7 @@ std::optional<std::string> wrong_number_of_values(const CLI::App& command, const
   return std::nullopt;
 }
 
-/// More things are there by their place than the command takes.
+/// There are more positional arguments than the command takes.
 std::optional<std::string> too_many_by_place(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     if (!option->get_positional()) continue;

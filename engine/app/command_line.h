@@ -12,30 +12,30 @@
 
 namespace poesy::app {
 
-/// Reads a text of digits alone; empty for anything else.
+/// Reads a text that has only digits; none for anything else.
 std::optional<std::uint64_t> whole_number(std::string_view text);
-/// Throws InputError that names the option and both bounds unless the text is a whole number within them.
+/// Reads a whole number. Throws InputError, which names the option and the bounds, if it is not one within them.
 std::uint64_t parse_whole_number(const std::string& text, const std::string& option, std::uint64_t least,
                                  std::uint64_t most);
 
-/// A command line, and what it is an example of.
+/// A command line and what it shows.
 struct Example {
   std::string about;
   std::string line;
 };
 
-/// The program, or one of its commands: what CLI11 has to know, and the notes and examples of its help.
+/// The program or one of its commands: a CLI11 app with the notes and examples of its help.
 class Command : public CLI::App {
  public:
-  /// program: that the command belongs to; null for the program itself.
+  /// program: the program to which the command belongs; null for the program itself.
   Command(const std::string& name, const std::string& about, Command* program = nullptr)
       : CLI::App(about, name, program) {}
 
-  std::vector<std::string> notes;  ///< paragraphs
+  std::vector<std::string> notes;  ///< paragraphs of the help
   std::vector<Example> examples;
-  std::function<int()> action;  ///< once the command line is understood; gives the exit code
+  std::function<int()> action;  ///< runs the command after the command line is read; returns the exit code
 
-  /// One more command of this program, and what its command line sets for its action.
+  /// Adds a command to this program. Returns it with the options that its command line sets.
   template <class Options>
   std::pair<Command&, Options&> add_command(const std::string& name, const std::string& about,
                                             int (*run)(const Options&)) {
@@ -44,12 +44,12 @@ class Command : public CLI::App {
     command.action = [options, run] { return run(*options); };
     return {command, *options};
   }
-  /// The same without action.
+  /// Adds a command without action.
   Command& add_command(const std::string& name, const std::string& about);
-  /// All commands of this program, as they were added.
+  /// The commands of this program, in the order in which they were added.
   std::vector<const Command*> commands() const;
 
-  /// An option ("-o,--output"), or an argument that its place tells ("study"), with a value that help calls `value`.
+  /// Adds an option ("-o,--output") or a positional argument ("study"), whose value has this name in help.
   template <class Variable>
   CLI::Option* add_value(const std::string& name, Variable& variable, const std::string& value,
                          const std::string& about) {
@@ -65,7 +65,7 @@ class Command : public CLI::App {
   }
 };
 
-// Each adds one command to the program.
+// Each of these functions adds one command to the program.
 Command& add_run(Command& program);
 Command& add_check(Command& program);
 Command& add_evaluate(Command& program);
@@ -82,19 +82,19 @@ Command& add_completion(Command& program);
 Command& add_help(Command& program);
 Command& add_version(Command& program);
 
-/// "-o", "--output"; empty for an argument that its place tells.
+/// The names of an option: "-o", "--output"; empty for a positional argument.
 std::vector<std::string> names_of(const CLI::Option& option);
 
-/// Of all options of a command.
+/// The names of all options of a command.
 std::vector<std::string> option_names(const CLI::App& command);
 
-/// "RESULT.h5"; empty for a flag.
+/// The name of its value: "RESULT.h5"; empty for a flag.
 std::string value_of(const CLI::Option& option);
 
-/// Whether it takes several values.
+/// Whether the option takes several values.
 bool is_repeated(const CLI::Option& option);
 
-/// "-o, --output RESULT.h5", "SHARD.h5 ..."
+/// The heading of an option in help: "-o, --output RESULT.h5", "SHARD.h5 ..."
 std::string heading(const CLI::Option& option);
 
 /// "poesy run", or "poesy".
@@ -106,16 +106,15 @@ std::string synopsis(const CLI::App& command);
 /// Prints help of the program and of its commands, in as many columns as stdout has.
 std::shared_ptr<CLI::FormatterBase> help_formatter();
 
-/// What is wrong with the command line that CLI11 refused, and what to do: "problem; remedy". Names the nearest command
-/// or option that there is.
+/// What is wrong with a command line that CLI11 refused, and what to do: "problem; remedy". Names the most similar
+/// command or option.
 std::string command_line_problem(const Command& program, const CLI::ParseError& error);
 
 /// "no command 'rn'; did you mean 'run'? see poesy --help".
 std::string unknown_command(const std::string& word, const Command& program);
 
-/// What is wrong with a command line that gives an option or an argument an empty text, as a script does whose variable
-/// is not set, or an option another option for its value; none where none does. Precondition: CLI11 took the command
-/// line.
+/// What is wrong if an option or an argument has an empty text, as in a script whose variable is not set, or if an
+/// option has another option as its value; none if neither is so. Precondition: CLI11 accepted the command line.
 std::optional<std::string> impossible_value(const Command& program);
 
 /// Whether the command line begins with a command that does not exist.

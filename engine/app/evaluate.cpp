@@ -40,14 +40,15 @@ struct EvaluateOptions {
   std::string study;
   std::string poses;
   std::string errors;
-  std::string frames;  ///< one of kForms; empty: errors are solved
+  std::string frames;  ///< one of kForms; empty: solve the errors
   std::string result;
   std::size_t threads = 0;
   bool paired = false;
   bool quiet = false;
 };
 
-/// What happens at a singular pose is data here, and the status of its samples says so: it is warned of, not refused.
+/// Warns of poses that are nearly singular. They are not refused here, because the status of their samples tells what
+/// happened.
 void warn_of_singular_poses(const std::string& path, const SelectedPoses& poses, double max_condition) {
   for (std::size_t m = 0; m < poses.condition.size(); ++m) {
     if (poses.condition[m] <= max_condition) continue;
@@ -56,7 +57,7 @@ void warn_of_singular_poses(const std::string& path, const SelectedPoses& poses,
   }
 }
 
-/// Of a line that says something.
+/// Warns of a doubt if the line is not empty.
 void warn_of(const std::string& doubt) {
   if (!doubt.empty()) say(Message::warning, doubt);
 }
@@ -74,7 +75,7 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
   return poses;
 }
 
-/// Prints where joints and frames are without errors, and solves nothing.
+/// Prints the poses of joints and frames without errors, and solves nothing.
 int print_frames(const EvaluateOptions& options, const Model& model, const PoseSet& poses) {
   if (std::ranges::find(kForms, options.frames) == kForms.end()) {
     throw InputError({}, "--frames: '" + printable(options.frames) + "' is no form of a table",
@@ -90,9 +91,9 @@ int print_frames(const EvaluateOptions& options, const Model& model, const PoseS
   return kDone;
 }
 
-/// Keeps the outcomes within what a result holds, as a study's are (study_kind.h).
+/// Throws if there are more outcomes than a result may have (study_kind.h).
 void check_size(const EvaluateOptions& options, const PoseSet& poses, const ErrorTable& errors) {
-  if (options.paired) return;  // as many as were read
+  if (options.paired) return;  // the tables have as many rows as were read
   const double solves = static_cast<double>(poses.size()) * static_cast<double>(errors.rows);
   if (solves <= static_cast<double>(kMostCells)) return;
   throw InputError({options.errors},
@@ -101,7 +102,7 @@ void check_size(const EvaluateOptions& options, const PoseSet& poses, const Erro
                    "give fewer rows or poses, or --paired for row by row");
 }
 
-/// What an evaluation is of. Refers to all of it.
+/// The input of an evaluation. Refers to all members.
 struct Evaluated {
   const Study& study;
   const Model& model;
@@ -110,14 +111,14 @@ struct Evaluated {
   Pairing pairing;
 };
 
-/// Bytes that its outcomes and its errors take.
+/// Bytes of the outcomes and of the errors.
 std::size_t memory_of(const Evaluated& all) {
   const std::size_t rows = all.pairing == Pairing::row_by_row ? 1 : all.errors.rows;
   const std::size_t outcomes = outcome_bytes(all.model.description(), Outcomes::with_details);
   return all.poses.poses.size() * rows * outcomes + all.errors.values.size() * sizeof(double);
 }
 
-/// path: of the result; empty: none is kept.
+/// path: path of the result; empty: none is written.
 int solve(const EvaluateOptions& options, const Evaluated& all, const std::string& path) {
   const auto& [study, model, poses, errors, pairing] = all;
   const auto start = std::chrono::steady_clock::now();

@@ -6,17 +6,17 @@
 
 namespace poesy::app {
 
-/// How long a run will take, s.
+/// The expected duration of a run, s.
 struct ExpectedTime {
-  double least;  ///< with adaptive samples what is solved in any case
-  double most;   ///< the same without them
+  double least;  ///< time for the samples that adaptive samples take in any case; else the same as `most`
+  double most;   ///< time for the largest number of samples
 };
 
-/// Tries pieces of the study on this machine, at least one of each work, for about so many seconds for solving and as
-/// many for merging. (check.cpp)
+/// Times pieces of the study on this machine, at least one of each work, for about this many seconds of solving and as
+/// many of merging. (check.cpp)
 ExpectedTime expected_time(const Outlook& expected, std::size_t threads, double seconds);
 
-/// A run that takes longer is asked about before it starts, s.
+/// Before a run that takes longer, the program asks whether it is meant, s.
 inline constexpr double kLongRun = 86400.0;
 
 }  // namespace poesy::app

@@ -14,7 +14,7 @@
 namespace poesy::app {
 namespace {
 
-/// A name and what it means.
+/// A name and its meaning.
 struct Entry {
   std::string_view name;
   std::string_view meaning;
@@ -39,7 +39,7 @@ constexpr std::array kEnvironment{
 
 constexpr std::size_t kNarrowest = 30;
 constexpr std::size_t kWidest = 110;     ///< longer lines are hard to read
-constexpr std::size_t kTwoColumns = 72;  ///< narrower: what a thing means is below it
+constexpr std::size_t kTwoColumns = 72;  ///< narrower help has meanings below names
 constexpr std::size_t kMeanings = 28;    ///< column where meanings begin
 constexpr std::size_t kBelow = 6;
 
@@ -49,13 +49,13 @@ std::size_t help_width() {
   return width == kUnlimitedWidth ? kUsualWidth : std::clamp(width, kNarrowest, kWidest);
 }
 
-/// A paragraph after `begin`; its further lines begin at column `indent`.
+/// A paragraph after `begin`, whose further lines are indented to column `indent`.
 std::string paragraph(const std::string& words, std::size_t indent = 0, const std::string& begin = {}) {
   const auto lines = wrapped(words, help_width() - indent, help_width() - begin.size());
   return fmt::format("{}{}\n", begin, fmt::join(lines, "\n" + std::string(indent, ' ')));
 }
 
-/// A name, and beside or below it what it means.
+/// A name, with its meaning beside or below it.
 std::string entry(std::string_view name, std::string_view meaning) {
   std::string begin = fmt::format("  {}", name);
   std::string above;
@@ -74,7 +74,7 @@ std::string entries(const std::string& title, std::span<const Entry> list) {
   return text;
 }
 
-/// Help as CLI11 groups it, wrapped at the width of the terminal. That of all commands is what help2man reads.
+/// Help with CLI11's groups, wrapped to the terminal. help2man reads the help of all commands.
 class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter() { label("Positionals", "Arguments"); }
@@ -102,7 +102,7 @@ class HelpFormatter : public CLI::Formatter {
   }
 
  private:
-  /// A command among all of them, indented.
+  /// A command with its options, indented for the help of all commands.
   std::string expanded(const Command& command) const {
     std::string text = "\n" + paragraph(command.get_description()) + make_positionals(&command);
     text += make_groups(&command, CLI::AppFormatMode::Sub) + notes(command) + examples(command);

@@ -35,7 +35,7 @@ void describe_program(Command& program) {
 
 constexpr const char* kAboutTheProgram = "About the program";
 
-/// In the groups of the program's help.
+/// Adds the commands, grouped as in the program's help.
 void add_commands(Command& program) {
   const auto group = [&](const char* title, std::initializer_list<Command& (*)(Command&)> commands) {
     for (const auto add : commands) add(program).group(title);
@@ -47,7 +47,7 @@ void add_commands(Command& program) {
   program.set_help_all_flag("--help-all", "print the help of all commands");
 }
 
-/// HDF5 1.10 and others crash where they find no memory for a beginning.
+/// Some versions of HDF5 (1.10) crash if they have no memory to start.
 void expect_memory() {
   constexpr std::size_t kLeast = std::size_t{24} << 20U;
   constexpr std::uintmax_t kMega = 1'000'000;
@@ -57,12 +57,12 @@ void expect_memory() {
                             " MB of memory at least, and this process may have " +
                             std::to_string(most_address_space() / kMega) + " MB",
                         "raise the limit (ulimit -v)");
-  // Not yet connected, it cannot have the first process say so.
+  // The rank is not yet connected, so the first process cannot report its error.
   if (!is_first_process()) say(Message::error, "rank " + std::to_string(find_launch()->rank) + ": " + error.what());
   throw error;
 }
 
-/// Libraries do not say that this limit was met.
+/// Tells of a limit on open files that is too low, which libraries do not report.
 void expect_open_files() {
   constexpr std::size_t kLeast = 16;
   std::vector<int> files;
@@ -102,12 +102,12 @@ int parse_and_run(int argc, char** argv) {
     expect_memory();
     expect_open_files();
   }
-  // Nothing else knows how to share its work; under a launcher the first process does it.
+  // Only `run` shares its work between ranks; other commands run on the first process.
   if (called.get_name() != "run" && !is_first_process()) return kDone;
   return called.action();
 }
 
-/// The exit code, unless what was printed did not arrive.
+/// Returns the exit code, or an error if standard output could not be written.
 int flushed(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   say(Message::error, "what was to be printed cannot be written; see whether there is room where it goes");
@@ -120,6 +120,6 @@ int flushed(int code) {
 int main(int argc, char** argv) {
   poesy::save_address_space();
   poesy::return_large_lists();
-  std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error of its write, as is a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a file above the size limit then fails to be written, as on a full disk
   return poesy::app::flushed(poesy::app::exit_code_of([=] { return poesy::app::parse_and_run(argc, argv); }));
 }

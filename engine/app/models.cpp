@@ -20,11 +20,11 @@
 namespace poesy::app {
 namespace {
 
-/// Larger files describe no mechanism.
+/// A larger file is not a mechanism file.
 constexpr std::size_t kMostBytes = 1 << 20;
 
-/// The mechanism of that name, in capitals or small letters, or of the file at this path. Throws InputError that lists
-/// the known names.
+/// The mechanism of that name, in upper or lower case, or of the file at this path. Throws InputError, which lists the
+/// known names.
 CatalogEntry find_model(const std::string& name) {
   if (const CatalogEntry* entry = find(registry(), name)) return *entry;
   if (name.find_first_of("./") != std::string::npos) {
@@ -78,8 +78,8 @@ void write_picture(const CatalogEntry& entry, const std::string& path) {
   write_text(output, mechanism_picture(*sketch, entry.description.title));
 }
 
-/// Folder of the mechanisms' files that are installed with this program; empty when there is none, as where the program
-/// lies in its build folder, and on systems without /proc.
+/// The folder of the installed mechanism files; empty if there is none, as for a program in its build folder or on
+/// systems without /proc.
 std::filesystem::path installed_mechanisms() {
   std::error_code none;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", none);
@@ -87,7 +87,7 @@ std::filesystem::path installed_mechanisms() {
   return std::filesystem::is_directory(folder, none) ? folder : std::filesystem::path();
 }
 
-/// The mechanisms' files in a folder, one a line: NAME/NAME.toml of each folder NAME. "" for an empty path.
+/// The mechanism files in a folder, one a line: NAME/NAME.toml for each folder NAME. Empty for an empty path.
 std::string files_text(const std::filesystem::path& folder) {
   if (folder.empty()) return "";
   std::vector<std::string> files;

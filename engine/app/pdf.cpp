@@ -19,9 +19,9 @@
 namespace poesy::app {
 namespace {
 
-constexpr std::string_view kPdfMark = "% poesy report\n";  ///< after a PDF's end, where it is a comment
+constexpr std::string_view kPdfMark = "% poesy report\n";  ///< appended to the PDF as a comment
 constexpr const char* kOtherWay = "write the report as REPORT.html, open it in a browser and print it to a PDF there";
-/// What a shell does in a folder with the page; it ends with 127 where no browser is on PATH.
+/// A shell script that prints the page in a folder; its exit code is 127 if no browser is on PATH.
 constexpr const char* kPrint = R"sh(
   cd "$POESY_PRINTED" && exec 2>&1 </dev/null || exit 1
   [ "$(id -u)" = 0 ] && sandbox=--no-sandbox  # Chromium refuses to have one as root
@@ -31,7 +31,7 @@ constexpr const char* kPrint = R"sh(
   done
   exit 127)sh";
 
-/// A new folder for temporary files, removed with all that is in it.
+/// A new folder for temporary files, which is removed with its content.
 struct TemporaryFolder {
   std::error_code error;
   std::string path = (std::filesystem::temp_directory_path(error) / "poesy-report-XXXXXX").string();
@@ -41,15 +41,15 @@ struct TemporaryFolder {
   }
 };
 
-/// Empty where it cannot be read.
+/// The content of a file; empty if it cannot be read.
 std::string contents(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// Whether a PDF is there from its first line to its last.
+/// Whether a PDF is complete, from its first line to its last.
 bool is_whole(const std::string& pdf) {
-  constexpr std::size_t kEnd = 1024;  // bytes, among which readers of a PDF look for its end
+  constexpr std::size_t kEnd = 1024;  // readers of a PDF look for its end in this many bytes
   return pdf.starts_with("%PDF-") && pdf.find("%%EOF", std::max(pdf.size(), kEnd) - kEnd) != std::string::npos;
 }
 

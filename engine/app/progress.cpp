@@ -19,7 +19,7 @@
 namespace poesy::app {
 namespace {
 
-/// "2 h 10 min"; without the smaller part where that is zero.
+/// "2 h 10 min"; without the smaller part if it is zero.
 std::string two_parts(double count, double per_large, const char* large, const char* small) {
   const double whole = std::floor(count / per_large);
   const double rest = count - whole * per_large;
@@ -40,10 +40,10 @@ double share_done(const Progress& progress) {
   return std::min(1.0, static_cast<double>(progress.solves) / static_cast<double>(progress.total));
 }
 
-/// Never 100 % before the end.
+/// Percent done, rounded down so that 100 % appears only at the end.
 double percent_done(const Progress& progress) { return std::floor(1000.0 * share_done(progress)) / 10.0; }
 
-/// "720 solves/s", "7.21 M solves/s"
+/// A rate with its unit: "720 solves/s", "7.21 M solves/s".
 std::string rate_text(double rate) {
   constexpr std::array kPrefixes{"", "k ", "M ", "G "};
   std::size_t prefix = 0;
@@ -78,13 +78,13 @@ std::string bar(double share, std::size_t length) {
   return "[" + std::string(filled, '#') + std::string(length - filled, '.') + "]";
 }
 
-/// Empty where the line is too long.
+/// The line, or an empty one if it is too long.
 std::string within(std::size_t width, std::string line) {
   return line.size() <= width ? std::move(line) : std::string();
 }
 
-/// The share done, these details and, behind them, the time left, with a bar in the room that this leaves, also when
-/// that time takes a few columns more. Empty where that is too little.
+/// The share done, the details, a bar and the time left. The bar is as long as the rest allows, and leaves some columns
+/// for a longer time. Empty if there is too little room.
 std::string with_bar(const ProgressFacts& facts, const std::string& details, std::size_t width) {
   const std::string begin = stage_text(facts) + fmt::format("{:5.1f} % ", percent_done(facts.progress));
   const std::string left = left_text(facts);
@@ -97,7 +97,7 @@ std::string with_bar(const ProgressFacts& facts, const std::string& details, std
 constexpr std::chrono::milliseconds kLive{100};
 constexpr std::chrono::seconds kPlain{5};
 
-/// Columns that a line may take. A line as wide as the terminal would wrap on some.
+/// The number of columns that a line may have. A line as wide as the terminal would wrap on some.
 std::size_t room() {
   const std::size_t width = terminal_width(STDERR_FILENO);
   return (width != 0 ? width : kUsualWidth) - 1;
@@ -111,7 +111,7 @@ double parse_duration(const std::string& text, const std::string& option) {
     const Quantity quantity = parse_quantity(text);
     if (quantity.dimension == Dimension::time && quantity.si > 0.0) return quantity.si;
   } catch (const QuantityError&) {
-    // One answer for everything that cannot be read as a time.
+    // One message for every text that is not a time.
   }
   throw InputError({}, option + " is '" + printable(text) + "'", kRemedy);
 }
@@ -198,7 +198,7 @@ void ProgressLine::write(const std::function<std::string()>& plain,
 void ProgressPrinter::operator()(const Progress& progress) {
   const RecentRate::Clock::time_point now = RecentRate::Clock::now();
   const std::uint64_t done = progress.solves - progress.before;
-  if (done < done_) {  // counted from the beginning again
+  if (done < done_) {  // a new count began
     rate_ = RecentRate(now);
     ++stage_;
   }

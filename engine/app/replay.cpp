@@ -21,7 +21,7 @@
 namespace poesy::app {
 namespace {
 
-constexpr std::uint64_t kMostNumber = 0x7fffffffffffffff;  ///< of poses and samples, on the command line
+constexpr std::uint64_t kMostNumber = 0x7fffffffffffffff;  ///< largest number of a pose or sample on the command line
 
 struct ReplayOptions {
   std::string result;
@@ -34,14 +34,14 @@ struct ReplayOptions {
   throw InputError({.file = options.result}, problem, remedy);
 }
 
-/// Throws unless `number` is one of 0 .. count - 1.
+/// Throws unless `number` is in [0, count).
 void check_number(const ReplayOptions& options, const std::string& what, std::size_t number, std::size_t count) {
   if (number < count) return;
   refuse(options, fmt::format("{} {}: there are {} {}s", what, number, count, what),
          count == 1 ? "the only number is 0" : fmt::format("give a number from 0 to {}", count - 1));
 }
 
-/// The position of the command line's name among these.
+/// The position of the name on the command line in this list.
 std::size_t position_of(const ReplayOptions& options, const std::string& what, const std::vector<std::string>& known) {
   const auto found = std::ranges::find(known, options.factor);
   if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
@@ -59,7 +59,7 @@ std::size_t required_sample(const ReplayOptions& options, std::size_t count) {
   return *options.sample;
 }
 
-/// One of the samples that the study drew.
+/// Replays one of the samples that the study drew.
 ReplayedSample replay_drawn(const ReplayOptions& options, const StoredResult& result, const StoredStudy& stored,
                             const Model& model) {
   const Analysis& analysis = stored.study.analysis;
@@ -81,7 +81,7 @@ std::size_t row_of(const ReplayOptions& options, const GivenErrors& given) {
   return given.pairing == Pairing::row_by_row ? options.pose : sample;
 }
 
-/// A named case, or one of the errors that 'poesy evaluate' was given.
+/// Replays a named case, or a row of the errors of `poesy evaluate`.
 ReplayedSample replay_given(const ReplayOptions& options, const StoredResult& result, const GivenErrors& given,
                             const StoredStudy& stored, const Model& model) {
   const std::size_t row = row_of(options, given);
@@ -115,7 +115,7 @@ void warn_of_other_program(const ReplayOptions& options, const StoredResult& res
                   options.result, result.poesy_version, result.git_commit, poesy_version(), git_commit()));
 }
 
-/// Where the result lists this sample as a failure of another kind, or solved where it was not.
+/// Warns if the result lists this sample as another kind of failure, or as solved although it is not.
 void warn_of_difference(const ReplayOptions& options, const StoredResult& result, const ReplayedSample& replayed) {
   for (const Failure& failure : result.failures) {
     if (result.varied[failure.slot] != options.factor || failure.pose.value != options.pose ||
@@ -127,7 +127,7 @@ void warn_of_difference(const ReplayOptions& options, const StoredResult& result
   }
 }
 
-/// "-0.25 m = -250 mm"
+/// A value with its SI unit and the unit that people read: "-0.25 m = -250 mm".
 std::string value_text(double si, Dimension dimension) {
   const Unit& unit = display_unit(dimension);
   std::string text = shortest(si);
@@ -180,7 +180,7 @@ std::string iterations_text(const SolveTrace& trace) {
   return text + "\n";
 }
 
-/// Whether both solvers say the same. Where one was not solved, responses are last iterates of different ways.
+/// Whether both solvers agree. If one did not converge, responses are last iterates and may differ.
 std::string agreement_text(const ModelDescription& model, const ReplayedSample& sample, const SolveTrace& trace) {
   std::string text = fmt::format("status: {}\n", sample.status == trace.status ? "the same" : "not the same");
   for (std::size_t r = 0; r < model.responses.size(); ++r) {

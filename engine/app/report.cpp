@@ -22,7 +22,8 @@ struct ReportOptions {
   std::string report;
 };
 
-/// result.h5 gives result.html beside it; before.h5 and after.h5 give before-after.html beside the first.
+/// The default path: result.h5 gives result.html beside it; before.h5 and after.h5 give before-after.html beside the
+/// first.
 std::string default_path(const std::vector<std::string>& results) {
   const std::filesystem::path first(results.front());
   std::string name = first.stem().string();
@@ -32,7 +33,7 @@ std::string default_path(const std::vector<std::string>& results) {
 
 bool may_be_replaced(const std::string& path) { return is_marked(path, kReportMark); }
 
-/// What a report needs of a result, read from its file.
+/// Reads what a report needs from a result's file.
 ReportedResult reported(const std::string& path) {
   ReportedResult result{read_result_with_warning(path), path};
   if (const std::optional<Study> study = study_in(result.stored, registry())) {

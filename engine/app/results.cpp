@@ -47,7 +47,7 @@ std::string cpu_name() {
   return "unknown";
 }
 
-/// What may solve more samples than these options did.
+/// Options that may solve more samples than these.
 std::string advice(const SolverOptions& solver, const SolveCounts& solves) {
   if (mostly_impossible(solves)) return std::string(kAssemblyAdvice);
   if (solver.method == SolverOptions::Method::gauss_newton) {
@@ -93,7 +93,7 @@ ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std
   return kTooManyNotConverged;
 }
 
-/// certificate: whether the study found tolerances and looked at these machines once, to certify them.
+/// certificate: whether the study found tolerances and tried these machines only to certify them.
 ExitCode judge_yield(const YieldVerdict& yield, bool certificate, const std::string& study_path,
                      const std::string& remedy) {
   using enum YieldVerdict::Decision;
@@ -130,7 +130,7 @@ ExitCode judge_limits(const Study& study, const StoredResult& result, const std:
   print("\n" + text_of(*table, output_width()));
   const LimitVerdicts& verdicts = *result.verdicts;
   if (verdicts.yield) {
-    // A study that judges machines by a yield can be asked for one; any other certifies what it found.
+    // A study whose yield can be asked for judges machines; any other one certifies its own result.
     const bool certificate = study.analysis.kind != nullptr && study.analysis.kind->ask_yield == nullptr;
     return judge_yield(*verdicts.yield, certificate, study_path, remedy);
   }
@@ -145,7 +145,7 @@ ExitCode judge_limits(const Study& study, const StoredResult& result, const std:
   return verdicts.passed() ? kDone : kLimitNotKept;
 }
 
-/// Once all solves are done.
+/// The outcome after all solves.
 RunOutcome outcome_of(const Job& job) {
   const RunTime time = job.time();
   const SolveCounts solves = job.checkpoints().solves();
@@ -205,18 +205,18 @@ StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const
 
 namespace {
 
-/// RESULT_certificate.
+/// The stem of the files beside a result: RESULT_certificate.
 std::string stem_beside(const std::filesystem::path& result) { return result.stem().string() + "_certificate"; }
 
-/// The study that confirms the result, and the files that it may name.
+/// The endings of the study that confirms the result, and of the files that it may name.
 constexpr std::array<std::string_view, 3> kBeside{".toml", "_mechanism.toml", "_poses.csv"};
 
-/// What such a study says of itself, before the result's name.
+/// The beginning of that study's comment, which the result's name follows.
 constexpr std::string_view kRepeats = "repeats the certificate of ";
 
-/// Writes the study and the files that it names beside the result. Gives the study's path, RESULT_certificate.toml.
-/// The study is written first: the next run refuses to replace files that no study names (check_files_beside), so a
-/// killed run must not leave such files.
+/// Writes the study and the files that it names beside the result. Returns the path of the study,
+/// RESULT_certificate.toml. The study is written first: the next run refuses to replace files that no study names
+/// (check_files_beside), so a killed run must not leave such files.
 std::string write_beside(const Job& job, Study confirming) {
   const std::filesystem::path result(job.path);
   const std::string folder = result.has_parent_path() ? result.parent_path().string() : ".";
@@ -240,7 +240,7 @@ void check_files_beside(const std::string& result, std::span<const std::string> 
   };
   const std::string study = beside(kBeside.front());
   const bool is_earlier = has_mark(study, kRepeats);
-  // An earlier study, or a file that it names.
+  // An earlier study of this kind, or a file that it names.
   const auto is_ours = [&](const std::string& file) {
     std::error_code ignored;
     if (file == study) return is_marked(study, kRepeats);
@@ -250,7 +250,7 @@ void check_files_beside(const std::string& result, std::span<const std::string> 
   for (const std::string_view end : kBeside) {
     const std::string file = beside(end);
     check_name_length(file);
-    std::error_code ignored;  // a path that cannot be looked at is none of these
+    std::error_code ignored;  // a path that cannot be examined is neither
     for (const std::string& input : inputs) {
       if (!std::filesystem::equivalent(file, input, ignored)) continue;
       throw InputError({input}, "would be replaced by the study that confirms the result, " + file,
@@ -288,7 +288,7 @@ int report_outcome(const Job& job, const std::string& study_path, const RunOutco
   if (!outcome.confirming.empty()) {
     print(fmt::format("{}: the study that repeats the certificate\n", printable_line(outcome.confirming)));
   }
-  if (job.options.shard) return kDone;  // the whole study is judged
+  if (job.options.shard) return kDone;  // only the whole study is judged
   const std::string remedy = fmt::format("the result is kept; see 'poesy show {}'", job.path);
   return judge(job.study, outcome.solves, with_verdicts(job.study, job.poses, outcome.verdicts, outcome.row_names),
                study_path, {remedy, remedy});

@@ -17,10 +17,10 @@
 
 namespace poesy::app {
 
-/// How a run keeps itself and ends early, as the command line says.
+/// The options of the command line for checkpoints and for ending a run early.
 struct ResumeOptions {
   bool resume = false;
-  bool keep_checkpoint = false;  ///< the last checkpoint stays beside a finished result
+  bool keep_checkpoint = false;  ///< whether the last checkpoint stays beside a finished result
   std::string every = "10 s";
   std::string max_wall;  ///< empty: no limit
 
@@ -35,11 +35,12 @@ struct ResumeOptions {
   }
 };
 
-/// The checkpoints of one run of the program. A run without --resume refuses to start where there are some, because
-/// they are hours of somebody's work; with it, where there are none but a result, which is complete.
+/// The checkpoints of one run of the program. Without --resume, a run refuses to start if there are checkpoints,
+/// because they may be hours of work. With --resume, it refuses to start if there is a complete result and no
+/// checkpoint.
 class ResumableRun {
  public:
-  /// Throws InputError or FileError when the run must not start. resume_command: for messages.
+  /// Throws InputError or FileError if the run must not start. resume_command: the command line shown in messages.
   ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string resume_command)
       : lock_(result_path),
         keep_checkpoint_(options.keep_checkpoint),
@@ -64,8 +65,8 @@ class ResumableRun {
   ResumableRun(const ResumableRun&) = delete;
   ResumableRun& operator=(const ResumableRun&) = delete;
 
-  /// Takes up the checkpoint, if the run is to. Throws InputError when it is not one of this run. Says what it takes on
-  /// stderr, unless quiet, but always when it is not the newest.
+  /// Restores the checkpoint if the run resumes. Throws InputError if it belongs to another run. Unless quiet it
+  /// reports the checkpoint on stderr; if it is not the newest one it always does.
   void start(const CheckpointIdentity& run, bool quiet) {
     identity_ = run;
     std::vector<Bytes> stages;
@@ -88,24 +89,24 @@ class ResumableRun {
     next_ = start_ + every_;
   }
 
-  /// Those to run with. Precondition: started.
+  /// The checkpoints of the run. Precondition: start() was called.
   Checkpoints& checkpoints() { return *checkpoints_; }
 
-  /// That all parts of the run took since they were started.
+  /// The time of all parts of the run, including those before a resume.
   RunTime time() const { return {before_.wall + seconds_since(start_), before_.checkpoints + checkpoint_seconds_}; }
 
-  /// Whether an earlier run left a checkpoint.
+  /// Whether there is a checkpoint of an earlier run.
   bool continues() const { return files_.exist(); }
 
-  /// Whether the run ends by itself within so many seconds.
+  /// Whether the run ends by itself within this many seconds.
   bool ends_within(double seconds) const { return end_ && *end_ <= Clock::now() + duration_of(seconds); }
 
-  /// Interrupts the run when its time is over.
+  /// Interrupts the run if its time is over.
   void check_time() const {
     if (end_ && Clock::now() >= *end_) interrupt();
   }
 
-  /// The result is there: removes the checkpoints, or keeps the last one.
+  /// After the result is written: removes the checkpoints, or keeps the last one.
   void finish() {
     if (keep_checkpoint_) {
       checkpoints_->save();
@@ -114,17 +115,17 @@ class ResumableRun {
     }
   }
 
-  /// The study has no result, and no run of it will have one: removes the checkpoints, which lead nowhere.
+  /// After the study has failed for good: removes the checkpoints, because no run can continue them to a result.
   void discard() { files_.remove(); }
 
-  /// The result could not be written: keeps the last state if that is possible, and says what to do.
+  /// After the result could not be written: keeps the last state if possible, and says what to do.
   void rescue() {
     try {
       if (!no_room_ && checkpoints_) checkpoints_->save();
     } catch (const FileError&) {
-      // The message of the first trouble counts.
+      // The message of the first problem counts.
     } catch (const std::bad_alloc&) {
-      // Nor has a checkpoint room in memory.
+      // There is not enough memory for a checkpoint either.
     }
     if (files_.exist()) {
       say(Message::note, "the work up to the last checkpoint is kept in " + files_.newer() +
@@ -132,14 +133,14 @@ class ResumableRun {
     }
   }
 
-  /// The run was interrupted: says what to do.
+  /// After an interruption: says what to do.
   void explain_interruption() const {
     say(Message::note,
         files_.exist() ? "interrupted; the work so far is kept in " + files_.newer() + ", continue with: " + command_
                        : "interrupted before anything was solved, start again with: " + command_);
   }
 
-  /// The state of the checkpoint that was taken up is not one.
+  /// Refuses a checkpoint whose state cannot be read.
   [[noreturn]] void refuse_state(const BytesError& error) const {
     throw FileError(taken_, error.what(), "restore a copy, or move it away to start afresh");
   }
@@ -147,7 +148,7 @@ class ResumableRun {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// A time that no run lasts stands for all that are longer, and for "never".
+  /// A duration, clamped because longer waits mean "never".
   static Clock::duration duration_of(double seconds) {
     constexpr double kCentury = 3.2e9;
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, kCentury)));
@@ -161,8 +162,8 @@ class ResumableRun {
   }
 
   void save(std::span<const ByteSource> stages) {
-    // A checkpoint that took a time to write is followed by another after so many of these at the earliest: under 1 %,
-    // also when the last one is much the longest.
+    // A checkpoint waits until this many times the duration of the last one has passed. So checkpoints take less than 1
+    // % of the time, even if the last one is much the longest.
     constexpr double kLeastRatio = 200.0;
     const Clock::time_point before = std::exchange(due_since_, std::nullopt).value_or(Clock::now());
     no_room_ = true;
@@ -178,14 +179,14 @@ class ResumableRun {
   std::string command_;
   CheckpointFiles files_;
   CheckpointIdentity identity_;
-  std::string taken_;  ///< the file that was taken up
+  std::string taken_;  ///< path of the checkpoint that was restored
   Clock::duration every_;
   std::optional<Clock::time_point> end_;
   Clock::time_point start_;
-  RunTime before_;  ///< that earlier parts of the run took
+  RunTime before_;  ///< time of earlier parts of the run
   double checkpoint_seconds_ = 0.0;
   Clock::time_point next_;
-  std::optional<Clock::time_point> due_since_;  ///< when the checkpoint was asked for that is being made
+  std::optional<Clock::time_point> due_since_;  ///< when the checkpoint that is being made was due
   bool no_room_ = false;                        ///< the last checkpoint could not be written
   std::optional<Checkpoints> checkpoints_;
 };

@@ -32,7 +32,7 @@
 namespace poesy::app {
 namespace {
 
-/// The processors that this process may use: those that the launcher bound it to, or its part of the machine's.
+/// The number of processors for this process: those that the launcher assigned to it, or its share of the machine's.
 std::size_t processors_of_rank(std::size_t ranks_on_this_machine) {
   const auto all = static_cast<std::size_t>(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));
   cpu_set_t allowed;
@@ -41,7 +41,7 @@ std::size_t processors_of_rank(std::size_t ranks_on_this_machine) {
   return bound < all ? bound : std::max<std::size_t>(1, all / ranks_on_this_machine);
 }
 
-/// Says why a rank left, if one did; the run's exit code. Precondition: the run was interrupted.
+/// Says why a rank left, if one did, and returns the run's exit code. Precondition: the run was interrupted.
 int say_why_a_rank_left(const Team& team) {
   if (!team.left()) return kInterrupted;
   constexpr std::array kCodes{kInterrupted, kBadInput, kFileTrouble, kInternalError};  // by LeaveReason
@@ -55,9 +55,9 @@ struct RunCommandOptions {
   std::optional<std::uint64_t> seed;
   std::optional<Shard> shard;
   bool quiet = false;
-  bool yes = false;  ///< a long run is not asked about
+  bool yes = false;  ///< whether to start a long run without asking
   ResumeOptions resume;
-  std::string program;  ///< as it was called
+  std::string program;  ///< name by which the program was called
 };
 
 /// The command line that continues this run.
@@ -79,14 +79,14 @@ std::string resume_command(const RunCommandOptions& options, const Team* team) {
   return shell_command(words);
 }
 
-/// study.toml gives study.h5 in the current folder, its second shard of five study.2-of-5.h5.
+/// The default path of a result in the current folder: study.h5 for study.toml, study.2-of-5.h5 for its second shard.
 std::string default_result(const RunCommandOptions& options) {
   const std::filesystem::path stem = std::filesystem::path(options.study).filename().stem();
   if (!options.shard) return stem.string() + ".h5";
   return fmt::format("{}.{}-of-{}.h5", stem.string(), options.shard->index + 1, options.shard->count);
 }
 
-/// "2/5"
+/// Reads "2/5".
 Shard parse_shard(const std::string& text) {
   const std::size_t slash = std::min(text.find('/'), text.size());
   const auto shard = whole_number(std::string_view(text).substr(0, slash));
@@ -95,12 +95,12 @@ Shard parse_shard(const std::string& text) {
   throw InputError({}, "--shard is '" + printable(text) + "'", "write K/N with K from 1 to N, e.g. 2/5");
 }
 
-/// Memory was too little for this run.
+/// The error of a run that needs more memory than there is.
 FileError too_little_for_run(const std::string& path, const Study& study, const Model& model, const PoseSet& poses) {
   return too_little_memory(path, "this run", memory_text(outlook(study, model, poses).memory.peak()));
 }
 
-/// run_to_file with progress, and what is left to say about its checkpoints when it fails.
+/// Runs the study with progress; on failure also says what happens to its checkpoints.
 std::optional<RunOutcome> run_to_end(Job& job, ResumableRun& resumable, bool quiet) {
   try {
     ProgressPrinter printer(quiet);
@@ -129,13 +129,13 @@ Study study_of(const RunCommandOptions& options) {
   return study;
 }
 
-/// What ranks must have in common.
+/// A text that must be equal on all ranks.
 std::string text_of(const CheckpointIdentity& identity) {
   return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", identity.poesy_version, identity.git_commit, identity.model,
                      identity.seed, identity.samples, identity.shard, identity.poses, identity.study);
 }
 
-/// What the ranks after rank 0 do.
+/// Runs the ranks after rank 0.
 void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
@@ -161,8 +161,8 @@ void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   }
 }
 
-/// The ranks never began. What an earlier run kept is kept; without one, a checkpoint of nothing is there to be
-/// resumed.
+/// The ranks did not begin. A checkpoint of an earlier run is kept; otherwise an empty checkpoint is written, from
+/// which the run can be resumed.
 int leave_before_the_start(const Team& team, ResumableRun& resumable) {
   const int code = say_why_a_rank_left(team);
   if (code != kInterrupted) return code;
@@ -171,7 +171,7 @@ int leave_before_the_start(const Team& team, ResumableRun& resumable) {
   return code;
 }
 
-/// The study and the files that it names.
+/// The study file and the files that it names.
 std::vector<std::string> inputs_of(const RunCommandOptions& options, const Study& study) {
   std::vector<std::string> inputs{options.study};
   const auto add = [&](const std::string& name) {
@@ -188,12 +188,12 @@ int explained_interruption(const ResumableRun& resumable) {
   return kInterrupted;
 }
 
-/// Seconds that the run takes at least by all these threads; 0 where it is short at a glance, because most are.
+/// The least number of seconds that the run takes with these threads; 0 if it is clearly short, as most are.
 double seconds_of_long_run(const RunCommandOptions& options, const Study& study, const Model& model,
                            const PoseSet& poses, std::size_t threads) {
-  // A solve takes far less than a second, and all but a few of them are draws of these samples.
+  // Few enough draws for a short run, because a solve takes far less than a second and nearly all solves are draws.
   constexpr double kFewDraws = 1e7;
-  constexpr double kShort = kLongRun / 4.0;  // what one piece says may be off
+  constexpr double kShort = kLongRun / 4.0;  // less than kLongRun, because one piece is a rough measure
   constexpr double kTrial = 0.25;            // s
   const double draws = static_cast<double>(study.analysis.samples) * static_cast<double>(poses.size()) *
                        static_cast<double>(study.analysis.factors.size());
@@ -204,12 +204,12 @@ double seconds_of_long_run(const RunCommandOptions& options, const Study& study,
     const auto seconds = [&](double trial) { return expected_time(expected, threads, trial).least / shards; };
     return seconds(0.0) < kShort ? 0.0 : seconds(kTrial);
   } catch (const std::bad_alloc&) {
-    return 0.0;  // the run itself says how much it needs
+    return 0.0;  // the run itself reports how much memory it needs
   }
 }
 
-/// Asks on a terminal whether a run of so many seconds is meant. Throws InputError without a yes; returns on an
-/// interrupt.
+/// Asks on a terminal whether a run of this many seconds is wanted. Throws InputError unless the answer is yes; returns
+/// on an interrupt.
 void ask_about(double seconds, const RunCommandOptions& options, std::size_t threads, const std::atomic<bool>& stop) {
   if (seconds <= kLongRun) return;
   const std::string text =
@@ -218,7 +218,7 @@ void ask_about(double seconds, const RunCommandOptions& options, std::size_t thr
   throw InputError({options.study}, text, "give --yes to start it all the same, or ask for fewer samples or poses");
 }
 
-/// In one process, or as rank 0 of a team.
+/// Runs in one process, or as rank 0 of a team.
 int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
@@ -226,7 +226,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::vector<std::string> inputs = inputs_of(options, study);
   const std::string path = check_result_path(named, inputs);
   if (kind_of(study).run.confirms) check_files_beside(path, inputs);
-  start_threads(threads);  // before there is a checkpoint, even of nothing
+  start_threads(threads);  // before any checkpoint is written
   ResumableRun resumable(options.resume, path, resume_command(options, team));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   auto poses = find_poses(study, *model, {.quiet = options.quiet, .stop = &stop});
@@ -268,7 +268,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   return report_outcome(job, options.study, *outcome);
 }
 
-/// The exit code, which is the same on all ranks. Rank 0 alone speaks.
+/// Returns the exit code, which is the same on all ranks. Only rank 0 prints.
 int run_alone_or_on_ranks(const RunCommandOptions& options) {
   const auto launch = find_launch();
   if (!launch || launch->size == 1) return run(options, resolved_threads(options.threads), nullptr);
@@ -278,7 +278,7 @@ int run_alone_or_on_ranks(const RunCommandOptions& options) {
   Team team(*ranks);
   if (!team.leads()) return team.follow([&] { follow(options, threads, team); });
   const int code = exit_code_of([&] { return run(options, threads, &team); });
-  // The others may take so long to end their parts.
+  // The other ranks may take long to finish.
   if (!team.dismiss(code, std::chrono::seconds(code == kDone ? 60 : 10))) ranks->abort(code);
   return code;
 }

@@ -30,7 +30,7 @@ constexpr std::string_view kRemedy = "a wider terminal, --response NAME or --jso
 constexpr std::size_t kMostNumber = 1'000'000;
 
 struct ShowOptions {
-  std::vector<std::string> results;  ///< one, or two to be compared
+  std::vector<std::string> results;  ///< one result, or two to compare
   std::string response;
   std::optional<std::string> sort;
   std::optional<std::size_t> top;
@@ -38,7 +38,7 @@ struct ShowOptions {
   bool json = false;
 };
 
-/// wanted: empty for the one by which the result is ranked unless asked otherwise.
+/// The name of the response. wanted: empty for the one that ranks by default.
 std::string response_of(const std::string& wanted, const std::string& path, const StoredResult& result) {
   if (wanted.empty()) return default_ranking(result);
   const std::vector<std::string> known = names_of(result.responses);
@@ -57,7 +57,7 @@ RowOrder order_of(const ShowOptions& options) {
 
 bool ranks_errors(const StoredResult& result) { return kind_of(result).report.two_rankings != nullptr; }
 
-/// --sort needs a kind whose errors come in any order, --top any table of ranked errors.
+/// Throws if --sort is given for a kind whose errors have a fixed order, or --top for one without a ranking of errors.
 void check_ranks(const ShowOptions& options, const std::string& path, const StoredResult& result,
                  const std::vector<Table>& tables) {
   const auto refuse = [&](std::string_view option, std::string_view what) {
@@ -68,14 +68,14 @@ void check_ranks(const ShowOptions& options, const std::string& path, const Stor
   if (options.top && std::ranges::none_of(tables, &Table::ranked)) refuse("--top", "ranks no errors");
 }
 
-/// Lets the tables show this response and no other.
+/// Restricts the tables to this response.
 void show_alone(const std::string& response, StoredResult& result) {
   const auto at = std::ranges::find(result.responses, response, &NamedUnit::name) - result.responses.begin();
   result.headline = result.signed_headline = {static_cast<std::size_t>(at)};
 }
 
-/// What is to be known of the mechanism's numbers, whether the study was calibrated, and what it held constant, the
-/// last two only where a study was solved, no table of errors; empty where this program cannot read the study.
+/// Notes on the mechanism's numbers, whether the study was calibrated, and what was constant. The last two only if a
+/// study was solved rather than a table of errors. Empty if this program cannot read the study.
 std::string study_lines(const StoredResult& result, std::size_t width) {
   const std::optional<Study> study = study_in(result, registry());
   if (!study) return {};
@@ -119,7 +119,7 @@ void check_ranked(const std::string& path, const StoredResult& result) {
       "show each result alone, or compare both with poesy report");
 }
 
-/// The rankings of two results beside each other.
+/// Shows the rankings of two results side by side.
 int show_both(const ShowOptions& options) {
   const RowOrder order = order_of(options);
   const std::string& path_a = options.results.front();

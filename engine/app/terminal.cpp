@@ -22,7 +22,7 @@
 namespace poesy::app {
 namespace {
 
-/// Empty where it is unset.
+/// The value of an environment variable; empty if it is not set.
 std::string_view variable(const char* name) {
   const char* value = std::getenv(name);
   return value != nullptr ? value : "";
@@ -72,7 +72,7 @@ void say(Message kind, const std::string& text) {
 }
 
 std::optional<bool> asked(const std::string& question) {
-  constexpr int kLook = 100;  // ms between looks for an interrupt
+  constexpr int kLook = 100;  // ms between checks for an interrupt
   if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0) return std::nullopt;
   std::fputs(("poesy: " + printable_line(question) + " [y/N] ").c_str(), stderr);
   std::fflush(stderr);
@@ -81,7 +81,7 @@ std::optional<bool> asked(const std::string& question) {
     if (::poll(&input, 1, kLook) <= 0) continue;
     char first = '\n';
     if (::read(STDIN_FILENO, &first, 1) < 1) return false;
-    tcflush(STDIN_FILENO, TCIFLUSH);  // what is left of the line
+    tcflush(STDIN_FILENO, TCIFLUSH);  // discards the rest of the line
     return first == 'y' || first == 'Y';
   }
   std::fputs("\n", stderr);
@@ -110,7 +110,7 @@ int exit_code_of(const std::function<int()>& action) {
 const std::atomic<bool>& catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  // Of a terminal that was closed; nohup has it ignored.
+  // SIGHUP comes when a terminal is closed; nohup lets the program ignore it.
   if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   return interrupted;
 }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-/// What the program prints and says, and how it ends.
+/// Output of the program, and how it ends.
 namespace poesy::app {
 
 /// Exit codes, as promised to scripts.
@@ -20,45 +20,45 @@ enum ExitCode : int {
   kLimitNotKept = 6
 };
 
-/// Columns of a terminal that does not say, and of a page of help.
+/// The columns of a page of help, and of a terminal whose width is unknown.
 inline constexpr std::size_t kUsualWidth = 80;
 
-/// Columns of the terminal behind a file descriptor, now; 0 when it is none, or does not say.
+/// The present width of the terminal behind a file descriptor; 0 if it is not a terminal or its width is unknown.
 std::size_t terminal_width(int descriptor);
 
-/// Whether a line there can be written over: a terminal, and not one that TERM calls "dumb" or says nothing of.
+/// Whether lines there can be overwritten: it is a terminal, and TERM is set and not "dumb".
 bool shows_live_lines(int descriptor);
 
-/// Characters that a line of stdout has room for: of a terminal what it says, else what COLUMNS says, else 80. What is
-/// no terminal has room for any line.
+/// The number of characters in a line of stdout: the width of a terminal if known, else COLUMNS, else 80. Unlimited if
+/// stdout is not a terminal.
 std::size_t output_width();
 
-/// Text on stdout, without control characters but line ends and tabs: it may quote a file (printable_lines).
+/// Prints on stdout. Control characters except line ends and tabs are replaced, because the text may quote a file
+/// (printable_lines).
 void print(const std::string& text);
 
 enum class Message { note, warning, error };
 
-/// One line on stderr, as print(): "poesy: TEXT", "poesy: warning: TEXT". What is before the text of a warning or error
-/// is coloured where stderr is a terminal that shows live lines, unless NO_COLOR is set (https://no-color.org).
+/// Prints one line on stderr: "poesy: TEXT", "poesy: warning: TEXT". The prefix of a warning or error is coloured on a
+/// terminal that shows live lines, unless NO_COLOR is set (https://no-color.org).
 void say(Message kind, const std::string& text);
 
-/// Asks on stderr, where stdin and stderr are a terminal, and waits for a line that begins with "y", or another one.
-/// None where there is no terminal, or on an interrupt (catch_interrupts).
+/// Asks a question on stderr and waits for a line; true if it begins with "y". None if stdin or stderr is not a
+/// terminal, or on an interrupt (catch_interrupts).
 std::optional<bool> asked(const std::string& question);
 
-/// Says what is wrong on stderr; the code. Under a launcher the first process alone speaks, because all have the same
-/// to say.
+/// Prints the problem on stderr and returns the code. Under a launcher only the first process prints, because all
+/// processes have the same problem.
 int complain(const std::string& problem, ExitCode code);
 
-/// The action's exit code; that of what it throws, which is said on stderr.
+/// Runs the action and returns its exit code, or that of an exception, whose message is printed on stderr.
 int exit_code_of(const std::function<int()>& action);
 
-/// From now on Ctrl-C, SIGTERM and SIGHUP set the returned flag instead of ending the program at once. Ctrl-C after
-/// either ends it as usual; SIGTERM, which batch systems send to a process by several ways, may come any number of
-/// times.
+/// Afterwards, Ctrl-C, SIGTERM and SIGHUP set the returned flag instead of ending the program. A Ctrl-C after any of
+/// them ends it as usual. Further SIGTERMs have no effect, because batch systems send it several times.
 const std::atomic<bool>& catch_interrupts();
 
-/// Sets the flag.
+/// Sets the flag of catch_interrupts().
 void interrupt();
 
 }  // namespace poesy::app

@@ -5,19 +5,19 @@
 
 namespace poesy {
 
-std::uintmax_t address_space();       ///< Bytes of it that this process has; 0 where the system does not tell.
-std::uintmax_t most_address_space();  ///< Bytes that it may have: RLIMIT_AS.
+std::uintmax_t address_space();       ///< Bytes of address space that this process uses; 0 if the system does not tell.
+std::uintmax_t most_address_space();  ///< Bytes of address space that it may use: RLIMIT_AS.
 
-/// Whether this process may take so many more bytes now. Some libraries crash without memory: ask before they are
-/// called.
+/// Whether this process may use this many more bytes now. Some libraries crash without memory, so check before calling
+/// them.
 bool has_address_space(std::size_t bytes);
 
-/// Where address space is limited, threads do not reserve 64 MiB each for what they allocate, as glibc has it: others
-/// would not find room for their stacks. To be called before any thread is started.
+/// Reduces the address space of threads if it is limited. By default glibc reserves 64 MiB for the allocations of each
+/// thread, and further threads find no room for their stacks. Call it before any thread is started.
 void save_address_space();
 
-/// A list of 4 MiB or more returns its memory to the system when it goes. By itself glibc raises that
-/// bound, up to 32 MiB, to the size of the first list that goes, so that a run would have later ones beside its result.
+/// Returns the memory of lists of 4 MiB or more to the system when they are freed. By default glibc raises this bound
+/// to the size of the first list that is freed, up to 32 MiB, and keeps later lists in memory beside the result.
 void return_large_lists();
 
 }  // namespace poesy

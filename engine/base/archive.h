@@ -14,20 +14,20 @@
 
 namespace poesy {
 
-/// Writes the state of an object, or reads it back: the same list of members serves both directions.
+/// Writes or reads the state of an object; one list of members serves both directions.
 ///
 ///     void Moments::state(Archive& archive) {
 ///       archive.number(count_);
 ///       archive.real(mean_);
 ///     }
 ///
-/// What is read may come from anywhere, so state() says with expect() what must hold; it throws BytesError.
+/// What is read may come from any source, so state() checks it with expect(), which throws BytesError.
 class Archive {
  public:
-  explicit Archive(ByteWriter& to) : to_(&to) {}        ///< Writes. Refers to the writer.
-  explicit Archive(ByteReader& from) : from_(&from) {}  ///< Reads. Refers to the reader.
+  explicit Archive(ByteWriter& to) : to_(&to) {}        ///< Writes to this writer. Refers to it.
+  explicit Archive(ByteReader& from) : from_(&from) {}  ///< Reads from this reader. Refers to it.
 
-  bool reads() const { return from_ != nullptr; }  ///< Whether members are filled in.
+  bool reads() const { return from_ != nullptr; }  ///< Whether members are read.
 
   /// A whole number, an index or an enumeration, up to `most`.
   template <class Whole>
@@ -41,7 +41,7 @@ class Archive {
       to_->number(static_cast<std::uint64_t>(value));
     }
   }
-  /// A double; every bit is kept.
+  /// A double, bit by bit.
   void real(double& value) { reals(std::span(&value, 1)); }
   /// Several doubles.
   template <class... Doubles>
@@ -49,8 +49,8 @@ class Archive {
     real(value);
     real(more...);
   }
-  /// The state of an object that both directions have, or of a list of them whose number both know. An object that is
-  /// packed has write(ByteWriter&) and a static read(ByteReader&) instead of state().
+  /// The state of an object that exists in both directions, or of a list of objects whose number both know. A packed
+  /// object has write(ByteWriter&) and a static read(ByteReader&) instead of state().
   template <class Object>
   void object(Object& object) {
     if constexpr (requires { object.state(*this); }) {
@@ -66,7 +66,7 @@ class Archive {
   void objects(Objects&... objects) {
     (object(objects), ...);
   }
-  /// Doubles whose number both directions know.
+  /// Doubles whose number is known in both directions.
   void reals(std::span<double> values) {
     if (reads()) {
       from_->reals(values);
@@ -74,7 +74,7 @@ class Archive {
       to_->reals(values);
     }
   }
-  /// A list of so many doubles, which is empty where it is read.
+  /// A list of `count` doubles; empty before reading.
   void list(std::vector<double>& values, std::size_t count) {
     if (reads()) {
       values = from_->reals(count);
@@ -82,14 +82,14 @@ class Archive {
       to_->reals(values);
     }
   }
-  /// An object that may be missing; where it is read, it is first made of these sizes.
+  /// An object that may be missing. Before reading, it is constructed with these sizes.
   template <class Object, class... Sizes>
   void optional(std::optional<Object>& value, const Sizes&... sizes) {
     if (!flag(value.has_value())) return value.reset();
     if (reads()) value.emplace(sizes...);
     object(*value);
   }
-  /// Whether something holds, as it was when it was written.
+  /// A bool. Returns what was written when reading.
   bool flag(bool value) {
     std::uint64_t holds = value ? 1 : 0;
     number(holds, 1);
@@ -112,19 +112,18 @@ class Archive {
       to_->block(bytes);
     }
   }
-  /// A number that both directions know. Throws BytesError for any other.
+  /// A number that both directions know. Throws BytesError if another one is read.
   void known(std::uint64_t value, const char* problem) {
     std::uint64_t read = value;
     number(read);
     expect(read == value, problem);
   }
-  /// Throws BytesError where something that was read does not hold.
+  /// Throws BytesError if a condition on what was read does not hold.
   void expect(bool holds, const char* problem) const {
     if (reads() && !holds) throw BytesError(problem);
   }
 
-  /// For an object whose packed form has a writer and a reader: write(ByteWriter&), and read(ByteReader&, ...), which
-  /// gives the object.
+  /// An object whose packed form has write(ByteWriter&) and read(ByteReader&, ...), which returns the object.
   template <class Object, class... Known>
   void packed(Object& object, const Known&... known) {
     if (reads()) {
@@ -133,7 +132,7 @@ class Archive {
       object.write(*to_);
     }
   }
-  /// Whether something is left to be read.
+  /// Whether there are bytes left to read.
   bool is_left() const { return reads() && from_->left() > 0; }
 
  private:
@@ -145,10 +144,11 @@ class Archive {
 template <class Object>
 void write_state(const Object& object, ByteWriter& to) {
   Archive archive(to);
-  archive.object(const_cast<Object&>(object));  // it changes nothing where it writes
+  archive.object(const_cast<Object&>(object));  // writing does not change it
 }
 
-/// Reads the state of an object that is made of these sizes. Throws BytesError for what no such object writes.
+/// Reads the state of an object that is constructed with these sizes. Throws BytesError for bytes that it cannot have
+/// written.
 template <class Object, class... Sizes>
 Object read_state(ByteReader& from, const Sizes&... sizes) {
   Object object(sizes...);

@@ -19,13 +19,13 @@ namespace poesy {
 /// A text as a parameter of a template.
 template <std::size_t kSize>
 struct AxisName {
-  /// Of a literal.
+  /// Copies a literal.
   constexpr AxisName(const char (&literal)[kSize]) { std::ranges::copy(literal, text); }  // NOLINT: implicit
 
   char text[kSize]{};  ///< its characters and a zero
 };
 
-/// An axis, as result files name it. Axes of one name are the same axis.
+/// An axis with its name in result files. Axes of one name are the same axis.
 template <AxisName kText>
 struct Axis {
   static constexpr std::string_view kName{kText.text, sizeof(kText.text) - 1};  ///< Its name.
@@ -47,30 +47,30 @@ using Component = Axis<"component">;  ///< Components of a vector.
 using Joint = Axis<"joint">;          ///< Joints that have a displacement.
 }  // namespace axis
 
-/// Lengths of axes, the slowest first, and where an element lies (row-major).
+/// The lengths of axes, the slowest first, and the positions of elements (row-major).
 template <NamedAxis... Axes>
 class AxisLayout {
  public:
   static constexpr std::size_t kAxes = sizeof...(Axes);  ///< Number of axes.
-  using Lengths = std::array<std::size_t, kAxes>;        ///< Of each axis.
+  using Lengths = std::array<std::size_t, kAxes>;        ///< The length of each axis.
   static_assert(kAxes > 0, "a single value needs no array");
 
   AxisLayout() = default;
-  explicit AxisLayout(const Lengths& lengths) : lengths_(lengths) {}  ///< Of these lengths.
+  explicit AxisLayout(const Lengths& lengths) : lengths_(lengths) {}  ///< The layout with these lengths.
 
-  /// Names of the axes, as files have them.
+  /// The names of the axes in files.
   static std::vector<std::string> axis_names() { return {std::string(Axes::kName)...}; }
 
-  const Lengths& lengths() const { return lengths_; }  ///< Of all axes.
-  /// Number of elements.
+  const Lengths& lengths() const { return lengths_; }  ///< The lengths of all axes.
+  /// The number of elements.
   std::size_t elements() const { return product(lengths_); }
-  /// Positions of the element at this place, on each axis.
+  /// The positions on each axis of the element with this number.
   Lengths positions(std::size_t place) const {
     Lengths at{};
     for (std::size_t k = kAxes; k-- > 0; place /= lengths_[k]) at[k] = place % lengths_[k];
     return at;
   }
-  /// Positions along this axis, the first of that name.
+  /// The length of the first axis of this name.
   template <NamedAxis A>
   std::size_t length() const {
     constexpr std::array<bool, kAxes> kIsIt{std::same_as<A, Axes>...};
@@ -80,7 +80,7 @@ class AxisLayout {
   }
 
  protected:
-  /// Where the elements at these positions on the first axes begin, and how many they are.
+  /// The number of the first element at these positions on the first axes, and how many there are.
   template <std::integral... Positions>
   std::pair<std::size_t, std::size_t> part(Positions... positions) const {
     constexpr std::size_t kFixed = sizeof...(Positions);
@@ -94,22 +94,22 @@ class AxisLayout {
     const std::size_t count = product(std::span(lengths_).subspan(kFixed));
     return {place * count, count};
   }
-  /// Of lengths.
+  /// The product of lengths.
   static std::size_t product(std::span<const std::size_t> lengths) {
     return std::accumulate(lengths.begin(), lengths.end(), std::size_t{1}, std::multiplies());
   }
 
-  Lengths lengths_{};  ///< Of all axes.
+  Lengths lengths_{};  ///< lengths of all axes
 };
 
-/// Elements that are elsewhere, along axes that have names. See Array.
+/// A view of elements along named axes. See Array.
 template <class T, NamedAxis... Axes>
 class ArrayView : public AxisLayout<Axes...> {
  public:
-  using Layout = AxisLayout<Axes...>;        ///< Of its axes.
-  using Lengths = typename Layout::Lengths;  ///< Of each axis.
+  using Layout = AxisLayout<Axes...>;        ///< The layout of its axes.
+  using Lengths = typename Layout::Lengths;  ///< The length of each axis.
 
-  /// Refers to the elements. Precondition: as many as the lengths say.
+  /// A view of these elements. Precondition: their number fits the lengths.
   ArrayView(std::span<T> elements, const Lengths& lengths) : Layout(lengths), elements_(elements) {
     POESY_EXPECTS(elements.size() == Layout::product(lengths));
   }
@@ -131,26 +131,26 @@ class ArrayView : public AxisLayout<Axes...> {
   std::span<T> elements_;
 };
 
-/// Elements along axes that have names, the slowest axis first (row-major). The type says the axes, so nothing else has
-/// to: `Array<double, axis::Response, axis::Pose> mean` is asked as `mean(r, m)`, and `mean.row(r)` is what a response
-/// has at all poses. A default array has no elements.
+/// Elements along named axes, the slowest axis first (row-major). The type states the axes: for `Array<double,
+/// axis::Response, axis::Pose> mean`, an element is `mean(r, m)`, and `mean.row(r)` has the elements of one response at
+/// all poses. A default-constructed array has no elements.
 template <class T, NamedAxis... Axes>
 class Array : public AxisLayout<Axes...> {
  public:
-  using Element = T;                         ///< What it holds.
-  using Layout = AxisLayout<Axes...>;        ///< Of its axes.
-  using Lengths = typename Layout::Lengths;  ///< Of each axis.
+  using Element = T;                         ///< The type of its elements.
+  using Layout = AxisLayout<Axes...>;        ///< The layout of its axes.
+  using Lengths = typename Layout::Lengths;  ///< The length of each axis.
 
   Array() = default;
-  /// Of these lengths, all elements equal.
+  /// An array with these lengths, all elements equal.
   explicit Array(const Lengths& lengths, const T& element = T())
       : Layout(lengths), elements_(Layout::product(lengths), element) {}
-  /// Of these lengths. Precondition: as many elements, row-major.
+  /// An array with these lengths and elements, row-major. Precondition: their number fits.
   Array(const Lengths& lengths, std::vector<T> elements) : Layout(lengths), elements_(std::move(elements)) {
     POESY_EXPECTS(elements_.size() == Layout::product(lengths));
   }
 
-  std::size_t size() const { return elements_.size(); }  ///< Number of elements.
+  std::size_t size() const { return elements_.size(); }  ///< The number of elements.
   bool empty() const { return elements_.empty(); }       ///< Whether there are none.
 
   /// The element at these positions, one for each axis.
@@ -189,7 +189,7 @@ class Array : public AxisLayout<Axes...> {
   auto end() const { return elements_.end(); }
   /// @}
 
-  /// Equal lengths and elements.
+  /// Whether lengths and elements are equal.
   bool operator==(const Array& other) const { return this->lengths_ == other.lengths_ && elements_ == other.elements_; }
 
  private:
@@ -202,7 +202,7 @@ class Array : public AxisLayout<Axes...> {
   std::vector<T> elements_;
 };
 
-/// Gives arrays along the same axes these lengths; all elements are then as constructed.
+/// Resizes arrays along the same axes; all elements are then default-constructed.
 template <class First, class... Others>
 void make_room(const typename First::Lengths& lengths, First& first, Others&... others) {
   first = First(lengths);

@@ -6,12 +6,12 @@
 
 namespace poesy {
 
-/// Eight sums, so that an addition need not wait for the one before, and that they make whole vectors. Value k goes to
-/// sum k mod 8 on every instruction set.
+/// The number of partial sums. With eight, an addition need not wait for the previous one, and they fill whole vectors.
+/// Value k is added to sum k mod 8 on every instruction set.
 inline constexpr std::size_t kSums = 8;
-using Sums = std::array<double, kSums>;  ///< One for each place in a vector.
+using Sums = std::array<double, kSums>;  ///< A partial sum for each place in a vector.
 
-/// All eight together.
+/// The sum of all eight.
 inline double total(const Sums& sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
 
 }  // namespace poesy

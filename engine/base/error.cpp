@@ -13,7 +13,7 @@ std::string sentence(const std::string& place, std::string_view problem, std::st
     text += "; ";
     text += remedy;
   }
-  return printable_line(text);  // names of files and words of users, who may have put an escape or a line end in
+  return printable_line(text);  // names of files and words of users may have escapes or line ends
 }
 
 }  // namespace

@@ -7,17 +7,17 @@
 
 namespace poesy {
 
-/// Where in a text file something stands. Line and column count from 1; 0 means unknown.
+/// A place in a text file. Line and column count from 1; 0 means unknown.
 struct Place {
-  std::string file;        ///< as the user named it; empty where there is none
-  std::size_t line = 0;    ///< counts from 1; 0 where there is none
-  std::size_t column = 0;  ///< counts from 1, in bytes; 0 where there is none
+  std::string file;        ///< name that the user gave; empty if there is none
+  std::size_t line = 0;    ///< counts from 1; 0 if unknown
+  std::size_t column = 0;  ///< counts from 1, in bytes; 0 if unknown
 };
 
-/// "FILE", "FILE:LINE" or "FILE:LINE:COL", as much as is known; empty where there is no file.
+/// The place as text, as far as known: "FILE", "FILE:LINE" or "FILE:LINE:COL"; empty without a file.
 std::string to_string(const Place& place);
 
-/// Said of std::bad_alloc where it is not known how much is needed; it is a FileError by its exit code.
+/// The message for std::bad_alloc if the needed memory is not known; its exit code is that of FileError.
 inline constexpr const char* kTooLittleMemory =
     "there is not enough memory for this; end other programs, raise the limit (ulimit -v), or ask for less";
 

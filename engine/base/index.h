@@ -5,7 +5,7 @@
 
 namespace poesy {
 
-/// A position in one particular list. Positions of different lists do not mix.
+/// A position in one kind of list. Positions of different lists are different types.
 template <class List>
 struct Index {
   std::size_t value = 0;  ///< counts from 0
@@ -13,7 +13,7 @@ struct Index {
   constexpr Index() = default;
   /// Explicit, so that positions of different lists do not mix.
   constexpr explicit Index(std::size_t position) : value(position) {}
-  friend constexpr auto operator<=>(const Index&, const Index&) = default;  ///< By position.
+  friend constexpr auto operator<=>(const Index&, const Index&) = default;  ///< Compares positions.
 };
 
 /// Position of an error source in its model's list of all error sources.

@@ -4,7 +4,7 @@
 
 namespace poesy {
 
-/// Whether a text is as the pattern says, in which '*' stands for any letters and '?' for one.
+/// Whether a text matches a pattern, in which '*' matches any characters and '?' one.
 bool matches(std::string_view pattern, std::string_view text);
 
 }  // namespace poesy

@@ -4,6 +4,6 @@
 
 namespace poesy {
 
-inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  ///< Where there is no number.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  ///< NaN, which marks a missing number.
 
 }  // namespace poesy

@@ -6,10 +6,10 @@
 
 namespace poesy {
 
-/// A number of a table. Whole numbers stay whole, because a double holds them exactly only up to 2^53.
+/// A number in a table. Whole numbers are kept as such, because a double holds them exactly only up to 2^53.
 using Number = std::variant<double, std::int64_t, std::uint64_t>;
 
-/// The number that a value is: of a flag 0 or 1, of an enumeration its place.
+/// Converts a value to a number: a flag to 0 or 1, an enumeration to its position.
 template <class Value>
 Number to_number(const Value& value) {
   if constexpr (std::is_same_v<Value, Number>) {
@@ -25,7 +25,7 @@ Number to_number(const Value& value) {
   }
 }
 
-/// The nearest double.
+/// Converts to the nearest double.
 inline double to_double(const Number& number) {
   return std::visit([](auto value) { return static_cast<double>(value); }, number);
 }

@@ -10,34 +10,34 @@
 
 namespace poesy {
 
-/// What there is at a path in place of a plain file: "a folder", "a FIFO", "a device", "a socket". Empty for a plain
-/// file, and where nothing can be looked at. Opens nothing: to open a FIFO is to wait for whoever writes to it.
+/// What is at a path instead of a plain file: "a folder", "a FIFO", "a device", "a socket". Empty for a plain file, and
+/// if nothing can be found out. It opens nothing, because opening a FIFO waits for a writer.
 std::string_view other_than_file(const std::string& path);
 
 /// A plain file that is open for reading. Opening never waits.
 class PlainFile {
  public:
-  explicit PlainFile(const std::string& path);  ///< Opens the file there if it is a plain one; see is_open().
+  explicit PlainFile(const std::string& path);  ///< Opens the file if it is a plain one; see is_open().
   PlainFile(const PlainFile&) = delete;
   PlainFile& operator=(const PlainFile&) = delete;
   ~PlainFile();
 
-  bool is_open() const { return descriptor_ >= 0; }  ///< Whether it has a file open.
-  /// Why it is not open.
+  bool is_open() const { return descriptor_ >= 0; }  ///< Whether the file is open.
+  /// The reason why it is not open.
   /// @{
-  std::string_view other() const { return other_; }  ///< what other_than_file() says
-  int error() const { return error_; }               ///< the errno of opening; EINVAL where other() says something
+  std::string_view other() const { return other_; }  ///< the result of other_than_file()
+  int error() const { return error_; }               ///< the errno of opening; EINVAL if other() is not empty
   /// @}
 
-  /// Reads from position `at` on until `to` is full or the file ends: the number of bytes. None where the disk fails,
-  /// with the reason in errno. Reading does not wait either, not even for the next message of /proc/kmsg, which looks
-  /// like a plain file. Precondition: is_open(), as for those below.
+  /// Reads from position `at` until `to` is full or the file ends. Returns the number of bytes; none on a disk error,
+  /// with the reason in errno. It never waits, even for special files that look plain, such as /proc/kmsg. Precondition
+  /// of this and the functions below: is_open().
   std::optional<std::size_t> read(std::uintmax_t at, std::span<std::byte> to) const;
-  /// Hands the whole file to `take`, part by part from the beginning. False where the disk fails, with the reason in
-  /// errno. What `take` throws goes through.
+  /// Passes the whole file to take(), part by part. Returns false on a disk error, with the reason in errno. Exceptions
+  /// of take() are not caught.
   bool read_parts(const std::function<void(std::span<const std::byte> part)>& take) const;
-  std::uintmax_t size() const;  ///< Bytes; 0 where the system does not tell.
-  /// Bytes that are on the disk: without the holes of a sparse file, which make it look as large as one likes.
+  std::uintmax_t size() const;  ///< Size in bytes; 0 if the system does not tell.
+  /// Bytes on the disk, without the holes of a sparse file.
   std::uintmax_t stored_bytes() const;
 
  private:

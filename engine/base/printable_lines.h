@@ -5,8 +5,8 @@
 
 namespace poesy {
 
-/// A whole text as a terminal may show it, whatever file it came from: valid UTF-8 whose only control characters are
-/// line ends and tabs; "?" stands for all others.
+/// A text that is safe on a terminal: valid UTF-8 whose only control characters are line ends and tabs. Others are
+/// replaced by "?".
 std::string printable_lines(std::string_view text);
 
 }  // namespace poesy

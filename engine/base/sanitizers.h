@@ -1,7 +1,7 @@
 #pragma once
 
-// Which sanitizers the file is compiled for, whose names differ from compiler to compiler: POESY_ADDRESS_SANITIZER,
-// POESY_THREAD_SANITIZER, and POESY_SANITIZED where it is one of them.
+// Defines macros for the sanitizers of this build, which compilers name differently: POESY_ADDRESS_SANITIZER,
+// POESY_THREAD_SANITIZER, and POESY_SANITIZED for either.
 #if defined(__SANITIZE_ADDRESS__)
 #define POESY_ADDRESS_SANITIZER
 #endif

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostWords = 12;
 
-/// Fewest single-character insertions, deletions and replacements between two words (Levenshtein).
+/// The smallest number of insertions, deletions and replacements of characters between two words (Levenshtein).
 std::size_t edit_distance(std::string_view from, std::string_view to) {
   std::vector<std::size_t> row(to.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -36,14 +36,14 @@ bool is_plain(const std::string& word) {
   });
 }
 
-/// In quotes, for a shell.
+/// The word in quotes for a shell.
 std::string quoted(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
 }
 
-/// For a shell that knows $'...' (bash, ksh, zsh), with bytes in place of what a terminal would obey.
+/// The word for a shell that supports $'...' (bash, ksh, zsh), with control characters as bytes.
 std::string escaped_for_shell(const std::string& word) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string text = "$'";
@@ -59,13 +59,13 @@ std::string escaped_for_shell(const std::string& word) {
   return text + "'";
 }
 
-/// Whether a number goes on behind the blank: "12 000", "5 %".
+/// Whether the blank is inside a number: "12 000", "5 %".
 bool within_number(std::string_view before, std::string_view after) {
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   return !before.empty() && !after.empty() && digit(before.back()) && (digit(after.front()) || after.front() == '%');
 }
 
-/// What is before the first blank at which a line may end.
+/// The text before the first blank at which a line may end.
 std::string_view first_word(std::string_view text) {
   std::size_t end = text.find(' ');
   while (end < text.size() && within_number(text.substr(0, end), text.substr(end + 1))) end = text.find(' ', end + 1);
@@ -95,7 +95,7 @@ std::size_t character_length(std::string_view text) {
     if ((byte(k) & 0xC0U) != 0x80) return 0;
   }
   const std::uint32_t code = code_point(text.substr(0, length));
-  // Each code point has one form, the shortest, and surrogates have none (RFC 3629).
+  // The smallest code point of each length, because only the shortest form is valid. Surrogates are invalid (RFC 3629).
   constexpr std::array<std::uint32_t, 6> kFirst{0, 0, 0x80, 0x800, 0x10000, 0x110000};
   const bool surrogate = code >= 0xD800 && code < 0xE000;
   return code >= kFirst[length] && code < kFirst[length + 1] && !surrogate ? length : 0;

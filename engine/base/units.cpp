@@ -43,7 +43,7 @@ constexpr std::array<Unit, 24> kUnits{{{"m", Dimension::length, 1.0},
 constexpr std::array<Dimension, 7> kAll{Dimension::length, Dimension::angle,  Dimension::time,  Dimension::number,
                                         Dimension::force,  Dimension::moment, Dimension::energy};
 
-/// How a dimension is called, its SI unit, and the unit in which people read it; in the order of the enumeration.
+/// The name of a dimension, its SI unit, and the unit that people read; in the order of the enumeration.
 struct DimensionWords {
   std::string_view name;
   std::string_view si_unit;
@@ -69,7 +69,7 @@ struct Spelling {
 constexpr std::array<Spelling, 5> kSpellings{
     {{"\xC2\xB5m", "um"}, {"\xCE\xBCm", "um"}, {"\xC2\xB0", "deg"}, {"\xC2\xB5J", "uJ"}, {"\xCE\xBCJ", "uJ"}}};
 
-/// As std::to_chars writes it in this format.
+/// The number as std::to_chars writes it in this format.
 template <class... Format>
 std::string number_text(double value, Format... format) {
   std::array<char, 32> text{};
@@ -80,12 +80,12 @@ std::string number_text(double value, Format... format) {
 /// A number at the beginning of a text.
 struct NumberRead {
   double value = 0.0;
-  std::errc failure{};    ///< none: there is a number, which may be infinite or not a number
-  std::string_view rest;  ///< of the text, behind the number
+  std::errc failure{};    ///< no failure: there is a number, which may be infinite or NaN
+  std::string_view rest;  ///< the text after the number
 };
 
 NumberRead read_number(std::string_view text) {
-  // std::from_chars takes no plus sign; one is allowed here, but not "+-1".
+  // std::from_chars does not accept a plus sign; one is allowed here, but not "+-1".
   const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
   const char* end = text.data() + text.size();
   NumberRead read;
@@ -95,14 +95,14 @@ NumberRead read_number(std::string_view text) {
   return read;
 }
 
-/// Of a number that is out of range: whether it is too small, not too large.
+/// Whether a number that is out of range is too small, rather than too large.
 bool is_too_small(std::string_view number) {
   const std::size_t exponent = number.find_first_of("eE");
   if (exponent != std::string_view::npos) return number.substr(exponent + 1).starts_with('-');
   return number.find_first_of("123456789") > number.find('.');
 }
 
-/// Why there is no finite number at the beginning of a text; empty where there is one.
+/// The reason why the text does not begin with a finite number; empty if it does.
 std::string problem_of(const NumberRead& read, std::string_view text) {
   if (read.failure == std::errc::result_out_of_range) {
     const std::string_view number = text.substr(0, text.size() - read.rest.size());

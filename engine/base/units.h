@@ -8,65 +8,68 @@
 
 namespace poesy {
 
-/// What a value measures; a number has no unit. Errors are lengths or angles. Only responses, and limits on them, are
+/// What a value measures; a number has no unit. Errors are lengths or angles. Only responses and their limits can be
 /// forces, moments or energies.
 enum class Dimension { length, angle, time, number, force, moment, energy };
 
-std::span<const Dimension> all_dimensions();  ///< In the order of the enumeration.
+std::span<const Dimension> all_dimensions();  ///< All dimensions, in the order of the enumeration.
 
-/// A unit that may stand in a study file: its name and its size in SI (m, rad, s, N, N m, J).
+/// A unit of study files: its name, and its size in SI (m, rad, s, N, N m, J).
 struct Unit {
-  std::string_view name;  ///< as a study file has it: "mm", "N m"
+  std::string_view name;  ///< name in study files: "mm", "N m"
   Dimension dimension;    ///< what it measures
-  double si;              ///< its size
+  double si;              ///< size in SI
 };
 
-/// m, cm, mm, um, in, mil, thou, rad, mrad, deg, arcmin, arcsec, s, ms, min, h, N, kN, N m, N mm, kN m, J, mJ, uJ.
+/// All units: m, cm, mm, um, in, mil, thou, rad, mrad, deg, arcmin, arcsec, s, ms, min, h, N, kN, N m, N mm, kN m, J,
+/// mJ, uJ.
 std::span<const Unit> units();
 
-/// The unit of this name, or of another spelling of it: a micro sign (U+00B5) or Greek mu (U+03BC) before the m or J, a
-/// degree sign (U+00B0). Null where there is none.
+/// The unit of this name, or of another spelling: a micro sign (U+00B5) or Greek mu (U+03BC) before m or J, a degree
+/// sign (U+00B0). Null if there is none.
 const Unit* find_unit(std::string_view spelling);
 
 /// The names of the units of one dimension, or of all: "m, cm, mm, um, in, mil, thou".
 std::string unit_names(std::optional<Dimension> dimension = std::nullopt);
 
-std::string_view name(Dimension dimension);     ///< "length", "angle", "time", "number", "force", "moment", "energy".
-std::string with_article(Dimension dimension);  ///< "a length", "an angle".
-std::string_view si_unit(Dimension dimension);  ///< "m", "rad", "s", "1", "N", "N m" or "J".
-const Unit& display_unit(Dimension dimension);  ///< The unit in which people read it: "mm", "deg", else that of the SI.
-std::string_view error_kind(Dimension dimension);  ///< What errors of this dimension are called: "linear" or "angular".
+std::string_view name(
+    Dimension dimension);  ///< The name: "length", "angle", "time", "number", "force", "moment", "energy".
+std::string with_article(Dimension dimension);     ///< The name with its article: "a length", "an angle".
+std::string_view si_unit(Dimension dimension);     ///< The SI unit: "m", "rad", "s", "1", "N", "N m" or "J".
+const Unit& display_unit(Dimension dimension);     ///< The unit that people read: "mm", "deg", else that of the SI.
+std::string_view error_kind(Dimension dimension);  ///< The word for errors of this dimension: "linear" or "angular".
 
-/// The dimension of which this is the SI unit; a number for any other text.
+/// The dimension with this SI unit; `number` for any other text.
 Dimension dimension_of(std::string_view si_name);
 
 /// A value with its dimension.
 struct Quantity {
-  double si = 0.0;                          ///< the value, in the SI unit or without one
+  double si = 0.0;                          ///< the value in the SI unit, or without unit
   Dimension dimension = Dimension::number;  ///< what it measures
 };
 
-/// A quantity's text does not follow "NUMBER UNIT". what() is a clause without a place.
+/// A text is not of the form "NUMBER UNIT". what() is a clause without a place.
 class QuantityError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
 };
 
-/// Reads "1.5 mm", "-0.5 rad", "10 um", "2 N m". The number is finite, the unit one that find_unit() knows.
-/// Throws QuantityError with the reason and the units that are known: of the dimension that is wanted, or all.
+/// Reads "1.5 mm", "-0.5 rad", "10 um", "2 N m": a finite number and a unit that find_unit() knows. Throws
+/// QuantityError with the reason and the known units, of the wanted dimension or all.
 Quantity parse_quantity(std::string_view text, std::optional<Dimension> wanted = std::nullopt);
 
 /// Reads a whole text as one finite number, independent of the locale; empty for anything else.
 std::optional<double> parse_number(std::string_view text);
 
-/// Why parse_number() cannot read a text, as what follows its name: "is not a finite number".
+/// The reason why parse_number() cannot read a text, as a phrase after its name: "is not a finite number".
 std::string number_problem(std::string_view text);
 
 std::string shortest(double value);  ///< The shortest text that reads back as the same number: "0.001".
 
-std::string to_text(Quantity quantity);  ///< A quantity for a study file, exact when read back: "0.001 m", "0.5 rad".
+std::string to_text(
+    Quantity quantity);  ///< A quantity for a study file, which reads back exactly: "0.001 m", "0.5 rad".
 
-/// A quantity in the unit in which people read it, to this many digits: "80 mm", "1 deg".
+/// A quantity in the unit that people read, to this many digits: "80 mm", "1 deg".
 std::string readable_text(Quantity quantity, int digits = 12);
 
 }  // namespace poesy

@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// The kind that tries machines.
+/// The kind of study that judges a yield.
 const StudyKind& kind_with_yields() {
   return (*std::ranges::find_if(kinds(), [](const Kind* kind) { return kind->study.ask_yield != nullptr; }))->study;
 }

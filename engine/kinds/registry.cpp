@@ -20,7 +20,7 @@ namespace {
 constexpr std::array kAll{&kSensitivityKind, &kIdentificationKind, &kEvaluateKind, &kMonteCarloKind,
                           &kSobolKind,       &kAllocationKind,     &kCouplingKind};
 
-/// The keys of [analysis] as the reference lists them; a key that is not among them comes last.
+/// The order of the keys of [analysis] in the reference; a key that is not listed comes last.
 constexpr std::array<std::string_view, 30> kKeys{
     "kind",      "factors",   "samples", "draws",        "calibrated", "conf_level", "background", "reference",
     "linearity", "quantiles", "groups",  "second_order", "design",     "replicates", "pose_share", "cases",

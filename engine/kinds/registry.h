@@ -8,22 +8,22 @@
 
 namespace poesy {
 
-/// Every kind of study, in the order in which they are offered. The only list.
+/// Every kind of study, in the order in which users see them. This is the only list.
 std::span<const Kind* const> kinds();
 
-/// As study files know them.
+/// The part of the kinds that study files use.
 const StudyKinds& study_kinds();
 
-/// The kind of this name; null where there is none.
+/// The kind of this name; null if there is none.
 const Kind* find_kind(std::string_view name);
 
 /// The kind of a study.
 const Kind& kind_of(const Study& study);
 
-/// The kind of a result. Precondition: there is such a kind.
+/// The kind of a result. Precondition: its kind exists.
 const Kind& kind_of(const StoredResult& result);
 
-/// "'NAME'" of the kinds that rank errors, for messages.
+/// The names of the kinds that rank errors, in quotes, for messages.
 std::string kinds_that_rank();
 
 /// The kinds whose solves can be replayed, for messages.

@@ -24,7 +24,7 @@ std::string study_reference() { return study_reference(study_kinds()); }
 
 namespace {
 
-/// The study of these texts, at these poses, which `path` keeps.
+/// The study of these texts at these poses. path: the file that contains them.
 StoredStudy stored_study(const std::string& text, const std::string& mechanism, SelectedPoses poses,
                          const std::string& path, const Catalog& catalog) {
   constexpr const char* kOther = "use the poesy that wrote it";

@@ -42,7 +42,7 @@ void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
 }
 
 Outlook outlook(const Study& study, const Model& model, const PoseSet& poses) {
-  constexpr std::size_t kEmptyFile = 55'000;  // some 90 datasets and groups of HDF5, with what they say of themselves
+  constexpr std::size_t kEmptyFile = 55'000;  // about 90 datasets and groups of HDF5 with their attributes
   Outlook expected = kind_of(study).run.outlook(study, model, poses);
   expected.memory.file += kEmptyFile + resolved_text(study).size();
   return expected;

@@ -4,15 +4,15 @@
 
 namespace poesy::linalg {
 
-/// Goes downhill to a place where a sum of squares is least, by damped steps (Levenberg 1944, Marquardt 1963). No step
-/// leads up, so that it ends in the valley where it began, also where no square can vanish and where steps without
-/// damping leap. Returns whether it came to rest: whether a step was shorter than `shortest`.
+/// Minimises a sum of squares by damped steps (Levenberg 1944, Marquardt 1963). No step increases the sum, so it ends
+/// in the valley where it began, even if no square can vanish and undamped steps would jump. Returns whether it
+/// converged: whether a step was shorter than `shortest`. Problem has:
 ///
-///     double sum_of_squares()               where the problem stands
-///     double try_step(double damping)       the length of the step whose normal matrix has its diagonal times
-///                                           1 + damping
-///     double tried_sum_of_squares()         where that step leads
-///     void take_step()                      goes there
+///     double sum_of_squares()               the sum at the present point
+///     double try_step(double damping)       computes a step whose normal matrix has its diagonal times
+///                                           1 + damping; returns its length
+///     double tried_sum_of_squares()         the sum after that step
+///     void take_step()                      makes that step
 template <class Problem>
 bool comes_to_rest(Problem& problem, double shortest) {
   constexpr int kMostSteps = 200;

@@ -16,11 +16,11 @@ enum class SolveStatus : std::uint8_t {
   not_assembled   ///< no solution exists: the loops of a machine with these errors cannot be closed
 };
 
-/// As result files have them, in the order of SolveStatus.
+/// The names of SolveStatus in result files, in its order.
 inline constexpr std::array<std::string_view, 6> kStatusNames{"converged", "stagnated",  "iteration_cap",
                                                               "singular",  "non_finite", "not_assembled"};
 
-/// The same in the words of a report, in the order of SolveStatus.
+/// The meanings of SolveStatus in reports, in its order.
 inline constexpr std::array<std::string_view, kStatusNames.size()> kStatusMeanings{
     "the change fell below the tolerance",
     "as exact as the arithmetic allows; counts as converged",
@@ -29,12 +29,12 @@ inline constexpr std::array<std::string_view, kStatusNames.size()> kStatusMeanin
     "a value overflowed or became undefined",
     "cannot be assembled: no way to close its loops exists"};
 
-/// A solve that reached its fixed point, to the tolerance or to rounding.
+/// Whether a solve reached its fixed point, to the tolerance or to rounding.
 constexpr bool solved(SolveStatus status) {
   return status == SolveStatus::converged || status == SolveStatus::stagnated;
 }
 
-/// A solve whose last iterate is a number that says something of a machine.
+/// Whether the last iterate of a solve describes a machine.
 constexpr bool usable(SolveStatus status) { return solved(status) || status == SolveStatus::iteration_cap; }
 
 }  // namespace poesy

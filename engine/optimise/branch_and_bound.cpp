@@ -15,16 +15,16 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// One position for each part, among its processes.
+/// The position of a process for each part.
 using Choice = std::vector<std::size_t>;
 
 struct Node {
   double bound;        ///< no choice below this node costs less
   std::size_t number;  ///< how many nodes were made before this one
   std::vector<ProcessRange> allowed;
-  std::vector<double> multipliers;  ///< of the parent node
+  std::vector<double> multipliers;  ///< multipliers of the parent node
 
-  /// The order of a queue whose first node has the lowest bound.
+  /// The order of a priority queue, in which the node with the lowest bound comes first.
   bool operator<(const Node& other) const { return std::tie(other.bound, other.number) < std::tie(bound, number); }
 };
 
@@ -53,14 +53,14 @@ class BranchAndBound {
   DualPath dual_path_;
   std::priority_queue<Node> open_;
   std::map<Choice, double> solved_;   ///< lower bounds of the leaves that were solved
-  std::vector<ConvexSolution> best_;  ///< the best ones by cost, as many as are wanted
+  std::vector<ConvexSolution> best_;  ///< the best solutions by cost, at most as many as are wanted
   std::vector<double> relaxed_;       ///< [L] multipliers at the root
   double closed_ = kInfinity;         ///< the lowest bound of what was pruned or solved
   std::size_t nodes_ = 0;             ///< nodes that were expanded
   std::size_t made_ = 0;
 };
 
-/// The cost from which on a choice is not wanted.
+/// The cost from which on choices are discarded.
 double BranchAndBound::cutoff() const {
   if (best_.size() <= options_.alternatives) return kInfinity;
   const double cost = best_.back().allocation.cost;
@@ -100,7 +100,7 @@ bool BranchAndBound::is_feasible(const std::vector<ProcessRange>& allowed) const
   return true;
 }
 
-/// A choice that keeps the limits: for each part the cheapest process that holds the size of the relaxation or a
+/// A choice that keeps the limits: for each part the cheapest process that can make the size of the relaxation or a
 /// smaller one.
 Choice BranchAndBound::round_down(const std::vector<ProcessRange>& allowed, const PathPoint& point) const {
   Choice choice;
@@ -118,8 +118,8 @@ Choice BranchAndBound::round_down(const std::vector<ProcessRange>& allowed, cons
   return choice;
 }
 
-/// Improves a choice of single values greedily: the part that saves most takes its next larger value, for as long as
-/// limits leave room.
+/// Improves a choice of single values greedily: the part that saves most takes its next larger value, as long as the
+/// limits allow it.
 void BranchAndBound::raise_greedily(Choice& choice) const {
   const auto at = [&](std::size_t i, std::size_t up) -> const SizedProcess& {
     return sized_.processes[i][choice[i] + up];
@@ -156,7 +156,7 @@ void BranchAndBound::raise_greedily(Choice& choice) const {
   }
 }
 
-/// Removes processes at the ends of the ranges with which no choice can be among the best.
+/// Removes processes at the ends of the ranges that cannot belong to one of the best choices.
 void BranchAndBound::prune_by_bound(std::vector<ProcessRange>& allowed, const PathPoint& point, double bound) {
   const double most = cutoff();
   for (std::size_t i = 0; i < allowed.size(); ++i) {
@@ -216,8 +216,7 @@ void BranchAndBound::expand(const Node& node) {
     close(bound);
     return;
   }
-  // What a process adds to the bound holds at the multipliers of this point, whose own bound may be lower than that of
-  // the parent node.
+  // Pruning needs the bound of the same point as the multipliers. It may be lower than that of the parent node.
   prune_by_bound(allowed, point, point.lower_bound);
   branch(allowed, point, bound);
 }
@@ -235,7 +234,7 @@ LeastCost BranchAndBound::run() {
   }
   if (!open_.empty()) close(open_.top().bound);
   const ConvexSolution& best =
-      best_.front();  // there is one, because the search ends without one only when it has solved all
+      best_.front();  // not empty, because the search ends without a solution only after solving all choices
   LeastCost found{
       best.allocation, std::fmin(closed_, best.allocation.cost), {}, best.multiplier, relaxed_, {0, 0.0}, {}, nodes_};
   for (std::size_t k = 1; k < best_.size(); ++k) found.next.push_back(best_[k].allocation);

@@ -5,10 +5,10 @@
 
 namespace poesy {
 
-/// The choice of processes at least cost, by branch and bound. A node is a range of each part's processes; its bound is
-/// Lagrange's, and the relaxation is the least cost of mixed processes. The node with the lowest bound is expanded
-/// next. A process is pruned where the bound with it is above the cost of the best known choice. `bound` and `use` of
-/// the result are left to the caller. Precondition: some part has several processes.
+/// Finds the choice of processes at least cost by branch and bound. A node is a range of each part's processes. Its
+/// bound is Lagrange's, and its relaxation is the least cost of mixed processes. The node with the lowest bound is
+/// expanded next. A process is pruned if the bound with it is above the cost of the best known choice. The caller sets
+/// `bound` and `use` of the result. Precondition: some part has several processes.
 LeastCost branch_and_bound(const AllocationProblem& problem, const SizedProblem& sized, const SearchOptions& options);
 
 }  // namespace poesy

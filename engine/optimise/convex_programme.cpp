@@ -9,21 +9,22 @@
 namespace poesy {
 namespace {
 
-constexpr double kNegligible = 1e-9;  ///< a multiplier over the sum of all that counts as 0
-constexpr double kGoodGap = 1e-11;    ///< a gap over the cost that needs no better multipliers
+constexpr double kNegligible = 1e-9;  ///< a multiplier below this share of the sum counts as 0
+constexpr double kGoodGap = 1e-11;    ///< a relative gap below which multipliers are not improved
 
 const Process& process_of(const AllocationProblem& problem, const SizedProblem& sized, std::size_t part) {
   return problem.parts[part][sized.processes[part].front().index];
 }
 
-/// The tolerance of a size: exactly that of a bound where the size is at one.
+/// The tolerance of a size; exactly a bound's if the size is at the bound.
 double tolerance_within(const Process& process, const SizedProcess& sized, double size, Stacking stacking) {
   if (size <= sized.lo) return size == size_of(process.hi, stacking) ? process.hi : process.lo;
   const double tolerance = tolerance_of(size, stacking);
   return size == size_of(process.hi, stacking) ? process.hi : std::clamp(tolerance, process.lo, process.hi);
 }
 
-/// Tolerances of sizes [N], of which this share of what is above the lowest bounds is kept.
+/// The tolerances of sizes [N] after moving them towards the lowest bounds. keep: the share of the distance that is
+/// kept.
 std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedProblem& sized,
                                   std::span<const double> sizes, double keep) {
   std::vector<double> tolerance(sizes.size());
@@ -35,7 +36,7 @@ std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedP
   return tolerance;
 }
 
-/// The share of what is above the lowest bounds that limits leave.
+/// The largest share of the distance from the lowest bounds that keeps the limits.
 double share_within(const SizedProblem& sized, std::span<const double> sizes) {
   const double room = 1.0 - 4.0 * rounding_margin(sized.parts());
   const std::vector<double> lo = lowest(sized);
@@ -48,8 +49,8 @@ double share_within(const SizedProblem& sized, std::span<const double> sizes) {
   return share;
 }
 
-/// Tolerances of sizes [N] that keep the limits, drawn towards the lowest bounds where rounding would break one; none
-/// where not even these keep them.
+/// The tolerances of sizes [N], moved towards the lowest bounds where rounding would break a limit; none if even the
+/// lowest bounds break one.
 std::optional<std::vector<double>> tolerances_within(const AllocationProblem& problem, const SizedProblem& sized,
                                                      std::span<const double> sizes) {
   for (const double keep : {1.0, share_within(sized, sizes), 0.0}) {
@@ -79,7 +80,7 @@ DualCertificate certify(const SizedProblem& sized, std::vector<std::size_t> work
   return {std::move(working_set), std::move(multipliers), bound};
 }
 
-/// The same with negligible multipliers set to 0, where the bound stays as good.
+/// The same with negligible multipliers set to 0, if the bound remains as good.
 DualCertificate without_negligible(const SizedProblem& sized, const DualCertificate& whole, double cost) {
   const double sum = std::accumulate(whole.multipliers.begin(), whole.multipliers.end(), 0.0);
   DualCertificate less = whole;
@@ -88,8 +89,8 @@ DualCertificate without_negligible(const SizedProblem& sized, const DualCertific
   return cost - less.bound <= 2.0 * (cost - whole.bound) + kGoodGap * std::abs(cost) ? less : whole;
 }
 
-/// Adds the least multipliers of tight limits at which their parts are best off at their lowest bounds, unless such a
-/// multiplier is infinite. The bound stays as it is, because these parts have no other size in it.
+/// Adds multipliers of tight limits: the smallest ones for which the lowest bounds are the best sizes of their parts.
+/// An infinite one is left out. The bound does not change, because these parts have no other size.
 void add_tight_limits(const AllocationProblem& problem, const SizedProblem& sized, DualCertificate& found) {
   for (std::size_t l = 0; l < sized.limits; ++l) {
     if (!sized.tight[l]) continue;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// x^exponent, x >= 0: by roots for the exponents of the usual laws, which is faster than a logarithm.
+/// x^exponent for x >= 0. Usual exponents are computed by roots, which is faster than by a logarithm.
 double raised(double x, double exponent) {
   if (exponent == 0.5) return std::sqrt(x);
   if (exponent == 1.0) return x;
@@ -18,7 +18,7 @@ double raised(double x, double exponent) {
   return std::pow(x, exponent);
 }
 
-/// x^(1 / n), x >= 0.
+/// x^(1 / n) for x >= 0.
 double root(double x, double n) {
   if (n == 1.5) return std::pow(std::cbrt(x), 2);
   if (n == 2.0) return std::sqrt(x);
@@ -26,14 +26,14 @@ double root(double x, double n) {
   return std::pow(x, 1.0 / n);
 }
 
-/// The z > 0 with z + log z = value, Lambert's W of exp(value), by Newton's method for the logarithm of z.
+/// Solves z + log z = value for z > 0 (Lambert's W of exp(value)) by Newton's method for the logarithm of z.
 double with_own_logarithm(double value) {
   double z = value > 1.0 ? value - std::log(value) : std::exp(value) / (1.0 + std::exp(value));
   if (z == 0.0) return z;
   for (int step = 0; step < 20; ++step) {
     const double change = (value - z - std::log(z)) / (1.0 + z);
     z *= 1.0 + change;
-    if (std::abs(change) < 1e-9) break;  // the next change is its square
+    if (std::abs(change) < 1e-9) break;  // the next change is about its square
   }
   return z;
 }
@@ -99,7 +99,7 @@ double CostLaw::cheapest_size(double price, Stacking stacking) const {
     const double q = exponent(stacking);
     return root(q * b_ / price, q + 1.0);
   }
-  // In the worst case b / decay exp(-T / decay) = price. Of squares b / (2 T decay) exp(-T / decay) = price.
+  // In the worst case b / decay exp(-T / decay) = price; for squares b / (2 T decay) exp(-T / decay) = price.
   if (stacking == Stacking::worst_case) return std::fmax(0.0, shape_ * std::log(b_ / (shape_ * price)));
   const double value = std::log(b_) - 2.0 * std::log(shape_) - std::log(2.0 * price);
   const double tolerance = shape_ * with_own_logarithm(value);

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The cost of a part that is made to a tolerance. The laws are those of the literature on tolerance allocation
+/// The cost of a part as a function of its tolerance. The laws are those of the literature on tolerance allocation
 /// (Chase, Greenwood, Loosli and Hauglund 1990, Manuf. Rev. 3, 49-59).
 namespace poesy {
 
@@ -10,19 +10,19 @@ enum class Stacking {
   worst_case        ///< sum of |a| T <= L: the limit is linear in T
 };
 
-/// The size of a tolerance T >= 0, in which limits are linear: T^2, or T in the worst case.
+/// The size of a tolerance T >= 0: T^2, or T in the worst case. Limits are linear in sizes.
 double size_of(double tolerance, Stacking stacking);
 /// The tolerance of a size >= 0.
 double tolerance_of(double size, Stacking stacking);
 
-/// A cost and its derivatives by the size.
+/// A cost and its derivatives with respect to the size.
 struct CostCurve {
   double value;      ///< in the unit of the costs
   double slope;      ///< <= 0
   double curvature;  ///< >= 0
 };
 
-/// The cost of a part as a function of its tolerance. Each law is convex and never rises, in T and in T^2, so that the
+/// The cost of a part as a function of its tolerance. Each law is convex and non-increasing in T and in T^2, so the
 /// least cost under limits is a convex programme. A law with b = 0 is constant.
 class CostLaw {
  public:
@@ -35,14 +35,14 @@ class CostLaw {
   /// fixed + b exp(-T / decay). Preconditions: b >= 0, decay > 0, in the unit of T.
   static CostLaw exponential(double fixed, double b, double decay);
 
-  /// The cost of a tolerance T >= 0; infinite for T = 0 where T divides.
+  /// The cost of a tolerance T >= 0; infinite for T = 0 if the law divides by T.
   double at(double tolerance) const;
-  /// The cost of a size > 0 and its derivatives by the size.
+  /// The cost of a size > 0 and its derivatives with respect to the size.
   CostCurve curve(double size, Stacking stacking) const;
-  /// The size at which cost + price x size is least, among all sizes > 0; infinite for price 0. Preconditions: price
-  /// >= 0, the law is not constant.
+  /// The size > 0 that minimises cost + price x size; infinite for price 0. Preconditions: price >= 0, the law is not
+  /// constant.
   double cheapest_size(double price, Stacking stacking) const;
-  /// The part of the cost that no tolerance saves.
+  /// The part of the cost that does not depend on the tolerance.
   double fixed() const { return fixed_; }
   bool is_constant() const { return form_ == Form::constant; }  ///< Whether all tolerances cost the same.
 

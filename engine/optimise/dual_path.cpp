@@ -12,29 +12,31 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kMuReduction = 0.1;        ///< mu of a maximum over mu of the one before
-constexpr double kRelativeGap = 1e-12;      ///< gap at the end of the path, over what tolerances can change of the cost
-constexpr double kSmallestMu = 1e-16;       ///< mu over its scale at which rounding ends the path
-constexpr double kSmallestMixingMu = 3e-8;  ///< the same of mixes, over what tolerances can change of the cost
-constexpr int kMaxNewtonSteps = 60;         ///< for one maximum
-constexpr int kMaxLineSearchSteps = 60;     ///< along one direction
-constexpr int kMaxIterations = 400;         ///< maxima, and additions to the working set
-constexpr std::size_t kAddedAtOnce = 4;     ///< violated limits that join the working set together
-constexpr double kNegligibleExponent = 40.0;  ///< a process so many mu above the best one has no weight
+constexpr double kMuReduction = 0.1;  ///< factor from the mu of one maximum to that of the next
+constexpr double kRelativeGap =
+    1e-12;  ///< gap at the end of the path, over the part of the cost that tolerances can change
+constexpr double kSmallestMu = 1e-16;  ///< mu over its scale, below which rounding ends the path
+constexpr double kSmallestMixingMu =
+    3e-8;                                ///< the same for mixes, over the part of the cost that tolerances can change
+constexpr int kMaxNewtonSteps = 60;      ///< for one maximum
+constexpr int kMaxLineSearchSteps = 60;  ///< along one direction
+constexpr int kMaxIterations = 400;      ///< maxima, and additions to the working set
+constexpr std::size_t kAddedAtOnce = 4;  ///< violated limits that join the working set in one iteration
+constexpr double kNegligibleExponent = 40.0;  ///< a process this many mu above the best one has no weight
 
 double inverse_curvature(const SizedProcess& process, double size, Stacking stacking) {
   return size > process.lo && size < process.hi ? 1.0 / process.cost.curve(size, stacking).curvature : 0.0;
 }
 
-/// What tolerances can change of the cost of a mix, as a scale.
+/// The scale of the part of a mix's cost that tolerances can change.
 double changeable(std::span<const SizedProcess> processes, ProcessRange allowed, const BestResponse& part) {
   double least = kInfinity;
   for (std::size_t p = allowed.first; p < allowed.last; ++p) least = std::fmin(least, processes[p].cost.fixed());
   return std::fmax(0.0, part.cost - least);
 }
 
-/// A scale for multipliers: what the use of a limit would be worth if all parts had an equal share of the limit they
-/// matter most for.
+/// A scale for multipliers: the value of the use of a limit if each part has an equal share of the limit that it
+/// affects most.
 double multiplier_scale(const SizedProblem& problem, std::span<const ProcessRange> allowed) {
   const auto parts = static_cast<double>(problem.parts());
   double sum = 0.0;
@@ -53,8 +55,8 @@ double multiplier_scale(const SizedProblem& problem, std::span<const ProcessRang
   return costs > 0.0 && std::isfinite(costs) ? costs : 1.0;
 }
 
-/// Cholesky's factorisation in place of a symmetric matrix [K x K], of which the lower half is given. Rounding may
-/// leave it not quite positive definite; therefore the diagonal gets a little more.
+/// Factorises a symmetric matrix [K x K], of which the lower half is given, in place (Cholesky). Adds a little to the
+/// diagonal, because rounding may leave the matrix not quite positive definite.
 void factorise(std::vector<double>& matrix, std::size_t k) {
   double trace = 0.0;
   for (std::size_t r = 0; r < k; ++r) trace += matrix[r * k + r];
@@ -72,7 +74,7 @@ void factorise(std::vector<double>& matrix, std::size_t k) {
   }
 }
 
-/// Solves with a factor of factorise(), in place.
+/// Solves in place with a factor of factorise().
 void solve(const std::vector<double>& factor, std::vector<double>& x) {
   const std::size_t k = x.size();
   for (std::size_t r = 0; r < k; ++r) {
@@ -111,7 +113,7 @@ BestResponse best_response(std::span<const SizedProcess> processes, ProcessRange
   double weights = 0.0;
   double inverse = 0.0;
   double cost = 0.0;
-  double shift = 0.0;  // of sizes from that of the main process, because a variance needs differences
+  double shift = 0.0;  // shift of sizes by that of the main process, because a variance needs differences
   double square = 0.0;
   const double size = processes[part.main].size_at(price, stacking);
   for (std::size_t p = allowed.first; p < allowed.last; ++p) {
@@ -151,7 +153,7 @@ double lower_bound(const SizedProblem& problem, std::span<const ProcessRange> al
   }
   for (const double multiplier : multipliers) bound -= multiplier;
   magnitude = std::accumulate(multipliers.begin(), multipliers.end(), magnitude);
-  // Each number is the result of some 64 operations at most, and of one for each limit and each part.
+  // Each number results from at most some 64 operations, and one for each limit and each part.
   const double operations = static_cast<double>(problem.parts() + working_set.size()) + 64.0;
   return bound - operations * kEpsilon * magnitude;
 }
@@ -159,7 +161,7 @@ double lower_bound(const SizedProblem& problem, std::span<const ProcessRange> al
 DualPath::DualPath(const SizedProblem& problem, std::vector<std::size_t> working_set)
     : problem_(problem),
       room_(1.0 - rounding_margin(problem.parts())),
-      is_in_set_(problem.tight),  // so that tight limits never join: their parts are fixed already
+      is_in_set_(problem.tight),  // tight limits never join, because their parts are already fixed
       responses_(problem.parts()),
       sizes_(problem.parts()) {
   for (const std::size_t limit : working_set) {
@@ -181,10 +183,10 @@ void DualPath::begin(std::span<const double> start, double mu) {
   }
 }
 
-/// Finds the best responses at the multipliers, and the slack that they leave.
+/// Computes the best responses at the multipliers, and the slack of the limits.
 void DualPath::update_responses(double mu) {
   const std::size_t parts = problem_.parts();
-  std::fill(sizes_.begin(), sizes_.end(), 0.0);  // they hold the prices first
+  std::fill(sizes_.begin(), sizes_.end(), 0.0);  // holds the prices at first
   for (std::size_t k = 0; k < working_set_.size(); ++k) {
     for (std::size_t i = 0; i < parts; ++i) sizes_[i] += multipliers_[k] * effects_[k * parts + i];
   }
@@ -198,7 +200,7 @@ void DualPath::update_responses(double mu) {
   }
 }
 
-/// Whether multiplier x slack is between mu / 2 and 3 mu / 2 for all limits, which are kept then.
+/// Whether multiplier x slack is between mu / 2 and 3 mu / 2 for all limits, which are then kept.
 bool DualPath::is_centred(double mu) const {
   for (std::size_t k = 0; k < working_set_.size(); ++k) {
     if (!(std::abs(mu - multipliers_[k] * slack_[k]) <= 0.5 * mu)) return false;
@@ -216,7 +218,7 @@ bool DualPath::centre(double mu) {
 }
 
 /// Newton's direction in units of the multipliers: (P A G A' P + mu I) d = mu - P slack, with P = diag(multipliers), G
-/// = diag(inverse curvature). False when the direction is not finite because numbers overflow.
+/// = diag(inverse curvature). Returns false if the direction is not finite because numbers overflow.
 bool DualPath::find_newton_direction(double mu) {
   const std::size_t count = working_set_.size();
   const std::size_t parts = problem_.parts();
@@ -240,9 +242,9 @@ bool DualPath::find_newton_direction(double mu) {
   return std::ranges::all_of(direction_, [](double one) { return std::isfinite(one); });
 }
 
-/// Goes along the direction. The function is concave, so its slope falls on the way. A step that makes it as negative
-/// as half of what it was positive is too long; between such a step and a point before it the slope is made small,
-/// because parts that come to a bound bend the function sharply.
+/// Line search. The function is concave, so its slope falls along the direction. A step is too long if the slope there
+/// is more negative than half the first slope. Then the search looks for a small slope between this step and one before
+/// it, because parts that reach a bound bend the function sharply.
 void DualPath::search_line(double mu) {
   const std::vector<double> before = multipliers_;
   double step = 1.0;
@@ -270,7 +272,7 @@ void DualPath::search_line(double mu) {
   }
 }
 
-/// Adds the limits that the sizes violate most to the working set, a few at once. False where none is violated.
+/// Adds a few of the most violated limits to the working set. Returns false if none is violated.
 bool DualPath::add_violated_limits(double mu) {
   struct Violation {
     double excess;

@@ -16,7 +16,7 @@ AtBound bound_of(const Process& process, double tolerance) {
   return tolerance == process.hi ? AtBound::upper : AtBound::none;
 }
 
-/// Fills in what follows from the tolerances alone.
+/// Sets the members that follow from the tolerances.
 void complete(const AllocationProblem& problem, LeastCost& found) {
   for (std::size_t i = 0; i < problem.parts.size(); ++i) {
     found.bound.push_back(bound_of(problem.parts[i][found.best.process[i]], found.best.tolerance[i]));
@@ -25,7 +25,7 @@ void complete(const AllocationProblem& problem, LeastCost& found) {
 }
 
 LeastCost without_choice(const AllocationProblem& problem, const SizedProblem& sized) {
-  // It has a value, because sized_problem() found that the lowest bounds keep the limits.
+  // value() does not throw, because sized_problem() found that the lowest bounds keep the limits.
   const ConvexSolution found = solve_convex(problem, sized, {}).value();
   return {found.allocation, found.lower_bound, {}, found.multiplier, found.multiplier, {0, 0.0}, {}};
 }

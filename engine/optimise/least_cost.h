@@ -8,8 +8,8 @@
 #include "engine/optimise/cost_law.h"
 #include "engine/optimise/tolerance_limits.h"
 
-/// Tolerances at least cost under limits, with a proof. In T^2 (in T, in the worst case) limits are linear and costs
-/// convex, so the multipliers of the limits give a lower bound on the cost of all tolerances that keep the limits:
+/// Tolerances at least cost under limits, with a proof. Limits are linear and costs convex in T^2 (in T for the worst
+/// case), so multipliers of the limits give a lower bound on the cost of all tolerances that keep the limits:
 /// theory.md, D65.
 namespace poesy {
 
@@ -17,13 +17,13 @@ namespace poesy {
 struct Process {
   CostLaw cost;  ///< cost as a function of the tolerance
   double lo;     ///< least tolerance, SI, >= 0
-  double hi;     ///< largest tolerance, >= lo; infinite where limits alone bound it; equal to lo for a single value
+  double hi;     ///< largest tolerance, >= lo; infinite: only the limits bound it; equal to lo for a single value
 };
 
 /// The only process of a part whose tolerance is given.
 Process fixed_process(double tolerance, double cost = 0.0);
 
-/// One process for each tolerance that can be had, such as the grades of a standard, at its cost by a law.
+/// One process for each available tolerance, such as the grades of a standard, with the cost of a law.
 std::vector<Process> available_values(const CostLaw& cost, std::span<const double> tolerances);
 
 /// The problem: N parts, each with one or more processes, under L limits.
@@ -32,16 +32,16 @@ struct AllocationProblem {
   std::vector<std::vector<Process>> parts;  ///< [N] processes of each part, of which one is chosen
 };
 
-/// When branch and bound ends, and what it gives. Where no part has a choice of processes none of it matters.
+/// When branch and bound ends, and what it returns. Unused if no part has a choice of processes.
 struct SearchOptions {
   /// The search ends when the cost is proven to be within this share of the least. Make it larger for many parts with
-  /// lists of values, where the last digits take most nodes; 1e-6 is far below what a tolerance is known to.
+  /// lists of values, where the last digits take most nodes; tolerances are hardly known to 1e-6.
   double relative_gap = 1e-9;
-  /// How many next-best choices of processes are wanted too. Each makes the search longer, because nodes are pruned by
+  /// The number of next-best choices of processes to return. Each makes the search longer, because nodes are pruned by
   /// the cost of the worst choice that is kept.
   std::size_t alternatives = 0;
-  /// The search ends after so many nodes; the gap is larger then, and says so. Make it smaller where a good choice at
-  /// once is worth more than a proof: 71 parts of three kinds take 4 s for the default.
+  /// The largest number of nodes. If it is reached, the gap is larger, and the result has it. Make it smaller if a good
+  /// choice soon is worth more than a proof: with 71 parts of three kinds the default takes 4 s.
   std::size_t max_nodes = 20000;
 };
 
@@ -51,27 +51,30 @@ enum class AtBound { none, lower, upper, single };
 /// A choice of processes and the tolerances at least cost for it.
 struct Allocation {
   std::vector<std::size_t> process;  ///< [N] position among the processes of each part
-  std::vector<double> tolerance;     ///< [N] SI; they keep every limit, and sums that are rounded keep it too
+  std::vector<double> tolerance;     ///< [N] SI; they keep every limit, also in rounded sums
   double cost;                       ///< sum over all parts
 };
 
 /// The tolerances at least cost and the proof that nothing costs less.
 struct LeastCost {
-  Allocation best;             ///< no choice that keeps the limits is known to cost less
-  double lower_bound;          ///< no tolerances within bounds and limits cost less: a proof, rounding counted
-  std::vector<AtBound> bound;  ///< [N] where each tolerance of best is
+  Allocation best;  ///< the cheapest known choice that keeps the limits
+  double
+      lower_bound;  ///< a proven lower bound on the cost of all tolerances within bounds and limits, including rounding
+  std::vector<AtBound> bound;  ///< [N] whether each tolerance of `best` is at a bound
   std::vector<double>
-      multiplier;                ///< [L] >= 0: what one unit more of room would save; 0 for a limit that does not bind
-  std::vector<double> relaxed;   ///< [L] the same where processes may be mixed; multiplier itself without a choice
-  LimitUse use;                  ///< the limit that is used most; share <= 1. {0, 0} without limits
-  std::vector<Allocation> next;  ///< next-best choices of processes by cost, as many as options ask for and exist
+      multiplier;                ///< [L] >= 0: the saving per unit of additional room; 0 for a limit that does not bind
+  std::vector<double> relaxed;   ///< [L] the same if processes may be mixed; equal to `multiplier` without a choice
+  LimitUse use;                  ///< use of the limit that is used most; share <= 1. {0, 0} without limits
+  std::vector<Allocation> next;  ///< next-best choices of processes by cost, at most as many as the options want
   std::size_t nodes = 0;         ///< nodes of branch and bound; 0 without a choice
 
-  double gap() const { return best.cost - lower_bound; }  ///< >= 0: the least cost is no more than this below
+  double gap() const {
+    return best.cost - lower_bound;
+  }  ///< >= 0: the cost exceeds the least cost by no more than this
 };
 
-/// A problem without a least cost: these parts have no effect on any limit and no upper bound, so that their tolerances
-/// may grow for ever.
+/// A problem without a least cost: these parts have no effect on any limit and no upper bound, so their tolerances may
+/// grow without end.
 struct Unbounded {
   std::vector<std::size_t> parts;  ///< positions of the parts
 };
@@ -83,12 +86,12 @@ using AllocationOutcome = std::variant<LeastCost, Infeasible, Unbounded>;
 /// largest if it has no effect. The same problem gives the same bits wherever the mathematics library gives the same
 /// roots, exponentials and powers.
 ///
-/// The problem is infeasible where the lowest bounds need more than the room of a limit, or leave nothing at all to a
-/// part whose cost is infinite then. Where they leave next to nothing, rounding makes the gap: up to 1e-13 of the sum
+/// The problem is infeasible if the lowest bounds need more than the room of a limit, or if they leave no room for a
+/// part whose cost is then infinite. If they leave hardly any room, rounding determines the gap, up to 1e-13 of the sum
 /// of multiplier x room.
 ///
-/// Preconditions: room and effects are finite, effects are not negative, every part has a process, with lo <= hi, and
-/// hi > 0 where its law divides by T; max_nodes > 0.
+/// Preconditions: room and effects are finite, effects are not negative, every part has a process, lo <= hi, hi > 0 if
+/// the law divides by T; max_nodes > 0.
 AllocationOutcome least_cost(const AllocationProblem& problem, const SearchOptions& options = {});
 
 }  // namespace poesy

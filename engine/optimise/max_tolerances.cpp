@@ -24,7 +24,7 @@ std::vector<double> tolerances_at(double factor, std::span<const double> proport
   return tolerance;
 }
 
-/// What tolerances need of a limit. A part without effect needs nothing, even if its tolerance is infinite.
+/// The use of a limit by these tolerances. A part without effect uses nothing, even if its tolerance is infinite.
 double need_of(const ToleranceLimits& limits, std::size_t l, std::span<const double> tolerance) {
   double sum = 0.0;
   for (std::size_t i = 0; i < tolerance.size(); ++i) {
@@ -33,7 +33,7 @@ double need_of(const ToleranceLimits& limits, std::size_t l, std::span<const dou
   return sum;
 }
 
-/// The limit that the tolerances break most; none where they keep all.
+/// The limit that the tolerances break most; none if they keep all.
 std::optional<Infeasible> find_infeasible(const ToleranceLimits& limits, std::span<const double> tolerance) {
   std::optional<Infeasible> worst;
   for (std::size_t l = 0; l < limits.count(); ++l) {
@@ -45,7 +45,7 @@ std::optional<Infeasible> find_infeasible(const ToleranceLimits& limits, std::sp
   return worst;
 }
 
-/// Factors at which a bound begins or ceases to hold, ascending.
+/// The factors at which a bound begins or ceases to hold, ascending.
 std::vector<double> corners(std::span<const double> proportions, std::span<const ToleranceRange> ranges) {
   std::vector<double> factors{0.0};
   for (std::size_t i = 0; i < ranges.size(); ++i) {
@@ -57,11 +57,11 @@ std::vector<double> corners(std::span<const double> proportions, std::span<const
   return factors;
 }
 
-/// The factor at which a limit is used up, if the bounds that hold at `inside` hold there too.
+/// The factor at which a limit is used up, assuming the bounds that hold at `inside`.
 double factor_of(const ToleranceLimits& limits, std::size_t l, double inside, std::span<const double> proportions,
                  std::span<const ToleranceRange> ranges) {
-  double held = 0.0;   // by bounds
-  double grows = 0.0;  // per size of the factor
+  double held = 0.0;   // use of parts at bounds
+  double grows = 0.0;  // use of other parts, over the size of the factor
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const double effect = limits.row(l)[i];
     if (effect == 0.0) continue;
@@ -97,7 +97,7 @@ std::variant<MaxTolerances, Infeasible> maximise_tolerances(const ToleranceLimit
     return !find_infeasible(limits, tolerances_at(factor, proportions, ranges));
   };
   if (const auto worst = find_infeasible(limits, tolerances_at(0.0, proportions, ranges))) return *worst;
-  // Between two corners no bound begins or ceases to hold.
+  // Between two corners the same bounds hold.
   const std::vector<double> factors = corners(proportions, ranges);
   const auto next = std::ranges::partition_point(factors, keeps);
   const double from = *std::prev(next);
@@ -109,7 +109,7 @@ std::variant<MaxTolerances, Infeasible> maximise_tolerances(const ToleranceLimit
     if (factor < found.factor || !found.limit) found = {{}, std::fmin(factor, to), l};
   }
   if (found.factor == kInfinity) found.limit.reset();
-  if (!keeps(found.factor)) found.factor = from;  // corners that are apart by rounding
+  if (!keeps(found.factor)) found.factor = from;  // corners that differ only by rounding
   found.tolerance = tolerances_at(found.factor, proportions, ranges);
   return found;
 }

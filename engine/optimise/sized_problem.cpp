@@ -36,7 +36,7 @@ std::vector<double> lowest_tolerances(const SizedProblem& problem) {
   return tolerance;
 }
 
-/// The limit that the lowest bounds break most; none where they keep all.
+/// The limit that the lowest bounds break most; none if they keep all.
 std::optional<Infeasible> find_infeasible(const ToleranceLimits& limits, const SizedProblem& problem) {
   if (limits.count() == 0) return std::nullopt;
   const std::vector<double> tolerance = lowest_tolerances(problem);
@@ -53,8 +53,8 @@ std::vector<double> largest_effects(std::span<const double> effects, std::size_t
   return largest;
 }
 
-/// Fixes parts without effect at their largest sizes, and processes whose cost does not depend on the tolerance at
-/// their lowest ones. The parts without effect that have no largest size.
+/// Fixes parts without effect at their largest sizes, and processes of constant cost at their lowest sizes. Returns the
+/// parts without effect that have no largest size.
 std::vector<std::size_t> fix_free_parts(SizedProblem& problem) {
   std::vector<std::size_t> unbounded;
   for (std::size_t i = 0; i < problem.parts(); ++i) {
@@ -71,8 +71,8 @@ std::vector<std::size_t> fix_free_parts(SizedProblem& problem) {
   return unbounded;
 }
 
-/// Bounds each size by what limits leave when all other parts are at their lowest. A little more is allowed, so that
-/// rounding makes no bound that the problem does not have.
+/// Bounds each size by what the limits leave when all other parts are at their lowest sizes, plus a margin for
+/// rounding, so that no bound is too tight.
 void tighten_bounds(SizedProblem& problem) {
   const std::vector<double> lo = lowest(problem);
   std::vector<double> largest(problem.parts(), kInfinity);
@@ -85,15 +85,16 @@ void tighten_bounds(SizedProblem& problem) {
   }
   for (std::size_t i = 0; i < largest.size(); ++i) {
     auto& processes = problem.processes[i];
-    const double most = largest[i] * (1.0 + 4.0 * kEpsilon);  // lo and what is left are rounded
+    const double most =
+        largest[i] * (1.0 + 4.0 * kEpsilon);  // the margin covers the rounding of lo and of the difference
     if (most == kInfinity) continue;
     std::erase_if(processes, [&](const SizedProcess& process) { return process.lo > most; });
     for (SizedProcess& process : processes) process.hi = std::fmin(process.hi, most);
   }
 }
 
-/// Fixes the parts of limits that their lowest bounds fill up to rounding. The first limit where that costs an infinite
-/// amount; none otherwise.
+/// Fixes the parts of limits that the lowest bounds use up to rounding. Returns the first limit for which that has an
+/// infinite cost; none otherwise.
 std::optional<std::size_t> fix_tight_limits(SizedProblem& problem) {
   const std::vector<double> lo = lowest(problem);
   for (std::size_t l = 0; l < problem.limits; ++l) {

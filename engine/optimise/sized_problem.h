@@ -8,39 +8,39 @@
 
 #include "engine/optimise/least_cost.h"
 
-/// The problem of least cost in the sizes that limits add (T^2, or T in the worst case), with the room of every limit
-/// as unit.
+/// The problem of least cost in terms of sizes (T^2, or T in the worst case), in which limits are linear. The unit of
+/// each limit is its room.
 namespace poesy {
 
-/// A process in sizes.
+/// A process in terms of sizes.
 struct SizedProcess {
   CostLaw cost;       ///< cost as a function of the tolerance
   double lo;          ///< least size
   double hi;          ///< largest size, finite: at most what the limits leave when all other parts are at their lowest
   std::size_t index;  ///< position in AllocationProblem::parts
 
-  bool single() const { return lo == hi; }  ///< Whether it has one size alone.
-  /// The size in [lo, hi] at which cost + price x size is least.
+  bool single() const { return lo == hi; }  ///< Whether it has only one size.
+  /// The size in [lo, hi] that minimises cost + price x size.
   double size_at(double price, Stacking stacking) const;
 };
 
-/// The effects over the rooms, which no choice of processes changes: [L x N].
+/// The effects divided by the rooms, [L x N]. They do not depend on the choice of processes.
 std::vector<double> effects_by_room(const ToleranceLimits& limits);
 
-/// The part of a room that the sums of N parts are kept away from it, so that no order of additions breaks a limit.
+/// The share of a room that is left unused by sums over N parts, so that no order of additions breaks a limit.
 double rounding_margin(std::size_t parts);
 
-/// sum of a_k b_k, in eight sums.
+/// sum of a_k b_k, accumulated in eight sums.
 double dot(std::span<const double> a, std::span<const double> b);
 
-/// The whole problem in sizes.
+/// The whole problem in terms of sizes.
 struct SizedProblem {
-  Stacking stacking;                                 ///< what a size is
+  Stacking stacking;                                 ///< how effects add up, which defines sizes
   std::size_t limits;                                ///< L
   std::span<const double> effects;                   ///< [L x N], effects_by_room()
   std::vector<double> largest_effect;                ///< [N] largest effect of the part on any limit
   std::vector<std::vector<SizedProcess>> processes;  ///< [N] processes of each part, ascending by lo
-  /// [L] 1 for limits that the lowest bounds fill up to rounding: their parts are fixed at these bounds.
+  /// [L] 1 for limits that the lowest bounds use up to rounding; their parts are fixed at these bounds.
   std::vector<char> tight;
 
   std::size_t parts() const { return processes.size(); }  ///< N
@@ -55,8 +55,7 @@ std::vector<double> lowest(const SizedProblem& problem);
 std::variant<SizedProblem, Infeasible, Unbounded> sized_problem(const AllocationProblem& problem,
                                                                 std::span<const double> effects);
 
-/// The problem with one process of each part, by positions among its processes; none where their lowest bounds break a
-/// limit.
+/// The problem with one process of each part, chosen by position; none if their lowest bounds break a limit.
 std::optional<SizedProblem> with_processes(const SizedProblem& problem, std::span<const std::size_t> choice);
 
 }  // namespace poesy

@@ -6,7 +6,7 @@
 
 #include "engine/optimise/cost_law.h"
 
-/// Limits on what the tolerances of all parts do together.
+/// Limits on the combined effect of the tolerances of all parts.
 namespace poesy {
 
 /// L linear constraints on the sizes of N parts: sum over the parts of effects_li size_i <= room_l. A size is T^2, or T
@@ -14,30 +14,32 @@ namespace poesy {
 struct ToleranceLimits {
   Stacking stacking = Stacking::root_sum_square;  ///< how effects add up
   std::size_t parts = 0;                          ///< N
-  std::vector<double> effects;  ///< [L x N] >= 0: what one unit of size adds, such as a^2, or |a| in the worst case
-  std::vector<double> room;     ///< [L] what all parts may take together
+  std::vector<double> effects;  ///< [L x N] >= 0: effect of one unit of size, such as a^2, or |a| in the worst case
+  std::vector<double> room;     ///< [L] the largest combined effect of all parts
 
-  std::size_t count() const { return room.size(); }                                          ///< L
-  std::span<const double> row(std::size_t l) const { return {&effects[l * parts], parts}; }  ///< [N] of one limit
-  /// What these tolerances [N] take of a limit.
+  std::size_t count() const { return room.size(); }  ///< L
+  std::span<const double> row(std::size_t l) const {
+    return {&effects[l * parts], parts};
+  }  ///< [N] effects on one limit
+  /// The combined effect of these tolerances [N] on a limit.
   double need(std::size_t l, std::span<const double> tolerance) const;
 };
 
-/// How much of one limit is used.
+/// The use of one limit.
 struct LimitUse {
   std::size_t limit;  ///< position of the limit
-  double share;       ///< need / room: above 1 the limit is broken; infinite where it has no room
+  double share;       ///< need / room: above 1 the limit is broken; infinite if it has no room
 };
 
-/// The use of the limit that is used most; of equal ones that of the first. Preconditions: there is a limit; tolerance
-/// [N] is finite.
+/// The use of the limit that is used most, the first of equal ones. Preconditions: there is a limit; tolerance [N] is
+/// finite.
 LimitUse worst_use(const ToleranceLimits& limits, std::span<const double> tolerance);
 
 /// A problem without a feasible point: even the lowest tolerances break a limit.
 struct Infeasible {
   std::size_t limit;  ///< the limit with the largest need / room
-  double need;        ///< what the lowest tolerances take of it
-  double room;        ///< what it has
+  double need;        ///< combined effect of the lowest tolerances
+  double room;        ///< room of the limit
 };
 
 }  // namespace poesy

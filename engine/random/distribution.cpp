@@ -23,7 +23,7 @@ namespace {
 // Double arithmetic is exact enough here and much faster than Boost's default of long double.
 using DoublePolicy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
-// What the loops below repeat is always inlined, for a call is not vectorised.
+// The bodies of the loops below are always inlined, because a call prevents vectorisation.
 
 /// c[0] + c[1] x + ... + c[n-1] x^(n-1)
 template <std::size_t n>
@@ -74,10 +74,10 @@ constexpr double kMiddle = 0.425;
 /// The smallest share that a stream draws, see uniform_from_bits.
 constexpr double kSmallestDraw = 0x1p-54;
 
-/// Distance from zero beyond which a share t lies, kSmallestDraw <= t <= 1/2 - kMiddle. It is r - c(r) with
-/// r = sqrt(-2 log t), the leading term for small t; c is a rational function fitted to the 50 digits of the inverse
-/// that Newton's iteration gives at the Chebyshev nodes of the range, by weighted linear least squares, its denominator
-/// iterated. It contributes 4e-18 of the value.
+/// The distance from zero beyond which a share t lies, kSmallestDraw <= t <= 1/2 - kMiddle. It is r - c(r) with r =
+/// sqrt(-2 log t), the leading term for small t. c is a rational function fitted to the inverse with 50 digits
+/// (Newton's iteration at the Chebyshev nodes of the range) by weighted linear least squares with an iterated
+/// denominator. Its error is 4e-18 of the value.
 [[gnu::always_inline]] inline double tail_quantile(double t) {
   constexpr double kAbove[] = {3.5870056229663754,  28.937060576976233,    44.18431979367937,
                                21.389873044820888,  5.5398569809415354,    0.7424741169485692,
@@ -97,18 +97,18 @@ constexpr double kSmallestDraw = 0x1p-54;
 /// Quantile of the standard normal outside the middle.
 [[gnu::always_inline]] inline double signed_tail(double u) { return std::copysign(tail_quantile(beyond(u)), u - 0.5); }
 
-/// As signed_tail, for shares that no stream draws.
+/// The same as signed_tail() for shares that no stream draws.
 double signed_extreme(double u) {
   const double root = boost::math::erfc_inv(2.0 * beyond(u), DoublePolicy{});
   return std::copysign(std::numbers::sqrt2 * root, u - 0.5);
 }
 
-/// Right for shares in the middle; something else for others.
+/// Exact for shares in the middle; other shares get meaningless values.
 POESY_EACH_INSTRUCTION_SET void replace_middles(double sigma, double* shares, std::size_t count) {
   for (std::size_t k = 0; k < count; ++k) shares[k] = sigma * middle_quantile(shares[k] - 0.5);
 }
 
-/// Right for shares outside the middle and not below kSmallestDraw.
+/// Exact for shares outside the middle and not below kSmallestDraw.
 POESY_EACH_INSTRUCTION_SET void replace_tails(double sigma, double* shares, std::size_t count) {
   for (std::size_t k = 0; k < count; ++k) shares[k] = sigma * signed_tail(shares[k]);
 }
@@ -132,8 +132,8 @@ POESY_EACH_INSTRUCTION_SET void mark_tails(const double* shares, std::size_t cou
   }
 }
 
-// Every shape but the measured one is symmetric, so a quantile functor maps the tail share t = min(u, 1 - u), 0 < t <=
-// 1/2, to the distance from zero. 1 - u is exact for u >= 1/2, so both tails get the same precision and the same
+// Every shape but the measured one is symmetric. So a quantile functor maps the tail share t = min(u, 1 - u), 0 < t <=
+// 1/2, to the distance from zero. 1 - u is exact for u >= 1/2, so both tails have the same precision and the same
 // numbers.
 
 struct TruncatedNormalTail {
@@ -144,7 +144,8 @@ struct TruncatedNormalTail {
         outside(std::erfc(cut / parent_sigma / std::numbers::sqrt2)) {}
 
   double operator()(double t) const {
-    // The parent normal's mass within the distance sought, or beyond it: whichever is the smaller keeps its digits.
+    // The parent normal's share within the distance, or beyond it: the smaller one is used, because it keeps its
+    // digits.
     const double within = (1.0 - 2.0 * t) * inside;
     const double root = within <= 0.5 ? boost::math::erf_inv(within, DoublePolicy{})
                                       : boost::math::erfc_inv(outside + 2.0 * t * inside, DoublePolicy{});
@@ -154,7 +155,7 @@ struct TruncatedNormalTail {
   double sigma;
   double half_width;
   double inside;   ///< share of the parent normal within +-half_width
-  double outside;  ///< share beyond
+  double outside;  ///< share beyond half_width
 };
 
 struct UniformTail {
@@ -166,7 +167,7 @@ struct UniformTail {
 struct TriangularTail {
   double half_width;
 
-  /// half_width (1 - sqrt(2 t)), written without the cancellation near the middle.
+  /// half_width (1 - sqrt(2 t)), without the cancellation near the middle.
   double operator()(double t) const { return half_width * ((1.0 - 2.0 * t) / (1.0 + std::sqrt(2.0 * t))); }
 };
 
@@ -189,12 +190,12 @@ POESY_EACH_INSTRUCTION_SET void triangular_quantiles(double half_width, std::spa
   replace_by_quantiles(TriangularTail{half_width}, uniforms);
 }
 
-/// Where in its half a share of a shifted distribution is, strictly inside (0, 1). 2u and 2u - 1 are exact.
+/// The position of a share within its half of a shifted distribution, strictly inside (0, 1). 2u and 2u - 1 are exact.
 [[gnu::always_inline]] inline double share_in_half(double u) {
   return u < 0.5 ? 2.0 * u : std::max(2.0 * u - 1.0, kSmallestDraw);
 }
 
-/// What the half of a share adds to the error.
+/// The shift of the half in which a share lies.
 [[gnu::always_inline]] inline double shift_of_half(double shift, double u) { return std::copysign(shift, u - 0.5); }
 
 void expect_positive(const char* parameter, double value) {
@@ -210,8 +211,8 @@ double truncated_normal_deviation(double sigma, double half_width) {
     const double density = std::exp(-0.5 * a * a) / std::sqrt(2.0 * std::numbers::pi);
     return sigma * std::sqrt(1.0 - 2.0 * a * density / std::erf(a / std::numbers::sqrt2));
   }
-  // Below, the difference cancels. With 2 Phi(a) - 1 = 2 a phi(a) (1 + a^2 T), T = sum over n >= 1 of
-  // a^(2n-2) / (2n+1)!!, it equals a^2 T / (1 + a^2 T), a series of positive terms.
+  // For smaller a the difference cancels. With 2 Phi(a) - 1 = 2 a phi(a) (1 + a^2 T), T = sum over n >= 1 of a^(2n-2) /
+  // (2n+1)!!, it equals a^2 T / (1 + a^2 T), a series of positive terms.
   const double a2 = a * a;
   double sum = 0.0;
   double term = 1.0 / 3.0;

@@ -14,15 +14,15 @@ namespace {
 
 constexpr std::size_t kRounds = 8;
 
-/// A network over fewer numbers does not reach all permutations alike.
+/// With fewer bits, a network does not reach all permutations equally.
 constexpr unsigned kFewestBits = 10;
 
-/// A permutation of the strata 0 .. n - 1 that is computed for one sample at a time.
+/// A permutation of the strata 0 .. n - 1 that can be computed for each sample alone.
 class Permutation {
  public:
   Permutation(const StreamAddress& address, std::uint64_t strata)
       : strata_(strata), high_bits_(bits_for(strata) / 2), low_bits_(bits_for(strata) - high_bits_) {
-    // Blocks behind those of the samples.
+    // The blocks after those of the samples.
     constexpr std::uint64_t kKeyBlock = LatinHypercube::kMostSamples / 4;
     for (std::size_t k = 0; k < kRounds; k += 4) {
       std::ranges::copy(random_block(address, kKeyBlock + k / 4), keys_.begin() + k);
@@ -49,7 +49,7 @@ class Permutation {
     return x ^ x >> 33;
   }
 
-  /// A permutation of all numbers of high_bits_ + low_bits_ bits, whatever hash is.
+  /// A permutation of all numbers of high_bits_ + low_bits_ bits, for any hash function.
   std::uint64_t shuffled(std::uint64_t number) const {
     const std::uint64_t high_mask = (std::uint64_t{1} << high_bits_) - 1;
     const std::uint64_t low_mask = (std::uint64_t{1} << low_bits_) - 1;
@@ -85,7 +85,7 @@ void LatinHypercube::fill(const DesignColumn& column, SampleIndex first, std::sp
   fill_uniforms(address, first, uniforms);
   for (std::size_t k = 0; k < uniforms.size(); ++k) {
     const auto stratum = static_cast<double>(permutation(first.value + k));
-    // A place near the end of its stratum would round to the next one.
+    // A position near the end of its stratum would be rounded to the next stratum.
     const double place = std::min(stratum + uniforms[k], std::nextafter(stratum + 1.0, 0.0));
     uniforms[k] = place / n;
   }

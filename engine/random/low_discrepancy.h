@@ -6,7 +6,7 @@
 
 namespace poesy {
 
-/// The Sobol' sequence after the origin, point by point.
+/// The Sobol' sequence without the origin, point by point.
 class SobolSequence {
  public:
   /// Throws std::invalid_argument for more dimensions than Boost.Random tabulates (3667; Joe and Kuo 2008).

@@ -28,7 +28,7 @@ POESY_EACH_INSTRUCTION_SET void add_scaled(double factor, const double* other, d
 
 double smallest_eigenvalue(std::span<const double> matrix) {
   const auto size = static_cast<Eigen::Index>(side(matrix));
-  // By rows or by columns: it is symmetric.
+  // Row-major or column-major does not matter, because the matrix is symmetric.
   return linalg::eigenvalues(Eigen::Map<const linalg::Matrix>(matrix.data(), size, size))[0];
 }
 
@@ -53,11 +53,11 @@ NormalCopula::NormalCopula(std::span<const double> correlation)
 
 void NormalCopula::correlate(std::span<const std::span<double>> rows) const {
   POESY_EXPECTS(rows.size() == size_);
-  constexpr std::size_t kColumns = 128;  // of all rows, so that they stay in the cache
+  constexpr std::size_t kColumns = 128;  // number of columns of all rows, so that they fit the cache
   const std::size_t count = rows.front().size();
   for (std::size_t begin = 0; begin < count; begin += kColumns) {
     const std::size_t columns = std::min(kColumns, count - begin);
-    for (std::size_t i = size_; i-- > 0;) {  // from the last on, because a row needs those before it as they were
+    for (std::size_t i = size_; i-- > 0;) {  // from the last row on, because a row needs the unchanged rows before it
       scale(triangle_[i * size_ + i], rows[i].data() + begin, columns);
       for (std::size_t j = 0; j < i; ++j) {
         add_scaled(triangle_[i * size_ + j], rows[j].data() + begin, rows[i].data() + begin, columns);
@@ -81,7 +81,7 @@ ConditionalScores::ConditionalScores(const NormalCopula& copula, std::span<const
   const std::size_t s = shared.size();
   for (std::size_t d = 0; d < drawn.size(); ++d) {
     const double* const row = all.data() + (s + d) * size;
-    for (std::size_t j = s; j-- > 0;) {  // x L_ss = L_ds, from the last column on
+    for (std::size_t j = s; j-- > 0;) {  // solves x L_ss = L_ds, from the last column on
       double rest = row[j];
       for (std::size_t k = j + 1; k < s; ++k) rest -= slopes_[d * s + k] * all[k * size + j];
       slopes_[d * s + j] = rest / all[j * size + j];

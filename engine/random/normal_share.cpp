@@ -19,7 +19,7 @@ template <std::size_t n>
   return sum;
 }
 
-/// e^x for -700 < x <= 0, to its last digit but one: 2^n e^r with |r| <= log(2) / 2, and Taylor's series of e^r.
+/// e^x for -700 < x <= 0, to its last digit but one: 2^n e^r with |r| <= log(2) / 2 and the Taylor series of e^r.
 [[gnu::always_inline]] inline double exponential(double x) {
   constexpr double kRound = 0x1.8p52;  // a sum with it has no fraction
   constexpr double kLog2High = 6.93147180369123816490e-01;
@@ -34,8 +34,8 @@ template <std::size_t n>
   return power_series(kInverse, r) * std::bit_cast<double>(power);
 }
 
-/// The share of a standard normal that lies further than this from zero, on one side, 0 <= a <= 8.3. Mills' ratio times
-/// a + 4 is a polynomial in (a - 4) / (a + 4) to 5e-17 of its value: interpolation with 50 digits at Chebyshev's nodes.
+/// The share of a standard normal that is further than this from zero, on one side, 0 <= a <= 8.3. Mills' ratio times a
+/// + 4 is a polynomial in (a - 4) / (a + 4) to 5e-17 of its value: interpolation with 50 digits at Chebyshev's nodes.
 [[gnu::always_inline]] inline double share_beyond(double a) {
   constexpr double kSeries[] = {0.75528513041575152,     -0.60789664197189219,    0.38713740074222225,
                                 -0.18652185795966197,    0.060396574890266341,    -0.0075401889661925407,

@@ -11,17 +11,17 @@ namespace poesy {
 
 namespace {
 
-constexpr std::size_t kDigits = 32;     // of a point before it is scrambled; those after them are zero
-constexpr std::size_t kTreeDigits = 8;  // a tree of so many digits has 255 nodes, and a block of Philox 256 bits
+constexpr std::size_t kDigits = 32;     // digits of a point before it is scrambled; further ones are zero
+constexpr std::size_t kTreeDigits = 8;  // a tree of this many digits has 255 nodes, and a block of Philox 256 bits
 
 using TreeBits = std::array<std::uint64_t, 4>;
 
-/// The bits of the nodes below so many digits; 1 before the digits tells 0 from 00.
+/// The random bits of the nodes below these digits. A leading 1 distinguishes 0 from 00.
 TreeBits tree_below(const StreamAddress& address, std::uint64_t digits, std::size_t count) {
   return random_block(address, std::uint64_t{1} << count | digits);
 }
 
-/// The flips of eight digits. Node 1 is the root, and below node n are 2 n and 2 n + 1.
+/// The flips of eight digits. Node 1 is the root; the children of node n are 2 n and 2 n + 1.
 std::uint32_t flips_along(const TreeBits& tree, std::uint32_t digits) {
   const std::uint32_t path = std::uint32_t{1} << kTreeDigits | digits;
   std::uint32_t flips = 0;
@@ -32,7 +32,7 @@ std::uint32_t flips_along(const TreeBits& tree, std::uint32_t digits) {
   return flips;
 }
 
-/// The 32 digits scrambled, and 32 random ones below them. root: the tree of the first digits.
+/// The 32 scrambled digits, and 32 random ones below them. root: the tree of the first digits.
 std::uint64_t scrambled(const StreamAddress& address, const TreeBits& root, std::uint32_t digits) {
   constexpr std::uint32_t kTreeMask = (std::uint32_t{1} << kTreeDigits) - 1;
   std::uint32_t flips = flips_along(root, digits >> (kDigits - kTreeDigits));
@@ -50,8 +50,8 @@ ScrambledSobol::ScrambledSobol(std::size_t dimensions, std::uint64_t seed)
     : seed_(seed), directions_(dimensions * kDigits) {
   boost::random::sobol sequence(dimensions);
   for (std::size_t digit = 0; digit < kDigits; ++digit) {
-    // Point n is made of the direction numbers at the ones of its Gray code, n ^ n / 2. Boost leaves out the origin, so
-    // the point after n - 1 others is n.
+    // Point n is the sum of the direction numbers at the ones of its Gray code, n ^ n / 2. Boost leaves out the origin,
+    // so the point after n - 1 others is n.
     const std::uint64_t point = (std::uint64_t{2} << digit) - 1;
     sequence.seed(point - 1);
     for (std::size_t d = 0; d < dimensions; ++d) {
@@ -73,7 +73,7 @@ void ScrambledSobol::fill(const DesignColumn& column, SampleIndex first, std::sp
   const std::uint64_t gray = first.value ^ first.value >> 1;
   for (std::size_t k = 0; k < kDigits; ++k) digits ^= (gray >> k & 1) != 0 ? directions[k] : 0;
   for (std::size_t k = 0; k < uniforms.size(); ++k) {
-    // From a point to the next one digit of the Gray code changes.
+    // From one point to the next, one digit of the Gray code changes.
     if (k > 0) digits ^= directions[std::countr_zero(first.value + k)];
     uniforms[k] = uniform_from_bits(scrambled(address, root, digits));
   }

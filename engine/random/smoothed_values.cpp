@@ -11,7 +11,7 @@
 namespace poesy {
 namespace {
 
-/// Distance of each value from its k-th nearest other one. sorted: ascending.
+/// The distance of each value from its k-th nearest other value. sorted: ascending.
 std::vector<double> distances(std::span<const double> sorted, std::size_t k) {
   std::vector<double> found;
   std::size_t low = 0;  // sorted[low .. low + k] are the value and its k nearest
@@ -22,7 +22,7 @@ std::vector<double> distances(std::span<const double> sorted, std::size_t k) {
   return found;
 }
 
-/// The same for k = ceil(sqrt(n)), or for the smallest larger k with which not all are 0.
+/// The same for k = ceil(sqrt(n)), or for the smallest larger k with which not all distances are 0.
 std::vector<double> neighbour_distances(std::span<const double> sorted) {
   auto k = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(sorted.size()))));
   for (k = std::min(k, sorted.size() - 1);; ++k) {
@@ -31,7 +31,7 @@ std::vector<double> neighbour_distances(std::span<const double> sorted) {
   }
 }
 
-/// Sum of the squares of what is left after c is taken off.
+/// The sum of the squares of values - c.
 double squares_about(std::span<const double> values, double c) {
   double sum = 0.0;
   for (const double value : values) sum += (value - c) * (value - c);
@@ -44,7 +44,7 @@ double mean_about(std::span<const double> values, double c) {
   return c + sum / static_cast<double>(values.size());
 }
 
-/// The range over which one value is spread.
+/// The range over which one value is smoothed.
 struct Spread {
   double low;
   double high;
@@ -60,10 +60,10 @@ SmoothedValues::SmoothedValues(std::vector<double> values) : values_(std::move(v
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return values_[k]; });
   std::vector<double> sorted;
   for (const std::size_t k : order) sorted.push_back(values_[k]);
-  mean_ = mean_about(sorted, mean_about(sorted, 0.0));  // twice, for values far from zero
+  mean_ = mean_about(sorted, mean_about(sorted, 0.0));  // twice, for accuracy with values far from zero
   const double variance = squares_about(sorted, mean_) / static_cast<double>(n - 1);
   const std::vector<double> distance = neighbour_distances(sorted);
-  // (scale distance)^2 / 3 is on average variance / n.
+  // The mean of (scale distance)^2 / 3 is variance / n.
   const double scale = std::numbers::sqrt3 * std::sqrt(variance / squares_about(distance, 0.0));
   for (std::size_t k = 0; k < n; ++k) half_widths_[order[k]] = scale * distance[k];
   add_pieces();
@@ -79,12 +79,12 @@ void SmoothedValues::add_pieces() {
   std::ranges::sort(spreads, {}, [](const Spread& spread) { return std::pair(spread.low, spread.high); });
   std::ranges::sort(ends);
   ends.erase(std::ranges::unique(ends).begin(), ends.end());
-  double below = 0.0;  // values, counted by the part of their spread
+  double below = 0.0;  // number of values, each counted by the part of its range
   const auto add_knot = [&](double x) {
     knots_.push_back(x);
     shares_.push_back(below);
   };
-  std::vector<Spread> over;  // that hold the piece
+  std::vector<Spread> over;  // ranges that contain the piece
   auto next = spreads.begin();
   for (std::size_t e = 0; e < ends.size(); ++e) {
     add_knot(ends[e]);

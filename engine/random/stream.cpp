@@ -27,8 +27,8 @@ struct PhiloxRun {
 
 #if defined(__x86_64__) && defined(__GNUC__)
 
-// Only AVX-512 has the lanes to beat one multiplication of 64 bits a cycle: the product of 64 bits by 64 takes four of
-// 32 bits. Compilers do not find this form in plain loops.
+// Only AVX-512 has enough lanes to beat one multiplication of 64 bits a cycle, because a product of 64 bits by 64 takes
+// four of 32 bits. Compilers do not find this form in plain loops.
 #define POESY_AVX512 __attribute__((target("avx512f")))
 
 constexpr std::size_t kLanes = 8;
@@ -48,7 +48,7 @@ struct Blocks {
 
 POESY_AVX512 inline __m512i everywhere(std::uint64_t value) { return _mm512_set1_epi64(static_cast<long long>(value)); }
 
-/// By halves of 32 bits. No sum exceeds 64 bits: (2^32 - 1)^2 + 2 (2^32 - 1) = 2^64 - 1.
+/// Multiplies by halves of 32 bits. No sum exceeds 64 bits: (2^32 - 1)^2 + 2 (2^32 - 1) = 2^64 - 1.
 POESY_AVX512 inline Product multiply(__m512i a, std::uint64_t multiplier) {
   const __m512i b_low = everywhere(multiplier & 0xffffffff);
   const __m512i b_high = everywhere(multiplier >> 32);
@@ -104,9 +104,8 @@ POESY_AVX512 void write_group(const PhiloxRun& run, std::uint64_t first, std::ui
   for (std::size_t v = 0; v < kVectors; ++v) store(blocks[v], words + 4 * v * kLanes);
 }
 
-/// Writes the words of blocks first, first + 1, ..., four each, as many of `count` blocks as come in whole groups of
-/// vectors: none where the machine has no vectors that are faster than its multiplication of 64 bits. Returns how many
-/// blocks were written.
+/// Writes the words of blocks first, first + 1, ..., four each, for as many of `count` blocks as fill whole groups of
+/// vectors. Writes none on a machine without fast vectors. Returns the number of blocks written.
 std::size_t philox_by_vectors(const PhiloxRun& run, std::uint64_t first, std::size_t count, std::uint64_t* words) {
   static const bool available = __builtin_cpu_supports("avx512f") != 0;
   if (!available) return 0;
@@ -129,16 +128,16 @@ r123::Philox4x64::ctr_type block_at(const StreamAddress& address, std::uint64_t 
   return r123::Philox4x64{}(counter, key);
 }
 
-/// As uniform_from_bits, which it defines.
+/// The definition of uniform_from_bits().
 [[gnu::always_inline]] inline double middle_of_cell(std::uint64_t bits) {
-  // The cell, an integer below 2^53, in two parts of 32 and 21 bits: each is made the low bits of a power of two that
-  // has room for it. Unlike a conversion this is vectorised on every instruction set, and it is as exact.
+  // The cell, an integer below 2^53, in two parts of 32 and 21 bits. Each becomes the low bits of a power of two that
+  // has room for it. Unlike a conversion, this is vectorised on every instruction set, and it is also exact.
   const std::uint64_t cell = bits >> 11;
   const std::uint64_t low = cell & 0xffffffff;
   const std::uint64_t high = cell >> 32;
   const double sum = (std::bit_cast<double>(high | std::bit_cast<std::uint64_t>(0x1p84)) - 0x1p84) +
                      (std::bit_cast<double>(low | std::bit_cast<std::uint64_t>(0x1p52)) - 0x1p52);
-  // The middle of the last cell is no double and would round to 1.
+  // The middle of the last cell is not a double, and would be rounded to 1.
   return std::min((sum + 0.5) * 0x1p-53, 1.0 - 0x1p-53);
 }
 
@@ -159,7 +158,7 @@ std::array<std::uint64_t, 4> random_block(const StreamAddress& address, std::uin
 }
 
 void fill_uniforms(const StreamAddress& address, SampleIndex first, std::span<double> uniforms) {
-  // Whole blocks, of which the first may begin before the first sample and the last go on beyond the last one.
+  // Whole blocks; the first may begin before the first sample, and the last may end after the last one.
   constexpr std::size_t kWords = 512;
   const PhiloxRun run{
       address.factor.value, address.pose.value, {address.seed, static_cast<std::uint64_t>(address.purpose)}};

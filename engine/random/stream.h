@@ -15,26 +15,26 @@ enum class Purpose : std::uint64_t {
   scrambled_sobol = 3,
   latin_hypercube = 4,
   second_error_samples = 5,  ///< independent of error_samples, of the same errors
-  seed_of_others = 6         ///< seeds of sets of machines that a study tries besides its own
+  seed_of_others = 6         ///< seeds of additional sets of machines that a study tries
 };
 
-/// The address of a run of draws: one factor at one pose. The sample index completes it.
+/// The address of a sequence of draws: one factor at one pose. The sample index completes it.
 struct StreamAddress {
-  std::uint64_t seed = 0;                    ///< of the study
-  Purpose purpose = Purpose::error_samples;  ///< draws for different purposes never meet
-  FactorIndex factor;                        ///< among all of the model's
-  PoseIndex pose;                            ///< among the study's
+  std::uint64_t seed = 0;                    ///< seed of the study
+  Purpose purpose = Purpose::error_samples;  ///< draws for different purposes are independent
+  FactorIndex factor;                        ///< position among all factors of the model
+  PoseIndex pose;                            ///< position among the study's poses
 };
 
 /// The 64 random bits at (address, sample): a pure function, Philox4x64-10 (Salmon et al. 2011)
 /// with key (seed, purpose) and counter (factor, pose, sample / 4, 0), word sample mod 4.
 std::uint64_t random_bits(const StreamAddress& address, SampleIndex sample);
 
-/// The random bits of samples 4 block to 4 block + 3, which together cost as much as one of them.
+/// The random bits of samples 4 block to 4 block + 3. All four cost as much as one of them.
 std::array<std::uint64_t, 4> random_block(const StreamAddress& address, std::uint64_t block);
 
-/// Fills uniforms[k] with the draw of sample first + k, strictly inside (0, 1): the middle of the
-/// 2^53 cells named by the upper bits. Equal to uniform_from_bits(random_bits(address, first + k)).
+/// Fills uniforms[k] with the draw of sample first + k, strictly inside (0, 1): the middle of one of 2^53 cells, which
+/// the upper bits select. Equal to uniform_from_bits(random_bits(address, first + k)).
 void fill_uniforms(const StreamAddress& address, SampleIndex first, std::span<double> uniforms);
 
 /// Maps 64 bits to (cell + 0.5) / 2^53 with cell the upper 53 bits, kept below 1.

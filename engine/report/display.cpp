@@ -17,7 +17,7 @@ Cell cell(std::string text, double value) {
   return {std::move(text), std::isfinite(value) ? std::optional(value) : std::nullopt};
 }
 
-/// "4.25 mm"; the number alone where there is no unit.
+/// A number with its unit: "4.25 mm"; the number alone if there is no unit.
 std::string with_unit_text(const std::string& number, const NamedUnit& named) {
   const std::string unit = unit_text(named);
   return unit.empty() ? number : number + " " + unit;
@@ -49,7 +49,7 @@ std::string counted(std::uint64_t count, std::string_view one, std::string_view 
 }
 
 std::string number_text(double value, int digits) {
-  return std::isnan(value) ? "-" : fmt::format("{:.{}g}", value + 0.0, digits);  // no "-0"
+  return std::isnan(value) ? "-" : fmt::format("{:.{}g}", value + 0.0, digits);  // adding 0.0 avoids "-0"
 }
 
 std::string percent_number(double share) {
@@ -113,8 +113,8 @@ std::string response_text(const NamedUnit& response, double si) {
 }
 
 std::string coordinates_text(const StoredResult& result, std::size_t pose) {
-  constexpr double kRounding = 1e-12;          // mm or deg; what a curve leaves where it comes back to zero
-  if (pose >= result.poses.size()) return {};  // a stranger's file may name any number
+  constexpr double kRounding = 1e-12;          // mm or deg; the rounding of a curve that returns to zero
+  if (pose >= result.poses.size()) return {};  // a file may name a pose that does not exist
   std::string text = result.time.empty() ? std::string() : fmt::format("t {} s", number_text(result.time[pose], 4));
   for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
     const NamedUnit& named = result.pose_coordinates[c];

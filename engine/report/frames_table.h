@@ -9,14 +9,13 @@
 
 namespace poesy {
 
-/// Where a model without errors has its joints and frames at these poses, in mm and in the base frame: the frames of
-/// each limb, of which 0 is the base's, the last one the platform's, and the others those of the axes of its joints
-/// after these have moved, with z about or along the axis; and the joints as pictures show them, with their first axis
-/// as z, each at the origin of a frame before it moves. None where the model has no picture. Precondition: the poses
-/// are reachable.
+/// A table of the joints and frames of a model without errors at these poses, in mm and in the base frame. Frame 0 of a
+/// limb is at the base and the last one at the platform; the others are at the axes of its joints after these have
+/// moved, with z along the axis. Joints are as in pictures, with their first axis as z, each at the origin of a frame
+/// before it moves. None if the model has no picture. Precondition: the poses are reachable.
 std::optional<Table> frames_table(const Model& model, const PoseSet& poses);
 
-/// A table as CSV: in the first line the names of the columns with their units, numbers with all digits.
+/// A table as CSV: the first line has the names of the columns with their units; numbers have all digits.
 std::string csv_of(const Table& table);
 
 }  // namespace poesy

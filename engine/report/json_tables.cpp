@@ -14,7 +14,7 @@ namespace poesy {
 
 using Json = nlohmann::ordered_json;
 
-// Found by the JSON library through their arguments, for lists of these parts as well.
+// The JSON library finds these functions by argument-dependent lookup, also for lists of these types.
 
 static void to_json(Json& json, const NamedUnit& thing) {
   json = {{"name", thing.name}, {"unit", thing.unit}, {"description", thing.description}};
@@ -58,7 +58,7 @@ static void to_json(Json& json, const SolveCounts& solves) {
 
 namespace {
 
-/// Null where the study's text does not say it.
+/// The seed; null if the study's text has none.
 Json seed_of(const StoredResult& result) {
   const Json seed = Json::parse(study_setting(result.study_text, "run", "seed"), nullptr, false);
   return seed.is_number_unsigned() ? seed : Json(nullptr);
@@ -91,7 +91,7 @@ Json ranked_json(const RankedResult& ranked) {
   return all;
 }
 
-/// The library escapes control characters below U+0020, and there are others.
+/// The JSON as text. The library escapes only control characters below U+0020; the others are escaped here.
 std::string text_of(const Json& all) {
   const std::string json = all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   std::string text;

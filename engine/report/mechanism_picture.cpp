@@ -13,13 +13,13 @@
 namespace poesy {
 namespace {
 
-constexpr double kHead = 26.0;  // pixels, for a title of one line
+constexpr double kHead = 26.0;  // pixels for a title of one line
 constexpr double kTitleLine = 18.0;
-constexpr std::size_t kTitleWidth = 100;  // characters of a line
+constexpr std::size_t kTitleWidth = 100;  // characters in a line
 constexpr double kLegend = 44.0;          // pixels below the views
 constexpr std::string_view kInk = "color=\"#1d222b\"";
 
-/// A direction from which one looks.
+/// A direction of view.
 struct Direction {
   std::string name;
   double yaw;    ///< deg
@@ -34,7 +34,7 @@ std::array<Direction, 4> directions(bool z_is_down) {
            {"in space", kSketchYaw, kSketchPitch}}};
 }
 
-/// scale: pixels for a metre.
+/// The legend with a scale bar. scale: pixels per metre.
 std::string legend(Pixel at, double scale) {
   const double length = rounded_down(kSketchWidth / 5 / scale);
   std::string text = svg_line({at.x, at.y}, {at.x + scale * length, at.y}, "stroke=\"#1d222b\" stroke-width=\"2\"");

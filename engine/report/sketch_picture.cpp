@@ -14,14 +14,14 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kBase = 0;      // among bodies
-constexpr std::size_t kPlatform = 1;  // likewise
+constexpr std::size_t kBase = 0;      // position among bodies
+constexpr std::size_t kPlatform = 1;  // position among bodies
 constexpr double kTick = 15.0;        // pixels, half of a joint's axis
 constexpr double kAxis = 36.0;        // pixels, axes of a frame
 constexpr double kThinnest = 2.0;     // pixels of a link without share
-constexpr double kThickest = 8.0;     // pixels of the one with the largest
+constexpr double kThickest = 8.0;     // pixels of the link with the largest share
 constexpr double kMillimetres = 1e3;  // in a metre
-constexpr double kSamePoint = 1.0;    // pixels: joints that are closer share a point
+constexpr double kSamePoint = 1.0;    // pixels; joints that are closer share a point
 constexpr double kDigit = 9.0;        // pixels of a limb's number
 constexpr std::array<std::string_view, 6> kLimbs{"#2563a8", "#b4541a", "#2f7d4f", "#8a3d8f", "#8a6d1b", "#3b7f8c"};
 
@@ -29,10 +29,10 @@ double distance(const SketchVector& a, const SketchVector& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// Half of the room of a glyph in a row, pixels.
+/// Half of the space of a glyph in a row, pixels.
 double half_space(const SketchedJoint& joint) { return joint.type == 'F' ? kGlyph / 3 + 2 : kGlyph + 1; }
 
-/// "12.500,-3.000,0.000 ...", mm.
+/// Points as text in mm: "12.500,-3.000,0.000 ...".
 std::string numbers_of(std::span<const SketchVector> points) {
   std::string text;
   const auto number = [](double metres) {
@@ -47,8 +47,8 @@ std::string numbers_of(std::span<const SketchVector> points) {
 
 double dot(const SketchVector& a, const SketchVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// In the order in which they go round their middle, seen across the plane of the first and of the one farthest from
-/// the line to it.
+/// Sorts the points by their angle about their middle, in the plane of the first point and the one farthest from the
+/// line to it.
 void go_round(std::vector<SketchVector>& points) {
   SketchVector centre{};
   for (const SketchVector& point : points) centre = plus(centre, 1.0 / static_cast<double>(points.size()), point);
@@ -71,10 +71,10 @@ void go_round(std::vector<SketchVector>& points) {
   std::ranges::stable_sort(points, {}, angle);
 }
 
-/// One picture while it is drawn.
+/// A picture that is being drawn.
 class Drawing {
  public:
-  /// shares: null for a picture of its own.
+  /// shares: null for a separate picture.
   Drawing(const Sketch& sketch, const SketchView& view, const PartShares* shares)
       : sketch_(&sketch), view_(&view), shares_(shares) {}
 
@@ -103,7 +103,7 @@ class Drawing {
     text_ += svg_path(pixels, fmt::format("{} {}", points_attribute(points), attributes));
   }
 
-  /// What is drawn around a point, with that point in the middle.
+  /// Adds SVG content with this point as its origin.
   void add_group(const SketchVector& point, std::string_view attributes, std::string_view content) {
     const Pixel pixel = view_->at(point);
     text_ += fmt::format("<g transform=\"translate({:.1f} {:.1f})\" {} {}>{}</g>\n", pixel.x, pixel.y,
@@ -114,7 +114,7 @@ class Drawing {
     add_group(point, attributes, svg_text(offset, what));
   }
 
-  /// Axes of the base, the bodies between the joints that they hold, the platform's origin and its tool.
+  /// Draws the axes of the base, the bodies between their joints, the platform's origin and its tool.
   void bodies() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       SketchVector end{};
@@ -133,7 +133,7 @@ class Drawing {
     }
   }
 
-  /// The joints by which limbs hold a body.
+  /// The joints that connect limbs to a body.
   std::vector<SketchVector> joints_at(std::size_t body) const {
     std::vector<SketchVector> points;
     for (std::size_t i = 0; i < sketch_->limbs.size(); ++i) {
@@ -145,7 +145,7 @@ class Drawing {
     return points;
   }
 
-  /// Where links to the joints of a body come from: its origin, or the middle of the base's joints.
+  /// The point from which lines to a body's joints are drawn: its origin, or the middle of the base's joints.
   SketchVector middle_of(std::size_t body) const {
     if (body == kPlatform) return sketch_->platform;
     if (body != kBase) return sketch_->bodies[body].origin;
@@ -172,8 +172,8 @@ class Drawing {
     if (is_still()) text_ += "</g>\n";
   }
 
-  /// A limb's number below its first joint, above it where the limb goes downwards; to the right of the numbers of
-  /// other limbs that begin there.
+  /// Draws a limb's number below its first joint, or above it if the limb goes downwards, to the right of other numbers
+  /// there.
   void number(std::size_t i, const SketchVector& place, const SketchVector& next) {
     const std::span others(sketch_->limbs.data(), i);
     const auto is_here = [&](const auto& limb) { return view_->distance(limb.front().point, place) < kDigit; };
@@ -201,7 +201,7 @@ class Drawing {
               content);
   }
 
-  /// A part's share in percent of the largest, for the colour, and a width.
+  /// The CSS of a part: its share in percent of the largest, for the colour, and its width.
   std::string share_style(std::vector<std::vector<double>> PartShares::*parts, std::size_t i, std::size_t j) const {
     if (is_still()) return fmt::format("stroke-width=\"{:.1f}\"", kThinnest);
     const double part = shares_->largest > 0.0 ? (shares_->*parts)[i][j] / shares_->largest : 0.0;
@@ -209,8 +209,8 @@ class Drawing {
                        kThinnest + (kThickest - kThinnest) * part);
   }
 
-  /// Where the joints' glyphs are: at their points. Several at one point are in a row from there; a slide that begins
-  /// at another joint is between the two that it connects. last: where the limb ends.
+  /// The places of the joints' glyphs: their points. Joints at one point form a row; a slide that begins at another
+  /// joint is drawn between the two joints that it connects. last: end of the limb.
   std::vector<SketchVector> places_of(std::span<const SketchedJoint> joints, const SketchVector& last) const {
     std::vector<SketchVector> places;
     while (places.size() < joints.size()) {
@@ -226,8 +226,7 @@ class Drawing {
     return places;
   }
 
-  /// The places of joints at one point: towards the next one where the row is seen to be shorter than the way there,
-  /// else to the right.
+  /// Places joints at one point in a row: towards the next joint if there is enough room, otherwise to the right.
   void add_row(std::span<const SketchedJoint> row, const SketchVector& next, std::vector<SketchVector>& places) const {
     const SketchVector& here = row.front().point;
     std::vector<double> offsets{0.0};
@@ -240,7 +239,7 @@ class Drawing {
     for (const double offset : offsets) places.push_back(plus(here, offset, pixel));
   }
 
-  /// The frame of an error, its axis stronger than the others.
+  /// Draws the frame of an error, with its axis thicker than the others.
   void frame(const SketchedError& error) {
     const SketchedFrame& frame = sketch_->frames[error.limb][error.frame];
     text_ += "<g class=\"marked\">";

@@ -8,7 +8,7 @@
 namespace poesy {
 namespace {
 
-constexpr double kMargin = 30.0;  // pixels around all
+constexpr double kMargin = 30.0;  // pixels on all sides
 
 std::vector<SketchVector> points_of(const Sketch& sketch) {
   std::vector<SketchVector> points = sketch.tool;

@@ -8,17 +8,17 @@
 
 namespace poesy {
 
-/// "U joint 1": a joint of a limb (from 0) by its kind and its number from the base; the body where the limb begins
-/// for 0, that where it ends for one more than there are joints.
+/// A joint of a limb (from 0) by its type and its number from the base: "U joint 1". Joint 0 is the body where the limb
+/// begins; the joint after the last is the body where it ends.
 std::string joint_words(const Sketch& sketch, std::size_t limb, std::size_t joint);
 
-/// "q", "q, driven by motor_1": the joint's name, and the drive's where it has one.
+/// The joint's name, with that of its drive if it has one: "q", "q, driven by motor_1".
 std::string name_words(const SketchedJoint& joint);
 
-/// "between the base and U joint 1", "inside U joint 1": where joints count as in SketchedError.
+/// A place in a limb: "between the base and U joint 1", "inside U joint 1". Joints are counted as in SketchedError.
 std::string between_words(const Sketch& sketch, std::size_t limb, std::size_t after, std::size_t before);
 
-/// "rotation about x of frame 4", "displacement along x of the base".
+/// The axis of an error: "rotation about x of frame 4", "displacement along x of the base".
 std::string axis_words(const Sketch& sketch, const SketchedError& error, Dimension dimension);
 
 }  // namespace poesy

@@ -14,7 +14,7 @@
 namespace poesy {
 namespace {
 
-/// max_not_converged of the study behind a result; 1 where its text does not say.
+/// max_not_converged of the study of a result; 1 if its text does not state it.
 double max_not_converged(const StoredResult& result) {
   const std::string text = study_setting(result.study_text, "solver", "max_not_converged");
   double share = 1.0;
@@ -22,17 +22,17 @@ double max_not_converged(const StoredResult& result) {
   return share;
 }
 
-/// Why numbers cannot be trusted where too many solves did not converge.
+/// The warning if too many solves did not converge.
 constexpr std::string_view kDoubt =
     " That is more than 1 %: all numbers rest on the rest, and both ways of treating such solves are wrong where they "
     "are many. Left out, they make numbers too small, because they are mostly the large errors; included, they fill "
     "them with unfinished iterates.";
 
-/// The same where most of them have no solution.
+/// The warning if most of these have no solution.
 constexpr std::string_view kMissing =
     " That is more than 1 %: means, spreads and quantiles are those of the machines that can be assembled.";
 
-/// " The largest shares: ..." of the rows and of the poses; empty where there is nothing to tell apart.
+/// A sentence on the rows and poses with the largest shares, " The largest shares: ..."; empty if there is only one.
 std::string largest_shares_text(const StoredResult& result, const SolveTally& tally) {
   std::vector<std::string> places;
   const auto add = [&](const std::vector<double>& shares, const auto& name) {
@@ -50,7 +50,7 @@ std::string count_line(std::uint64_t failed, std::uint64_t solves, const std::st
                      why);
 }
 
-/// What follows from more than kManyNotConverged, and what to do where machines cannot be assembled.
+/// The consequences of more than kManyNotConverged, and advice for machines that cannot be assembled.
 std::string consequences_text(const SolveCounts& solves) {
   const bool many = share_not_converged(solves) > kManyNotConverged;
   if (solves.not_assembled() == 0) return std::string(many ? kDoubt : "");
@@ -61,7 +61,7 @@ std::string consequences_text(const SolveCounts& solves) {
                      kAssemblyAdvice);
 }
 
-/// What is known one by one are the failures of the first fidelity.
+/// The line for two fidelities. Only failures of the first are listed one by one.
 std::string line_of_both(const SolveCounts& first, const SecondFidelity& second) {
   return fmt::format(
       "{}: {} at fidelity \"{}\", {} at \"{}\"",
@@ -69,7 +69,7 @@ std::string line_of_both(const SolveCounts& first, const SecondFidelity& second)
       count_text(first.not_converged()), second.first, count_text(second.not_converged), second.second);
 }
 
-/// Which of the failures the result lists.
+/// Says which of the failures the result lists.
 std::string listed_text(const StoredResult& result, const SolveTally& tally, std::uint64_t failed) {
   const std::size_t listed = result.failures.size();
   const std::string of = tally.second ? fmt::format(" at \"{}\"", tally.second->first) : "";

@@ -4,26 +4,26 @@
 #include <string>
 #include <string_view>
 
-/// What pictures of mechanisms are drawn with, as elements of SVG. style, attributes: attributes as they stand.
+/// Shapes for pictures of mechanisms, as SVG elements. style, attributes: SVG attributes, not escaped.
 namespace poesy {
 
-/// A place in a picture.
+/// A point of a picture.
 struct Pixel {
   double x;  ///< to the right
   double y;  ///< downwards
 };
 
-std::string svg_line(Pixel a, Pixel b, std::string_view style);               ///< From one to the other.
-std::string svg_circle(Pixel at, double radius, std::string_view style);      ///< Around a place.
-std::string svg_path(std::span<const Pixel> points, std::string_view style);  ///< A closed one.
-/// A text, escaped.
+std::string svg_line(Pixel a, Pixel b, std::string_view style);               ///< A line between two points.
+std::string svg_circle(Pixel at, double radius, std::string_view style);      ///< A circle around a point.
+std::string svg_path(std::span<const Pixel> points, std::string_view style);  ///< A closed path.
+/// A text, which is escaped.
 std::string svg_text(Pixel at, std::string_view text, std::string_view attributes = {});
 
-inline constexpr double kGlyph = 6.0;  ///< Half of a joint's glyph, pixels.
+inline constexpr double kGlyph = 6.0;  ///< Half the size of a joint's glyph, pixels.
 
-/// R: circle; P: square; H: diamond; C: circle in a square; U: circle with a cross; S: circle in a circle; F: a dot.
-/// Filled where a drive holds the joint. Lines are in the colour (CSS) of what it is in. paper: the colour of what is
-/// not filled.
+/// The glyph of a joint. R: circle; P: square; H: diamond; C: circle in a square; U: circle with a cross; S: circle in
+/// a circle; F: a dot. It is filled if the joint is actuated. Lines have the CSS colour of the enclosing element.
+/// paper: the colour of unfilled areas.
 std::string svg_glyph(char type, bool actuated, Pixel at, std::string_view paper);
 
 }  // namespace poesy

@@ -19,12 +19,12 @@ void add_line(std::string& text, std::string_view line) {
   text.append(line.substr(0, last == std::string_view::npos ? 0 : last + 1)).append("\n");
 }
 
-/// A column as it will be printed.
+/// A column as it is printed.
 struct TextColumn {
   const Column& column;
   std::string unit;                       ///< "[mm]"
   std::vector<std::string> heading = {};  ///< lines
-  std::vector<std::string> cells = {};    ///< numbers with blanks behind them, so that their points are in one line
+  std::vector<std::string> cells = {};    ///< numbers have trailing blanks, so that decimal points are aligned
   std::size_t width = 0;
 
   std::string aligned(const std::string& text) const {
@@ -44,7 +44,8 @@ TextColumn column_text(const Table& table, std::size_t c) {
     made.cells.push_back(printable_line(row[c].text) + std::string(blanks, ' '));
     made.width = std::max(made.width, text_width(made.cells.back()));
   }
-  // Broken where it is wider than the cells, into no more lines than a heading may have; the column grows as it must.
+  // Broken if it is wider than the cells, into at most as many lines as a heading may have; the column grows if
+  // necessary.
   const std::string heading = printable_line(column.heading);
   made.heading = wrapped(heading, made.width);
   while (made.heading.size() > kHeadingLines) made.heading = wrapped(heading, ++made.width);
@@ -58,7 +59,7 @@ std::size_t total_width(const std::vector<const TextColumn*>& columns) {
   return width;
 }
 
-/// Takes away columns until there is room for the others. Gives the headings that speak for them, from left to right.
+/// Removes columns until the others fit. Returns the headings of the removed groups, from left to right.
 std::vector<std::string> make_room(std::vector<const TextColumn*>& columns, std::size_t width) {
   const auto dispensable = [](const TextColumn* one) { return one->column.dispensable; };
   std::vector<std::string> left_out;

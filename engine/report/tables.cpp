@@ -37,7 +37,7 @@ std::string rule(const LimitVerdicts& verdicts) {
       percent_text(verdicts.share));
 }
 
-/// Where the value was found; empty where it is of all poses.
+/// The place where the value was found; empty if it is for all poses.
 std::string place(const StoredResult& result, const LimitVerdict& verdict) {
   if (!verdict.pose) return {};
   const bool named = verdict.row && !result.row_names.empty();
@@ -62,7 +62,7 @@ std::string yield_caption(const YieldVerdict& yield) {
   return "Yield: " + found;
 }
 
-/// The share k / n, with its interval.
+/// Adds the share k / n with its interval.
 void add_share(std::vector<Cell>& row, std::uint64_t good, const YieldVerdict& yield) {
   const Estimate estimate = proportion(good, yield.machines, yield.conf_level);
   for (const double share : {estimate.value, estimate.interval.low, estimate.interval.high}) {
@@ -83,12 +83,12 @@ std::string with_parts_text(const YieldVerdict& yield) {
       percent_text(yield.with_parts->low), percent_text(yield.with_parts->high), percent_text(yield.conf_level));
 }
 
-/// What tolerances usually are for: three sigma of a normal error.
+/// The usual yield of tolerances: three sigma of a normal error.
 constexpr double kUsualYield = 0.9973;
 
 constexpr std::size_t kMostShown = 5;
 
-/// Positions among [R x P] of the quantities that count for the end and did not reach it, the widest first.
+/// Positions in [R x P] of the deciding quantities that did not reach the wanted interval, the widest first.
 std::vector<std::size_t> not_reached(const ConvergenceResult& found, const Settling& settling) {
   const std::size_t slots = found.samples.size();
   std::vector<std::size_t> list;
@@ -111,7 +111,7 @@ std::string samples_text(const ConvergenceResult& found) {
   return fmt::format("from {} to {} samples at each pose", count_text(least), count_text(most));
 }
 
-/// The samples that would do, for half-widths fall with their root; to two digits, upwards.
+/// The samples that would be enough, because half-widths fall with the root of their number; two digits, rounded up.
 Cell needed_cell(const ConvergenceResult& found, std::size_t at) {
   const double ratio = found.relative_half_width[at] / found.relative_error;
   const double needed = static_cast<double>(found.samples[at % found.samples.size()]) * ratio * ratio;
@@ -120,7 +120,7 @@ Cell needed_cell(const ConvergenceResult& found, std::size_t at) {
   return count_cell(static_cast<std::uint64_t>(std::ceil(needed / digit) * digit));
 }
 
-/// What is known of rejects that no solved pose rejects.
+/// A note on machines that are rejected only because a pose was not solved.
 std::string unsolved_note(const YieldVerdict& yield) {
   const bool one = yield.unsolved == 1;
   const std::string rejects = count_text(yield.unsolved) + " of the rejects ";
@@ -184,7 +184,7 @@ std::string default_ranking(const StoredResult& result) {
 std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options) {
   std::vector<Table> tables = kind.tables(result, options);
   auto limits = limits_table(result);
-  // A kind that says more of its yield has that table itself.
+  // A kind that shows more of its yield has this table itself.
   if (limits && std::ranges::find(tables, limits->name, &Table::name) == tables.end()) {
     tables.insert(tables.begin(), *std::move(limits));
   }
@@ -274,7 +274,7 @@ std::string few_parts_text(const StoredResult& result, double conf_level, double
   const MeasuredErrors& found = result.measured;
   const std::uint64_t fewest = *std::ranges::min_element(found.parts);
   const double target = asked > 0.0 ? asked : kUsualYield;
-  // All of n parts are good with this probability where the yield is the n-th root.
+  // All n parts are good with this probability if the yield is its n-th root.
   const double shown = std::pow(1.0 - conf_level, 1.0 / static_cast<double>(fewest));
   std::string text = fmt::format(
       "{} drawn from {} measured parts{}: where one such error alone makes the rejects, {} good parts show a yield of "
@@ -282,7 +282,7 @@ std::string few_parts_text(const StoredResult& result, double conf_level, double
       counted(found.names.size(), "error is", "errors are"), count_text(fewest),
       found.parts.size() > 1 && std::ranges::max(found.parts) > fewest ? " or more" : "", count_text(fewest),
       percent_text(shown), percent_text(conf_level));
-  if (!(shown < target && target < 1.0 && conf_level < 1.0)) return text;  // numbers of a file may be any
+  if (!(shown < target && target < 1.0 && conf_level < 1.0)) return text;  // a file may have any numbers
   return text + fmt::format(", and cannot show {}, which takes {}", percent_text(target),
                             count_text(trials_without_failure(target, conf_level)));
 }

@@ -22,8 +22,8 @@ CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const s
   Study rest = study;
   rest.seed = 0;
   rest.title.clear();
-  rest.max_not_converged = 1.0;  // judges the run when it is done
-  // Likewise, but that machines are counted under them.
+  rest.max_not_converged = 1.0;  // is checked only at the end of a run
+  // Limits are judged at the end too, unless machines are counted under them.
   if (study.analysis.draws == Draws::per_pose) rest.analysis.limits.clear();
   if (!study.analysis.kind->decides_by_samples) rest.analysis.samples = 0;
   return {.poesy_version = poesy_version(),

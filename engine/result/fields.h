@@ -17,21 +17,21 @@
 #include "engine/base/number.h"
 #include "engine/storage/h5.h"
 
-/// One row for each dataset of a result file. From a row come the dataset with its unit, description and axes, its way
-/// back with a check of its shape, and the columns of CSV tables that follow it (csv_table.h).
+/// A row describes one dataset of a result file. It serves to write the dataset with its unit, description and axes, to
+/// read it with a check of its shape, and to make columns of CSV tables (csv_table.h).
 namespace poesy {
 
-/// Names of the axes of a dataset, slowest first.
+/// The names of the axes of a dataset, slowest first.
 using Axes = std::vector<std::string>;
 
-/// Axes that many datasets have.
+/// The axes of many datasets.
 /// @{
 inline const Axes kByResponse{"response"};
 inline const Axes kByFactor{"factor"};
 inline const Axes kByPose{"pose"};
 /// @}
 
-/// Units of datasets whose numbers have the unit of a response, of an error, or of both.
+/// The units of datasets whose numbers have the unit of a response, of an error, or of both.
 /// @{
 inline constexpr const char* kResponseUnit = "SI: response unit, see /responses/unit";
 inline constexpr const char* kFactorUnit = "SI: factor unit, see /factors/unit";
@@ -39,7 +39,7 @@ inline constexpr const char* kIndexUnit = "SI: response unit / factor unit";
 inline constexpr const char* kLengthPerFactorUnit = "SI: m / factor unit";
 /// @}
 
-/// What a dataset says about itself.
+/// The attributes that describe a dataset.
 struct Label {
   std::string unit;         ///< "m", "rad,rad,rad,m,m,m" where components differ, or "1"
   std::string description;  ///< a sentence for people
@@ -48,30 +48,30 @@ struct Label {
 /// Composes an HDF5 file in which every dataset has a unit, a description and named axes.
 class ResultBuilder {
  public:
-  explicit ResultBuilder(h5::File file) : file_(std::move(file)) {}  ///< file: an empty one.
+  explicit ResultBuilder(h5::File file) : file_(std::move(file)) {}  ///< file: an empty file.
 
-  h5::File& file() { return file_; }  ///< For groups and attributes.
+  h5::File& file() { return file_; }  ///< The file, for groups and attributes.
 
-  /// Adds the axis `name`: the dimension scale /name, one value for each position.
+  /// Adds the axis `name`: the dimension scale /name, with a value for each position.
   template <h5::Element T>
   void add_axis(const std::string& name, const std::vector<T>& values, const Label& label) {
     axis_length_[name] = values.size();
     write<T>("/" + name, {values.size()}, values, label);
     file_.make_scale("/" + name);
   }
-  /// The lengths of these axes. Precondition: they were added.
+  /// The lengths of these axes. Precondition: the axes were added.
   h5::Shape shape(const Axes& axes) const {
     h5::Shape shape;
     for (const std::string& axis : axes) shape.push_back(axis_length_.at(axis));
     return shape;
   }
-  /// Adds the dataset at path along these axes, which were added before. Its shape is their lengths: none for a scalar.
+  /// Adds the dataset at `path` along these axes; without axes, a scalar. Precondition: the axes were added.
   template <h5::Element T>
   void add(const std::string& path, const Axes& axes, std::span<const T> values, const Label& label) {
     write(path, shape(axes), values, label);
     attach(path, axes);
   }
-  /// The same of numbers that are not in memory as the file has them. element(at): the one at this position, row-major.
+  /// The same for numbers that are computed. element(at): the number at this position, row-major.
   template <h5::Number T, class ElementAt>
   void add_computed(const std::string& path, const Axes& axes, const ElementAt& element, const Label& label) {
     file_.write_slices<T>(path, shape(axes), [&](std::size_t first, std::span<T> to) {
@@ -80,18 +80,17 @@ class ResultBuilder {
     describe(path, label);
     attach(path, axes);
   }
-  /// The same from a list.
+  /// The same for a list.
   template <h5::Element T>
   void add(const std::string& path, const Axes& axes, const std::vector<T>& values, const Label& label) {
     add(path, axes, std::span<const T>(values), label);
   }
-  /// The same of an array, along its axes.
+  /// The same for an array, along its axes.
   template <class T, class... A>
   void add(const std::string& path, const Array<T, A...>& array, const Label& label) {
     add(path, array.axis_names(), array.all(), label);
   }
-  /// The same of numbers that are not in memory as the file has them. element(positions...): the one at these
-  /// positions.
+  /// The same for numbers that are computed. element(positions...): the number at these positions.
   template <h5::Number T, class... A, class ElementAt>
   void add_computed(const std::string& path, const AxisLayout<A...>& layout, const ElementAt& element,
                     const Label& label) {
@@ -99,12 +98,12 @@ class ResultBuilder {
         path, layout.axis_names(), [&](std::size_t place) { return std::apply(element, layout.positions(place)); },
         label);
   }
-  /// A single value.
+  /// Adds a scalar.
   template <h5::Element T>
   void add_scalar(const std::string& path, const T& value, const Label& label) {
     write(path, {}, std::span<const T>(&value, 1), label);
   }
-  /// Lets the group's readers find these axes in the group itself: xarray opens one group at a time.
+  /// Links these axes into the group, because xarray opens one group at a time.
   void show_axes(const std::string& group, const Axes& axes) {
     for (const std::string& axis : axes) {
       const std::string shown = group + "/" + axis;
@@ -135,19 +134,19 @@ inline std::size_t axis_length(const h5::File& file, const std::string& name) {
   return h5::size(file.shape("/" + name));
 }
 
-/// Throws h5::Error where a dataset has another shape.
+/// Throws h5::Error if a dataset has another shape.
 inline void check_shape(const h5::File& file, const std::string& path, const h5::Shape& shape) {
   if (file.shape(path) != shape) throw h5::Error(path + " does not have the shape it should have");
 }
 
-/// All elements of a dataset. Throws h5::Error where it has another shape.
+/// Reads all elements of a dataset. Throws h5::Error if it has another shape.
 template <h5::Element T>
 std::vector<T> read_shaped(const h5::File& file, const std::string& path, const h5::Shape& shape) {
   check_shape(file, path, shape);
   return file.read<T>(path);
 }
 
-/// The same where its shape is that of its axes.
+/// Reads all elements of a dataset. Throws h5::Error if its shape is not that of these axes.
 template <h5::Element T>
 std::vector<T> read_along(const h5::File& file, const std::string& path, const Axes& axes) {
   h5::Shape shape;
@@ -155,7 +154,7 @@ std::vector<T> read_along(const h5::File& file, const std::string& path, const A
   return read_shaped<T>(file, path, shape);
 }
 
-/// The lengths that the axes of an array have in a file. axes: as the file names them.
+/// The lengths of an array's axes in a file. axes: their names in the file.
 template <class AnArray>
 typename AnArray::Lengths lengths_in(const h5::File& file, const Axes& axes = AnArray::axis_names()) {
   typename AnArray::Lengths lengths;
@@ -163,19 +162,19 @@ typename AnArray::Lengths lengths_in(const h5::File& file, const Axes& axes = An
   return lengths;
 }
 
-/// A dataset along the axes of this array. Throws h5::Error where it has another shape.
+/// Reads a dataset along the axes of this array. Throws h5::Error if it has another shape.
 template <class AnArray>
 AnArray read_array(const h5::File& file, const std::string& path, const Axes& axes = AnArray::axis_names()) {
   return {lengths_in<AnArray>(file, axes), read_along<typename AnArray::Element>(file, path, axes)};
 }
 
-/// Whether each file of its kind has a dataset.
+/// Whether every file of a kind has a dataset.
 enum class Presence {
   always,
-  where_computed,  ///< an array without elements, which is not written, where the study did not compute it
+  where_computed,  ///< an array may be empty and then is not written: the study did not compute it
 };
 
-/// Lengths of axes by name.
+/// The lengths of axes, by name.
 using AxisLengths = std::map<std::string, std::size_t, std::less<>>;
 
 namespace detail {
@@ -189,7 +188,7 @@ inline constexpr bool kIsArray = false;
 template <class T, class... A>
 inline constexpr bool kIsArray<Array<T, A...>> = true;
 
-/// The axes that the type of a member says.
+/// The names of the axes of a member, from its type.
 template <class Value>
 Axes axes_of() {
   static_assert(!kIsList<Value>, "the type of a list does not say its axes");
@@ -200,7 +199,7 @@ Axes axes_of() {
   }
 }
 
-/// An element as HDF5 has it: a flag as a byte, a missing position as -1, anything else as it is.
+/// An element as HDF5 stores it: a flag as a byte, a missing position as -1, others unchanged.
 template <class Value>
 auto stored(const Value& value) {
   if constexpr (std::is_same_v<Value, bool>) {
@@ -237,7 +236,7 @@ Number number(const Value& value) {
   }
 }
 
-/// Where a dataset is, and what it says about itself.
+/// The place of a dataset and its attributes.
 struct Place {
   const std::string& path;  ///< absolute
   const Axes& axes;         ///< at the root
@@ -245,27 +244,28 @@ struct Place {
   Presence presence;        ///< whether it may be missing
 };
 
-/// A member of `Found`, whatever its type.
+/// A member of `Found`, of any type.
 template <class Found>
 class Member {
  public:
   virtual ~Member() = default;
-  /// Adds the dataset: of one thing, or with an element for each of several. Gives whether there are elements.
+  /// Adds the dataset: from one thing, or with one element for each of several things. Returns whether there are
+  /// elements.
   virtual bool write(ResultBuilder& result, const Place& place, std::span<const Found> things) const = 0;
-  /// Fills the member in. Throws h5::Error where the dataset is missing or has another shape.
+  /// Reads the member. Throws h5::Error if the dataset is missing or has another shape.
   virtual void read(const h5::File& file, const std::string& path, const Axes& axes, std::span<Found> things) const = 0;
-  virtual void clear(Found& found) const = 0;                           ///< Frees the memory of its elements.
-  virtual Number number(const Found& found, std::size_t at) const = 0;  ///< Its element at this position.
-  /// Its element `within` the row of elements at a position on the first axis.
+  virtual void clear(Found& found) const = 0;                           ///< Frees the memory of the member's elements.
+  virtual Number number(const Found& found, std::size_t at) const = 0;  ///< The element at this position.
+  /// The element at position `within` of a row, where `row` is the position on the first axis.
   virtual Number number_in_row(const Found& found, std::size_t row, std::size_t within) const = 0;
-  virtual std::size_t element_bytes() const = 0;  ///< Of an element, in memory and in a file alike.
+  virtual std::size_t element_bytes() const = 0;  ///< Bytes of one element, in memory and in a file alike.
 };
 
 /// A member of this type.
 template <class Found, class Value>
 class MemberOf final : public Member<Found> {
  public:
-  explicit MemberOf(Value Found::*member) : member_(member) {}  ///< This one.
+  explicit MemberOf(Value Found::*member) : member_(member) {}  ///< member: the member.
 
   bool write(ResultBuilder& result, const Place& place, std::span<const Found> things) const override {
     if constexpr (kIsList<Value> || kIsArray<Value>) {
@@ -331,18 +331,18 @@ struct Attribute {
   double Found::*member;  ///< the number
 };
 
-/// A dataset of a group of a result file. Its axes are those of its member, an Array; a member that is a single value
-/// makes a scalar, or one element for each of a list of things, whose axis is named then.
+/// A dataset in a group of a result file. Its axes are those of its member, an Array. A member that is a single value
+/// makes a scalar, or one element for each of a list of things; the axis of these is named.
 template <class Found>
 struct FieldRow {
-  /// Of an array, or of a single value.
+  /// A dataset from an array or a single value.
   template <class Value>
   FieldRow(std::string dataset, Value Found::*elements, std::string in, std::string meaning,
            Presence when = Presence::always, std::vector<Attribute<Found>> beside = {})
       : FieldRow(std::move(dataset), elements, detail::axes_of<Value>(), std::move(in), std::move(meaning), when) {
     attributes = std::move(beside);
   }
-  /// Of a member whose type does not say its axes.
+  /// A dataset from a member whose type does not determine its axes.
   template <class Value>
   FieldRow(std::string dataset, Value Found::*elements, Axes along, std::string in, std::string meaning,
            Presence when = Presence::always)
@@ -352,7 +352,7 @@ struct FieldRow {
         unit(std::move(in)),
         description(std::move(meaning)),
         presence(when) {}
-  /// The same with attributes beside it.
+  /// A dataset with attributes.
   template <class Value>
   FieldRow(std::string dataset, Value Found::*elements, Axes along, std::string in, std::string meaning,
            std::vector<Attribute<Found>> beside)
@@ -360,16 +360,16 @@ struct FieldRow {
     attributes = std::move(beside);
   }
 
-  std::string name;                                     ///< in its group
-  std::shared_ptr<const detail::Member<Found>> member;  ///< its elements
-  Axes axes;                                            ///< at the root; none for a scalar
-  std::string unit;                                     ///< "m", "1", or one of the texts above
+  std::string name;                                     ///< name in its group
+  std::shared_ptr<const detail::Member<Found>> member;  ///< the member with its elements
+  Axes axes;                                            ///< axes at the root; none for a scalar
+  std::string unit;                                     ///< "m", "1", or one of the constants above
   std::string description;                              ///< a sentence for people
-  std::vector<Attribute<Found>> attributes;             ///< written beside it, not read
-  Presence presence = Presence::always;                 ///< in which files
+  std::vector<Attribute<Found>> attributes;             ///< attributes that are written but not read
+  Presence presence = Presence::always;                 ///< whether every file has it
 };
 
-/// Rows of a group, in the order in which they are written.
+/// The rows of a group, in the order in which they are written.
 template <class Found>
 using Fields = std::vector<FieldRow<Found>>;
 
@@ -379,12 +379,12 @@ struct Group {
   std::string path;                                                        ///< "/sensitivity"
   std::string description;                                                 ///< a sentence for people
   std::vector<Attribute<Found>> attributes = {};                           ///< numbers of the group as a whole
-  std::vector<std::pair<std::string, std::size_t Found::*>> lengths = {};  ///< Members that are the lengths of axes.
+  std::vector<std::pair<std::string, std::size_t Found::*>> lengths = {};  ///< members that are lengths of axes
   Fields<Found> fields;                                                    ///< its datasets
 };
 
-/// Adds the dataset of a row to the group at path: of a single thing, or with one element for each of several things.
-/// Gives whether there are such elements. Precondition: only a single thing has members that are lists.
+/// Adds the dataset of a row to a group, from one thing or with one element for each of several things. Returns whether
+/// there are elements. Precondition: only a single thing has members that are lists.
 template <class Found>
 bool write_field(ResultBuilder& result, const std::string& group, const FieldRow<Found>& field,
                  std::span<const Found> things) {
@@ -397,20 +397,20 @@ bool write_field(ResultBuilder& result, const std::string& group, const FieldRow
   return true;
 }
 
-/// The same for several rows of a single thing.
+/// Adds the datasets of several rows of a single thing.
 template <class Found>
 void write_fields(ResultBuilder& result, const std::string& group, const Fields<Found>& fields, const Found& found) {
   for (const FieldRow<Found>& field : fields) write_field(result, group, field, std::span(&found, 1));
 }
 
-/// The same for several rows of a list of things.
+/// Adds the datasets of several rows of a list of things.
 template <class Thing>
 void write_columns(ResultBuilder& result, const std::string& group, const Fields<Thing>& fields,
                    const std::vector<Thing>& things) {
   for (const FieldRow<Thing>& field : fields) write_field(result, group, field, std::span(things));
 }
 
-/// Makes the group with all its rows, and shows their axes in it. after_field(field): called when one is written.
+/// Adds a group with all its rows and links their axes into it. after_field(field) is called after each row.
 template <class Found, class AfterField>
 void write_group(ResultBuilder& result, const Group<Found>& group, const Found& found, const AfterField& after_field) {
   h5::File& file = result.file();
@@ -425,21 +425,21 @@ void write_group(ResultBuilder& result, const Group<Found>& group, const Found& 
   }
 }
 
-/// The same, keeping what is found.
+/// Adds a group and keeps the members.
 template <class Found>
 void write_group(ResultBuilder& result, const Group<Found>& group, const Found& found) {
   write_group(result, group, found, [](const FieldRow<Found>&) {});
 }
 
-/// The same, emptying every list that was written: the system wants memory for what is not yet on the disk. Members
-/// that are no rows stay.
+/// Adds a group and empties each list after writing it, because HDF5 needs memory for data that are not yet on disk.
+/// Members that are not rows are kept.
 template <class Found>
 void write_group(ResultBuilder& result, const Group<Found>& group, Found&& found) {
   write_group(result, group, std::as_const(found), [&](const FieldRow<Found>& field) { field.member->clear(found); });
 }
 
-/// Fills in the members of these rows in as many things as were written. Throws h5::Error where a dataset is missing or
-/// has a wrong shape.
+/// Reads the members of these rows in as many things as were written. Throws h5::Error if a dataset is missing or has a
+/// wrong shape.
 template <class Found>
 void read_fields(const h5::File& file, const std::string& group, const Fields<Found>& fields, std::span<Found> things) {
   for (const FieldRow<Found>& field : fields) {
@@ -449,13 +449,13 @@ void read_fields(const h5::File& file, const std::string& group, const Fields<Fo
   }
 }
 
-/// The same in a single thing.
+/// Reads the members of these rows in a single thing.
 template <class Found>
 void read_fields(const h5::File& file, const std::string& group, const Fields<Found>& fields, Found& found) {
   read_fields(file, group, fields, std::span(&found, 1));
 }
 
-/// The same in a list: as many things as the rows' axis has positions.
+/// Reads a list with as many things as the rows' axis has positions.
 template <class Thing>
 std::vector<Thing> read_columns(const h5::File& file, const std::string& group, const Fields<Thing>& fields) {
   const std::size_t length = axis_length(file, fields.front().axes.front());
@@ -465,7 +465,7 @@ std::vector<Thing> read_columns(const h5::File& file, const std::string& group, 
   return things;
 }
 
-/// Fills in the lengths, attributes and rows of a group.
+/// Reads the lengths, attributes and rows of a group.
 template <class Found>
 void read_group(const h5::File& file, const Group<Found>& group, Found& found) {
   for (const auto& [axis, length] : group.lengths) found.*length = axis_length(file, axis);
@@ -475,7 +475,7 @@ void read_group(const h5::File& file, const Group<Found>& group, Found& found) {
   read_fields(file, group.path, group.fields, found);
 }
 
-/// Bytes of the elements of these rows, in memory and in a file alike. lengths: of all their axes.
+/// Bytes of the elements of these rows, in memory and in a file alike. lengths: those of all their axes.
 template <class Found>
 std::size_t bytes_of(const Fields<Found>& fields, const AxisLengths& lengths) {
   std::size_t bytes = 0;
@@ -487,7 +487,7 @@ std::size_t bytes_of(const Fields<Found>& fields, const AxisLengths& lengths) {
   return bytes;
 }
 
-/// The element of a row at this position, as the file has it. Precondition: it is a number, and there.
+/// The element of a row at this position, as the file has it. Precondition: it exists and is a number.
 template <class Found>
 Number number_at(const FieldRow<Found>& field, const Found& found, std::size_t at) {
   return field.member->number(found, at);

@@ -41,7 +41,7 @@ const Fields<RunFacts> kFactFields{
     {"checkpoint_seconds", &RunFacts::checkpoint_seconds, kScalar, "s", "Of that time, spent on checkpoints"},
     {"solves", &RunFacts::solves, kScalar, "1", "Solves of the mechanism"}};
 
-/// Rows of a list of things with names. what: "error", on the axis "factor", for instance.
+/// The rows of a list of named things. what: "error" for the axis "factor", for instance.
 Fields<NamedUnit> name_fields(const std::string& axis, const std::string& what) {
   return {{"name", &NamedUnit::name, {axis}, "1", "Name of the " + what},
           {"unit", &NamedUnit::unit, {axis}, "1", "SI unit of the " + what},
@@ -190,8 +190,8 @@ void add_facts(ResultBuilder& result, const RunFacts& facts) {
   result.add_scalar("/run/solves_per_second", rate, {"1/s", "Solves a second, all threads and ranks together"});
 }
 
-/// Whether a file is a result or a shard, sound or not: then a newer one may replace it. Its type is in its first
-/// kilobyte. An empty file holds nothing.
+/// Whether a file is a result or a shard, even a damaged one, which a newer one may replace. The type is in its first
+/// kilobyte. An empty file may be replaced too.
 bool may_be_replaced(const std::string& path) { return is_marked(path, kResultFile) || has_mark(path, kShardFile); }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace poesy {
 namespace {
 
-/// How solves ended, column by column: C cells.
+/// How the solves of C cells ended, column by column.
 struct SolverColumns {
   std::vector<std::uint64_t> not_converged;   ///< [C]
   std::vector<double> iterations_mean;        ///< [C]
@@ -29,7 +29,7 @@ Fields<SolverColumns> solver_fields(const Axes& cells) {
           {"solves_by_status", &SolverColumns::by_status, by_status, "1", "Samples that ended so"}};
 }
 
-/// A listed failure, as it is stored.
+/// A listed failure as it is stored.
 struct FailureRow {
   std::string factor;
   std::uint64_t pose;
@@ -47,11 +47,11 @@ const Fields<FailureRow> kFailureFields{
     {"failed_status", &FailureRow::status, kByFailure, "1",
      "How these solves ended: a position in status_names, from 0"}};
 
-constexpr std::string_view kByRow = "row";  ///< `judge` of an evaluation
+constexpr std::string_view kByRow = "row";  ///< the word of `judge` for an evaluation
 
 const Axes kLimited{"limited_response"};
 
-/// In the order of the columns of limits.csv.
+/// The fields of limits, in the order of the columns of limits.csv.
 const Fields<LimitVerdict> kLimitFields{
     {"value", &LimitVerdict::value, kLimited, kResponseUnit,
      "What is compared with it, a magnitude; infinite or NaN where too few samples were solved, NaN where nothing is "
@@ -75,9 +75,9 @@ constexpr std::string_view kLimitsMeaning =
     "any "
     "row of errors";
 
-/// What a convergence says in addition to its course: one number for each quantity, or for each slot.
+/// The fields of a convergence that follow its course, with a number for each quantity or slot.
 Fields<ConvergenceResult> end_fields(const CourseWords& words) {
-  const Axes& all = words.group.fields.front().axes;  // of the quantities, and the milestones
+  const Axes& all = words.group.fields.front().axes;  // axes of the quantities and the milestones
   const Axes quantities(all.begin(), all.end() - 1);
   const Axes slots(all.begin() + 1, all.end() - 1);
   return {{"reached", &ConvergenceResult::reached, quantities, "1",
@@ -124,7 +124,7 @@ const Group<MeasuredErrors> kMeasuredErrors{
      {"correlation", &MeasuredErrors::correlation, kMeasured, "1",
       "With that one, of their normal scores; 0 for none"}}};
 
-/// The error with which one is correlated most.
+/// Adds the error with the strongest correlation to this one.
 void append_correlation(const Study& study, FactorIndex factor, MeasuredErrors& found) {
   std::string name(kUncorrelated);
   double largest = 0.0;
@@ -150,7 +150,7 @@ double sample_deviation(std::span<const double> values, double mean) {
   return std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
-/// Its unit is that of the error, which stands at the end of the row.
+/// The last cell of a line is the unit of the error.
 CsvTable measured_table(const StoredResult& result) {
   const MeasuredErrors& found = result.measured;
   CsvTable table{"measured_errors",
@@ -275,7 +275,7 @@ std::vector<SolveCounts> read_solver(const h5::File& file, const Axes& axes) {
     for (std::size_t status = 0; status < statuses; ++status) {
       counts.by_status[status] = by_status(status, cell);
     }
-    // The mean is the sum over the total, so this gives back the sum exactly; without samples it is NaN.
+    // The mean is the sum over the total, so this gives back the exact sum; NaN without samples.
     const auto total = static_cast<double>(counts.total());
     const double sum = columns.iterations_mean[cell] * total;
     if (total > 0.0) counts.iterations = static_cast<std::uint64_t>(std::llround(sum));

@@ -87,8 +87,8 @@ void check_same_study(const StoredShard& shard, const StoredShard& first) {
   }
 }
 
-/// "2, 5 and 7 more". A file may say that there are any number of shards, so only the first ones are looked for.
-/// Precondition: shards are in order, none twice, and one is missing.
+/// The numbers of missing shards: "2, 5 and 7 more". Only the first ones are searched, because a file may state any
+/// number of shards. Precondition: shards are in order, none is there twice, and one is missing.
 std::string missing_text(std::span<const StoredShard> shards) {
   constexpr std::size_t kMostListed = 20;
   const std::size_t count = shards.front().shard.count;
@@ -107,7 +107,7 @@ std::string missing_text(std::span<const StoredShard> shards) {
   return left == 0 ? text : fmt::format("{} and {} more", text, left);
 }
 
-/// Precondition: shards are in order, none twice.
+/// Throws if a shard is missing. Precondition: shards are in order, none is there twice.
 void check_all_there(std::span<const StoredShard> shards) {
   const std::size_t count = shards.front().shard.count;
   if (shards.size() == count) return;
@@ -115,7 +115,7 @@ void check_all_there(std::span<const StoredShard> shards) {
                    "run them with --shard and merge all of them");
 }
 
-/// The states that all shards have of one run, one behind the other. Takes them out of the shards.
+/// The states of one run in all shards, one after the other. Moves them out of the shards.
 Bytes take_state(std::span<StoredShard> shards, std::size_t stage) {
   std::size_t bytes = 0;
   for (const StoredShard& shard : shards) bytes += shard.stages[stage].size();

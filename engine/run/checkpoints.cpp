@@ -29,12 +29,12 @@ void Checkpoints::end(bool complete, const SolveCounts& solves) {
 void Checkpoints::keep(const ByteSource& state) {
   if (!save_) return;
   Bytes& bytes = stages_[begun_ - 1].bytes;
-  bytes = Bytes();  // the older state goes first: there need not be room for two
+  bytes = Bytes();  // frees the older state first, because there may not be room for two
   if (is_large(size_of(state))) {
     try {
       return save(state);
     } catch (const FileError&) {
-      // What is in memory is the only state now.
+      // The only copy of the state is now in memory.
     }
   }
   bytes = bytes_of(state);
@@ -74,7 +74,7 @@ ByteSource Checkpoints::source_of(std::size_t stage) const {
   return [&kept](ByteWriter& to) { to.raw(kept.bytes); };
 }
 
-/// state: of the stage that began last; null: what was kept.
+/// state: of the stage that began last; null: the states that were kept.
 void Checkpoints::save_all(const ByteSource* state) {
   if (!save_) return;
   std::vector<ByteSource> all;

@@ -11,56 +11,56 @@
 
 namespace poesy {
 
-/// Of the state of a stage that has ended, bytes that stay in memory at the most where saves can be read again.
+/// The largest state, in bytes, of a finished stage that stays in memory if saved states can be read again.
 inline constexpr std::size_t kMostStateInMemory = std::size_t{64} << 20U;
 
-/// What a run keeps of itself now and then, so that another run may take it up. A run merges finished work in a fixed
-/// order, so between two merges its accumulators are all there is to keep. A study may consist of several runs one
-/// after another, its stages: each call of a run function (engine/run/fold.h) is one. A continued study goes through
-/// the same stages, and those that were finished have nothing left to solve.
-/// A state is written from the accumulators into what keeps it; only small states of stages that have ended are kept in
-/// memory besides.
+/// Saves the state of a run from time to time, so that another run can continue it. A run merges finished work in a
+/// fixed order, so between two merges its accumulators are its whole state. A study may have several runs in sequence,
+/// its stages: each call of a run function (engine/run/fold.h) is one. A continued study goes through the same stages;
+/// finished ones have nothing left to solve. States are written directly from the accumulators; only small states of
+/// finished stages are also kept in memory.
 class Checkpoints {
  public:
   /// Whether it is time for another checkpoint.
   using Due = std::function<bool()>;
-  /// Keeps the states of all stages, in order. Never called from two threads at once. Throws FileError; then what was
-  /// kept before is kept.
+  /// Saves the states of all stages, in order. Never called from two threads at once. Throws FileError and then leaves
+  /// the states that were saved before.
   using Save = std::function<void(std::span<const ByteSource> stages)>;
-  /// Writes the state of a stage as it was kept last. Throws FileError.
+  /// Writes the last saved state of a stage. Throws FileError.
   using Fetch = std::function<void(std::size_t stage, ByteWriter& to)>;
 
-  /// Keeps nothing: for a run that nobody continues.
+  /// Saves nothing: for a run that will not be continued.
   Checkpoints() = default;
-  /// stages: what an earlier run kept; empty for a run from the beginning. fetch: if there is one, it gives these
-  /// stages before the first save; then a state of more than most_in_memory is not held besides.
+  /// stages: the states of an earlier run; empty for a new run. fetch: if given, it returns these states before the
+  /// first save, and states above most_in_memory are not kept in memory.
   Checkpoints(Due due, Save save, std::vector<Bytes> stages = {}, Fetch fetch = {},
               std::size_t most_in_memory = kMostStateInMemory);
 
-  /// The next stage begins: the state to take up, empty where it begins at its beginning.
+  /// Begins the next stage. Returns the state to restore; empty for a stage that starts afresh.
   Bytes begin();
-  /// Work was merged: writes a checkpoint if one is due. state: of the stage that began last, as everywhere below.
+  /// Called after a merge: writes a checkpoint if one is due. state: of the stage that began last, as in all functions
+  /// below.
   void merged(const ByteSource& state) {
     if (due_ && due_()) save(state);
   }
-  /// The stage, or a round of it, ended, complete or stopped, after these solves in all parts of the run.
+  /// Ends the stage or a round of it, complete or stopped. solves: of all parts of the run.
   void end(bool complete, const SolveCounts& solves);
-  /// Keeps the state with which the stage ended: in memory, or, where it is large, by a checkpoint at once. If that
-  /// finds no room, it stays in memory after all, for the result may be smaller.
+  /// Keeps the final state of the stage: a small one in memory, a large one in a checkpoint that is written now. If the
+  /// checkpoint finds no room, the state stays in memory, because the result may be smaller.
   void keep(const ByteSource& state);
-  /// The run was stopped in what follows its stages and keeps no state; writes a checkpoint.
+  /// The run was stopped in work that follows its stages and has no state; writes a checkpoint.
   void stopped_after_stages();
 
-  /// Whether all stages that began have ended complete, and nothing after them was stopped.
+  /// Whether all stages that began are complete, and nothing after them was stopped.
   bool complete() const;
-  /// Of the stages that have ended.
+  /// The solves of the stages that have ended.
   SolveCounts solves() const;
-  /// A copy of one state for each stage; empty where none was kept. Throws FileError.
+  /// A copy of the state of each stage; empty if none was kept. Throws FileError.
   std::vector<Bytes> stages() const;
 
-  /// Writes a checkpoint now, due or not, with this state.
+  /// Writes a checkpoint with this state now.
   void save(const ByteSource& state);
-  /// Writes a checkpoint of what was kept, unless the last one has all of it and can be read.
+  /// Writes a checkpoint of the states that were kept, unless the last one has them all and can be read.
   void save();
 
  private:
@@ -68,10 +68,10 @@ class Checkpoints {
     bool complete = false;
     SolveCounts solves;
   };
-  /// The state of a stage: these bytes, or, where there are none, what fetch_ gives.
+  /// The state of a stage: these bytes, or the result of fetch_ if there are none.
   struct Kept {
     Bytes bytes;
-    bool is_saved = false;  ///< fetch_ gives this state or an earlier one
+    bool is_saved = false;  ///< whether fetch_ returns this state or an earlier one
   };
 
   bool is_large(std::size_t bytes) const { return fetch_ && bytes > most_in_memory_; }
@@ -82,20 +82,20 @@ class Checkpoints {
   Save save_;
   Fetch fetch_;
   std::size_t most_in_memory_ = kMostStateInMemory;
-  std::vector<Kept> stages_;  ///< those begun, then what is left of the earlier run's
+  std::vector<Kept> stages_;  ///< stages that began, followed by those of the earlier run
   std::size_t begun_ = 0;
-  std::vector<End> ends_;  ///< of the stages that have ended
+  std::vector<End> ends_;  ///< ends of the finished stages
   bool stopped_ = false;
-  bool is_saved_ = false;  ///< fetch_ gives every state as it is
+  bool is_saved_ = false;  ///< whether fetch_ returns every present state
 };
 
-/// One stage's dealings with checkpoints and other ranks, if there are any.
+/// Connects one stage with the checkpoints and the other ranks, if there are any.
 class Stage {
  public:
-  /// Either may be null.
+  /// Either argument may be null.
   Stage(Checkpoints* checkpoints, Team* team) : checkpoints_(checkpoints), team_(team) {}
 
-  /// Calls restore(state) if there is a state to take up: of the checkpoint, that rank 0 has.
+  /// Calls restore(state) if there is a state to restore, which comes from the checkpoint of rank 0.
   template <class Restore>
   void begin(const Restore& restore) {
     Bytes state;
@@ -104,14 +104,13 @@ class Stage {
     if (!state.empty()) restore(std::span<const std::byte>(state));
   }
 
-  /// Between two merges: writes a checkpoint with this state when one is due.
+  /// Called between two merges: writes a checkpoint with this state when one is due.
   void merged(const ByteSource& state) {
     if (checkpoints_ != nullptr) checkpoints_->merged(state);
   }
 
-  /// The stage, or a round of it, is complete, or was stopped; then a checkpoint is written. solves() took it in all
-  /// parts of the run. The ranks after rank 0 first take up rank 0's state when it is complete: then restore(state) is
-  /// called.
+  /// Ends the stage or a round of it. If it was stopped, a checkpoint is written. solves(): the solves of all parts of
+  /// the run. If it is complete, the ranks after rank 0 take its state: restore(state) is called on them.
   template <class Solves, class Restore>
   void end(bool complete, const Solves& solves, const ByteSource& state, const Restore& restore) {
     const bool follows = team_ != nullptr && !team_->leads();
@@ -119,12 +118,12 @@ class Stage {
     if (checkpoints_ != nullptr) checkpoints_->end(complete, solves());
     if (follows) return;
     if (checkpoints_ != nullptr && complete) checkpoints_->keep(state);
-    // Before the others are told: who was stopped may have little time left.
+    // Before the other ranks are told, because a stopped process may have little time left.
     if (checkpoints_ != nullptr && !complete) checkpoints_->save(state);
     if (team_ != nullptr) team_->end(complete, complete ? bytes_of(state) : Bytes());
   }
 
-  /// Another round of the stage begins, from the state with which the one before ended.
+  /// Begins another round of the stage, from the final state of the one before.
   void next_round() {
     if (team_ != nullptr) static_cast<void>(team_->begin({}));
   }

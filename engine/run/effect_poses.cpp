@@ -7,7 +7,7 @@
 namespace poesy {
 namespace {
 
-/// Of all sums of main effects, about.
+/// The approximate largest size of all sums of main effects.
 constexpr std::size_t kMostBytes = std::size_t{2} << 20U;
 
 }  // namespace

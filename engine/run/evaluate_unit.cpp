@@ -11,12 +11,12 @@
 namespace poesy {
 namespace {
 
-/// Largest magnitude to expect: one draw in 16 000 of a normal lies beyond four standard deviations.
+/// The largest magnitude to expect: for a normal four standard deviations, which one draw in 16 000 exceeds.
 double expected_range(const Distribution& distribution) {
   return std::min(distribution.largest(), std::abs(distribution.mean()) + 4.0 * distribution.standard_deviation());
 }
 
-/// Counts how the unit's samples ended.
+/// Counts how the samples of a unit ended.
 template <class Unit>
 void count_ends(const WorkUnit& unit, const UnitOutcomes& outcomes, Unit& found) {
   for (std::size_t b = 0; b < unit.count; ++b) {
@@ -126,7 +126,7 @@ UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit, std::span<const double> 
   plan_->distributions()[unit.slot].transform(draws);
   const ArrayView<double, Axis<"scale">, axis::Sample> scaled{std::span(values_).first(count),
                                                               {scales.size(), unit.count}};
-  for (std::size_t k = scales.size(); k-- > 0;) {  // the first ones last, because the others are made of them
+  for (std::size_t k = scales.size(); k-- > 0;) {  // in reverse, because all others are computed from the first
     for (std::size_t b = 0; b < unit.count; ++b) scaled(k, b) = scales[k] * draws[b];
   }
   return UnitSolver::solve(unit.pose, plan_->factors().subspan(unit.slot, 1), count,

@@ -12,10 +12,10 @@
 namespace poesy {
 namespace {
 
-/// Rows that are solved in one go at one pose.
+/// The number of rows that are solved together at one pose.
 constexpr std::size_t kBlockRows = 256;
 
-/// How the solves first .. end - 1 ended, counted pose by pose.
+/// How the solves in [first, end) ended, where solves are numbered pose by pose.
 SolveCounts solves_of(const EvaluationResult& result, std::size_t first, std::size_t end) {
   SolveCounts solves;
   for (std::size_t n = first; n < end; ++n) solves.add(result.status.all()[n], result.iterations.all()[n]);
@@ -39,13 +39,13 @@ EvaluationResult empty_evaluation(const Model& model, const PoseSet& poses, std:
   return result;
 }
 
-/// Outcomes of consecutive blocks of a result, counted pose by pose: a block holds those of so many samples at one
-/// pose, or of those that are left there. Threads write them where they belong, so nothing is added.
+/// Divides the outcomes of a result into consecutive blocks, pose by pose: a block has a number of samples at one pose,
+/// or those that remain there. Threads write outcomes in place, so nothing is merged.
 struct OutcomeBlocks {
   EvaluationResult* result = nullptr;
 
   std::size_t per_pose() const { return (result->samples() + kBlockRows - 1) / kBlockRows; }
-  /// Outcomes in the blocks before this one.
+  /// The number of outcomes in the blocks before this one.
   std::size_t before(std::size_t block) const {
     if (per_pose() == 0) return 0;
     return block / per_pose() * result->samples() + std::min(block % per_pose() * kBlockRows, result->samples());
@@ -66,7 +66,7 @@ struct OutcomeBlocks {
   }
 };
 
-/// A job of UnitFold: blocks of rows of an error table, pose by pose.
+/// The job of UnitFold, whose units are blocks of rows of an error table, pose by pose.
 struct TableJob {
   const Model& model;
   const SolverOptions& solver;
@@ -76,7 +76,7 @@ struct TableJob {
   EvaluationResult& result;
   std::vector<double> zeros;
 
-  /// Of one thread.
+  /// The scratch of one thread.
   struct Scratch {
     std::unique_ptr<Evaluator> evaluator;
     std::vector<double> values;
@@ -100,7 +100,7 @@ struct TableJob {
   }
   OutcomeBlocks sums() const { return {&result}; }
 
-  // What a worker does.
+  // Used by a worker.
 
   OutcomeBlocks solve(Scratch& scratch, std::size_t n) const {
     const std::size_t pose = n / sums().per_pose();
@@ -115,7 +115,7 @@ struct TableJob {
     scatter(scratch, pose, first, count);
     return sums();
   }
-  /// Rows of the table, error by error.
+  /// Copies rows of the table, error by error.
   void take_rows(std::size_t first, std::size_t count, std::vector<double>& values) const {
     const std::size_t varied = errors.factors.size();
     values.resize(varied * count);

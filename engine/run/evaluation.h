@@ -15,41 +15,41 @@
 
 namespace poesy {
 
-/// How poses and rows of errors belong together.
+/// How poses and rows of errors are paired.
 enum class Pairing {
   every_pose_with_every_row,
-  row_by_row  ///< pose m with row m; equal numbers of both
+  row_by_row  ///< pose m with row m; there must be as many poses as rows
 };
 
-/// How much of what the model gives is kept.
+/// Which outputs of the model are kept.
 enum class Outcomes {
-  with_details,  ///< everything the model gives
-  responses      ///< without details, which take most of the memory
+  with_details,  ///< all outputs
+  responses      ///< all except details, which take most of the memory
 };
 
-/// What a table of errors does at each pose, in SI units. When paired, a pose has one sample.
+/// The outcomes of a table of errors at each pose, SI. If rows are paired with poses, a pose has one sample.
 struct EvaluationResult {
-  Array<double, axis::Response, axis::Pose, axis::Sample> response;  ///< of the model
+  Array<double, axis::Response, axis::Pose, axis::Sample> response;  ///< responses of the model
   Array<double, axis::Pose, axis::Sample, axis::Component> detail;   ///< components of all details
   Array<SolveStatus, axis::Pose, axis::Sample> status;               ///< how each solve ended
-  Array<std::uint32_t, axis::Pose, axis::Sample> iterations;         ///< that each took
-  Array<double, axis::Pose, axis::Joint> joint_displacement;         ///< of the perfect mechanism
-  std::optional<LimitVerdicts> verdicts;                             ///< where the study states limits
+  Array<std::uint32_t, axis::Pose, axis::Sample> iterations;         ///< iterations of each solve
+  Array<double, axis::Pose, axis::Joint> joint_displacement;  ///< displacements of the joints of the perfect mechanism
+  std::optional<LimitVerdicts> verdicts;                      ///< set if the study states limits
 
-  std::size_t poses() const { return status.length<axis::Pose>(); }            ///< Of the table.
-  std::size_t samples() const { return status.length<axis::Sample>(); }        ///< At each pose.
-  std::size_t responses() const { return response.length<axis::Response>(); }  ///< Of the model.
-  /// Over all poses and samples.
+  std::size_t poses() const { return status.length<axis::Pose>(); }            ///< The number of poses.
+  std::size_t samples() const { return status.length<axis::Sample>(); }        ///< The number of samples at each pose.
+  std::size_t responses() const { return response.length<axis::Response>(); }  ///< The number of responses.
+  /// The solves at all poses.
   SolveCounts total() const;
 };
 
-/// Solves every requested (pose, row). Empty when stopped.
+/// Solves every pair of a pose and a row that is wanted. Empty when stopped.
 std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverOptions& solver, const PoseSet& poses,
                                                const ErrorTable& errors, Pairing pairing, const RunOptions& options,
                                                Outcomes outcomes = Outcomes::with_details);
 
-/// Judges limits by an evaluation, row by row of its errors: a row (a case) is within a limit if its largest magnitude
-/// over all its poses is, and every one of them counts (see counts()). A limit is kept if every row is within it.
+/// Judges limits by an evaluation, row by row. A row (a case) is within a limit if its largest magnitude over all its
+/// poses is, and if each of these solves counts (see counts()). A limit is kept if every row is within it.
 LimitVerdicts judge_rows(std::span<const ResponseLimit> limits, const EvaluationResult& found, Pairing pairing,
                          NotConverged policy);
 

@@ -19,9 +19,9 @@
 namespace poesy {
 
 /// Calls work(worker, n) for n = 0 .. count - 1 on a pool of threads, each with its own worker, and finish(n, output)
-/// in the order of n. A few outputs per thread are in flight at any time. Returns false when stopped. With a team, work
-/// is done on all ranks, and finish called on rank 0 alone (run_over_ranks): state(archive, n, output) writes an
-/// output, and fills in an empty one on rank 0.
+/// in the order of n. At any time a few outputs per thread are in progress. Returns false when stopped. With a team,
+/// work is done on all ranks, and finish is called only on rank 0 (run_over_ranks); state(archive, n, output) writes an
+/// output, and reads it into an empty one on rank 0.
 template <class MakeWorker, class Work, class Finish, class State>
 bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_worker, Work work, Finish finish,
                   State state) {
@@ -38,7 +38,7 @@ bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_
   return alone ? run_alone(count, options, in_slots) : run_over_ranks(count, options, in_slots);
 }
 
-/// What a state begins with: whose it is, and of which size. Throws BytesError where another one is read.
+/// Reads or writes the beginning of a state: the name of its job, and sizes. Throws BytesError if others are read.
 inline void head_state(Archive& archive, std::string_view name, std::span<const std::uint64_t> sizes) {
   constexpr const char* kOther = "is the state of another kind or size of study";
   std::string read(name);
@@ -47,22 +47,22 @@ inline void head_state(Archive& archive, std::string_view name, std::span<const 
   for (const std::uint64_t size : sizes) archive.known(size, kOther);
 }
 
-/// Does the work of one stage of a study and merges what it gives, in its order: on all threads and ranks, from the
-/// checkpoint's state on, in as many rounds as the stage wants. The accumulator has the same bits afterwards for any
-/// number of threads and ranks, and whether the stage was continued from a checkpoint or not; on ranks after rank 0 as
-/// well. Returns false when stopped. Work is the stage's accumulator, and has:
+/// Does the work of one stage of a study and merges its pieces in order, on all threads and ranks. It starts from the
+/// checkpoint's state, and makes as many rounds as the stage wants. The accumulator has the same bits for any number of
+/// threads and ranks, also on the ranks after rank 0, and whether or not the stage was continued from a checkpoint.
+/// Returns false when stopped. Work is the stage's accumulator, and has:
 ///
 ///     std::size_t begin_round()              numbers the round's pieces of work 0 .. count - 1, and gives count
 ///     Worker worker() const                  solves pieces, and owns the scratch of one thread
 ///     Piece solve(Worker&, std::size_t n)    solves the n-th piece, on any thread
-///     void piece_state(Archive&, std::size_t n, Piece&)   a piece on its way to rank 0, where an empty one is filled
-///     SolveCounts merge(std::size_t n, Piece&&)   takes the n-th piece, in order; how its solves ended
-///     SolveCounts solved() const             of all that was merged, in earlier runs as well
-///     std::uint64_t left() const             solves that are still to come, as far as is known in this round
-///     void state(Archive&)                   everything merged so far; reading takes up a state in place of its own
-///     bool next_round()                      ends the round; whether another one follows
+///     void piece_state(Archive&, std::size_t n, Piece&)   writes a piece, or reads it into an empty one on rank 0
+///     SolveCounts merge(std::size_t n, Piece&&)   adds the n-th piece, in order; returns how its solves ended
+///     SolveCounts solved() const             solves of all merged pieces, including those of earlier runs
+///     std::uint64_t left() const             solves that are still expected in this round
+///     void state(Archive&)                   writes everything merged so far, or reads it in place of the present
+///     state bool next_round()                      ends the round; returns whether another one follows
 ///
-/// unit_fold and pose_fold have all of it but what a kind of study solves and adds up.
+/// UnitFold and PoseFold implement all of it except what a kind of study solves and sums.
 template <class Work>
 bool fold(Work& work, const RunOptions& options) {
   const auto restore = [&](std::span<const std::byte> bytes) {

@@ -17,75 +17,75 @@
 
 namespace poesy {
 
-/// What a run has in memory at its peak, while it writes its result, without the program itself; bytes.
+/// The peak memory of a run while it writes its result, without the program itself; bytes.
 struct MemoryOutlook {
-  std::size_t accumulators = 0;  ///< what the run still has of them when the result is made
-  std::size_t state = 0;         ///< the run as a checkpoint has it; a large one is on the disk at the end
-  std::size_t result = 0;        ///< plain values
-  std::size_t file = 0;          ///< the result file, which is composed on the disk
+  std::size_t accumulators = 0;  ///< accumulators that still exist when the result is computed
+  std::size_t state = 0;         ///< the state in a checkpoint; at the end a large one is only on disk
+  std::size_t result = 0;        ///< the numbers of the result
+  std::size_t file = 0;          ///< the result file, which is composed on disk
 
-  std::size_t peak() const {  ///< Of all of it.
+  std::size_t peak() const {  ///< The sum of all parts.
     return accumulators + (state <= kMostStateInMemory ? state : 0) + result;
   }
 };
 
-/// Work of a study that can be tried in pieces, to measure how fast a machine does it.
+/// Work of a study that can be done in pieces, to measure how fast a machine does it.
 struct WorkOutlook {
-  /// Does the piece that begins at this share of the work, 0 <= at < 1, on this thread. Gives the share that it was.
+  /// Does the piece that begins at this share of the work, 0 <= at < 1, on this thread. Returns its share of the work.
   std::function<double(double at)> do_piece;
-  double times = 1.0;  ///< how much the study does of this work
-  /// Done once before the first piece; its time does not count. None where empty.
+  double times = 1.0;  ///< how often the study does this work
+  /// Called once before the first piece; its time does not count. May be empty.
   std::function<void()> prepare = {};
 };
 
-/// What a study will ask of a machine. Refers to the study, the model and the poses.
+/// The expected cost of a study. Refers to the study, the model and the poses.
 struct Outlook {
-  std::string solves;               ///< their number, and what it is the product of
-  MemoryOutlook memory;             ///< beyond that of the program
-  std::vector<WorkOutlook> shared;  ///< by all threads: the solves
-  std::vector<WorkOutlook> by_one;  ///< what only one thread does: separating errors
+  std::string solves;               ///< their number, and the product from which it results
+  MemoryOutlook memory;             ///< memory in addition to that of the program
+  std::vector<WorkOutlook> shared;  ///< work of all threads: the solves
+  std::vector<WorkOutlook> by_one;  ///< work of only one thread: separating errors
   double least = 1.0;               ///< share of the solves that are made in any case
-  /// What only one thread does at a time while the others solve: merging what solves come to.
+  /// Work that one thread at a time does while the others solve: merging the outcomes.
   std::vector<WorkOutlook> merging = {};
 };
 
-/// Seconds that one thread takes for the works of an outlook.
+/// Seconds that one thread takes for each kind of work in an outlook.
 struct WorkSeconds {
-  double shared = 0.0;   ///< by all threads
-  double merging = 0.0;  ///< by one at a time
-  double by_one = 0.0;   ///< by one, afterwards
+  double shared = 0.0;   ///< work of all threads
+  double merging = 0.0;  ///< work of one thread at a time
+  double by_one = 0.0;   ///< work of one thread, afterwards
 
-  /// Seconds that so many threads take, of which each merges in turn. share: of the solves that are made.
+  /// Seconds with this many threads, each of which merges in turn. share: the share of the solves that are made.
   double on(std::size_t threads, double share = 1.0) const;
 };
 
-/// What a state takes of some numbers (base/bytes.h): whole numbers up to two million take three bytes at the most.
+/// Bytes of a number in a state (base/bytes.h): whole numbers up to two million take at most three.
 /// @{
 inline constexpr std::size_t kWholeNumber = 3;
 inline constexpr std::size_t kStoredMoments = kWholeNumber + 4 * sizeof(double);
 inline constexpr std::size_t kStoredSolves = (kStatusNames.size() + 2) * kWholeNumber;
 /// @}
-/// What /solver has of a cell: failures, mean and most iterations, samples by status.
+/// Bytes of a cell in /solver: failures, mean and largest number of iterations, samples by status.
 inline constexpr std::size_t kSolverColumns = (2 + kStatusNames.size()) * sizeof(double) + sizeof(std::uint32_t);
 
-/// So many of each.
+/// The memory of `count` such items.
 MemoryOutlook times(std::size_t count, const MemoryOutlook& each);
 /// Bytes of the outcomes of one row of errors at one pose.
 std::size_t outcome_bytes(const ModelDescription& model, Outcomes outcomes);
 
-/// "3 errors x ".
+/// A factor in the text of a product: "3 errors x ".
 std::string counted_things(std::size_t count, std::string_view things);
-/// The samples at each pose, and what adaptive ones leave open: "1000 to 100000".
+/// The number of samples at each pose; for adaptive ones its range, "1000 to 100000".
 std::string samples_text(const Plan& plan);
-/// "at least 3000 and at most 300000 solves".
+/// The number of solves: "at least 3000 and at most 300000 solves".
 std::string solves_text(const Plan& plan, std::size_t fidelities);
-/// The share of the plan's solves that adaptive samples make in any case.
+/// The least share of the plan's solves that adaptive samples make.
 double least_share(const Plan& plan);
 
-/// A model that somebody else owns.
+/// A pointer to a model with another owner.
 inline std::shared_ptr<const Model> borrowed(const Model& model) { return {std::shared_ptr<const Model>(), &model}; }
 
-/// All draws of the plan; a piece is a few of one unit.
+/// The work of all draws of the plan; a piece is a few samples of one unit.
 template <class SolveUnit>
 WorkOutlook sampling(const std::shared_ptr<const Plan>& plan, const std::shared_ptr<const Model>& model, double times) {
   struct Sampler {
@@ -103,7 +103,7 @@ WorkOutlook sampling(const std::shared_ptr<const Plan>& plan, const std::shared_
           times};
 }
 
-/// Work of a study that solves tables of errors: run_poses(poses) does it for a few of its poses.
+/// The work of a study that solves tables of errors. run_poses(poses) does it for some of its poses.
 template <class RunPoses>
 WorkOutlook table_work(const PoseSet& poses, RunPoses run_poses) {
   return {[&poses, run_poses](double at) {

@@ -16,40 +16,40 @@
 
 namespace poesy {
 
-/// The work of fold() for the units of a plan, which are samples of a cell: a slot at a pose. It knows which units are
-/// still to come, in rounds where samples are adaptive, which of them are a shard's, and what a state says of that. A
-/// job has what is left:
+/// The work of fold() for the units of a plan. A unit has samples of a cell, which is a slot at a pose. PoseFold
+/// manages the pending units, the rounds of adaptive samples, shards, and states. A job provides the rest:
 ///
-///     static constexpr std::string_view kName     the name with which its states begin, which no other job has
-///     std::vector<std::uint64_t> sizes() const    what must be equal where a state is taken up
-///     Rounds::Rule rule() const                   when adaptive samples end
+///     static constexpr std::string_view kName     name of its states, unique among all jobs
+///     std::vector<std::uint64_t> sizes() const    sizes that a state must have to be read
+///     Rounds::Rule rule() const                   the rule of adaptive samples
 ///     Worker worker() const                       solves units, and owns the scratch of one thread: worker(unit)
-///     void unit_state(Archive&, const WorkUnit&, Unit&) const   what a unit came to, its `solves` among it
-///     Sums sums(const Plan&, const Shard&) const  of no units
-///     std::vector<Estimate> estimates(const Sums&, std::size_t slot) const   what decides after a round
+///     void unit_state(Archive&, const WorkUnit&, Unit&) const   reads or writes a unit, which has a member `solves`
+///     Sums sums(const Plan&, const Shard&) const  empty sums
+///     std::vector<Estimate> estimates(const Sums&, std::size_t slot) const   estimates that decide after a round
 ///
-/// The sums have what CellSums has:
+/// The sums have the interface of CellSums:
 ///
-///     static constexpr bool kOfRound              whether they are of the samples of one round, and made anew for each
-///     void add(const WorkUnit&, const Unit&)      takes the next unit of its cell
+///     static constexpr bool kOfRound              whether sums are of one round only and made anew for each
+///     void add(const WorkUnit&, const Unit&)      adds the next unit of its cell
 ///     std::size_t units_done(std::size_t cell) const
 ///     SolveCounts total() const
-///     void state(Archive&, std::size_t samples)   writes all cells, or adds those of a plan with so many samples
+///     void state(Archive&, std::size_t samples)   writes all cells, or reads and adds those of a plan with other
+///     samples
 template <class Job>
 class PoseFold {
  public:
-  using Worker = std::remove_cvref_t<decltype(std::declval<const Job&>().worker())>;  ///< Of one thread.
-  using Unit = std::invoke_result_t<Worker&, const WorkUnit&>;                        ///< What a unit came to.
-  using Sums =
-      decltype(std::declval<const Job&>().sums(std::declval<const Plan&>(), {}));  ///< What units are added to.
+  using Worker = std::remove_cvref_t<decltype(std::declval<const Job&>().worker())>;  ///< The worker of one thread.
+  using Unit = std::invoke_result_t<Worker&, const WorkUnit&>;                        ///< The output of a unit.
+  using Sums = decltype(std::declval<const Job&>().sums(std::declval<const Plan&>(),
+                                                        {}));  ///< The sums to which units are added.
 
-  /// Of the options' shard, if they have one. Refers to the plan and the job.
+  /// Folds the shard of the options, if they have one. Refers to the plan and the job.
   PoseFold(const Plan& plan, const Job& job, const RunOptions& options)
       : plan_(plan), job_(job), shard_(options.shard.value_or(Shard())), rounds_(plan, job.rule()) {
     begin_sums();
   }
 
-  /// As fold() wants it.
+  /// See fold().
   /// @{
   std::size_t begin_round() {
     const NumberRange cells = shard_.of(plan_.cells());
@@ -100,8 +100,8 @@ class PoseFold {
   }
   /// @}
 
-  Sums& sums() { return *sums_; }  ///< Everything that was solved.
-  /// When the samples of the study ended; empty where their number was fixed. Precondition: no round follows.
+  Sums& sums() { return *sums_; }  ///< The sums of all units that were solved.
+  /// When the samples of the study ended; empty if their number was fixed. Precondition: no round follows.
   std::optional<ConvergenceResult> convergence() const { return rounds_.result(); }
 
  private:
@@ -112,7 +112,7 @@ class PoseFold {
     if constexpr (Sums::kOfRound) part_.emplace(plan_.with_samples(rounds_.samples(0)));
     sums_.emplace(job_.sums(plan_of_sums(), shard_));
   }
-  /// All that was added; of the states of several shards, one of them.
+  /// Reads or writes all units that were added; in the states of several shards, those of one.
   void part_state(Archive& archive) {
     head_state(archive, Job::kName, job_.sizes());
     archive.known(plan_.cells(), "has other cells");
@@ -126,21 +126,21 @@ class PoseFold {
   const Job& job_;
   Shard shard_;
   Rounds rounds_;
-  std::optional<Plan> part_;             ///< the plan with the samples of the round, where the sums are of a round
-  std::optional<Sums> sums_;             ///< refer to it
-  std::optional<PendingUnits> pending_;  ///< of the round
+  std::optional<Plan> part_;  ///< the plan with the samples of the round, if sums are made anew for each round
+  std::optional<Sums> sums_;  ///< refers to the plan above
+  std::optional<PendingUnits> pending_;  ///< units of the round
 };
 
-/// What the cells of a plan came to, of which those of a shard are held. A last unit with fewer than Plan::kUnitSamples
-/// samples is kept apart, because a study with more samples has another unit in its place. A store holds something of R
-/// responses for each of some cells:
+/// The sums of the cells of a plan, or of a shard's cells. A last unit with fewer than Plan::kUnitSamples samples is
+/// kept apart, because a study with more samples has another unit in its place. A store has values of R responses for
+/// each of some cells:
 ///
-///     Store(std::size_t responses, std::size_t cells)    without samples; and Store() without cells
-///     std::vector<SolveCounts> solves                    of each cell
-///     void merge(std::size_t cell, const Unit&)          takes later samples of a cell
-///     void merge(Store later)                            takes later samples of each cell
-///     void state(Archive&, std::size_t cell, std::uint64_t first)   a cell, of samples from `first` on
-///     Store part(const NumberRange& cells) const
+///     Store(std::size_t responses, std::size_t cells)    without samples; also Store() without cells
+///     std::vector<SolveCounts> solves                    [cells]
+///     void merge(std::size_t cell, const Unit&)          adds later samples of a cell
+///     void merge(Store later)                            adds later samples of each cell
+///     void state(Archive&, std::size_t cell, std::uint64_t first)   reads or writes a cell with samples from `first`
+///     on Store part(const NumberRange& cells) const
 template <class Store>
 class CellSums {
  public:
@@ -150,25 +150,25 @@ class CellSums {
   CellSums(const Plan& plan, std::size_t responses, const Shard& shard)
       : plan_(&plan), responses_(responses), cells_(shard.of(plan.cells())) {}
 
-  /// Precondition: the unit after those done in its cell.
+  /// Adds a unit. Precondition: it is the next unit of its cell.
   template <class Unit>
   void add(const WorkUnit& unit, const Unit& found) {
     const std::size_t cell = cell_of(unit);
     POESY_EXPECTS(cells_.holds(cell) && unit.first.value == units_done(cell) * Plan::kUnitSamples);
     with_room(unit.count == Plan::kUnitSamples ? whole_ : parts_).merge(cell - cells_.first, found);
   }
-  /// Units of this cell that were added.
+  /// The number of units of this cell that were added.
   std::size_t units_done(std::size_t cell) const {
     return static_cast<std::size_t>(samples_in(whole_, cell) / Plan::kUnitSamples) +
            (samples_in(parts_, cell) > 0 ? 1 : 0);
   }
-  /// Over all that was added.
+  /// The solves of all units that were added.
   SolveCounts total() const {
     SolveCounts sum = total_of(whole_.solves);
     sum.merge(total_of(parts_.solves));
     return sum;
   }
-  /// One slot at all poses. Preconditions: the shard has them all; something was added.
+  /// The cells of one slot at all poses. Preconditions: the shard has them all; units were added.
   Store cells_of(std::size_t slot) const {
     const NumberRange range{slot * plan_->poses().size(), (slot + 1) * plan_->poses().size()};
     POESY_EXPECTS(cells_.first == 0 && range.end <= cells_.end && (!whole_.solves.empty() || !parts_.solves.empty()));
@@ -177,7 +177,7 @@ class CellSums {
     if (!parts_.solves.empty()) some.merge(parts_.part(range));
     return some;
   }
-  /// All of them. Preconditions: likewise.
+  /// All cells. Preconditions: the shard has them all; units were added.
   Store cells() && {
     POESY_EXPECTS(cells_.first == 0 && cells_.end == plan_->cells());
     POESY_EXPECTS(!whole_.solves.empty() || !parts_.solves.empty());
@@ -186,7 +186,8 @@ class CellSums {
     return std::exchange(whole_, {});
   }
 
-  /// Writes all cells, or adds those of a plan with so many samples. Gives the units of each cell in that state.
+  /// Writes all cells, or reads those of a plan with this many samples and adds them. Returns the units of each cell in
+  /// that state.
   std::vector<std::size_t> state(Archive& archive, std::size_t samples) {
     std::vector<std::size_t> units;
     units.reserve(plan_->cells());
@@ -195,25 +196,25 @@ class CellSums {
   }
 
  protected:
-  /// Where the unit's cell is.
+  /// The position of the unit's cell.
   std::size_t cell_of(const WorkUnit& unit) const { return unit.slot * plan_->poses().size() + unit.pose.value; }
-  /// The samples of a cell among units of this size, to which one was added.
+  /// The store to which a unit of this size was added.
   const Store& store_of(const WorkUnit& unit) const { return unit.count == Plan::kUnitSamples ? whole_ : parts_; }
 
-  const Plan* plan_;       ///< Whose cells they are.
-  std::size_t responses_;  ///< R.
-  NumberRange cells_;      ///< Of the shard.
+  const Plan* plan_;       ///< the plan of the cells
+  std::size_t responses_;  ///< R
+  NumberRange cells_;      ///< cells of the shard
 
  private:
   std::uint64_t samples_in(const Store& store, std::size_t cell) const {
     return !store.solves.empty() && cells_.holds(cell) ? store.solves[cell - cells_.first].total() : 0;
   }
-  /// Makes room when there is none.
+  /// Makes room on first use.
   Store& with_room(Store& store) const {
     if (store.solves.empty()) store = Store(responses_, cells_.end - cells_.first);
     return store;
   }
-  /// Of samples from `first` on; gives their number.
+  /// Reads or writes a cell with samples from `first` on. Returns their number.
   std::uint64_t store_state(Archive& archive, Store& store, std::size_t cell, std::uint64_t first) const {
     with_room(store).state(archive, cell, first);
     return store.solves[cell].total();
@@ -243,8 +244,8 @@ class CellSums {
     return Plan::units_for(samples);
   }
 
-  Store whole_;  ///< [cells of the shard] units of full size; no cells before the first of them
-  Store parts_;  ///< [cells of the shard] the last unit where it is smaller; likewise
+  Store whole_;  ///< [cells of the shard] full units; empty before the first of them
+  Store parts_;  ///< [cells of the shard] the last units that are smaller; empty before the first of them
 };
 
 }  // namespace poesy

@@ -11,20 +11,20 @@ namespace poesy {
 
 /// One sample, solved again.
 struct ReplayedSample {
-  std::vector<FactorIndex> varied;  ///< those that the study varies at once; the others have the background's value
+  std::vector<FactorIndex> varied;  ///< errors that the study varies together; the others have the background's value
   std::vector<double> values;       ///< [varied], SI
   std::vector<double> errors;       ///< [F] all errors of the sample, SI
   std::vector<double> responses;    ///< [R], SI; the last iterate where not converged
-  SolveStatus status = SolveStatus::converged;  ///< how it ended in the run's own solver
-  std::uint32_t iterations = 0;                 ///< that it took there
+  SolveStatus status = SolveStatus::converged;  ///< status in the run's own solver
+  std::uint32_t iterations = 0;                 ///< iterations of the run's own solver
 };
 
-/// Draws and solves the sample of this address alone; the same bits as in a run of the study. slot: as of Failure.
+/// Draws and solves the sample of this address, with the same bits as in a run of the study. slot: see Failure.
 /// Precondition: a sensitivity or Monte Carlo study, and a model that reaches the pose.
 ReplayedSample replay_sample(const Study& study, const Model& model, const PoseSet& poses, std::size_t slot,
                              PoseIndex pose, SampleIndex sample);
 
-/// Solves one row of an error table at one pose; the same bits as run_evaluation.
+/// Solves one row of an error table at one pose, with the same bits as run_evaluation().
 ReplayedSample replay_row(const SolverOptions& solver, const Model& model, const PoseSet& pose, const ErrorTable& row);
 
 }  // namespace poesy

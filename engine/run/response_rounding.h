@@ -7,10 +7,10 @@
 
 namespace poesy {
 
-/// Model::rounding of each response, [R].
+/// [R] Model::rounding() of each response.
 std::vector<double> response_rounding(const Model& model);
 
-/// Up to which standard deviation each response is rounding while all errors of the plan vary together, [R]
+/// [R] The standard deviation up to which each response is rounding while all errors of the plan vary together
 /// (stats/indices.h).
 std::vector<double> joint_rounding(const Plan& plan, const Model& model);
 

@@ -16,51 +16,52 @@
 
 namespace poesy {
 
-/// 0 .. count - 1.
+/// The numbers 0 .. count - 1.
 std::vector<std::size_t> all_positions(std::size_t count);
 
-/// Samples that each pose of every slot gets in any case.
+/// The least number of samples at each pose of every slot.
 std::size_t least_samples(const Plan& plan);
 
-/// The rounds of a sampled study. One with a fixed number of samples has a single round. One with adaptive samples has
-/// a round for each milestone (engine/study/plan.h), in which every slot that goes on gets the milestone's
-/// samples at all poses, and then perhaps a last one up to Plan::samples(). A slot ends at the first milestone at which
-/// each response that decides is reached: half-width <= relative_error x |quantity|, see ConvergenceResult. What is
-/// decided follows from the samples up to the milestone alone, so it is the same on any machine.
+/// The rounds of a sampled study. A fixed number of samples takes a single round. Adaptive samples take a round for
+/// each milestone (engine/study/plan.h), in which every slot that goes on gets the milestone's samples at all poses,
+/// and perhaps a last one up to Plan::samples(). A slot ends at the first milestone at which each deciding response is
+/// reached: half-width <= relative_error x |quantity|, see ConvergenceResult. Decisions depend only on the samples up
+/// to the milestone, so they are the same on any machine.
 class Rounds {
  public:
-  /// What decides whether a slot goes on.
+  /// The rule that decides whether a slot goes on.
   struct Rule {
     std::size_t responses;              ///< R
     std::vector<std::size_t> deciding;  ///< positions among the responses
-    double conf_level;                  ///< of the intervals
-    std::vector<double> rounding;       ///< [R x P] a quantity whose magnitude is below this counts as reached
+    double conf_level;                  ///< level of the intervals
+    std::vector<double> rounding;       ///< [R x P] a quantity of a smaller magnitude counts as reached
   };
 
   /// Refers to the plan. Begins with the first round.
   Rounds(const Plan& plan, Rule rule);
 
-  /// That each pose of the slot has at the end of this round.
+  /// The samples at each pose of the slot at the end of this round.
   std::size_t samples(std::size_t slot) const { return samples_[slot]; }
-  /// Units of each cell of the slot in this round.
+  /// The units of each cell of the slot in this round.
   std::size_t units(std::size_t slot) const;
-  /// Whether a cell of this slot may hold so many units in this round.
+  /// Whether a cell of this slot may have this many units in this round.
   bool may_hold(std::size_t slot, std::size_t units) const;
-  /// Of the whole study, as far as the half-widths so far let expect: they fall with the root of the samples. At least
-  /// those of this round; before the first decision all that there may be.
+  /// The solves of the whole study that are expected from the half-widths so far, which fall with the root of the
+  /// number of samples. At least those of this round; before the first decision the largest possible number.
   std::uint64_t expected_solves() const;
-  /// Solves after those that were done, as far as that is known: for a fixed number of samples those that are pending.
+  /// The solves that are expected after those that were done; for a fixed number of samples the pending ones.
   std::uint64_t expected_left(const SolveCounts& done, std::uint64_t pending) const {
     return adaptive_ ? expected_solves() - done.total() : pending;
   }
 
-  /// Ends the round; whether another one follows, which begins. estimates(slot): its quantities, [R].
+  /// Ends the round. Returns whether another one follows, which then begins. estimates(slot): [R] quantities of the
+  /// slot.
   bool go_on(const std::function<std::vector<Estimate>(std::size_t slot)>& estimates);
-  /// Empty for a study with a fixed number of samples. Precondition: no round follows.
+  /// The convergence; empty for a fixed number of samples. Precondition: no round follows.
   std::optional<ConvergenceResult> result() const;
 
-  /// What was decided so far; nothing for a fixed number of samples. Where it is read, it is of this plan or of one
-  /// that differs by fewer samples. Precondition there: this is the first round.
+  /// Reads or writes the decisions so far; nothing for a fixed number of samples. What is read may be of a plan that
+  /// differs only by fewer samples. Precondition of reading: this is the first round.
   void state(Archive& archive);
 
  private:
@@ -72,10 +73,11 @@ class Rounds {
 
   bool last_round() const { return rows_.size() == milestones_.size(); }
   std::size_t cell(std::size_t response, std::size_t slot) const { return response * samples_.size() + slot; }
-  /// Half-width over what it may be.
+  /// The half-width over its limit.
   double excess(const Row& row, std::size_t cell) const;
   double largest_excess(const Row& row, std::size_t slot) const;
-  /// Ends the slots whose every deciding response is reached, and begins the next round; whether a slot goes on.
+  /// Ends the slots whose deciding responses are all reached, and begins the next round. Returns whether a slot goes
+  /// on.
   bool decide(Row row);
   std::size_t expected_samples(std::size_t slot) const;
   const Row& row_at_end(std::size_t slot) const;
@@ -84,18 +86,17 @@ class Rounds {
   Rule rule_;
   std::size_t poses_;
   std::size_t max_;
-  std::vector<std::size_t> milestones_;  ///< those at which something is decided
-  std::vector<Row> rows_;                ///< of the rounds that are over
-  std::vector<std::size_t> samples_;     ///< [P] of each slot in this round
+  std::vector<std::size_t> milestones_;  ///< milestones with a decision
+  std::vector<Row> rows_;                ///< estimates of the rounds that have ended
+  std::vector<std::size_t> samples_;     ///< [P] samples of each slot in this round
   std::vector<bool> ended_;              ///< [P]
 };
 
-/// The units of a plan that are still to be solved, in the plan's order: of each cell those between the first ones that
-/// are done and as many as are wanted.
+/// The pending units of a plan, in its order: in each cell those after the units that are done, up to the wanted
+/// number.
 class PendingUnits {
  public:
-  /// done(cell), wanted(cell): how many of the cell's units. Precondition: at most units_per_cell(). Refers to the
-  /// plan.
+  /// done(cell), wanted(cell): numbers of units of the cell, at most units_per_cell(). Refers to the plan.
   template <class Done, class Wanted>
   PendingUnits(const Plan& plan, const Done& done, const Wanted& wanted) : plan_(&plan) {
     std::size_t end = 0;
@@ -110,13 +111,13 @@ class PendingUnits {
     }
   }
 
-  /// Units that are still to be solved.
+  /// The number of pending units.
   std::size_t size() const { return ends_.empty() ? 0 : ends_.back().pending; }
 
-  /// In all of them.
+  /// The samples of all pending units.
   std::uint64_t samples() const { return samples_; }
 
-  /// The n-th of them, in the order of the plan.
+  /// The n-th pending unit, in the order of the plan.
   WorkUnit operator[](std::size_t n) const {
     POESY_EXPECTS(n < size());
     const auto end = std::ranges::upper_bound(ends_, n, {}, &End::pending);
@@ -125,7 +126,7 @@ class PendingUnits {
   }
 
  private:
-  /// Where a cell's pending units end: how many there are up to and with this cell, and the unit within the cell.
+  /// The end of a cell's pending units: their number in all cells up to this one, and the unit within the cell.
   struct End {
     std::size_t pending;
     std::size_t unit;

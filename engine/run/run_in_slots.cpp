@@ -26,8 +26,8 @@ namespace tbb = oneapi::tbb;
 
 namespace handover {
 
-/// Tells ThreadSanitizer what oneTBB guarantees inside its library, which the sanitizer cannot see: what stands before
-/// a publish has happened before what stands after a later receive. Nothing at all in other builds.
+/// Tells ThreadSanitizer what oneTBB guarantees inside its library, which the sanitizer cannot see: everything before a
+/// publish happens before everything after a later receive. Does nothing in other builds.
 #ifdef POESY_THREAD_SANITIZER
 inline char place;
 inline void publish() { __tsan_release(&place); }
@@ -37,8 +37,8 @@ inline void publish() {}
 inline void receive() {}
 #endif
 
-/// What one block did is visible to each block that begins after its end. Around objects of oneTBB, because their
-/// memory goes from thread to thread inside its allocator.
+/// The effects of one block are visible to each block that begins after its end. Used around objects of oneTBB, because
+/// their memory moves from thread to thread inside its allocator.
 class Block {
  public:
   Block() { receive(); }
@@ -47,7 +47,7 @@ class Block {
   Block& operator=(const Block&) = delete;
 };
 
-/// Ends after every block that has ended before, whether by return or by exception.
+/// Its end comes after the end of every earlier block, by return or by exception.
 class Waiting {
  public:
   Waiting() = default;
@@ -56,14 +56,14 @@ class Waiting {
   Waiting& operator=(const Waiting&) = delete;
 };
 
-/// A function that oneTBB copies and calls on any of its threads. Calls that overlap stay unordered to the sanitizer,
+/// A function that oneTBB copies and calls on any of its threads. Overlapping calls stay unordered for the sanitizer,
 /// so real races between them are still found.
 template <class Function>
 class Task {
  public:
   /// The function is copied with the task.
   explicit Task(Function function) : function_(std::move(function)) {}
-  /// Copies run on other threads: what this one wrote before is visible there.
+  /// Copies run on other threads, where the writes of this thread must be visible.
   Task(const Task& other) : function_(other.function_) { publish(); }
   Task& operator=(const Task&) = delete;
   ~Task() = default;
@@ -81,7 +81,7 @@ class Task {
 
 }  // namespace handover
 
-/// oneTBB with so many threads.
+/// oneTBB with this many threads.
 struct Pool {
   explicit Pool(std::size_t threads)
       : limit(tbb::global_control::max_allowed_parallelism, threads),
@@ -93,9 +93,9 @@ struct Pool {
   tbb::task_arena arena;
 };
 
-/// Has oneTBB start its threads now, while there is memory for them: it waits until all have met, but not long.
+/// Lets oneTBB start its threads now, while there is memory for them. It waits a short time until all have met.
 #ifdef POESY_THREAD_SANITIZER
-// The sanitizer does not see what orders the tasks of parallel_for, whose nodes are on this thread's stack.
+// The sanitizer does not see the order of the tasks of parallel_for, whose nodes are on this thread's stack.
 void start_workers(std::size_t /*threads*/) {}
 #else
 void start_workers(std::size_t threads) {
@@ -133,7 +133,7 @@ void run_in_slots(const TicketSource& source, const RunOptions& options, const s
   const std::size_t threads = resolved_threads(options.threads);
   start_threads(threads);
   Pool pool(threads);
-  // Called where it is: a copy in memory of oneTBB would be one more thing that goes from thread to thread there.
+  // The lambda is called in place: a copy in memory of oneTBB would also move from thread to thread.
   tbb::enumerable_thread_specific<SlotJob> works([&make_work] { return make_work(); });
   const handover::Task start([&](tbb::flow_control& control) -> Ticket {
     if (const auto ticket = source()) return *ticket;
@@ -155,7 +155,7 @@ void run_in_slots(const TicketSource& source, const RunOptions& options, const s
 }
 
 bool run_alone(std::size_t count, const RunOptions& options, const SlotWork& work) {
-  // The pipeline finishes in order with at most so many numbers under way, so no two of those share a slot.
+  // The pipeline finishes in order, with at most this many numbers in progress, so no two of them share a slot.
   const std::size_t slots = pool_slots(options);
   std::size_t next = 0;
   std::size_t finished = 0;

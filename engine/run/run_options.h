@@ -12,40 +12,41 @@
 
 namespace poesy {
 
-/// How far a run is, in samples.
+/// The progress of a run, in samples.
 struct Progress {
-  std::uint64_t solves = 0;         ///< done, with those of an earlier run that is continued
-  std::uint64_t total = 0;          ///< expected in all
-  std::uint64_t not_converged = 0;  ///< of those done
-  std::uint64_t before = 0;         ///< of the solves, those of an earlier run that is continued
+  std::uint64_t solves = 0;         ///< samples that are done, including those of an earlier run that is continued
+  std::uint64_t total = 0;          ///< expected number of all samples
+  std::uint64_t not_converged = 0;  ///< samples that were done and did not converge
+  std::uint64_t before = 0;         ///< samples of an earlier run that is continued
 };
 
-/// How a run is done. None of it changes a bit of the result.
+/// How a run is done. No option changes a bit of the result.
 struct RunOptions {
   std::size_t threads = 0;  ///< 0: one per processor
-  /// Called now and then, never from two threads at once. May be empty.
+  /// Called from time to time, never from two threads at once. May be empty.
   std::function<void(const Progress&)> progress = {};
-  /// Set by somebody else to stop the run soon. May be null.
+  /// Set from outside to stop the run soon. May be null.
   const std::atomic<bool>* stop = nullptr;
-  /// Where the run's state comes from and goes to. May be null. Then a run function throws BytesError for a state that
-  /// is not one of its own.
+  /// The source and the destination of the run's state. May be null. With checkpoints, a run function throws BytesError
+  /// for a state that it did not write.
   Checkpoints* checkpoints = nullptr;
-  /// The shard to run, instead of the whole. It gives no result, only its state to the checkpoints.
+  /// The shard to run instead of the whole study. It has no result; its state goes to the checkpoints.
   std::optional<Shard> shard = std::nullopt;
-  /// A longer study may go on from the last checkpoint; one that draws all errors together keeps more for that.
+  /// Whether a longer study may continue from the last checkpoint. A study that draws all errors together then keeps
+  /// more.
   bool keep_checkpoint = true;
   /// The ranks that share the work; null: this process alone. Every rank calls the same run functions with the same
-  /// arguments and gets the same results; rank 0 alone has checkpoints and reports progress. When a rank is stopped or
-  /// leaves, the functions give nothing, and team->left() says why. The ranks after rank 0 may get Dismissed thrown.
+  /// arguments and gets the same results; only rank 0 has checkpoints and reports progress. If a rank is stopped or
+  /// leaves, the functions return nothing, and team->left() says why. The ranks after rank 0 may throw Dismissed.
   Team* team = nullptr;
 };
 
-/// Number of threads that RunOptions::threads stands for.
+/// The number of threads; 0 is replaced by the number of processors.
 std::size_t resolved_threads(std::size_t threads);
 
-/// Starts so many threads of the pool, unless it has them. Whoever may lose something asks for them first, and while
-/// there is memory: oneTBB ends the whole program when it cannot start one. Throws FileError where this process cannot
-/// have so many.
+/// Starts this many threads of the pool, unless they exist. Call it before anything can be lost and while there is
+/// memory, because oneTBB ends the program if it cannot start a thread. Throws FileError if this process cannot have
+/// this many.
 void start_threads(std::size_t threads);
 
 }  // namespace poesy

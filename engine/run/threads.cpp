@@ -14,7 +14,7 @@
 namespace poesy {
 namespace {
 
-/// Threads that wait for the end of this object.
+/// Threads that wait until this object is destroyed.
 class WaitingThreads {
  public:
   explicit WaitingThreads(std::size_t count) {
@@ -37,7 +37,7 @@ class WaitingThreads {
     for (const pthread_t thread : threads_) ::pthread_join(thread, nullptr);
   }
 
-  /// 0, or why there are fewer: an errno.
+  /// 0, or the errno that explains why there are fewer.
   int reason() const { return reason_; }
 
  private:
@@ -55,7 +55,7 @@ class WaitingThreads {
   std::atomic<bool> over_{false};
 };
 
-/// 0, or why so many threads cannot live at once: an errno.
+/// 0, or the errno that explains why this many threads cannot exist at once.
 int problem_of(std::size_t threads) {
   constexpr std::size_t kRoom = std::size_t{2} << 20U;
   constexpr std::size_t kRoomOfThread = std::size_t{1} << 18U;

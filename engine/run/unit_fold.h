@@ -14,49 +14,49 @@
 
 namespace poesy {
 
-/// Whose units are samples, so that rounds may ask for more of them and a longer study goes on from a shorter one.
+/// Jobs whose units are samples, so that rounds may add units, and a longer study can continue a shorter one.
 template <class Job>
 concept SampledUnits = requires(const Job& job) {
   job.rounds();
 };
 
-/// The work of fold() for a row of units, which are solved on any thread and added up in their order. It knows which
-/// units are still to come, which of them are a shard's, and what a state says of that. A job has what is left:
+/// The work of fold() for a sequence of units, which are solved on any thread and merged in order. UnitFold manages the
+/// pending units, shards, and states. A job provides the rest:
 ///
-///     static constexpr std::string_view kName       the name with which its states begin, which no other job has
-///     std::vector<std::uint64_t> sizes() const      what must be equal where a state is taken up
-///     NumberRange units(const Shard&) const         the shard's of all its units, 0 .. N - 1
-///     std::uint64_t expected(std::size_t n) const   solves of unit n, as far as that is known beforehand
+///     static constexpr std::string_view kName       name of its states, unique among all jobs
+///     std::vector<std::uint64_t> sizes() const      sizes that a state must have to be read
+///     NumberRange units(const Shard&) const         the shard's part of all units, 0 .. N - 1
+///     std::uint64_t expected(std::size_t n) const   solves of unit n, as far as known beforehand
 ///     Worker worker() const                         owns the scratch of one thread: worker(n) solves unit n
-///     Unit unit(std::size_t n) const                an empty one, with state(Archive&); not where units are Sums
+///     Unit unit(std::size_t n) const                an empty unit, with state(Archive&); not needed if units are Sums
 ///     SolveCounts solves(std::size_t n, const Unit&) const   how a unit's solves ended
-///     Sums sums() const                             of no units
+///     Sums sums() const                             empty sums
 ///
-/// The sums have add(std::size_t n, Unit&&), which takes the next unit, and state(Archive&, const NumberRange& units),
-/// which writes what these units came to, and where it reads, adds that to what is there. Units may be Sums themselves:
-/// then a state is read like a unit, and added. A job of samples also has:
+/// The sums have add(std::size_t n, Unit&&), which adds the next unit, and state(Archive&, const NumberRange& units),
+/// which writes the sums of these units, or reads and adds them. Units may be Sums themselves: then a state is read
+/// like a unit, and added. A job of samples also has:
 ///
-///     Rounds rounds() const                         at their beginning
-///     std::size_t samples() const                   of the whole study
-///     std::size_t units_for(std::size_t samples) const   units of so many samples
+///     Rounds rounds() const                         the rounds at their beginning
+///     std::size_t samples() const                   samples of the whole study
+///     std::size_t units_for(std::size_t samples) const   number of units for these samples
 ///     bool is_whole(std::size_t n) const            whether unit n is as large as in any longer study
-///     std::vector<Estimate> estimates(const Sums&, const Unit* last) const   what decides after a round
+///     std::vector<Estimate> estimates(const Sums&, const Unit* last) const   estimates that decide after a round
 ///
-/// A last unit that is not whole is kept apart until the end, so that a longer study goes on without it.
+/// A last unit that is not whole is kept apart until the end, so that a longer study can continue without it.
 template <class Job>
 class UnitFold {
  public:
-  using Sums = decltype(std::declval<const Job&>().sums());      ///< What units are added to.
-  using Worker = decltype(std::declval<const Job&>().worker());  ///< Of one thread.
-  using Unit = std::invoke_result_t<Worker&, std::size_t>;       ///< What a unit came to.
+  using Sums = decltype(std::declval<const Job&>().sums());      ///< The sums to which units are added.
+  using Worker = decltype(std::declval<const Job&>().worker());  ///< The worker of one thread.
+  using Unit = std::invoke_result_t<Worker&, std::size_t>;       ///< The output of a unit.
 
-  /// Of the options' shard, if they have one. Refers to the job.
+  /// Folds the shard of the options, if they have one. Refers to the job.
   UnitFold(const Job& job, const RunOptions& options)
       : job_(job), units_(job.units(options.shard.value_or(Shard()))), sums_(job.sums()) {
     clear();
   }
 
-  /// As fold() wants it.
+  /// See fold().
   /// @{
   std::size_t begin_round() {
     begun_ = next_;
@@ -106,16 +106,16 @@ class UnitFold {
   }
   /// @}
 
-  /// Everything that was solved. Precondition: no round follows.
+  /// The sums of all units that were solved. Precondition: no round follows.
   Sums sums() && {
     if (last_) sums_.add(next_ - 1, *std::exchange(last_, std::nullopt));
     return std::move(sums_);
   }
-  /// When the samples of the study ended; empty where their number was fixed. Precondition: no round follows.
+  /// When the samples of the study ended; empty if their number was fixed. Precondition: no round follows.
   std::optional<ConvergenceResult> convergence() const { return rounds_ ? rounds_->result() : std::nullopt; }
 
  private:
-  /// Forgets all that was merged.
+  /// Resets all sums.
   void clear() {
     sums_ = job_.sums();
     next_ = units_.first;
@@ -142,7 +142,7 @@ class UnitFold {
     }
   }
 
-  /// All that was merged; of the states of several shards, one of them.
+  /// Reads or writes all units that were merged; in the states of several shards, those of one.
   void part_state(Archive& archive) {
     head_state(archive, Job::kName, job_.sizes());
     NumberRange units{archive.reads() ? next_ : units_.first, last_ ? next_ - 1 : next_};
@@ -168,7 +168,7 @@ class UnitFold {
     }
     sums_.state(archive, units);
   }
-  /// A last unit that is not whole: a longer study has another unit in its place.
+  /// Reads or writes a last unit that is not whole, because a longer study has another unit in its place.
   void last_state(Archive& archive) {
     std::size_t samples = job_.samples();
     archive.number(samples, job_.samples());
@@ -185,17 +185,17 @@ class UnitFold {
   }
 
   const Job& job_;
-  NumberRange units_;  ///< of the shard
+  NumberRange units_;  ///< units of the shard
   std::size_t next_ = 0;
-  std::size_t begun_ = 0;  ///< with which the round began
-  std::size_t end_ = 0;    ///< of the round
-  Sums sums_;              ///< of whole units
-  SolveCounts solved_;     ///< in them
+  std::size_t begun_ = 0;  ///< units merged when the round began
+  std::size_t end_ = 0;    ///< end of the round
+  Sums sums_;              ///< sums of whole units
+  SolveCounts solved_;     ///< solves of whole units
   std::optional<Unit> last_;
   std::optional<Rounds> rounds_;
 };
 
-/// What all units of a job come to. Empty when stopped, and of a shard.
+/// The sums of all units of a job. Empty when stopped, and for a shard.
 template <class Job>
 std::optional<typename UnitFold<Job>::Sums> fold_units(const Job& job, const RunOptions& options) {
   UnitFold work(job, options);

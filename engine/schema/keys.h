@@ -12,60 +12,62 @@
 #include "engine/schema/keys_section.h"
 
 /// A key of a study file is one typed row: its name, the member that it sets, its bounds and its meaning. Reading, the
-/// resolved text, templates and the reference are made of the rows. A default is what a default-constructed object has.
+/// resolved text, templates and the reference are made from the rows. A default is the value in a default-constructed
+/// object.
 
 namespace poesy {
 
-/// One of the words that a key takes.
+/// One of the words that a key accepts.
 struct StudyWord {
-  std::string_view name;     ///< as a study file has it
+  std::string_view name;     ///< the word in a study file
   std::string_view meaning;  ///< a clause
 };
 
-/// What is said of one key.
+/// The description of a key.
 struct StudyKey {
-  std::string_view name;              ///< in capitals what stands for a name of the model's: "FACTOR", not "E"
-  std::string type;                   ///< "integer", "length", "list of numbers", ...
-  std::string bounds = {};            ///< "at least 1"; empty where the type says all
-  std::vector<StudyWord> words = {};  ///< that it takes, where it takes no others
-  bool required = false;              ///< wherever it holds
-  std::string missing = {};           ///< what to do where it is missing; empty: it may be left out
-  std::string usual = {};             ///< the default: a value in backquotes, or a clause that says which it is
-  std::string example = {};           ///< a TOML value that is no default
-  std::vector<std::string_view> only_for = {};  ///< words of the table's chooser for which it holds; empty: all
-  bool may_stay = false;                        ///< where it does not hold it is ignored, not refused
+  std::string_view name;                        ///< name; a placeholder for names of the model is in capitals: "FACTOR"
+  std::string type;                             ///< "integer", "length", "list of numbers", ...
+  std::string bounds = {};                      ///< "at least 1"; empty if the type has no further bounds
+  std::vector<StudyWord> words = {};            ///< the words that it accepts; empty if it accepts other values
+  bool required = false;                        ///< whether it is required where it applies
+  std::string missing = {};                     ///< advice if it is missing; empty: it is optional
+  std::string usual = {};                       ///< the default: a value in backquotes, or a clause that describes it
+  std::string example = {};                     ///< a TOML value that is not the default
+  std::vector<std::string_view> only_for = {};  ///< words of the table's chooser for which it applies; empty: all
+  bool may_stay = false;                        ///< whether it is ignored, instead of refused, where it does not apply
   std::string_view meaning;                     ///< a sentence
 };
 
-/// A table of a study file, or several that have the same keys.
+/// The description of a table of a study file, or of several with the same keys.
 struct StudyTable {
-  /// "analysis.cases", with '.' between names and without the numbers of a list; empty for the file itself.
-  /// "analysis.groups[]" is an element of a list alone: there may be a table "analysis.groups" as well.
+  /// "analysis.cases", with '.' between names and without the numbers of lists; empty for the file itself.
+  /// "analysis.groups[]" is only an element of a list, because there may also be a table "analysis.groups".
   std::vector<std::string_view> paths;
-  std::string_view meaning;       ///< a sentence
-  std::string_view chooser = {};  ///< the key by whose word other keys of this table hold or not; empty: all hold
-  std::string_view owner = {};    ///< how messages speak of the chooser's word: "select ="
-  std::vector<StudyKey> keys;     ///< in the order in which they are listed
+  std::string_view meaning;  ///< a sentence
+  std::string_view chooser =
+      {};  ///< the key whose word determines which other keys of this table apply; empty: all apply
+  std::string_view owner = {};  ///< text for the chooser in messages: "select ="
+  std::vector<StudyKey> keys;   ///< the keys, in the order in which they are listed
 
-  /// Null where it has none of that name. Where keys of one name hold for different words of the chooser, the one that
-  /// holds for this word, else the first.
+  /// The key of this name; null if there is none. If several apply for different words of the chooser, the one for this
+  /// word, or the first.
   const StudyKey* find(std::string_view key, std::string_view word = {}) const;
-  std::vector<std::string_view> names() const;  ///< The keys' names, in order.
-  bool has_names_of_model() const;              ///< Whether it has a key that stands for names of the model's.
-  /// `select = "grid"`: what a key does not belong to that does not hold for this word.
+  std::vector<std::string_view> names() const;  ///< The names of the keys, in order.
+  bool has_names_of_model() const;              ///< Whether it has a placeholder for names of the model.
+  /// The text in messages for a key that does not apply for this word: `select = "grid"`.
   std::string owner_of(std::string_view word) const;
-  /// What to do where the key is missing; a name of the model's has that of the key that stands for it.
+  /// The advice if the key is missing. Names from the model have the advice of their placeholder.
   std::string remedy(std::string_view key) const;
 };
 
-/// The table at this path, in which names of the model's may stand for themselves and a list's elements have their
-/// numbers: "errors.override.delta_1", "analysis.groups[0]". Null where there is none.
+/// The table at this path, in which names of the model may replace placeholders, and elements of lists have numbers:
+/// "errors.override.delta_1", "analysis.groups[0]". Null if there is none.
 const StudyTable* find_table(const StudyTables& tables, std::string_view path);
 
-/// Whether the key holds where the table's chooser is this word.
+/// Whether the key applies for this word of the table's chooser.
 bool holds_for(std::span<const std::string_view> only_for, std::string_view word);
 
-/// The key in plain text: its meaning and bounds, where it holds or is required, and its default.
+/// The explanation of a key as plain text: its meaning and bounds, when it applies or is required, and its default.
 std::string explanation(const StudyTable& table, const StudyKey& key);
 
 /// The tables as Markdown, each with its keys and their words.
@@ -73,26 +75,27 @@ std::string tables_reference(const StudyTables& tables);
 
 std::string comment(std::string_view text);  ///< Text of any number of lines as comment lines of TOML.
 
-/// What a template says of keys. Every text is whole lines of TOML. Precondition: there are such tables and keys.
+/// Makes lines of a template. Every text is whole lines of TOML. Precondition: the tables and keys exist.
 class TemplateLines {
  public:
-  /// The tables must outlive it. word: the chooser's where keys of one name hold for different words.
+  /// The tables must outlive it. word: selects among keys of one name that apply for different words of the chooser.
   explicit TemplateLines(const StudyTables& tables, std::string_view word = {}) : tables_(&tables), word_(word) {}
 
-  /// A line that shows this key, with its explanation: behind it where that fits, else in comment lines before it, with
-  /// the words that it takes.
+  /// A line with this key and its explanation: after it if there is room, else in comment lines before it, with the
+  /// words that it accepts.
   std::string explained(std::string_view table, std::string_view key, std::string_view line) const;
-  /// The same of "KEY = VALUE", the key's default, or its example where the default is no value; behind `sign`.
+  /// The same for "KEY = VALUE" with the key's default, or its example if the default is not a value. sign: put before
+  /// it.
   std::string usual(std::string_view table, std::string_view key, std::string_view sign = "") const;
-  /// "KEY: explanation" in comment lines, and below it the words that the key takes.
+  /// "KEY: explanation" as comment lines, followed by the words that the key accepts.
   std::string explanation_lines(std::string_view table, std::string_view key) const;
-  /// The same for every key of a table, `depth` steps further in: what an inline table may hold.
+  /// The same for every key of an inline table, `depth` steps further indented.
   std::string keys_lines(std::string_view table, std::size_t depth = 1) const;
   /// An inline table of the keys whose default or example is a value: "{ min = 1000, max = 1000000 }".
   std::string inline_table(std::string_view table) const;
   /// The key's example.
   std::string_view example(std::string_view table, std::string_view key) const;
-  std::string_view meaning(std::string_view table) const;  ///< What is said of a table as a whole.
+  std::string_view meaning(std::string_view table) const;  ///< The meaning of a table.
 
  private:
   const StudyTable& table(std::string_view path) const;
@@ -102,19 +105,19 @@ class TemplateLines {
   std::string word_;
 };
 
-std::string in_quotes(std::string_view text);  ///< A TOML string: in quotes, with what needs it escaped.
+std::string in_quotes(std::string_view text);  ///< A TOML string: in quotes, and escaped.
 
-/// A value of this dimension as a study file has it, exact when read back: "0.001 m" in quotes, or a bare number.
+/// A value of this dimension for a study file, which reads back exactly: "0.001 m" in quotes, or a bare number.
 std::string exact_value(double si, Dimension dimension);
 
-/// The same in the unit in which people read it, where that is as exact and shorter: "60 mm" rather than "0.06 m".
+/// The same in the unit that people read, if that is equally exact and shorter: "60 mm" instead of "0.06 m".
 std::string readable_value(double si, Dimension dimension);
 
-using ValueText = std::string (*)(double si, Dimension dimension);  ///< One of these two.
+using ValueText = std::string (*)(double si, Dimension dimension);  ///< One of the two functions above.
 
 std::string list_text(std::span<const std::string> values);  ///< Values as a TOML list: "[a, b]".
 
-/// Named things as a TOML inline table, "{ a = 1, b = 2 }", where value(k) is the text of the k-th.
+/// Named things as a TOML inline table, "{ a = 1, b = 2 }"; value(k) is the text of the k-th.
 template <class Named, class Value>
 std::string inline_table(const std::vector<Named>& things, Value value) {
   std::string text;
@@ -124,8 +127,8 @@ std::string inline_table(const std::vector<Named>& things, Value value) {
   return text + " }";
 }
 
-/// Calls read(k, value) for each of the things that the section has a key for, in their order. Throws InputError for
-/// other keys; `what` says what the keys are.
+/// Calls read(k, value) for each thing for which the section has a key, in the order of the things. Throws InputError
+/// for other keys. what: a noun for the keys.
 template <class Named, class Read>
 void read_named(const StudySection& section, const std::vector<Named>& things, std::string_view what, Read read) {
   section.allow(names(things), what);
@@ -134,65 +137,65 @@ void read_named(const StudySection& section, const std::vector<Named>& things, s
   }
 }
 
-/// What a number without a unit must be.
+/// The bounds of a number without a unit.
 struct NumberBounds {
-  double least;            ///< the lower end
-  double most;             ///< the upper end
-  bool ends_included;      ///< whether the ends are inside
-  std::string_view words;  ///< "between 0 and 1"
-  std::string remedy;      ///< for a number outside: "it must lie between 0 and 1, e.g. 0.95"
-  bool percent = false;    ///< whether a text such as "95 %" is one too
+  double least;            ///< lower end
+  double most;             ///< upper end
+  bool ends_included;      ///< whether the ends are allowed
+  std::string_view words;  ///< text: "between 0 and 1"
+  std::string remedy;      ///< advice for a number outside: "it must lie between 0 and 1, e.g. 0.95"
+  bool percent = false;    ///< whether a text such as "95 %" is allowed too
 };
 
 NumberBounds above_zero(std::string_view example);       ///< Greater than zero.
 NumberBounds above_one(std::string_view example);        ///< Greater than one.
 NumberBounds between_0_and_1(std::string_view example);  ///< Between 0 and 1, both excluded, or in percent.
 
-/// A number inside the bounds. Throws InputError at the value's place.
+/// Reads a number within the bounds. Throws InputError at the value's place.
 double read_number(const StudyValue& value, const NumberBounds& bounds);
 
-/// Where a value is in an object, and what a study file may say for it.
+/// How a key's value is stored in an object, and which values a study file may have.
 template <class Object>
 struct KeyValue {
-  std::string type;                                           ///< as StudyKey has it
-  std::string bounds = {};                                    ///< likewise
-  std::vector<StudyWord> words = {};                          ///< likewise
-  std::function<void(const StudyValue&, Object&)> read = {};  ///< none where the row has a reader
-  std::function<std::string(const Object&)> text = {};        ///< TOML; none: the row has lines of its own, or none
+  std::string type;                                           ///< see StudyKey
+  std::string bounds = {};                                    ///< see StudyKey
+  std::vector<StudyWord> words = {};                          ///< see StudyKey
+  std::function<void(const StudyValue&, Object&)> read = {};  ///< none if the row has a reader
+  std::function<std::string(const Object&)> text = {};        ///< TOML; none if the row has its own lines, or none
 };
 
-/// A row: one key of a table, and where its value is in an object.
+/// A row: one key of a table, with its value in an object.
 template <class Object, class Scope>
 struct Key {
-  std::string_view name;     ///< as StudyKey has it
+  std::string_view name;     ///< see StudyKey
   KeyValue<Object> value;    ///< type, bounds, words, and how it is read and written
-  std::string missing = {};  ///< as StudyKey has it, "{}" for the example; not empty: the key is required
-  bool required = false;     ///< for keys that other rules than this row require
-  /// The default, where it is not the value of a default-constructed object; empty: there is none.
+  std::string missing = {};  ///< see StudyKey, with "{}" for the example; not empty: the key is required
+  bool required = false;     ///< whether other rules than this row require the key
+  /// The default, if it is not the value of a default-constructed object; empty: there is none.
   std::optional<std::string> usual = {};
-  std::string besides = {};  ///< what is said of the default after its value, or after that the key is required
-  std::string example = {};  ///< as StudyKey has it
-  std::vector<std::string_view> only_for = {};  ///< as StudyKey has it
-  bool may_stay = false;                        ///< likewise
-  std::string_view meaning;                     ///< likewise
-  /// Reads what needs more than the value itself: the model, files, other keys.
+  std::string besides = {};                     ///< remark after the default, or after "required"
+  std::string example = {};                     ///< see StudyKey
+  std::vector<std::string_view> only_for = {};  ///< see StudyKey
+  bool may_stay = false;                        ///< see StudyKey
+  std::string_view meaning;                     ///< see StudyKey
+  /// Reads a value that depends on more than itself: the model, files, other keys.
   void (*reader)(const StudyValue& value, Object& object, const Scope& scope) = nullptr;
-  /// The key's lines of the resolved text, where they are not "KEY = VALUE"; may be none.
+  /// The key's lines of the resolved text, if they are not "KEY = VALUE"; may be empty.
   std::string (*lines)(const Object& object) = nullptr;
-  int late = 0;  ///< in the resolved text, a key comes after those with a smaller number
-  /// The key's lines of a template for such an object, where they are not its default; may be none.
+  int late = 0;  ///< order in the resolved text: a key comes after those with a smaller number
+  /// The key's lines of a template for this object, if they are not its default; may be empty.
   std::string (*shown)(const TemplateLines& lines, const Object& object) = nullptr;
-  bool commented = false;  ///< whether a template has the default behind a '#'
+  bool commented = false;  ///< whether a template has the default as a comment
 };
 
 /// A table of typed rows.
 template <class Object, class Scope>
 struct Keys {
-  std::vector<std::string_view> paths = {};  ///< as StudyTable has them
-  std::string_view meaning = {};             ///< likewise
-  std::string_view chooser = {};             ///< likewise; the first row then
-  std::string_view owner = {};               ///< likewise
-  std::vector<Key<Object, Scope>> rows;      ///< in the order in which they are listed and read
+  std::vector<std::string_view> paths = {};  ///< see StudyTable
+  std::string_view meaning = {};             ///< see StudyTable
+  std::string_view chooser = {};             ///< see StudyTable; the key of the first row
+  std::string_view owner = {};               ///< see StudyTable
+  std::vector<Key<Object, Scope>> rows;      ///< rows, in the order in which they are listed and read
 };
 
 namespace detail {
@@ -210,9 +213,9 @@ auto& at(Object& object, Member member, Rest... rest) {
 template <class Class, class Type, class... Rest>
 Class owner_of(Type Class::*, Rest...);
 
-std::string without_plus(std::string text);  ///< "1e-15", "1e8" for 1e+08.
+std::string without_plus(std::string text);  ///< Removes the plus of exponents: "1e-15", and "1e8" for 1e+08.
 
-/// The value of a default-constructed object, as readers see it.
+/// The value of a default-constructed object, as text for readers.
 template <class Object>
 std::string usual_text(const KeyValue<Object>& value) {
   return value.text ? "`" + without_plus(value.text(Object{})) + "`" : std::string();
@@ -220,11 +223,11 @@ std::string usual_text(const KeyValue<Object>& value) {
 
 }  // namespace detail
 
-/// The object that the first of these pointers to members belongs to.
+/// The type to which the first of these pointers to members belongs.
 template <class... Path>
 using OwnerOf = decltype(detail::owner_of(Path()...));
 
-/// A value in the member at this path of members, which `read` makes of a StudyValue and `text` writes as TOML.
+/// The member at this path of members. read: converts a StudyValue; text: writes TOML.
 template <class Read, class Text, class... Path>
 KeyValue<OwnerOf<Path...>> value_at(std::string type, std::string_view bounds, Read read, Text text, Path... path) {
   using Object = OwnerOf<Path...>;
@@ -238,14 +241,14 @@ KeyValue<OwnerOf<Path...>> value_at(std::string type, std::string_view bounds, R
           .text = [=](const Object& object) { return text(detail::at(object, path...)); }};
 }
 
-/// A text.
+/// A text in the member at this path.
 template <class... Path>
 auto text_at(Path... path) {
   return value_at(
       "text", "", [](const StudyValue& value) { return value.text(); }, in_quotes, path...);
 }
 
-/// A whole number between these, both included.
+/// A whole number between `least` and `most`, both included.
 template <class... Path>
 auto whole_at(std::int64_t least, std::int64_t most, Path... path) {
   const auto read = [=](const StudyValue& value) { return value.whole_number(least, most); };
@@ -253,14 +256,14 @@ auto whole_at(std::int64_t least, std::int64_t most, Path... path) {
   return value_at("integer", "at least " + std::to_string(least), read, text, path...);
 }
 
-/// A number without a unit.
+/// A number without a unit, within bounds.
 template <class... Path>
 auto number_at(const NumberBounds& bounds, Path... path) {
   const auto read = [=](const StudyValue& value) { return read_number(value, bounds); };
   return value_at("number", bounds.words, read, shortest, path...);
 }
 
-/// A length or an angle.
+/// A quantity of this dimension.
 template <class... Path>
 auto quantity_at(Dimension dimension, Path... path) {
   const auto read = [=](const StudyValue& value) { return value.quantity(dimension); };
@@ -268,7 +271,7 @@ auto quantity_at(Dimension dimension, Path... path) {
   return value_at(std::string(name(dimension)), "", read, text, path...);
 }
 
-/// A length or an angle, above zero.
+/// A quantity of this dimension above zero.
 template <class... Path>
 auto positive_at(Dimension dimension, Path... path) {
   const auto read = [=](const StudyValue& value) { return value.positive_quantity(dimension); };
@@ -276,10 +279,10 @@ auto positive_at(Dimension dimension, Path... path) {
   return value_at(std::string(name(dimension)), "greater than 0", read, text, path...);
 }
 
-/// A value of an enumeration, with its word's meaning; the word is name(value).
+/// A value of an enumeration with its meaning; its word is name(value).
 template <class Enum>
 struct WordFor {
-  Enum value;                ///< what it stands for
+  Enum value;                ///< the value
   std::string_view meaning;  ///< a clause
 };
 
@@ -295,7 +298,7 @@ auto word_at(std::vector<WordFor<Enum>> words, Path... path) {
   return made;
 }
 
-/// What is said of the keys of a table.
+/// The description of a table's keys.
 template <class Object, class Scope>
 StudyTable described(const Keys<Object, Scope>& keys) {
   StudyTable table{keys.paths, keys.meaning, keys.chooser, keys.owner, {}};
@@ -308,7 +311,7 @@ StudyTable described(const Keys<Object, Scope>& keys) {
   return table;
 }
 
-/// The word of the table's chooser that an object has; empty without a chooser.
+/// The word of the table's chooser in an object; empty without a chooser.
 template <class Object, class Scope>
 std::string chosen_word(const Keys<Object, Scope>& keys, const Object& object) {
   if (keys.chooser.empty()) return {};
@@ -316,7 +319,7 @@ std::string chosen_word(const Keys<Object, Scope>& keys, const Object& object) {
   return quoted.substr(1, quoted.size() - 2);
 }
 
-/// The row of this name. Precondition: there is one.
+/// The row of this name. Precondition: it exists.
 template <class Object, class Scope>
 const Key<Object, Scope>& row_of(const Keys<Object, Scope>& keys, std::string_view name) {
   return *std::ranges::find(keys.rows, name, &Key<Object, Scope>::name);
@@ -332,15 +335,15 @@ void read_key(const Key<Object, Scope>& row, const StudyValue& value, Object& ob
   }
 }
 
-/// What a table must and may have.
+/// Which keys a table must have, and may have.
 enum class Extent {
-  complete,  ///< every required key, and none that does not hold for the chooser's word
+  complete,  ///< all required keys, and none that does not apply for the chooser's word
   partial,   ///< required keys may be missing
-  any        ///< and keys that do not hold are read as well
+  any        ///< required keys may be missing, and keys that do not apply are read
 };
 
 /// Reads a table key by key, in the order of its rows. Throws InputError for unknown keys, values out of bounds, and
-/// what `extent` does not allow.
+/// keys that `extent` does not allow.
 template <class Object, class Scope>
 void read_keys(const Keys<Object, Scope>& keys, const StudySection& section, Object& object, const Scope& scope,
                Extent extent = Extent::complete) {
@@ -366,7 +369,7 @@ std::string template_lines(const TemplateLines& lines, std::string_view table, c
   return lines.usual(table, row.name, row.commented ? "# " : "");
 }
 
-/// The same of all keys of a table.
+/// The lines of all keys of a table.
 template <class Object, class Scope>
 std::string template_lines(const TemplateLines& lines, const Keys<Object, Scope>& keys, const Object& object) {
   std::string text;
@@ -374,7 +377,7 @@ std::string template_lines(const TemplateLines& lines, const Keys<Object, Scope>
   return text;
 }
 
-/// The resolved text of a table's keys: "KEY = VALUE" in lines, with every default filled in.
+/// The resolved text of a table's keys: lines "KEY = VALUE" with every default filled in.
 template <class Object, class Scope>
 std::string keys_text(const Keys<Object, Scope>& keys, const Object& object) {
   const std::string word = chosen_word(keys, object);

@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// Tables in tables. Studies have four; a stranger's text may have thousands.
+/// The largest depth of tables in tables. Studies have four; other texts may have thousands.
 constexpr int kDeepest = 16;
 
 /// A key of a table and its value.
@@ -21,7 +21,7 @@ struct Entry {
   const toml::node* value;
 };
 
-/// The entries of a table in the order in which they are written.
+/// The entries of a table in the order of the text.
 std::vector<Entry> entries_of(const toml::table& table) {
   std::vector<Entry> entries;
   for (const auto& [key, value] : table) entries.push_back({key.str(), &value});
@@ -33,7 +33,7 @@ std::vector<Entry> entries_of(const toml::table& table) {
   return entries;
 }
 
-/// A value on one line; "..." in place of what is too deep.
+/// A value on one line, with "..." instead of what is too deep.
 std::string value_text(const toml::node& value, int depth) {
   if (depth == kDeepest) return "...";
   std::string text;
@@ -52,7 +52,7 @@ std::string value_text(const toml::node& value, int depth) {
   if (const auto* integer = value.as_integer()) return std::to_string(integer->get());
   if (const auto* number = value.as_floating_point()) return shortest(number->get());
   if (const auto* boolean = value.as_boolean()) return boolean->get() ? "true" : "false";
-  return "...";  // a date, which no study has
+  return "...";  // a date, which studies do not have
 }
 
 /// Whether a value is a list of sections: [[name]].
@@ -61,7 +61,7 @@ bool is_sections(const toml::node& value) {
   return list != nullptr && list->is_array_of_tables() && !list->front().as_table()->is_inline();
 }
 
-/// Appends what a section sets, and the sections in it. path: its name.
+/// Adds the settings of a section and of the sections in it. path: its name.
 void add_settings(const toml::table& section, const std::string& path, int depth, std::vector<StudySetting>& settings) {
   if (depth == kDeepest) return;
   for (const Entry& entry : entries_of(section)) {

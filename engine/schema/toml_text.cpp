@@ -10,10 +10,10 @@
 namespace poesy {
 namespace {
 
-/// Bounds the depth to which dotted keys nest tables, which the TOML library frees by recursion.
+/// Limits the depth of tables by dotted keys, because the TOML library frees tables by recursion.
 constexpr std::size_t kLongestLine = 16384;
 
-/// The lines of a text, which must outlive them.
+/// The lines of a text, as views of it.
 std::vector<std::string_view> lines_of(std::string_view text, const std::string& path) {
   std::vector<std::string_view> lines;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -40,7 +40,7 @@ toml::table parsed(const std::string& text, const std::string& path, std::string
   }
 }
 
-/// A number as it was written. lines: of the file; begin: where the number stands, its column in characters.
+/// A number as it was written. lines: of the file; begin: its place, with the column in characters.
 std::string_view written_number(const std::vector<std::string_view>& lines, const toml::source_position& begin) {
   if (begin.line == 0 || begin.line > lines.size()) return {};
   std::string_view rest = lines[begin.line - 1];
@@ -55,7 +55,7 @@ bool has_digits(std::string_view number) {
   return number.substr(0, number.find_first_of("eE")).find_first_of("123456789") != std::string_view::npos;
 }
 
-/// Throws for a number that the TOML library took for 0 because it is too small.
+/// Throws for a number that is so small that the TOML library reads it as 0.
 void check_zero(const toml::node& node, std::string_view key, const std::vector<std::string_view>& lines,
                 const std::string& path) {
   const toml::source_position& begin = node.source().begin;
@@ -66,13 +66,13 @@ void check_zero(const toml::node& node, std::string_view key, const std::vector<
                    "write 0, or a number from 1e-307 on");
 }
 
-/// A value of the file and the key under which it stands; elements of a list have the key of the list.
+/// A value of the file with its key; elements of a list have the key of the list.
 struct KeyedNode {
   const toml::node* node;
   std::string_view key;
 };
 
-/// Without recursion: tables may be nested as deep as a line is long.
+/// Checks all numbers, without recursion because tables may be nested deeply.
 void check_numbers(const toml::table& table, const std::vector<std::string_view>& lines, const std::string& path) {
   std::vector<KeyedNode> open{{&table, ""}};
   while (!open.empty()) {

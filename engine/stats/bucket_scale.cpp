@@ -14,24 +14,24 @@ namespace {
 static_assert(std::numeric_limits<double>::is_iec559);
 
 constexpr int kFractionBits = 52;
-/// Bits of the fraction that tell buckets apart below the octave, and in the octave itself.
+/// The bits of the fraction that distinguish buckets below the octave, and in the octave itself.
 constexpr int kCoarseBits = 7;
 constexpr int kEvenBits = kCoarseBits + 1;
 constexpr std::uint64_t kHidden = std::uint64_t{1} << kFractionBits;
 constexpr std::uint64_t kInfinite = std::bit_cast<std::uint64_t>(std::numeric_limits<double>::infinity());
 
-/// A whole number that ascends with the value: -0.0 is below 0.0.
+/// A whole number that increases with the value; -0.0 is below 0.0.
 [[gnu::always_inline]] inline std::int64_t ordinal(double value) {
   const auto bits = std::bit_cast<std::int64_t>(value);
   return bits ^ ((bits >> 63) & std::numeric_limits<std::int64_t>::max());
 }
 
-/// Its own inverse.
+/// The inverse of ordinal(), which is the same operation.
 double with_ordinal(std::int64_t ordinal_number) {
   return std::bit_cast<double>(ordinal(std::bit_cast<double>(ordinal_number)));
 }
 
-/// Precondition: there is a value.
+/// Precondition: there is at least one value.
 POESY_EACH_INSTRUCTION_SET void find_extremes(std::span<const double> values, Extremes& found) {
   std::int64_t min = std::numeric_limits<std::int64_t>::max();
   std::int64_t max = std::numeric_limits<std::int64_t>::min();
@@ -70,12 +70,12 @@ POESY_EACH_INSTRUCTION_SET void fill_keys(std::span<const double> values, std::u
   for (std::size_t k = 0; k < values.size(); ++k) keys[k] = key_of(values[k], octave);
 }
 
-/// Biased.
+/// The biased exponent.
 unsigned exponent_of(double magnitude) {
   return static_cast<unsigned>(std::bit_cast<std::uint64_t>(magnitude) >> kFractionBits);
 }
 
-/// The scale that tells all doubles apart, up to the largest of these magnitudes.
+/// The octave of the scale that distinguishes all doubles, up to the largest of these magnitudes.
 unsigned least_octave(const Extremes& extremes) {
   constexpr unsigned kMostBelow = kFractionBits - kEvenBits;
   unsigned exponent = 0;

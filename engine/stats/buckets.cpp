@@ -12,24 +12,24 @@ namespace poesy {
 namespace {
 
 namespace policies = boost::math::policies;
-/// A quantile of it is the smallest k with P(B <= k) >= p.
+/// The binomial distribution; its quantile p is the smallest k with P(B <= k) >= p.
 using Binomial =
     boost::math::binomial_distribution<double,
                                        policies::policy<policies::discrete_quantile<policies::integer_round_up>>>;
 
-/// Precondition: 1 <= rank <= number of values.
+/// The bucket of this rank. Precondition: 1 <= rank <= number of values.
 const Bucket& bucket_of(std::span<const Bucket> buckets, std::uint64_t rank) {
   return *std::ranges::lower_bound(buckets, rank, {}, &Bucket::up_to);
 }
 
-/// The share of the values in each outermost bin.
+/// The share of the values in each of the two outermost bins.
 constexpr double kTail = 0.0005;
 
 const Bucket& bucket_at(std::span<const Bucket> buckets, double share) {
   return bucket_of(buckets, quantile_rank(share, buckets.back().up_to));
 }
 
-/// Where inner edges are sought.
+/// Inner edges at equal distances, which are then moved to edges of buckets.
 std::vector<double> even_edges(std::span<const Bucket> buckets, std::size_t count) {
   const double first = bucket_at(buckets, kTail).lower;
   const double last = bucket_at(buckets, 1.0 - kTail).upper;
@@ -81,9 +81,9 @@ Histogram histogram(std::span<const Bucket> buckets, std::size_t bins) {
   POESY_EXPECTS(bins >= 3 && !buckets.empty());
   const std::vector<double> even = even_edges(buckets, bins - 1);
   Histogram filled{{buckets.front().lower}, {}};
-  std::uint64_t open = 0;  // in the bin that is being filled
+  std::uint64_t open = 0;  // values in the bin that is being filled
   const auto end_at = [&](double edge) {
-    if (edge <= filled.edges.back()) return;  // it would have no width
+    if (edge <= filled.edges.back()) return;  // the bin would have no width
     filled.edges.push_back(edge);
     filled.counts.push_back(std::exchange(open, 0));
   };
@@ -99,7 +99,7 @@ Histogram histogram(std::span<const Bucket> buckets, std::size_t bins) {
   end_at(last);
   filled.edges.resize(bins + 1, last);
   filled.counts.resize(bins, 0);
-  filled.counts.back() += open;  // where all values are the same
+  filled.counts.back() += open;  // if all values are the same
   return filled;
 }
 

@@ -26,7 +26,7 @@ class Mean {
   std::span<const double> weights_;
 };
 
-/// A monic polynomial with its derivative at each point [n].
+/// A monic polynomial and its derivative at each point [n].
 struct AtPoints {
   std::vector<double> value;
   std::vector<double> slope;
@@ -72,7 +72,7 @@ PolynomialScore::PolynomialScore(std::span<const double> points, std::span<const
 // Stieltjes' procedure (Gautschi 2004, Orthogonal Polynomials, ch. 2.2.3.1), which is stable for so low a degree.
 void PolynomialScore::find_polynomials(std::span<const double> x, std::span<const double> weights, double centre,
                                        std::size_t degree) {
-  constexpr double kNone = 1e-12;  // of the norm before: there are no more points than the degree
+  constexpr double kNone = 1e-12;  // relative to the norm before; below it, the points are no more than the degree
   const std::size_t count = x.size();
   const Mean mean(weights);
   AtPoints before{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
@@ -83,7 +83,7 @@ void PolynomialScore::find_polynomials(std::span<const double> x, std::span<cons
   double ratio = 0.0;
   for (std::size_t k = 0; k < degree; ++k) {
     const double shift = mean([&](std::size_t n) { return x[n] * now.value[n] * now.value[n]; }) / norm;
-    for (std::size_t n = 0; n < count; ++n) {  // the next one takes the place of the one before
+    for (std::size_t n = 0; n < count; ++n) {  // the next polynomial replaces the one before the present
       before.slope[n] = now.value[n] + (x[n] - shift) * now.slope[n] - ratio * before.slope[n];
       before.value[n] = (x[n] - shift) * now.value[n] - ratio * before.value[n];
     }
@@ -134,7 +134,7 @@ double size_of(const ErrorScore& score) {
 void NormalBlock::replace(std::span<double> z) const {
   const std::size_t size = errors.size();
   POESY_EXPECTS(z.size() == size && triangle.size() == size * size);
-  std::vector<double> solution(z.begin(), z.end());  // of L L^T x = z
+  std::vector<double> solution(z.begin(), z.end());  // solution of L L^T x = z
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < i; ++j) solution[i] -= triangle[i * size + j] * solution[j];
     solution[i] /= triangle[i * size + i];

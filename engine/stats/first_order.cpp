@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kGridInBin = 128;
 constexpr std::size_t kFewestBins = 4;
-constexpr double kSamplesForBin = 16.0;  ///< on average; with fewer of them bins are merged
-constexpr double kFewestInBin = 4.0;     ///< in each
+constexpr double kSamplesForBin = 16.0;  ///< average number; with fewer samples bins are merged
+constexpr double kFewestInBin = 4.0;     ///< least number in each bin
 static_assert(kFewestBins * kSamplesForBin == kFewestIndexSamples);
 
 constexpr int kMostBins = static_cast<int>(kEffectBins);
@@ -26,31 +26,31 @@ using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostBin
 double square(double x) { return x * x; }
 double cube(double x) { return x * x * x; }
 
-/// From 0 to 1, slow at both ends: the grid is finest where the quantile function may be infinite.
+/// Maps [0, 1] to [0, 1] with zero slope at both ends: the grid is finest where the quantile function may be infinite.
 double graded(double t) { return square(t) * (3.0 - 2.0 * t); }
 
-/// Samples in some bins of equal probability, and how an error lies in these.
+/// Samples in bins of equal probability, and the distribution of an error in these bins.
 struct Strata {
   Vector count;      ///< [bins] samples
-  Vector mean;       ///< of the response
-  Vector variance;   ///< of the response, sample variance
+  Vector mean;       ///< mean of the response
+  Vector variance;   ///< sample variance of the response
   Vector of_mean;    ///< variance of `mean`
   Vector steps;      ///< 1 / difference of the error between the neighbouring bins; 0 where there is none
   Vector spread;     ///< variance of the error
-  Vector asymmetry;  ///< its third central moment
-  /// Bits of the bins from which the error goes down to the next one, where the halves of a shifted distribution meet:
-  /// these two are no neighbours.
+  Vector asymmetry;  ///< third central moment of the error
+  /// Bits of the bins after which the error decreases, where the halves of a shifted distribution meet. These bins and
+  /// the next ones are not neighbours.
   std::uint32_t ends = 0;
 
   Eigen::Index bins() const { return count.size(); }
   Eigen::Index below(Eigen::Index b) const { return b == 0 || is_end(b - 1) ? b : b - 1; }
   Eigen::Index above(Eigen::Index b) const { return b == bins() - 1 || is_end(b) ? b : b + 1; }
   bool is_end(Eigen::Index b) const { return (ends >> b & 1) != 0; }
-  /// How steeply the response follows the error in a bin.
+  /// The slope of the response over the error in a bin.
   double slope(Eigen::Index b) const { return (mean[above(b)] - mean[below(b)]) * steps[b]; }
 };
 
-/// Two bins become one.
+/// Joins each two neighbouring bins.
 void halve(std::span<BinSums> bins) {
   for (std::size_t b = 0; b < bins.size() / 2; ++b) {
     const BinSums& first = bins[2 * b];
@@ -98,7 +98,7 @@ Strata strata_of(std::span<const BinSums> sums, const BinSpread& spread) {
   return strata;
 }
 
-/// F with mean' F mean the variance of the means of bins.
+/// The matrix F for which mean' F mean is the variance of the bins' means.
 Matrix form_of_steps(Eigen::Index bins) {
   const double share = 1.0 / static_cast<double>(bins);
   Matrix form = Matrix::Constant(bins, bins, -share * share);
@@ -106,7 +106,7 @@ Matrix form_of_steps(Eigen::Index bins) {
   return form;
 }
 
-/// The same and, within each bin, the variance of a straight line over the error.
+/// The same plus the variance of a straight line over the error within each bin.
 Matrix form_of_lines(const Strata& strata) {
   Matrix form = form_of_steps(strata.bins());
   for (Eigen::Index b = 0; b < strata.bins(); ++b) {
@@ -124,7 +124,7 @@ Matrix form_of_lines(const Strata& strata) {
 /// sum of a_ij b_ij v_i v_j.
 double product(const Matrix& a, const Matrix& b, const Vector& v) { return v.dot(a.cwiseProduct(b) * v); }
 
-/// signal and noise of a variance, from the forms of between and total.
+/// Sets signal and noise of a variance, from the matrices of `between` and `total`.
 void set_normal_parts(const Strata& strata, const Matrix& lines, const Matrix& steps, BinnedVariance& found) {
   const Vector& of_mean = strata.of_mean;
   const Vector a = lines * strata.mean;
@@ -138,7 +138,7 @@ void set_normal_parts(const Strata& strata, const Matrix& lines, const Matrix& s
     found.noise[k] = 2.0 * forms[k];
   }
   for (Eigen::Index b = 0; b < strata.bins(); ++b) {
-    // of the sample variance, if normal
+    // variance of the sample variance for a normal
     const double of_variance = 2.0 * square(strata.variance[b]) / (strata.count[b] + 1.0);
     const double in_between = lines(b, b) / strata.count[b];
     const double in_total = 1.0 / static_cast<double>(strata.bins()) - steps(b, b) / strata.count[b];
@@ -148,9 +148,9 @@ void set_normal_parts(const Strata& strata, const Matrix& lines, const Matrix& s
   }
 }
 
-/// tails of a variance. The fourth moment of all samples is known, and hence the sum of E[k4(u)] and 4 E[d k3(u)], with
-/// d the effect and k3, k4 the cumulants within bins; the latter is estimated from the lines, and otherwise as if the
-/// skewness were the same in all bins.
+/// Sets the tails of a variance. The fourth moment of all samples is known, and hence the sum of E[k4(u)] and 4 E[d
+/// k3(u)], where d is the effect and k3, k4 are the cumulants within bins. The second term is estimated from the lines,
+/// and otherwise as if the skewness were the same in all bins.
 void set_tails(const Strata& strata, const Moments& all, BinnedVariance& found) {
   const auto n = static_cast<double>(all.count());
   const double deviation = std::sqrt(all.variance() * (n - 1.0) / n);
@@ -160,7 +160,7 @@ void set_tails(const Strata& strata, const Moments& all, BinnedVariance& found) 
   double fourth = all.kurtosis() * square(square(deviation));
   double third = all.skewness() * cube(deviation);
   double of_lines = 0.0;  // E[d k3(u)]
-  double of_rest = 0.0;   // the same for skewness 1 of what is not on the lines
+  double of_rest = 0.0;   // the same for skewness 1 of the deviations from the lines
   double rest = 0.0;
   for (Eigen::Index b = 0; b < strata.bins(); ++b) {
     const double d = strata.mean[b] - centre;
@@ -185,7 +185,7 @@ double at(const std::array<double, 3>& polynomial, double x) {
   return polynomial[0] + x * (polynomial[1] + x * polynomial[2]);
 }
 
-/// The variance of a sum whose parts have the variances that are added.
+/// The variance of a sum, from the variances of its terms.
 class VarianceOfSum {
  public:
   explicit VarianceOfSum(Dependence dependence) : dependence_(dependence) {}
@@ -280,7 +280,7 @@ Estimate first_order_index(std::span<const BinnedVariance> parts, Dependence dep
     growth.add(4.0 * square(part.total) / static_cast<double>(part.samples));
   }
   // The variance of an estimate grows with the true index S by about 4 (1 - S) (1 - 3 S) / n. So an index S is
-  // compatible if (estimate - S)^2 <= z^2 (variance + growth (S - estimate)), or if noise alone is enough.
+  // compatible if (estimate - S)^2 <= z^2 (variance + growth (S - estimate)), or if noise alone suffices.
   const double z = two_sided_normal_quantile(conf_level);
   const double inside = std::clamp(index, 0.0, 1.0);
   const double shift = 0.5 * square(z / total) * (1.0 - inside) * (1.0 - 3.0 * inside) * growth.value();

@@ -35,23 +35,24 @@ Interval local_interval(const Moments& response, double value, double conf_level
   return {centre * std::exp(-half), centre * std::exp(half)};
 }
 
-/// What the indices x_i of M poses, with variances v_i from sampling, say about mean and spread over the poses.
+/// Statistics of the mean and the spread over M poses, from indices x_i with sampling variances v_i.
 struct PoseStatistics {
   double mean;
   double mean_variance;
   double seen2;            ///< sample variance of the x_i
-  double noise2;           ///< its part that is sampling noise, on average
-  double noise_variance;   ///< variance of seen2 were the true spread zero
+  double noise2;           ///< the average part of it that is sampling noise
+  double noise_variance;   ///< variance of seen2 if the true spread is zero
   double signal_variance;  ///< growth of that variance per unit of true spread^2
-  double covariance;       ///< of mean and seen2
+  double covariance;       ///< covariance of the mean and seen2
 
-  /// Unbiased estimate of the true spread^2; negative when by chance there is less to see than noise.
+  /// Unbiased estimate of the true spread^2; negative if by chance seen2 is below the noise.
   double spread2() const { return seen2 - noise2; }
   double spread() const { return std::sqrt(std::max(spread2(), 0.0)); }
   double spread2_variance() const { return noise_variance + signal_variance * std::max(spread2(), 0.0); }
 };
 
-/// A sample standard deviation is too small by half of v / x on average (second order of the square root).
+/// Corrects the bias of a sample standard deviation, which is too small by half of v / x on average (second order of
+/// the square root).
 double unbiased(const LocalIndex& pose) {
   return pose.value == 0.0 ? 0.0 : pose.value + 0.5 * square(pose.standard_error) / pose.value;
 }
@@ -82,8 +83,8 @@ PoseStatistics statistics_over(std::span<const LocalIndex> poses) {
     vd2_sum += v * square(d);
   }
   const double trace = v2_sum * (1.0 - 2.0 / m) + square(v_sum) / square(m);
-  // mu' A V A mu = (sum of v d^2 over sum of d^2) (M - 1) spread^2: the quotient weighs the v_i by what each pose adds
-  // to the spread and, unlike its noisy numerator, always stays between the smallest and the largest v_i.
+  // mu' A V A mu = (sum of v d^2 over sum of d^2) (M - 1) spread^2. The quotient weights the v_i by each pose's part of
+  // the spread. Unlike its noisy numerator it always lies between the smallest and the largest v_i.
   const double v_of_spread = d2_sum > 0.0 ? vd2_sum / d2_sum : 0.0;
   return {.mean = mean,
           .mean_variance = v_sum / square(m),
@@ -94,17 +95,17 @@ PoseStatistics statistics_over(std::span<const LocalIndex> poses) {
           .covariance = 2.0 * vd_sum / (m * freedom)};
 }
 
-/// Whether noise alone would show at least as much spread with a probability above `level`. Without true spread,
-/// seen2 follows noise2 / f times a chi-square of f = 2 noise2^2 / noise_variance degrees of freedom (Satterthwaite).
+/// Whether noise alone would give at least this spread with a probability above `level`. Without true spread, seen2
+/// follows noise2 / f times a chi-square of f = 2 noise2^2 / noise_variance degrees of freedom (Satterthwaite).
 bool may_be_noise(const PoseStatistics& s, double level) {
   if (s.seen2 == 0.0) return true;
   const double noise4 = square(s.noise2);
-  if (noise4 == 0.0 || s.noise_variance == 0.0) return false;  // either may have underflowed alone
+  if (noise4 == 0.0 || s.noise_variance == 0.0) return false;  // one of them may underflow before the other
   return boost::math::gamma_q(noise4 / s.noise_variance, s.seen2 * s.noise2 / s.noise_variance) > level;
 }
 
-/// The true spreads that the data do not contradict: |spread2() - x^2| <= z sqrt(variance if x were true), which, other
-/// than a variance taken at the estimate, holds near zero spread.
+/// The true spreads x that the data do not contradict: |spread2() - x^2| <= z sqrt(variance if x were true). Unlike an
+/// interval with the variance at the estimate, it is valid near zero spread.
 Interval spread_interval(const PoseStatistics& s, double z) {
   const double middle = s.spread2() + 0.5 * square(z) * s.signal_variance;
   const double under_root =
@@ -113,14 +114,14 @@ Interval spread_interval(const PoseStatistics& s, double z) {
   return {std::sqrt(std::max(middle - half, 0.0)), std::sqrt(std::max(middle + half, 0.0))};
 }
 
-/// Half the interval of mean + spread on one side, from the distances of their own limits (Zou and Donner 2008, with
-/// a correlation).
+/// The distance from mean + spread to one end of its interval, from the distances of both (Zou and Donner 2008, with a
+/// correlation).
 double recovered(double of_mean, double of_spread, double correlation) {
   const double sum = square(of_mean) + square(of_spread) + 2.0 * correlation * of_mean * of_spread;
   return std::sqrt(std::max(sum, 0.0));
 }
 
-/// Mean + spread without sampling noise, and the interval of both. Precondition: every pose is known.
+/// Mean + spread without sampling noise, and the interval of this sum. Precondition: every pose is known.
 Estimate without_noise(std::span<const LocalIndex> poses, double conf_level) {
   const double z = two_sided_normal_quantile(conf_level);
   const PoseStatistics s = statistics_over(poses);
@@ -137,7 +138,7 @@ Estimate without_noise(std::span<const LocalIndex> poses, double conf_level) {
   return {centre, {std::max(low, 0.0), centre + up}};
 }
 
-/// Whether every pose has an index and a standard error, and there is one.
+/// Whether there is a pose, and every pose has an index and a standard error.
 bool is_known(std::span<const LocalIndex> poses) {
   return !poses.empty() && std::ranges::all_of(poses, [](const LocalIndex& pose) {
     return std::isfinite(pose.value) && std::isfinite(pose.standard_error);
@@ -187,7 +188,7 @@ double index_rounding(double response_rounding, double sigma) {
 }
 
 double size_rounding(double response_rounding, double linear, double angular) {
-  return std::max(response_rounding, kIndexRounding * std::fmax(linear, angular));  // fmax passes over NaN
+  return std::max(response_rounding, kIndexRounding * std::fmax(linear, angular));  // fmax ignores NaN
 }
 
 double joint_rounding(double response_rounding, std::span<const double> sigma) {

@@ -35,7 +35,7 @@ double ErrorRange::below(double e) const {
 }
 
 LinearLimit with_fewest_rows(const LinearLimit& limit) {
-  constexpr double kLeast = 1e-12;  // of the largest, as a square
+  constexpr double kLeast = 1e-12;  // relative to the largest, as a square
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const auto rows = static_cast<Eigen::Index>(limit.rows);
   if (rows == 1) return limit;
@@ -68,7 +68,7 @@ LinearLimits::Machines LinearLimits::machines(std::span<const double> errors, st
   Machines found{std::vector<std::uint8_t>(block), std::vector<double>(errors.size(), -kFar),
                  std::vector<double>(errors.size(), kFar)};
   for (const LinearLimit& limit : limits_) add_limit(limit, errors, reach, found);
-  // So far by how much an error may move.
+  // At this point the range is in terms of the error's change.
   for (std::size_t k = 0; k < errors.size(); ++k) {
     found.low[k] += errors[k];
     found.high[k] += errors[k];
@@ -105,7 +105,7 @@ void LinearLimits::add_limit(const LinearLimit& limit, std::span<const double> e
     for (std::size_t k = 0; k < limit.rows; ++k) {
       slope2 += limit.slope[k * errors_ + p] * limit.slope[k * errors_ + p];
     }
-    if (std::sqrt(largest) + std::sqrt(slope2) * reach[p] <= limit.most) continue;  // no machine can come to the limit
+    if (std::sqrt(largest) + std::sqrt(slope2) * reach[p] <= limit.most) continue;  // no machine can reach the limit
     std::ranges::fill(product, 0.0);
     for (std::size_t k = 0; k < limit.rows; ++k) {
       const double slope = limit.slope[k * errors_ + p];

@@ -14,7 +14,7 @@ void add(Rejects& to, const Rejects& rejects) {
   to.lenient += rejects.lenient;
 }
 
-/// The first one takes the sizes of the second one where it has none.
+/// Adds counts. An empty array first takes the lengths of the other.
 template <NamedAxis... Axes>
 void add(Array<Rejects, Axes...>& to, const Array<Rejects, Axes...>& rejects) {
   if (to.empty()) make_room(rejects.lengths(), to);
@@ -22,22 +22,23 @@ void add(Array<Rejects, Axes...>& to, const Array<Rejects, Axes...>& rejects) {
   for (std::size_t k = 0; k < to.size(); ++k) add(to.all()[k], rejects.all()[k]);
 }
 
-/// Rejects among these; a strict reject that is no lenient one has a sample that does not count.
+/// Reads or writes rejects, checked against those of all machines. A machine that is rejected only strictly has a
+/// sample that does not count.
 void rejects_state(Archive& archive, Rejects& rejects, const Rejects& among, std::uint64_t unsolved) {
   archive.number(rejects.strict, among.strict);
   archive.number(rejects.lenient, std::min(among.lenient, rejects.strict));
   archive.expect(rejects.strict - rejects.lenient <= unsolved, "has rejects without a reason");
 }
 
-/// What one response of some machines does at a pose: which keep its limit, and what it adds to their largest
-/// magnitudes and sums of squares. Machines whose sample does not count are left as they are.
+/// Adds one response at a pose to the results of some machines: whether they keep the limit, their largest magnitudes
+/// and sums of squares. Machines whose sample does not count are left unchanged.
 struct ResponseAtPose {
   std::span<const double> values;
   std::span<const std::uint8_t> counts;
   double limit;
   std::span<double> largest;
   std::span<double> squares;
-  std::span<std::uint8_t> beyond;  ///< 1 from the first pose on at which the limit is broken
+  std::span<std::uint8_t> beyond;  ///< 1 if the limit is broken at this pose or an earlier one
 
   Rejects add() const {
     std::uint64_t broken = 0;

@@ -8,73 +8,71 @@
 #include "engine/base/archive.h"
 #include "engine/base/array.h"
 
-/// Machines that are built once and used at all poses: a machine is one set of errors, and it is good if it keeps every
-/// limit at every pose. The machines of a block are its samples.
+/// Machines that are used at all poses. A machine is one set of errors, and it is good if it keeps every limit at every
+/// pose. The machines of a block are its samples.
 namespace poesy {
 
-/// Machines that are rejected, or samples at one pose.
+/// Numbers of rejected machines, or of rejected samples at one pose.
 struct Rejects {
-  std::uint64_t strict = 0;   ///< a sample that does not count (not solved) is a reject
-  std::uint64_t lenient = 0;  ///< a sample that does not count is no reject; at most as many
+  std::uint64_t strict = 0;   ///< samples that do not count (not solved) are rejects
+  std::uint64_t lenient = 0;  ///< samples that do not count are not rejects; at most `strict`
 
-  friend bool operator==(const Rejects&, const Rejects&) = default;  ///< Both.
+  friend bool operator==(const Rejects&, const Rejects&) = default;  ///< Whether both are equal.
 };
 
-/// How many machines are good. A response without a limit rejects no machine but, strictly, those with a sample that
-/// does not count, because its limit is infinite.
+/// The numbers of rejected machines. A response without a limit has an infinite one, so it rejects only machines with a
+/// sample that does not count, and these only strictly.
 struct MachineCounts {
-  std::uint64_t machines = 0;               ///< that were tried
+  std::uint64_t machines = 0;               ///< machines that were tried
   std::uint64_t unsolved = 0;               ///< machines with a sample that does not count, at one pose or more
   Rejects all;                              ///< machines that break any limit at any pose
   Array<Rejects, axis::Response> by_limit;  ///< machines that break this limit at any pose
   Array<Rejects, axis::Response, axis::Pose> at_pose;  ///< machines that break this limit at this pose
 
-  /// Both together; exact, so in any order. One of no machines has no sizes and takes those of the other one.
+  /// Adds the counts of other machines, in any order. An empty object takes the lengths of the other.
   void merge(const MachineCounts& other);
 
-  /// Of no machines, with room for so many responses and poses.
+  /// Counts of zero machines, with room for these responses and poses.
   static MachineCounts of_none(std::size_t responses, std::size_t poses);
-  void state(Archive& archive);  ///< Every count, of lists that have their lengths.
+  void state(Archive& archive);  ///< Reads or writes every count. Precondition: the lists have their lengths.
 
-  friend bool operator==(const MachineCounts&, const MachineCounts&) = default;  ///< All counts.
+  friend bool operator==(const MachineCounts&, const MachineCounts&) = default;  ///< Whether all counts are equal.
 };
 
-/// Some machines, to which the outcomes of one pose after another are added. Memory: 17 bytes for each response of a
-/// machine, whatever the number of poses.
-/// A machine with a sample that does not count at any pose is rejected (strict), and has neither a largest magnitude
-/// nor a root mean square: both are NaN, because what is known of the other poses alone would flatter it. solved() says
-/// which machines these are. Leave them out of distributions, and say how many there are (MachineCounts::unsolved).
+/// Collects the outcomes of a block of machines, pose after pose. It takes 17 bytes for each response of a machine,
+/// whatever the number of poses. A machine with a sample that does not count at some pose is rejected (strict). Its
+/// largest magnitude and root mean square are NaN, because those over the other poses would flatter it. Leave these
+/// machines, which solved() names, out of distributions and state their number (MachineCounts::unsolved).
 class MachineBlock {
  public:
-  /// limits: on the magnitude of each response, infinite for none. A value equal to its limit keeps it. machines: how
-  /// many. Precondition: limits >= 0.
+  /// limits: [R] on the magnitude of each response, >= 0, infinite for none; a value equal to its limit keeps it.
+  /// machines: their number.
   MachineBlock(std::span<const double> limits, std::size_t machines);
 
-  /// Adds the outcomes at the next pose. responses: along responses and machines, row-major as OutcomeBlock has them.
-  /// counts: of each machine 1 where the sample counts, and 0 where it does not; its responses are then not looked at.
+  /// Adds the outcomes at the next pose. responses: [R x B], row-major as in OutcomeBlock. counts: [B] 1 if the sample
+  /// counts; 0 if not, and its responses are ignored.
   void add_pose(std::span<const double> responses, std::span<const std::uint8_t> counts);
 
-  std::size_t machines() const { return solved_.size(); }  ///< Number of them.
-  std::size_t poses() const { return at_pose_.size(); }    ///< Those that were added.
-  MachineCounts counts() const;                            ///< Over the poses that were added.
+  std::size_t machines() const { return solved_.size(); }  ///< The number of machines.
+  std::size_t poses() const { return at_pose_.size(); }    ///< The number of poses that were added.
+  MachineCounts counts() const;                            ///< The counts over these poses.
 
-  /// Of each machine 1 if it is rejected (strict), else 0: what ScoreSums takes.
+  /// [B] 1 if the machine is rejected (strict), else 0; input of ScoreSums.
   std::vector<std::uint8_t> rejected() const;
-  /// Of each machine 1 where each of its samples counts, else 0: what MainEffectSums takes with numbers of whole
-  /// machines.
+  /// [B] 1 if all samples of the machine count, else 0; input of MainEffectSums for numbers of whole machines.
   std::span<const std::uint8_t> solved() const { return solved_; }
-  /// Largest magnitudes over the poses; NaN where the machine is not solved at each of them.
+  /// Largest magnitudes over the poses; NaN if the machine is not solved at each of them.
   Array<double, axis::Response, axis::Sample> largest() const;
-  /// Root mean squares over the poses; NaN likewise. Precondition: poses() > 0.
+  /// Root mean squares over the poses; NaN if the machine is not solved at each of them. Precondition: poses() > 0.
   Array<double, axis::Response, axis::Sample> root_mean_square() const;
 
  private:
-  std::vector<double> limits_;                                ///< of each response
-  std::vector<std::uint8_t> solved_;                          ///< of each machine 1 where each sample counts
-  Array<double, axis::Response, axis::Sample> largest_;       ///< of the poses where the machine is solved
-  Array<double, axis::Response, axis::Sample> squares_;       ///< sums, likewise
-  Array<std::uint8_t, axis::Response, axis::Sample> beyond_;  ///< 1 where the limit is broken at a pose
-  std::vector<std::vector<Rejects>> at_pose_;                 ///< of each response at each pose, pose by pose
+  std::vector<double> limits_;                           ///< [R]
+  std::vector<std::uint8_t> solved_;                     ///< [B] 1 if all samples of the machine count
+  Array<double, axis::Response, axis::Sample> largest_;  ///< over the poses where the machine is solved
+  Array<double, axis::Response, axis::Sample> squares_;  ///< sums of squares over the poses where the machine is solved
+  Array<std::uint8_t, axis::Response, axis::Sample> beyond_;  ///< 1 if the limit is broken at some pose
+  std::vector<std::vector<Rejects>> at_pose_;                 ///< [poses][R]
 };
 
 }  // namespace poesy

@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::size_t kTogether = EffectRow{}.size() / 2;  ///< responses in a row
 
-/// Samples that are added in one go: their rows, and the sums of a few errors, fit the nearest cache.
+/// The number of samples that are added together: their rows, and the sums of a few errors, fit the nearest cache.
 constexpr std::size_t kPiece = 256;
 
-/// Adds each row to the row of its bin, for each of some errors. bins: of the first error; those of the next one are
-/// `stride` further on. sums: [errors x bins].
-/// Four errors at a time, because a row of sums is then not wanted again before it is written.
+/// Adds each row to the row of its bin, for each error. bins: of the first error; those of the next error are `stride`
+/// positions further. sums: [errors x bins]. Four errors are added at a time, so that a row of sums is not read again
+/// before it is written.
 POESY_EACH_INSTRUCTION_SET void add_rows(std::span<const EffectRow> rows, const std::uint8_t* bins, std::size_t stride,
                                          std::size_t errors, EffectRow* sums) {
   const auto add = [&](const EffectRow& row, std::size_t error, std::size_t sample) {
@@ -40,7 +40,7 @@ POESY_EACH_INSTRUCTION_SET void add_rows(std::span<const EffectRow> rows, const 
   }
 }
 
-/// One response of the samples that count.
+/// The values of the samples that count.
 std::vector<double> only_counting(std::span<const double> values, std::span<const std::uint8_t> counts) {
   std::vector<double> kept;
   kept.reserve(values.size());

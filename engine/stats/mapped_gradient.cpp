@@ -7,13 +7,13 @@
 namespace poesy {
 namespace {
 
-/// The slope by ln t is that between sizes which differ by this share on either side.
+/// The relative step for the derivative by ln t, a central difference.
 constexpr double kStep = 1e-3;
 
-/// What the probability to be in a range changes by with the size of the error.
+/// The change of the probability to be in a range with the size of the error.
 struct RangeChange {
-  double slope;   ///< by ln t
-  double growth;  ///< by the factor kErrorGrowth
+  double slope;   ///< derivative by ln t
+  double growth;  ///< change for the factor kErrorGrowth
 };
 
 RangeChange change_in(const ErrorRange& error, double low, double high) {
@@ -24,7 +24,7 @@ RangeChange change_in(const ErrorRange& error, double low, double high) {
 
 Estimate estimate_of(const PowerSums& powers, std::uint64_t machines, const ScoreMoments& score, double conf_level) {
   const auto n = static_cast<double>(machines);
-  const ScoreMoments added{kAddedRejects * score.square / n, 0.0};  // rejected too often or too seldom
+  const ScoreMoments added{kAddedRejects * score.square / n, 0.0};  // extra machines that the map judges wrongly
   return skewed_mean(powers, machines, added, n - 1.0, conf_level);
 }
 

@@ -12,38 +12,38 @@
 
 namespace poesy {
 
-/// An error whose part in the yield is told by way of linear limits.
+/// An error whose effect on the yield is found by linear limits.
 struct MappedError {
-  ErrorRange range;       ///< its values
-  PolynomialScore score;  ///< of degree 2, for what is not linear
+  ErrorRange range;       ///< distribution of the error
+  PolynomialScore score;  ///< of degree 2, for the nonlinear rest
 };
 
-/// The gradient of the yield by errors of any shape, with the help of a map that tells to first order which machines
-/// are good. With G = 1 for a good machine, H = 1 for one that is good by the map, and t the size of an error,
+/// The gradient of the yield by errors of any shape, with a linear map that predicts which machines are good. With G =
+/// 1 for a good machine, H = 1 for one that the map predicts to be good, and t the size of an error,
 ///
 ///     dP(G)/dt = dP(H)/dt + d(P(G) - P(H))/dt
 ///
-/// The first term is a mean over machines of what the probability that the error is in the machine's own range, in
-/// which H = 1, changes by: no machine is counted that crosses the limit by chance. The second one is -E[(reject -
-/// reject by the map) S] / t as ScoreSums has it, but of the few machines that both judge differently, so it hardly has
-/// noise, and what the score leaves out is a part of little. Both are unbiased as far as the score is, whatever the map
-/// is: a bad map costs noise.
+/// The first term is a mean over machines: the change of the probability that the error is in the machine's range in
+/// which H = 1. It does not depend on whether a machine crosses the limit by chance. The second term is -E[(reject -
+/// reject by the map) S] / t as in ScoreSums, but only of the few machines that are judged differently. So it has
+/// little noise, and the part that the score leaves out is small. Both terms are as unbiased as the score, for any map:
+/// a bad map adds noise.
 class MappedGradient {
  public:
-  /// errors: [P], none where the gradient by an error is not wanted.
+  /// errors: [P], none if the gradient by an error is not wanted.
   MappedGradient(LinearLimits limits, std::vector<std::optional<MappedError>> errors);
 
   /// Adds B machines. errors: [P x B], SI. rejected: [B] 1 or 0.
   void add(std::span<const double> errors, std::span<const std::uint8_t> rejected);
 
-  std::uint64_t machines() const { return machines_; }    ///< That were added.
-  std::uint64_t misjudged() const { return misjudged_; }  ///< Of these, those of which the map says something else.
+  std::uint64_t machines() const { return machines_; }    ///< The number of machines that were added.
+  std::uint64_t misjudged() const { return misjudged_; }  ///< The number of these that the map judges wrongly.
 
   /// dY/dt by one error. The interval is skewed_mean() over the machines, with the second and third moments of four
-  /// machines in addition that the map judges wrongly, with any error. Preconditions: it is a MappedError; 0 <
+  /// more machines that the map judges wrongly, with any error. Preconditions: the error is a MappedError; 0 <
   /// conf_level < 1.
   Estimate gradient(std::size_t error, double conf_level) const;
-  /// What Y changes by while t grows by the factor kErrorGrowth. Likewise.
+  /// The change of Y if t grows by the factor kErrorGrowth, with the interval and preconditions of gradient().
   Estimate change(std::size_t error, double conf_level) const;
 
  private:
@@ -53,7 +53,7 @@ class MappedGradient {
   std::uint64_t machines_ = 0;
   std::uint64_t misjudged_ = 0;
   std::vector<PowerSums> slope_;   ///< [P] of t dY/dt
-  std::vector<PowerSums> growth_;  ///< [P]
+  std::vector<PowerSums> growth_;  ///< [P] of the change
 };
 
 }  // namespace poesy

@@ -9,13 +9,13 @@
 namespace poesy {
 namespace {
 
-/// Of the variance of a slope that least squares state; see mean_square_shares.h.
+/// The factor on the variance of a slope that least squares state; see mean_square_shares.h.
 constexpr double kSquaredRest = 5.0;
 
 /// Sums over the rows of a vector.
 struct Sums {
-  double square = 0.0;  ///< of the slope of one error
-  double noise = 0.0;   ///< of its variance
+  double square = 0.0;  ///< sum of the squared slopes of one error
+  double noise = 0.0;   ///< sum of the variances of these slopes
 };
 
 Sums sums_of(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t error) {
@@ -28,7 +28,7 @@ Sums sums_of(const LinearFit& fit, std::span<const std::size_t> rows, std::size_
   return sums;
 }
 
-/// What two correlated errors add to the mean square beside what each adds.
+/// The part of the mean square that belongs to two correlated errors together.
 double together(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t p, std::size_t q) {
   double sum = 0.0;
   for (const std::size_t k : rows) sum += fit.slope[k * fit.errors + p] * fit.slope[k * fit.errors + q];

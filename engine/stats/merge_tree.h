@@ -11,29 +11,29 @@
 
 namespace poesy {
 
-/// Merges numbered leaves in an order that their numbers alone decide: leaves 8k, 8k + 1, ... 8k + 7 one after the
-/// other, eight such branches likewise, and so on. So a sum of floating-point numbers has the same bits however the
-/// leaves were divided into ranges, if the ranges are put together in their order. Holds one sum for each octal digit
-/// of the number of leaves, and up to seven more for each where it does not begin at leaf 0. Sum is a value with
-/// merge(const Sum&), whose argument holds later leaves.
+/// Merges numbered leaves in an order that depends only on their numbers: leaves 8k, 8k + 1, ... 8k + 7 one after the
+/// other, then eight such branches, and so on. So a sum of floating-point numbers has the same bits however the leaves
+/// were divided into ranges, if the ranges are merged in order. It has one sum for each octal digit of the number of
+/// leaves, and up to seven more for each digit if it does not begin at leaf 0. Sum is a value with merge(const Sum&),
+/// whose argument has later leaves.
 template <class Sum>
 class MergeTree {
  public:
-  /// Some leaves, merged: a whole branch, or the first few branches of a larger one.
+  /// Merged leaves: a whole branch, or the first branches of a larger one.
   struct Node {
-    std::size_t first;   ///< leaf; a multiple of the leaves of the branch, or of the larger one
-    std::size_t leaves;  ///< a power of eight, times 2 to 7 where the node is of several branches
-    Sum sum;             ///< of these leaves
+    std::size_t first;   ///< the first leaf; a multiple of the leaves of the branch, or of the larger one
+    std::size_t leaves;  ///< a power of eight, times 2 to 7 if the node has several branches
+    Sum sum;             ///< sum of these leaves
   };
 
-  /// Sums that are held at most of so many leaves, from leaf 0 on.
+  /// The largest number of sums for this many leaves from leaf 0 on.
   static constexpr std::size_t most_nodes(std::size_t leaves) {
     std::size_t digits = 0;
     for (; leaves > 0; leaves /= kBranches) ++digits;
     return digits;
   }
 
-  /// The next leaves. Precondition: they come right after those that are here, if any are.
+  /// Adds the next leaves. Precondition: they follow those that are already there, if any.
   void add(Node node) {
     POESY_EXPECTS(nodes_.empty() || node.first == end());
     nodes_.push_back(std::move(node));
@@ -44,15 +44,15 @@ class MergeTree {
       nodes_.pop_back();
     }
   }
-  /// One more leaf.
+  /// Adds one leaf.
   void add(std::size_t leaf, Sum sum) { add(Node{leaf, 1, std::move(sum)}); }
 
   bool empty() const { return nodes_.empty(); }                             ///< Whether no leaf was added.
-  std::size_t first() const { return empty() ? 0 : nodes_.front().first; }  ///< The first leaf; 0 where there is none.
+  std::size_t first() const { return empty() ? 0 : nodes_.front().first; }  ///< The first leaf; 0 if there are none.
   /// The number of the leaf after the last.
   std::size_t end() const { return empty() ? 0 : nodes_.back().first + nodes_.back().leaves; }
 
-  /// All leaves together, from the last node on, which is the smallest. Precondition: there is a leaf.
+  /// The sum of all leaves, merged from the last node, the smallest, to the first. Precondition: there is a leaf.
   Sum total() && {
     POESY_EXPECTS(!empty());
     while (nodes_.size() > 1) {
@@ -62,17 +62,17 @@ class MergeTree {
     return std::move(nodes_.front().sum);
   }
 
-  /// The same of a copy.
+  /// The same for a copy.
   Sum total() const& {
     MergeTree copy = *this;
     return std::move(copy).total();
   }
 
-  /// The nodes, from the first leaves on.
+  /// The nodes, in the order of their leaves.
   std::span<const Node> nodes() const { return nodes_; }
 
-  /// Every node. Where they are read, they are added, as those of the next leaves, up to leaf `end_of_all`. none: a sum
-  /// of no leaves, which is only looked at there.
+  /// Reads or writes every node. What is read is added as the next leaves, up to leaf `end_of_all`. none: an empty sum,
+  /// a pattern for what is read.
   void state(Archive& archive, std::size_t end_of_all, const Sum& none) {
     std::uint64_t count = nodes_.size();
     archive.number(count);
@@ -91,7 +91,7 @@ class MergeTree {
  private:
   static constexpr std::size_t kBranches = 8;
 
-  /// The leaves of the largest branch of which so many leaves are a multiple. Precondition: leaves > 0.
+  /// The leaves of the largest branch that divides this number of leaves. Precondition: leaves > 0.
   static std::size_t branch_of(std::size_t leaves) {
     std::size_t branch = 1;
     for (; leaves % kBranches == 0; leaves /= kBranches) branch *= kBranches;
@@ -109,7 +109,7 @@ class MergeTree {
     archive.expect(is_node(node.first, node.leaves), "has sums of no whole branch");
     archive.object(node.sum);
   }
-  /// Whether b is the branch that follows the first ones, a, of the same larger branch.
+  /// Whether b is the next branch after a in the same larger branch.
   static bool goes_on(const Node& a, const Node& b) {
     const bool is_branch = branch_of(b.leaves) == b.leaves;
     return is_branch && branch_of(a.leaves) == b.leaves && a.first % (b.leaves * kBranches) == 0;

@@ -15,8 +15,8 @@
 namespace poesy {
 namespace {
 
-/// Eight sums, so that an addition need not wait for the one before, and that they make whole vectors. Value k goes to
-/// sum k mod 8 on every instruction set.
+/// The number of partial sums. With eight, an addition need not wait for the previous one, and they fill whole vectors.
+/// Value k is added to sum k mod 8 on every instruction set.
 constexpr std::size_t kSums = 8;
 using Sums = std::array<double, kSums>;
 
@@ -76,11 +76,11 @@ Moments Moments::of(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
   const double mean = sum_of(values) / n;
   const auto [m1, m2, m3, m4] = power_sums(values, mean);
-  // The mean was rounded by shift; the moments about the mean follow from those about the rounded one.
+  // shift is the rounding error of the mean; it corrects the moments about the mean.
   const double shift = m1 / n;
   moments.count_ = values.size();
   moments.mean_ = mean + shift;
-  moments.m2_ = std::max(0.0, m2 - n * shift * shift);  // rounding may not leave less than nothing
+  moments.m2_ = std::max(0.0, m2 - n * shift * shift);  // rounding must not make it negative
   moments.m3_ = m3 - 3.0 * shift * m2 + 2.0 * n * shift * shift * shift;
   moments.m4_ = m4 - 4.0 * shift * m3 + 6.0 * shift * shift * m2 - 3.0 * n * shift * shift * shift * shift;
   return moments;
@@ -134,7 +134,7 @@ double sample_mean_square(double mean, double standard_deviation, double count) 
 }
 
 double root_mean_square(double mean, double standard_deviation, std::uint64_t count) {
-  const double spread = count < 2 ? 0.0 : standard_deviation;  // a single value has none
+  const double spread = count < 2 ? 0.0 : standard_deviation;  // zero for a single value
   return std::sqrt(sample_mean_square(mean, spread, static_cast<double>(count)));
 }
 

@@ -7,7 +7,7 @@
 
 namespace poesy {
 
-/// A confidence interval; NaN at both ends where there are too few samples.
+/// A confidence interval; NaN at both ends if there are too few samples.
 struct Interval {
   double low;   ///< lower end
   double high;  ///< upper end
@@ -15,30 +15,30 @@ struct Interval {
 
 /// An estimate with its interval.
 struct Estimate {
-  double value;       ///< what is estimated
-  Interval interval;  ///< of the value, at the level that was asked for
+  double value;       ///< the estimate
+  Interval interval;  ///< the interval of the value, at the wanted level
 };
 
 /// Count, mean and central moments to fourth order of a stream of numbers, in one pass and mergeable
 /// (Welford; Chan et al. 1983; Pebay 2008, Sandia report SAND2008-6212, Eqs. 1.1-1.7, 2.1-2.4).
 class Moments {
  public:
-  void add(double value);  ///< The order changes rounding only.
-  /// The moments of a block of numbers that is in memory: twice over it, faster than adding them one by one.
+  void add(double value);  ///< Adds a value. The order changes only rounding.
+  /// The moments of numbers in memory, computed in two passes, which is faster than adding them one by one.
   static Moments of(std::span<const double> values);
-  /// The moments of both streams together. Merging in the same order gives the same bits.
+  /// Adds the moments of a later stream. Merging in the same order gives the same bits.
   void merge(const Moments& other);
 
-  std::uint64_t count() const { return count_; }  ///< Values.
-  double mean() const { return mean_; }           ///< 0 when empty.
-  double variance() const;                        ///< Sample variance, divided by count - 1; NaN below two values.
-  double standard_deviation() const;              ///< Of the sample (n - 1); NaN with fewer than two values.
-  /// Skewness m3 / m2^(3/2) of the sample (0 for what is symmetric); NaN when the variance is zero or undefined.
+  std::uint64_t count() const { return count_; }  ///< The number of values.
+  double mean() const { return mean_; }           ///< The mean; 0 when empty.
+  double variance() const;                        ///< The sample variance, divided by count - 1; NaN below two values.
+  double standard_deviation() const;              ///< The square root of the sample variance; NaN below two values.
+  /// The skewness m3 / m2^(3/2) of the sample (0 for a symmetric one); NaN if the variance is zero or undefined.
   double skewness() const;
-  /// Kurtosis m4 / m2^2 of the sample (3 for a normal); NaN when the variance is zero or undefined.
+  /// The kurtosis m4 / m2^2 of the sample (3 for a normal); NaN if the variance is zero or undefined.
   double kurtosis() const;
 
-  void state(Archive& archive);  ///< Every bit of it.
+  void state(Archive& archive);  ///< Reads or writes every bit.
 
  private:
   std::uint64_t count_ = 0;
@@ -48,51 +48,51 @@ class Moments {
   double m4_ = 0.0;  ///< sum of (x - mean)^4
 };
 
-/// The mean square of `count` values with this mean and sample standard deviation; NaN where that is.
+/// The mean square of `count` values with this mean and sample standard deviation; NaN if one of these is NaN.
 double sample_mean_square(double mean, double standard_deviation, double count);
 
 /// The root mean square of `count` values with this mean and sample standard deviation; NaN without values.
 double root_mean_square(double mean, double standard_deviation, std::uint64_t count);
 
-/// What a standard error with so many degrees of freedom is multiplied by on either side of a two-sided interval
-/// (Student's t). Preconditions: freedom > 0, 0 < conf_level < 1.
+/// The half-width of a two-sided interval over the standard error, for this many degrees of freedom (Student's t).
+/// Preconditions: freedom > 0, 0 < conf_level < 1.
 double student_quantile(double freedom, double conf_level);
 
-/// The z for which a standard normal lies within +-z with this probability: 1.96 for 0.95.
-/// Precondition: 0 < conf_level < 1.
+/// The z for which a standard normal is within +-z with this probability: 1.96 for 0.95. Precondition: 0 < conf_level <
+/// 1.
 double two_sided_normal_quantile(double conf_level);
-/// The same of Student's distribution. Precondition: freedom > 0, degrees of freedom.
+/// The same for Student's distribution. freedom: degrees of freedom, > 0.
 double two_sided_student_quantile(double freedom, double conf_level);
 
 /// Student's interval for a mean: mean +- t(n - 1) s / sqrt(n). NaN at both ends below two samples.
 /// Precondition: 0 < conf_level < 1.
 Interval mean_interval(const Moments& moments, double conf_level);
 
-/// mean_interval() of many: Student's quantile, which takes most of its time, is worked out once for samples of the
-/// same number one behind the other.
+/// Computes mean_interval() of many moments. Student's quantile, which takes most of the time, is reused while the
+/// number of samples stays the same.
 class MeanIntervals {
  public:
   explicit MeanIntervals(double conf_level) : conf_level_(conf_level) {}  ///< Precondition: 0 < conf_level < 1.
-  Interval of(const Moments& moments);                                    ///< The same bits as mean_interval().
+  Interval of(const Moments& moments);  ///< The interval, with the same bits as mean_interval().
 
  private:
   double conf_level_;
-  std::uint64_t count_ = 0;  ///< samples of which quantile_ is
+  std::uint64_t count_ = 0;  ///< number of samples for which quantile_ was computed
   double quantile_ = 0.0;
 };
 
-/// Samples of M groups by their numbers, means and sample standard deviations, [M] each.
+/// Samples of M groups, by their numbers, means and sample standard deviations.
 struct Groups {
-  std::span<const std::uint64_t> count;  ///< [groups] samples
-  std::span<const double> mean;          ///< [groups] their mean
-  std::span<const double> std;           ///< [groups] their sample standard deviation
+  std::span<const std::uint64_t> count;  ///< [M] samples
+  std::span<const double> mean;          ///< [M] their mean
+  std::span<const double> std;           ///< [M] their sample standard deviation
 };
 
-/// The mean of all samples of all groups together, with its interval when the groups are fixed and only what is in them
-/// was drawn (stratified sampling; Cochran 1977, Sampling Techniques, Eqs. 5.7 and 5.16): a variance of
-/// sum of n_m s_m^2 / N^2, and Student's quantile with Satterthwaite's degrees of freedom. For one group that of
-/// mean_interval. Groups without a sample do not count; one of a single sample gives NaN at both ends.
-/// Precondition: 0 < conf_level < 1.
+/// The mean of all samples of all groups together. Its interval takes the groups as fixed and only the samples in them
+/// as drawn (stratified sampling; Cochran 1977, Sampling Techniques, Eqs. 5.7 and 5.16): with the variance sum of n_m
+/// s_m^2 / N^2 and Student's quantile with Satterthwaite's degrees of freedom. For one group it is mean_interval().
+/// Groups without a sample do not count; a group of a single sample gives NaN at both ends. Precondition: 0 <
+/// conf_level < 1.
 Estimate stratified_mean(const Groups& groups, double conf_level);
 
 }  // namespace poesy

@@ -13,10 +13,10 @@ namespace {
 /// The buckets of a sign between the smallest and the largest magnitude.
 struct BucketRange {
   std::uint64_t first = 0;
-  std::uint64_t count = 0;  ///< none where there is no number of this sign
+  std::uint64_t count = 0;  ///< number of buckets; 0 without numbers of this sign
 };
 
-/// A number is stored as a code: 0 for zero, then the buckets above zero, then those below.
+/// The code by which a number is stored: 0 for zero, then the buckets above zero, then those below.
 struct Codes {
   BucketScale scale;
   BucketRange above;
@@ -48,7 +48,7 @@ struct Codes {
   }
 };
 
-/// Their lowest bytes, then their second bytes, and so on: loops over whole vectors on any machine.
+/// Stores the lowest bytes of all codes, then the second bytes, and so on. Loops work on whole vectors on any machine.
 POESY_EACH_INSTRUCTION_SET void to_planes(std::span<const std::uint32_t> codes, std::span<std::byte> planes) {
   for (std::size_t plane = 0; plane * codes.size() < planes.size(); ++plane) {
     std::byte* bytes = planes.data() + plane * codes.size();

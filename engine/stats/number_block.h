@@ -8,22 +8,22 @@
 
 namespace poesy {
 
-/// A block of numbers as a quantile sketch takes it: all that can be worked out without the sketch.
+/// A block of numbers, prepared for a quantile sketch as far as that is possible without the sketch.
 struct NumberBlock {
   NumberBlock() = default;
   explicit NumberBlock(std::span<const double> numbers);  ///< Precondition: all numbers are finite.
 
-  std::vector<double> values;  ///< the numbers; of more than kMostExact some others of the same buckets
-  Extremes extremes;           ///< of the numbers
+  std::vector<double>
+      values;         ///< the numbers; if more than kMostExact, each may be replaced by another of the same bucket
+  Extremes extremes;  ///< extremes of the numbers
 
-  /// Puts few numbers into ascending order, so that a sketch of no others need not do it. Any order gives the same
-  /// quantiles.
+  /// Sorts a small block, so that a sketch without other numbers need not do it. Any order gives the same quantiles.
   void sort_few();
 
-  /// As much of it as a sketch takes: up to kMostExact numbers as they are, of more of them two bytes each (four where
-  /// they fill no kMostPagesSpanned pages on any scale).
+  /// Writes what a sketch needs: up to kMostExact numbers as they are, more as two bytes each (four if they span more
+  /// than kMostPagesSpanned pages on every scale).
   void write(ByteWriter& to) const;
-  static NumberBlock read(ByteReader& from);  ///< Throws BytesError for what no numbers give.
+  static NumberBlock read(ByteReader& from);  ///< Reads a block. Throws BytesError for one that no numbers can give.
 };
 
 }  // namespace poesy

@@ -4,24 +4,23 @@
 
 #include "engine/stats/moments.h"
 
-/// Shares of trials that went one way, such as machines that are good: Clopper and Pearson 1934, Biometrika 26,
-/// 404-413. Their limits are exact: whatever the true share is, they hold it at least as often as they say.
+/// Proportions of trials, such as the share of good machines, with the limits of Clopper and Pearson (1934, Biometrika
+/// 26, 404-413). These are exact: whatever the true proportion, their coverage is at least the level.
 namespace poesy {
 
-/// The share k / n with its two-sided interval: at most (1 - conf_level) / 2 of all runs have it wrong on either side.
-/// Of no trials the share is NaN, and the interval is [0, 1].
-/// Preconditions: k <= n, 0 < conf_level < 1.
+/// The share k / n with its two-sided interval. On either side, at most (1 - conf_level) / 2 of all intervals miss the
+/// true share. Without trials the share is NaN, and the interval is [0, 1]. Preconditions: k <= n, 0 < conf_level < 1.
 Estimate proportion(std::uint64_t k, std::uint64_t n, double conf_level);
 
-/// The one-sided lower limit of the true share: 0 where k = 0. Preconditions as for proportion().
+/// The one-sided lower limit of the true share; 0 if k = 0. Preconditions as for proportion().
 double proportion_at_least(std::uint64_t k, std::uint64_t n, double confidence);
 
-/// The one-sided upper limit of the true share: 1 where k = n. Preconditions as for proportion().
+/// The one-sided upper limit of the true share; 1 if k = n. Preconditions as for proportion().
 double proportion_at_most(std::uint64_t k, std::uint64_t n, double confidence);
 
-/// The smallest number of trials that, if none of them fails, show with this confidence that at least this share of all
-/// trials does not fail: the smallest n with share^n <= 1 - confidence, 1109 for 99.73 % at 95 %.
-/// Preconditions: 0 < share < 1, 0 < confidence < 1.
+/// The least number of trials without a failure that shows, with this confidence, that at least this share of all
+/// trials succeeds: the smallest n with share^n <= 1 - confidence, 1109 for 99.73 % at 95 %. Preconditions: 0 < share <
+/// 1, 0 < confidence < 1.
 std::uint64_t trials_without_failure(double share, double confidence);
 
 }  // namespace poesy

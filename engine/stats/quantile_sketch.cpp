@@ -11,10 +11,10 @@
 namespace poesy {
 namespace {
 
-/// The pages of a scale in which some numbers lie.
+/// The pages of a scale that have numbers.
 class MarkedPages {
  public:
-  /// On the finest scale that fits.
+  /// Finds the pages on the finest scale that fits.
   MarkedPages(std::span<const double> values, const Extremes& extremes) : scale_(finest_fitting(extremes)) {
     for (const std::size_t s : {0U, 1U}) {
       const PageRange range = pages_spanned(extremes, scale_, s == 1);
@@ -53,22 +53,22 @@ class MarkedPages {
 
  private:
   struct Side {
-    std::uint64_t first = 0;  ///< page
+    std::uint64_t first = 0;  ///< first page
     std::vector<std::uint8_t> marks{};
   };
 
   BucketScale scale_;
-  std::array<Side, 2> sides_;  ///< above zero, below
+  std::array<Side, 2> sides_;  ///< sides above and below zero
 };
 
-/// The finest scale on which numbers are counted.
+/// The finest scale that a sketch may use for these numbers.
 BucketScale scale_for(std::span<const double> values, const Extremes& extremes) {
   MarkedPages pages(values, extremes);
   while (pages.count() > QuantileSketch::kMostPages && !pages.scale().is_coarsest()) pages.coarsen();
   return pages.scale();
 }
 
-/// Of the magnitudes of numbers. zeros: whether some are zero.
+/// The extremes of the magnitudes of numbers. zeros: whether some are zero.
 Extremes of_magnitudes(const Extremes& extremes, bool zeros) {
   Extremes folded{.count = extremes.count};
   folded.max = std::max(-extremes.min, extremes.max);
@@ -82,7 +82,7 @@ Extremes of_magnitudes(const Extremes& extremes, bool zeros) {
 std::uint64_t quantile_rank(double q, std::uint64_t n) {
   const auto whole = static_cast<double>(n);
   double k = std::clamp(std::ceil(q * whole), 1.0, whole);
-  // q n may be rounded past a whole number.
+  // Corrects k if q n was rounded up past a whole number.
   if (k > 1.0 && (k - 1.0) / whole >= q) k -= 1.0;
   if (k < whole && k / whole < q) k += 1.0;
   return static_cast<std::uint64_t>(k);
@@ -166,7 +166,7 @@ std::vector<Bucket> QuantileSketch::buckets() const {
   if (keeps_all()) {
     for (const double value : sorted()) {
       if (filled.empty() || filled.back().upper != value) {
-        add(value + 0.0, value + 0.0, 1);  // -0.0 is 0.0
+        add(value + 0.0, value + 0.0, 1);  // turns -0.0 into 0.0
       } else {
         ++filled.back().count;
         ++filled.back().up_to;

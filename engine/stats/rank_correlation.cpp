@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// From 1; equal values share their mean rank.
+/// The ranks of the values, from 1; equal values share their mean rank.
 std::vector<double> mean_ranks(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -27,7 +27,7 @@ std::vector<double> mean_ranks(const std::vector<double>& values) {
   return ranks;
 }
 
-/// Pearson's correlation of two lists of ranks, whose means are both (N + 1) / 2; NaN where one of them does not vary.
+/// Pearson's correlation of two lists of ranks, whose means are both (N + 1) / 2; NaN if one of them does not vary.
 double correlation(const std::vector<double>& x, const std::vector<double>& y) {
   const double mean = 0.5 * static_cast<double>(x.size() + 1);
   double xx = 0.0;
@@ -41,7 +41,7 @@ double correlation(const std::vector<double>& x, const std::vector<double>& y) {
   return xy / std::sqrt(xx * yy);
 }
 
-/// What of x and y is known in both.
+/// The values of x and y at the positions where both are known.
 std::pair<std::vector<double>, std::vector<double>> known(std::span<const double> x, std::span<const double> y) {
   POESY_EXPECTS(x.size() == y.size());
   std::pair<std::vector<double>, std::vector<double>> both;
@@ -53,7 +53,7 @@ std::pair<std::vector<double>, std::vector<double>> known(std::span<const double
   return both;
 }
 
-/// 1, 0 or -1; 0 for what only rounding tells apart, as the effects of errors that are mirror images of each other.
+/// The sign of a - b, but 0 if they differ only by rounding, as effects of mirrored errors do.
 int order(double a, double b) {
   constexpr double kEqual = 1e-9;
   if (std::abs(a - b) < kEqual * std::max(std::abs(a), std::abs(b))) return 0;

@@ -11,7 +11,7 @@ namespace poesy {
 
 void RatioSums::add(std::span<const double> x, std::span<const double> w, std::span<const std::uint8_t> counts) {
   POESY_EXPECTS(x.size() == counts.size() && w.size() == counts.size());
-  constexpr std::size_t kLanes = 8;  // sums of their own, so that the compiler may use vectors
+  constexpr std::size_t kLanes = 8;  // separate sums, so that the compiler may use vectors
   std::array<double, kLanes> sx{};
   std::array<double, kLanes> sw{};
   std::array<double, kLanes> sxx{};
@@ -68,10 +68,11 @@ double RatioSums::value() const { return w_ > 0.0 ? x_ / w_ : kNaN; }
 Estimate RatioSums::estimate(double conf_level) const {
   POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
   if (count_ < 2 || !(w_ > 0.0)) return {value(), {kNaN, kNaN}};
-  if (xx_ == xw_ * value() && xw_ == ww_ * value()) return {value(), {value(), value()}};  // no scatter about it
+  if (xx_ == xw_ * value() && xw_ == ww_ * value()) return {value(), {value(), value()}};  // there is no scatter
   const auto n = static_cast<double>(count_);
   const double z = student_quantile(n - 1.0, conf_level);
-  // In units of the mean of w, so that small numbers do not vanish: the variances of both means and their covariance.
+  // In units of the mean of w, so that small numbers do not underflow: the variances of both means and their
+  // covariance.
   const double mean = w_ / n;
   const double ratio = x_ / w_;
   const double scale = z * z / (n * (n - 1.0));

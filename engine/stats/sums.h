@@ -4,10 +4,10 @@
 
 #include "engine/base/contract.h"
 
-/// Lists and arrays of accumulators, element by element.
+/// Functions on lists and arrays of accumulators, element by element.
 namespace poesy {
 
-/// Calls visit(one, other) for the elements of both, in order. Precondition: as many of both.
+/// Calls visit(one, other) for the elements of both, in order. Precondition: both have the same number.
 template <class Ones, class Others, class Visit>
 void for_each_pair(Ones& ones, const Others& others, const Visit& visit) {
   POESY_EXPECTS(ones.size() == others.size());

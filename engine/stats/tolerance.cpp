@@ -23,14 +23,14 @@ double mean_of_squares(std::span<const double> values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// 1 / mu_p; infinity without effect.
+/// 1 / mu_p; infinite for an error without effect.
 std::vector<double> inverse(std::span<const double> index) {
   std::vector<double> values;
   for (const double mu : index) values.push_back(std::isnan(mu) ? kNaN : has_effect(mu) ? 1.0 / mu : kInfinity);
   return values;
 }
 
-/// The median of the values of one dimension, of which there is one at least.
+/// The median of the values of one dimension. Precondition: there is at least one.
 double median_of(std::span<const double> values, std::span<const Dimension> dimensions, Dimension dimension) {
   std::vector<double> chosen;
   for (std::size_t p = 0; p < values.size(); ++p) {
@@ -57,7 +57,7 @@ std::vector<double> equal_effect_tolerances(std::span<const double> index, const
   if (!has_effect(mu)) return std::vector<double>(index.size(), kNaN);
   std::vector<double> tolerances = inverse(index);
   for (double& tolerance : tolerances) tolerance *= mu * reference.tolerance;
-  tolerances[reference.factor] = reference.tolerance;  // not a rounding beside it
+  tolerances[reference.factor] = reference.tolerance;  // exact, without rounding
   return tolerances;
 }
 
@@ -105,7 +105,7 @@ std::vector<double> tolerances_within(const MeanSquare& response, std::span<cons
                                       std::span<const double> largest) {
   POESY_EXPECTS(!(square(limit) <= response.background));
   std::vector<double> tolerances(proportions.begin(), proportions.end());
-  std::vector<double> shared = tolerances;  // 0 for errors at their largest
+  std::vector<double> shared = tolerances;  // 0 for errors at their largest tolerance
   double left = square(limit) - response.background;
   for (bool again = true; again;) {
     const double multiple = std::sqrt(left / response.growth(shared));

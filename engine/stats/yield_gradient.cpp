@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// The machines that are rejected.
+/// The positions of the rejected machines.
 std::vector<std::size_t> places(std::span<const std::uint8_t> rejected) {
   std::vector<std::size_t> found;
   for (std::size_t b = 0; b < rejected.size(); ++b) {
@@ -19,7 +19,7 @@ std::vector<std::size_t> places(std::span<const std::uint8_t> rejected) {
   return found;
 }
 
-/// score: of the error at a machine.
+/// Sums powers of a score over the rejects. score(machine): the score of the error.
 template <class Score>
 PowerSums power_sums(std::span<const std::size_t> rejects, const Score score) {
   PowerSums sums;
@@ -27,7 +27,7 @@ PowerSums power_sums(std::span<const std::size_t> rejects, const Score score) {
   return sums;
 }
 
-/// Of a normal error. Never inlined, because its sums then stay in registers.
+/// The sums for a normal error. Not inlined, so that its sums stay in registers.
 /// @{
 [[gnu::noinline]] PowerSums slope_sums(const NormalScore& score, std::span<const double> row,
                                        std::span<const std::size_t> rejects) {
@@ -104,7 +104,7 @@ ScoreSums::ScoreSums(ErrorScores scores)
 void ScoreSums::add(std::span<const double> errors, std::span<const std::uint8_t> rejected) {
   const std::size_t count = rejected.size();
   POESY_EXPECTS(errors.size() == slope_.size() * count);
-  const std::vector<std::size_t> rejects = places(rejected);  // few of many machines, as a rule
+  const std::vector<std::size_t> rejects = places(rejected);  // usually few of many machines
   for (std::size_t p = 0; p < slope_.size(); ++p) {
     const std::span<const double> row = errors.subspan(p * count, count);
     if (const auto* normal = std::get_if<NormalScore>(&scores_.each[p])) {

@@ -38,7 +38,7 @@ bool begins_with_magic(std::span<const std::byte> bytes) {
   return bytes.size() >= magic.size() && std::ranges::equal(bytes.first(magic.size()), magic);
 }
 
-/// The members in the order of the file.
+/// Calls member() for the members in the order of the file.
 template <class Identity, class Member>
 void for_each_member(Identity& identity, const Member& member) {
   member(identity.poesy_version);
@@ -56,7 +56,7 @@ void put(ByteWriter& to, std::uint64_t value) { to.number(value); }
 void take(ByteReader& from, std::string& value) { value = from.text(); }
 void take(ByteReader& from, std::uint64_t& value) { value = from.number(); }
 
-/// Gives the SHA-256 of what the source wrote.
+/// Writes the source as blocks. Returns the SHA-256 of its bytes.
 Sha256::Digest put_blocks(ByteWriter& to, const ByteSource& source) {
   Sha256 sha;
   ByteWriter pieces([&](std::span<const std::byte> piece) {
@@ -82,12 +82,13 @@ Bytes take_blocks(ByteReader& from) {
   }
 }
 
-/// Reads all of `to` from position `at` on. Throws BytesError.
+/// Fills `to` with the bytes from position `at` on. Throws BytesError.
 void read_all(const PlainFile& file, std::uintmax_t at, std::span<std::byte> to) {
   if (!file.is_open() || file.read(at, to) != to.size()) throw BytesError("ends too early");
 }
 
-/// The next block of a file, empty at the end of a state. `at` goes from where it begins to its end. Throws BytesError.
+/// Reads the next block, which is empty at the end of a state. `at` moves from its beginning to its end. Throws
+/// BytesError.
 void read_block(const PlainFile& file, std::uintmax_t& at, Bytes& block) {
   constexpr std::size_t kMostDigits = 10;
   constexpr std::byte kMore{0x80};
@@ -111,7 +112,7 @@ std::string program(const CheckpointIdentity& identity) {
   return fmt::format("poesy {} ({})", printable(identity.poesy_version), printable(identity.git_commit));
 }
 
-/// A checkpoint, or why there is none to be had.
+/// A checkpoint, or the reason why it cannot be read.
 std::variant<Checkpoint, std::string> read_checkpoint(const std::string& path) {
   const auto unreadable = [](int reason) { return "cannot be read (" + std::generic_category().message(reason) + ")"; };
   const PlainFile file(path);
@@ -285,9 +286,9 @@ void CheckpointFiles::write_state(std::size_t stage, ByteWriter& to) {
 }
 
 void CheckpointFiles::remove() {
-  held_.reset();  // an open file would take room still
+  held_.reset();  // an open file would still use disk space
   states_.clear();
-  // The newest last, so that what is left of a removal that was cut short is the newest.
+  // The newest is removed last, so that it remains if the removal is interrupted.
   for (const std::string* path : {&older_, &newer_}) {
     std::error_code error;
     fs::remove(*path, error);
@@ -308,7 +309,7 @@ bool RunLock::take(const std::string& result_path) {
   descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (descriptor_ < 0) {
     const int reason = errno;
-    if (!stands(path_)) return true;  // who writes the result will find the same trouble, and say what to do
+    if (!stands(path_)) return true;  // writing the result will meet the same problem, and report it
     throw FileError(path_, "cannot be opened (" + std::generic_category().message(reason) + ")",
                     "remove it if no run is computing this result, or give another -o");
   }
@@ -325,7 +326,7 @@ bool RunLock::take(const std::string& result_path) {
     throw InputError({.file = result_path}, "another run is computing this result",
                      "wait for it, or give each run its own -o");
   }
-  // A run that ended in between has removed the file: a lock on that keeps nobody away.
+  // A run that ended meanwhile has removed the file; a lock on the removed file excludes nobody.
   if (::fstat(descriptor_, &file) == 0 && file.st_nlink > 0) return true;
   close();
   return false;

@@ -13,45 +13,45 @@
 
 namespace poesy {
 
-/// What a run must have in common with the checkpoint that it takes up (result/checkpoint_identity.h).
+/// What a run must have in common with the checkpoint that it continues (result/checkpoint_identity.h).
 struct CheckpointIdentity {
-  std::string poesy_version;  ///< exact: bytes of a state are for the program that wrote them
-  std::string git_commit;     ///< of that program
-  std::string model;          ///< its name
-  std::uint64_t seed = 0;     ///< of the draws
-  std::uint64_t samples = 0;  ///< that the study sets; a run may have more than its checkpoint
-  std::string study;          ///< the resolved study without what may differ, and the mechanism's file
+  std::string poesy_version;  ///< exact version, because states are for the program that wrote them
+  std::string git_commit;     ///< commit of that program
+  std::string model;          ///< name of the mechanism
+  std::uint64_t seed = 0;     ///< seed of the draws
+  std::uint64_t samples = 0;  ///< samples in the study; a run may have more than its checkpoint
+  std::string study;          ///< resolved study without what may differ, and the mechanism file
   std::string poses;          ///< SHA-256 of the poses, hexadecimal
   std::string shard = {};     ///< "2/5"; empty for the whole study
 
-  bool operator==(const CheckpointIdentity&) const = default;  ///< Whether nothing differs.
+  bool operator==(const CheckpointIdentity&) const = default;  ///< Whether all members are equal.
 };
 
-/// Seconds that a run took.
+/// The time of a run, s.
 struct RunTime {
-  double wall = 0.0;         ///< of the whole run
-  double checkpoints = 0.0;  ///< of these, for checkpoints
+  double wall = 0.0;         ///< wall time of the whole run
+  double checkpoints = 0.0;  ///< the part of it that checkpoints took
 };
 
-/// Where a state stands in its file.
+/// The place of a state in its file.
 struct StoredState {
-  std::size_t offset = 0;                 ///< of its first block
-  std::array<std::byte, 32> sha256 = {};  ///< of the state
+  std::size_t offset = 0;                 ///< position of its first block
+  std::array<std::byte, 32> sha256 = {};  ///< hash of the state
 };
 
-/// An unfinished run.
+/// The checkpoint of an unfinished run.
 struct Checkpoint {
-  CheckpointIdentity identity;      ///< what a run that takes it up must have
-  RunTime time;                     ///< that it took so far
+  CheckpointIdentity identity;      ///< identity of the run
+  RunTime time;                     ///< time that the run took so far
   std::vector<Bytes> stages;        ///< states of its stages (engine/run/checkpoints.h)
-  std::vector<StoredState> stored;  ///< the same states in the file
+  std::vector<StoredState> stored;  ///< places of these states in the file
 };
 
-/// Throws InputError that names the first difference, unless a run of this identity may take up the checkpoint of that
-/// file: nothing differs, or it asks for more samples.
+/// Throws InputError, which names the first difference, unless a run of this identity may continue the checkpoint of
+/// that file: nothing differs, or the run asks for more samples.
 void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& checkpoint, const std::string& path);
 
-/// Gives the bytes of a checkpoint file to `sink`, piece by piece and in one pass; where its states stand. In the
+/// Writes a checkpoint file to `sink`, piece by piece and in one pass. Returns the places of its states. In the
 /// notation of engine/base/bytes.h:
 ///
 ///     16 bytes "poesy-checkpoint"
@@ -63,72 +63,71 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
 ///     number   stages, and each as blocks that follow each other, the last of which is empty
 ///     32 bytes SHA-256 of everything before
 ///
-/// What a state consists of is for the program that wrote it alone: its version is part of the identity.
+/// The content of a state is known only to the version of the program that wrote it, which is part of the identity.
 std::vector<StoredState> write_checkpoint(const CheckpointIdentity& identity, const RunTime& time,
                                           std::span<const ByteSource> stages, const ByteWriter::Sink& sink);
 
-/// Whether the file begins as a checkpoint does. None where the disk fails, with the reason in errno. Precondition:
+/// Whether the file begins like a checkpoint. None if reading fails, with the reason in errno. Precondition:
 /// file.is_open().
 std::optional<bool> begins_as_checkpoint(const PlainFile& file);
 
-/// Reads a whole checkpoint file back. Throws BytesError for anything that write_checkpoint does not give.
+/// Reads a whole checkpoint file. Throws BytesError for content that write_checkpoint() does not write.
 Checkpoint decode_checkpoint(std::span<const std::byte> file);
 
 /// A checkpoint that was found.
 struct FoundCheckpoint {
   Checkpoint checkpoint;    ///< its content
-  std::string path;         ///< the file that it was read from
-  std::string passed_over;  ///< why the newer one could not be taken; empty when this is the newer one
+  std::string path;         ///< path of its file
+  std::string passed_over;  ///< why the newer checkpoint was not used; empty if this is the newer one
 };
 
-/// What the name of the older checkpoint adds to that of the result; no file of a run adds more.
+/// The end of the older checkpoint's name, which follows that of the result. It is the longest end of a run's files.
 inline constexpr std::string_view kOlderEnd = ".part.1";
 
 /// The checkpoints of an unfinished run beside its result: RESULT.h5.part, and the one before it as RESULT.h5.part.1.
-/// Each has its own digest and comes into being whole: written under a temporary name (FileWriter) and synced; then the
-/// newer one gets the older one's name as well, and the new one is renamed to take its place. Once there is a
-/// RESULT.h5.part, it is there at any moment. Who may not read a result that is there may not read its checkpoints.
+/// Each has its own digest. It is written under a temporary name (FileWriter) and synced; then the newer one also gets
+/// the older one's name, and the new one is renamed to replace it. So once RESULT.h5.part exists, it exists at any
+/// moment. Checkpoints have the permissions of an existing result.
 class CheckpointFiles {
  public:
-  explicit CheckpointFiles(const std::string& result_path);  ///< Beside this result.
+  explicit CheckpointFiles(const std::string& result_path);  ///< result_path: the path of the result.
 
-  const std::string& newer() const { return newer_; }  ///< Path of the newer one, RESULT.h5.part.
-  const std::string& older() const { return older_; }  ///< Path of the one before, RESULT.h5.part.1.
-  bool exist() const;                                  ///< Whether there is a file, sound or not.
-  /// The newest one that is sound, if there is a file at all. Throws FileError when there is and none is sound.
+  const std::string& newer() const { return newer_; }  ///< The path of the newer one, RESULT.h5.part.
+  const std::string& older() const { return older_; }  ///< The path of the older one, RESULT.h5.part.1.
+  bool exist() const;                                  ///< Whether there is a file, intact or not.
+  /// The newest intact checkpoint; none if there is no file. Throws FileError if there are files but none is intact.
   std::optional<FoundCheckpoint> find();
-  /// Throws FileError; then the checkpoints that were there are there.
+  /// Writes a checkpoint. Throws FileError and then keeps the earlier checkpoints.
   void write(const CheckpointIdentity& identity, const RunTime& time, std::span<const ByteSource> stages);
-  /// Writes the state of a stage as the checkpoint has it that was found or written last: bit by bit, also when
-  /// somebody has removed the file. Throws FileError when it cannot be read or was changed. Precondition: there is such
-  /// a stage.
+  /// Writes the state of a stage from the checkpoint that was found or written last, with the same bits, even if its
+  /// file was removed meanwhile. Throws FileError if it cannot be read or was changed. Precondition: the stage exists.
   void write_state(std::size_t stage, ByteWriter& to);
-  void remove();  ///< Removes all of them. Throws FileError.
+  void remove();  ///< Removes all checkpoints. Throws FileError.
 
  private:
   std::string result_;
   std::string newer_;
   std::string older_;
-  bool newer_is_sound_ = false;      ///< only then it may replace the older one
-  std::optional<PlainFile> held_;    ///< what was found or written last
-  std::vector<StoredState> states_;  ///< of that
+  bool newer_is_sound_ = false;      ///< the newer one replaces the older one only if it is intact
+  std::optional<PlainFile> held_;    ///< the checkpoint that was found or written last
+  std::vector<StoredState> states_;  ///< places of the states in it
 };
 
-/// Keeps other runs from the same result, and so from its checkpoints, while it lives: an advisory lock on
-/// RESULT.h5.lock, which goes with the process however that ends. Where the file system knows no locks there is none.
-/// Who has it removes what killed runs left of the result and its checkpoints under temporary names.
+/// Excludes other runs from the same result and its checkpoints while the object exists: an advisory lock on
+/// RESULT.h5.lock, which ends with the process in any case. If the file system does not support locks, there is none.
+/// The owner of the lock removes temporary files of killed runs.
 class RunLock {
  public:
-  /// result_path: where links end (check_output_path), so that a link and what it leads to are one result. Throws
-  /// InputError when another run has the lock, FileError when something other than an empty plain file has its name,
-  /// or it cannot be opened.
+  /// result_path: the target of symbolic links (check_output_path), so that a link and its target are one result.
+  /// Throws InputError if another run has the lock. Throws FileError if the name belongs to something other than an
+  /// empty plain file, or the file cannot be opened.
   explicit RunLock(const std::string& result_path);
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
   ~RunLock();
 
  private:
-  /// Whether the lock is had, or none is to be had; not when a run that ended has removed the file meanwhile.
+  /// Whether the lock was obtained, or is not supported; false if a run that ended has removed the file meanwhile.
   bool take(const std::string& result_path);
   void close();
 

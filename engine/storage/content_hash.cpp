@@ -20,7 +20,7 @@ void check(int ok) {
   if (ok != 1) throw std::runtime_error("OpenSSL cannot compute a SHA-256 hash");
 }
 
-/// In the order of h5::Value::Type.
+/// Names of the types, in the order of h5::Value::Type.
 constexpr std::string_view kTypeNames[] = {"float", "int", "uint", "text"};
 
 bool is_bookkeeping(std::string_view attribute) {
@@ -29,7 +29,7 @@ bool is_bookkeeping(std::string_view attribute) {
          attribute.starts_with("_nc3");
 }
 
-/// head: of the value that these numbers, or some of them, are of.
+/// Gives all NaNs the same bits. head: the head of the value to which the numbers belong.
 void make_nans_equal(const h5::Value& head, std::span<std::byte> numbers) {
   constexpr std::uint64_t kNan = 0x7ff8000000000000U;
   if (head.type != h5::Value::Type::floating || head.width != sizeof(double)) return;
@@ -40,7 +40,7 @@ void make_nans_equal(const h5::Value& head, std::span<std::byte> numbers) {
   }
 }
 
-/// Adds what content_hash.h lists to a hash, object by object.
+/// Adds objects to a hash as content_hash.h describes.
 class ContentHasher {
  public:
   explicit ContentHasher(const h5::File& file) : file_(file) {}

@@ -13,14 +13,14 @@ struct evp_md_ctx_st;
 
 namespace poesy {
 
-/// SHA-256 of bytes that come piece by piece.
+/// SHA-256 of bytes that are added piece by piece.
 class Sha256 {
  public:
-  using Digest = std::array<std::byte, 32>;  ///< SHA-256 of some bytes.
+  using Digest = std::array<std::byte, 32>;  ///< A SHA-256 digest.
 
   Sha256();
-  void bytes(std::span<const std::byte> data);  ///< Appends.
-  Digest digest();                              ///< Nothing may be added afterwards.
+  void bytes(std::span<const std::byte> data);  ///< Adds bytes.
+  Digest digest();                              ///< The digest. Nothing may be added afterwards.
 
  private:
   struct Free {
@@ -29,12 +29,12 @@ class Sha256 {
   std::unique_ptr<evp_md_ctx_st, Free> context_;
 };
 
-Sha256::Digest sha256(std::span<const std::byte> bytes);  ///< Of bytes that are all there.
+Sha256::Digest sha256(std::span<const std::byte> bytes);  ///< The SHA-256 of these bytes.
 
-std::string hex(std::span<const std::byte> bytes);  ///< Lower-case hexadecimal.
+std::string hex(std::span<const std::byte> bytes);  ///< The bytes in lower-case hexadecimal.
 
-/// SHA-256 (lower-case hexadecimal) of everything a result file says, but for `/run` and its own attribute
-/// `content_sha256`. It depends on names, shapes, types and values, not on how HDF5 lays them out.
+/// The SHA-256 (lower-case hexadecimal) of the content of a result file, except `/run` and its own attribute
+/// `content_sha256`. It depends on names, shapes, types and values, not on how HDF5 stores them.
 ///
 /// What is hashed, in this order, so that any program can recompute it:
 ///
@@ -48,10 +48,10 @@ std::string hex(std::span<const std::byte> bytes);  ///< Lower-case hexadecimal.
 ///     text(s)       = number(bytes of s), the bytes (UTF-8)
 ///     number(n)     = 64 bits, unsigned, little-endian
 ///
-/// beginning with object("/"). Links and attributes are taken in the order of the bytes of their names; an object
-/// with several links counts under each. Left out: the link `/run`, the root's attribute `content_sha256`, and the
-/// bookkeeping of dimension scales in any object: attributes CLASS, NAME, DIMENSION_LIST, REFERENCE_LIST and
-/// those that begin with _Netcdf4 or _nc3.
+/// beginning with object("/"). Links and attributes are in the order of the bytes of their names; an object with
+/// several links is hashed at each. Left out are the link `/run`, the root's attribute `content_sha256`, and the
+/// attributes of dimension scales in any object: CLASS, NAME, DIMENSION_LIST, REFERENCE_LIST and those that begin with
+/// _Netcdf4 or _nc3.
 ///
 /// Throws h5::Error for content that a result file never has (neither numbers nor text).
 std::string content_sha256(const h5::File& file);

@@ -28,7 +28,7 @@ constexpr int kClosed = -1;
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-/// What stands at the path must not be lost.
+/// Throws if the file at the path must not be replaced.
 void check_present(const std::string& path, const OutputKind& kind, std::span<const std::string> inputs) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
@@ -46,9 +46,9 @@ void check_present(const std::string& path, const OutputKind& kind, std::span<co
                    "name another file with -o, or remove it");
 }
 
-/// Where a symbolic link leads, through further ones.
+/// The target of a symbolic link, also through several links.
 std::string end_of_links(const std::string& path) {
-  constexpr int kMostLinks = 40;  // as the system itself
+  constexpr int kMostLinks = 40;  // the same limit as the system's
   fs::path at(path);
   std::error_code ignored;
   for (int links = 0; fs::is_symlink(fs::symlink_status(at, ignored)); ++links) {
@@ -65,7 +65,7 @@ constexpr std::string_view kTemporary = ".tmp.";
 constexpr std::size_t kRandomBytes = 6;
 constexpr std::string_view kDigits = "0123456789abcdef";
 
-/// Empty where there are no random numbers; then errno says why.
+/// A random temporary name; empty if there are no random numbers, with the reason in errno.
 std::string temporary_name(const std::string& path, FillRandomly fill) {
   std::array<std::byte, kRandomBytes> bytes{};
   if (!fill(bytes)) return {};
@@ -82,7 +82,7 @@ bool is_temporary_name(std::string_view name, std::string_view of_file) {
   return name.size() == 2 * kRandomBytes && name.find_first_not_of(kDigits) == std::string_view::npos;
 }
 
-/// The permission bits of the first of two files that there is; none where there is neither.
+/// The permission bits of the first file if it exists, else of the second; none if neither exists.
 std::optional<mode_t> rights_of(const std::string& first, const std::string& second) {
   constexpr mode_t kAllRights = 0777;
   for (const std::string& file : {first, second}) {
@@ -92,7 +92,7 @@ std::optional<mode_t> rights_of(const std::string& first, const std::string& sec
   return std::nullopt;
 }
 
-/// The beginning of a plain file; none where there is no such file, or it cannot be read.
+/// The beginning of a plain file; none if it does not exist or cannot be read.
 std::optional<std::string> head_of(const std::string& path) {
   constexpr std::size_t kHead = 1 << 16;
   const PlainFile file(path);
@@ -104,7 +104,8 @@ std::optional<std::string> head_of(const std::string& path) {
   return head;
 }
 
-/// Makes the rename survive a crash. Some file systems cannot sync a folder: the file itself is safe there.
+/// Syncs the folder, so that the rename survives a crash. Some file systems do not support this, but keep the file
+/// safe.
 bool sync_folder(const std::string& path) {
   const int folder = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder == kClosed) return errno == EACCES;
@@ -148,7 +149,8 @@ std::string check_output_path(const std::string& named, const OutputKind& kind, 
 void check_name_length(const std::string& path) {
   const std::size_t bytes = fs::path(path).filename().string().size() + kTemporary.size() + 2 * kRandomBytes;
   const long most = ::pathconf(folder_of(path).c_str(), _PC_NAME_MAX);
-  if (most < 0 || bytes <= static_cast<std::size_t>(most)) return;  // where it is not known, the system will say
+  if (most < 0 || bytes <= static_cast<std::size_t>(most))
+    return;  // if the limit is not known, the system will report it
   throw InputError({.file = path},
                    fmt::format("has too long a name: with what is added while it is written it takes {} bytes, and "
                                "names in its folder have {} at the most",
@@ -166,7 +168,7 @@ bool stands(const std::string& path) {
 void remove_left_over(const std::string& path) {
   std::error_code error;
   const std::string name = fs::path(path).filename().string();
-  std::vector<fs::path> found;  // a folder is not changed while it is listed
+  std::vector<fs::path> found;  // collected first, because a folder must not change while it is listed
   for (fs::directory_iterator at(folder_of(path), error), end; !error && at != end; at.increment(error)) {
     if (is_temporary_name(at->path().filename().string(), name)) found.push_back(at->path());
   }
@@ -257,7 +259,8 @@ void FileWriter::commit() {
 
 std::uint64_t FileWriter::expected_size() const { return expected_ ? expected_() : length_; }
 
-/// "needs N bytes, M are free", as much as is known; what was written so far counts as free, for it is going to be.
+/// "needs N bytes, M are free", as far as known. Blocks that were already written count as free, because they will be
+/// released.
 std::string FileWriter::missing_space() const {
   const std::uint64_t size = expected_size();
   std::string text = size == 0 ? "" : "; needs " + std::to_string(size) + " bytes";
@@ -321,7 +324,7 @@ void put_at_second_name(const std::string& path, const std::string& second, Link
   std::error_code error;
   if (!temporary.empty() && link_file(path.c_str(), temporary.c_str()) == 0) {
     fs::rename(temporary, second, error);
-    ::unlink(temporary.c_str());  // between two names of one file a rename does nothing
+    ::unlink(temporary.c_str());  // a rename between two names of one file does nothing
     if (error) fail(error);
     return;
   }

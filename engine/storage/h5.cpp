@@ -23,7 +23,7 @@ namespace {
 
 static_assert(std::is_same_v<hid_t, std::int64_t>, "File stores HDF5's ids as 64-bit integers");
 
-// The innermost entry of HDF5's error stack is the reason; the outer ones only say who called.
+// The innermost entry of HDF5's error stack is the reason; the outer ones only name the callers.
 herr_t take_reason(unsigned depth, const H5E_error2_t* entry, void* reason) {
   if (depth == 0 && entry->desc != nullptr) *static_cast<std::string*>(reason) = entry->desc;
   return 0;
@@ -101,7 +101,7 @@ Handle space_of(const Shape& shape) {
   return {H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), nullptr), H5Sclose, "make", "a space"};
 }
 
-// Sixteen GiB of doubles. Two such numbers can be multiplied without overflow.
+// 16 GiB of doubles. The product of two such numbers does not overflow.
 constexpr hsize_t kMostElements = hsize_t{1} << 31U;
 constexpr std::size_t kWidestNumber = 16;
 
@@ -117,10 +117,10 @@ Shape shape_of(hid_t space, const std::string& object) {
   return {lengths.begin(), lengths.end()};
 }
 
-/// Bytes of a slice: large enough for the disk, small beside a result.
+/// The bytes of a slice: large enough for fast disk access, small compared with a result.
 constexpr std::size_t kSlice = std::size_t{1} << 22U;
 
-/// A part of a dataset: HDF5 calls it a hyperslab.
+/// A part of a dataset, called a hyperslab in HDF5.
 struct Box {
   std::vector<hsize_t> start;
   std::vector<hsize_t> count;
@@ -128,11 +128,11 @@ struct Box {
   hsize_t size() const { return std::accumulate(count.begin(), count.end(), hsize_t{1}, std::multiplies()); }
 };
 
-/// Cuts a dataset into boxes of at most so many elements that follow each other row-major, and calls use(box) for each.
+/// Divides a dataset into boxes of at most this many elements, in row-major order, and calls use(box) for each.
 /// Precondition: most > 0, and there are more elements than that.
 template <class Use>
 void for_each_box(const Shape& shape, std::size_t most, const Use& use) {
-  // The axes after the one that is cut are whole, those before it have one position.
+  // Axes after the one that is cut are whole; those before it have one position.
   std::size_t cut = shape.size() - 1;
   std::size_t inner = 1;
   while (inner * shape[cut] <= most) inner *= shape[cut--];
@@ -154,7 +154,7 @@ void select(hid_t space, const Box& box, const std::string& name) {
           "take a part of", name);
 }
 
-/// What HDF5 takes elements from: the values themselves, or a list of pointers to texts.
+/// The memory from which HDF5 takes elements: the values themselves, or a list of pointers to texts.
 template <class T>
 auto elements(std::span<const T> values) {
   if constexpr (std::is_same_v<T, std::string>) {
@@ -189,7 +189,7 @@ struct Source {
   }
 };
 
-/// Whether all bytes of a dataset lie in the file one after the other.
+/// Whether all bytes of a dataset are contiguous in the file.
 bool is_in_one_piece(const Source& dataset, std::size_t bytes) {
   const Handle storage(H5Dget_create_plist(dataset.object.get()), H5Pclose, "read the storage of", dataset.name);
   return H5Pget_layout(storage.get()) == H5D_CONTIGUOUS && H5Dget_storage_size(dataset.object.get()) == bytes;
@@ -207,7 +207,7 @@ Source attribute_at(hid_t file, const std::string& path, const std::string& name
                      object}};
 }
 
-/// Gives HDF5's copies of texts back to HDF5.
+/// Frees HDF5's copies of texts.
 struct TextBuffer {
   std::vector<char*> pointers;
   hid_t type;
@@ -219,7 +219,7 @@ struct TextBuffer {
 std::vector<std::string> read_texts(const Source& source) {
   if (H5Tis_variable_str(source.type.get()) <= 0) throw Error(source.name + " is not text of variable length");
   const Handle type = text_type();
-  // The file's own encoding is kept: HDF5 does not convert between encodings.
+  // The encoding of the file is kept, because HDF5 does not convert between encodings.
   checked(H5Tset_cset(type.get(), H5Tget_cset(source.type.get())), "set the encoding of", source.name);
   TextBuffer buffer{std::vector<char*>(size(source.shape()), nullptr), type.get(), source.space.get()};
   source.read(type.get(), buffer.pointers.data());
@@ -256,7 +256,7 @@ Value head_of(const Source& source) {
   return value;
 }
 
-/// The stored type of numbers, little-endian.
+/// The type of the stored numbers, as little-endian.
 Handle plain_type(const Source& source) {
   Handle type(H5Tcopy(source.type.get()), H5Tclose, "copy the type of", source.name);
   checked(H5Tset_order(type.get(), H5T_ORDER_LE), "set the byte order of", source.name);
@@ -286,7 +286,7 @@ void create_attribute(hid_t file, const std::string& path, const std::string& na
   checked(H5Awrite(attribute.get(), type.get(), elements(values).data()), "write", object);
 }
 
-/// Of a link or an attribute.
+/// Adds the name of a link or an attribute.
 template <class Info>
 herr_t add_name(hid_t, const char* name, const Info*, void* names) {
   static_cast<std::vector<std::string>*>(names)->emplace_back(name);
@@ -315,7 +315,7 @@ void expect_hard(const Link& link, const std::string& path) {
   if (link.type == H5L_TYPE_SOFT) throw StrangeFile(path + " is a soft link");
   if (link.type == H5L_TYPE_EXTERNAL) throw StrangeFile(path + " is a link to another file");
   if (link.type != H5L_TYPE_HARD) throw StrangeFile(path + " is a link of another program's own kind");
-  // HDF5 would look for the parts of such a name one by one, through links that were not looked at.
+  // HDF5 would resolve such a name in parts, through links that have not been checked.
   if (link.name.find('/') != std::string::npos || link.name == ".") throw StrangeFile(path + " has no name of its own");
 }
 
@@ -333,12 +333,12 @@ void expect_own_storage(hid_t dataset, const std::string& path) {
     const H5Z_filter_t filter = checked(
         H5Pget_filter2(storage.get(), static_cast<unsigned>(k), nullptr, &no_values, nullptr, 0, nullptr, nullptr),
         "read the filters of", path);
-    // HDF5 would look for it among the plugins of this machine, and run what it finds.
+    // HDF5 would search the plugins of this machine for it, and execute what it finds.
     if (filter > H5Z_FILTER_SCALEOFFSET) throw StrangeFile(fmt::format("{} needs the filter {}", path, filter));
   }
 }
 
-/// get: H5Oget_info2, whose struct has another name from HDF5 1.12 on.
+/// get: H5Oget_info2, whose struct has another name since HDF5 1.12.
 template <class Info>
 haddr_t address_of(hid_t object, const std::string& path, herr_t (*get)(hid_t, Info*, unsigned)) {
   Info info{};
@@ -346,13 +346,13 @@ haddr_t address_of(hid_t object, const std::string& path, herr_t (*get)(hid_t, I
   return info.addr;
 }
 
-// netCDF readers want to know in which order things came into being.
+// netCDF readers need the order in which objects were created.
 constexpr unsigned kCreationOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
-// Links and attributes stay in the object's header, which has a checksum, rather than move to a heap when there are
-// many: HDF5 1.10 frees what it never allocated when it meets a damaged heap.
+// Links and attributes stay in the object's header, which has a checksum, instead of moving to a heap when there are
+// many: HDF5 1.10 frees memory that it never allocated when it reads a damaged heap.
 constexpr unsigned kMostInHeader = 1000;
 
-/// Same bytes for the same content: no times.
+/// Without times, so that the same content has the same bytes.
 Handle object_properties(hid_t kind) {
   Handle properties = property_list(kind);
   checked(H5Pset_obj_track_times(properties.get(), false), "drop the times of", "a new object");
@@ -368,7 +368,7 @@ Handle group_properties(hid_t kind) {
   return properties;
 }
 
-/// Without memory HDF5 1.10 may crash where it makes a file. It takes half of this.
+/// Throws if there is little memory: HDF5 1.10 may then crash when it creates a file. It needs half of this.
 void expect_room_for_file() {
   constexpr std::size_t kRoom = std::size_t{8} << 20U;
   if (!has_address_space(kRoom)) throw std::bad_alloc();
@@ -378,8 +378,8 @@ hid_t make_file(hid_t access) {
   expect_room_for_file();
   const Handle creation = group_properties(H5P_FILE_CREATE);
   const hid_t id = checked(H5Fcreate("new", H5F_ACC_TRUNC, creation.get(), access), "make", "a file");
-  // From version 1.8 of the format on metadata carries checksums. Not asked for before the file exists, so that the
-  // superblock is of the older kind, as in all files of poesy.
+  // From version 1.8 of the format on, metadata has checksums. The version is set after the file is created, so that
+  // the superblock is of the older kind, as in all files of poesy.
   checked(H5Fset_libver_bounds(id, H5F_LIBVER_V18, H5F_LIBVER_V18), "choose the version of", "the file");
   return id;
 }
@@ -452,8 +452,7 @@ template <Element T>
 void File::write(const std::string& path, const Shape& shape, std::span<const T> values) {
   POESY_EXPECTS(values.size() == size(shape));
   const Handle creation = object_properties(H5P_DATASET_CREATE);
-  // Inside the object's header, where checksums are, as far as there is room: what HDF5 stores of a text is where to
-  // find it.
+  // Small texts stay inside the object's header, which has checksums; elsewhere HDF5 stores only a reference to them.
   constexpr std::size_t kHeaderRoom = 2000;
   if (std::is_same_v<T, std::string> && values.size() <= kHeaderRoom) {
     checked(H5Pset_layout(creation.get(), H5D_COMPACT), "choose the layout of", path);
@@ -515,7 +514,7 @@ void File::link(const std::string& existing, const std::string& second) {
 
 void File::expect_plain_tree() const {
   constexpr int kDeepest = 16;    // results have three levels
-  constexpr int kMostNames = 16;  // of a dataset, which is read for each; results have seven
+  constexpr int kMostNames = 16;  // names of a dataset, which is read for each; results have seven
   struct Group {
     std::string path;
     int depth;
@@ -544,7 +543,7 @@ void File::expect_plain_tree() const {
 }
 
 bool File::exists(const std::string& path) const {
-  // HDF5 answers for the last part of a path only: ask for each part from the root on.
+  // HDF5 answers only for the last part of a path, so each part is checked from the root on.
   for (std::size_t slash = path.find('/', 1);; slash = path.find('/', slash + 1)) {
     const std::string part = path.substr(0, slash);
     if (checked(H5Lexists(id_, part.c_str(), H5P_DEFAULT), "look for", part) == 0) return false;

@@ -14,20 +14,20 @@ namespace poesy {
 class FileWriter;
 }
 
-/// The part of HDF5 that result files use: objects are named by their absolute path, every call is checked, every id is
-/// closed. HDF5 is behind this header, h5.cpp and h5_disk.cpp; opening a File turns off HDF5's own printing of errors.
+/// The part of HDF5 that result files use. Objects are named by their absolute path, every call is checked, every id is
+/// closed. Only this header, h5.cpp and h5_disk.cpp use HDF5. Opening a File turns off HDF5's own error messages.
 namespace poesy::h5 {
 
 class Disk;
 
-/// A call into HDF5 failed. what() is a clause: what was tried on which object, and HDF5's own reason.
+/// A call into HDF5 failed. what() is a clause with the operation, the object, and HDF5's reason.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A file holds what no file of poesy does: more than its own bytes to be read, or a shape that is not a tree. what()
-/// is a clause that names the object, which a stranger may have named.
+/// A file has a structure that poesy never writes: references to bytes outside the file, or links that do not form a
+/// tree. what() is a clause that names the object; its name comes from the file.
 class StrangeFile : public Error {
  public:
   using Error::Error;
@@ -37,21 +37,21 @@ template <class T>
 concept Element = std::same_as<T, double> || std::same_as<T, std::int64_t> || std::same_as<T, std::uint64_t> ||
     std::same_as<T, std::uint32_t> || std::same_as<T, std::uint8_t> || std::same_as<T, std::string>;
 
-/// Numbers only.
+/// Types of numbers.
 template <class T>
 concept Number = Element<T> && !std::same_as<T, std::string>;
 
-/// Length of each axis; empty for a scalar.
+/// The length of each axis; empty for a scalar.
 using Shape = std::vector<std::size_t>;
 
-std::size_t size(const Shape& shape);  ///< Number of elements.
+std::size_t size(const Shape& shape);  ///< The number of elements.
 
-/// The value of a dataset or attribute as it is stored, whatever its type.
+/// The value of a dataset or attribute of any type, as it is stored.
 struct Value {
   /// Kinds of numbers, and text; content_hash.cpp names them in this order.
   enum class Type { floating, signed_integer, unsigned_integer, text };
 
-  Type type = Type::text;            ///< decides which of the members below hold the elements
+  Type type = Type::text;            ///< determines which of the members below has the elements
   std::size_t width = 0;             ///< bytes per number; 0 for text
   Shape shape;                       ///< row-major
   std::vector<std::byte> numbers;    ///< [size(shape) * width], little-endian
@@ -62,9 +62,9 @@ struct Value {
 /// without times and with their order of creation. Every member throws Error when HDF5 refuses.
 class File {
  public:
-  static File in_memory();  ///< An empty file that lives in memory only.
-  /// An empty file in what `disk` writes, which must live as long and be committed after close(). An error of the disk
-  /// is kept there (FileWriter::check) and is none of HDF5's, unless it is to read back what was not written.
+  static File in_memory();  ///< An empty file in memory.
+  /// An empty file whose bytes `disk` writes. `disk` must outlive the file and be committed after close(). Errors of
+  /// the disk are kept in FileWriter (FileWriter::check); HDF5 sees one only if it reads back what was not written.
   static File on_disk(FileWriter& disk);
   /// An existing plain file, read-only. Throws Error at once for a folder, a FIFO, a device or a socket.
   static File open(const std::string& path);
@@ -73,43 +73,44 @@ class File {
   File& operator=(File&&) = delete;
   ~File();
 
-  void close();  ///< Brings what HDF5 still has of it to the disk. The file may only be destroyed afterwards.
+  void close();  ///< Writes what HDF5 still holds to the disk. The file may only be destroyed afterwards.
 
-  void make_group(const std::string& path);  ///< Those above it must exist.
+  void make_group(const std::string& path);  ///< The groups above it must exist.
   /// Creates a dataset. Precondition: values.size() == size(shape).
   template <Element T>
   void write(const std::string& path, const Shape& shape, std::span<const T> values);
-  /// The same in slices, so that the numbers need not be in memory as the file has them. fill(first, to): sets `to` to
-  /// the elements from position `first` on, row-major; called in their order.
+  /// Creates a dataset in slices, so that the numbers need not be in memory together. fill(first, to) sets `to` to the
+  /// elements from position `first` on, row-major; it is called in their order.
   template <Number T>
   void write_slices(const std::string& path, const Shape& shape,
                     const std::function<void(std::size_t first, std::span<T> to)>& fill);
-  /// Creates an attribute of the object at path: a scalar.
+  /// Creates an attribute of the object at `path`: a scalar.
   template <Element T>
   void set_attribute(const std::string& path, const std::string& name, const T& value);
-  /// A list.
+  /// Creates an attribute that is a list.
   template <Element T>
   void set_attribute(const std::string& path, const std::string& name, std::span<const T> values);
-  void make_scale(const std::string& path);  ///< Makes a one-dimensional dataset a dimension scale of its name.
-  /// Lets a scale name the positions along one axis of a dataset.
+  void make_scale(const std::string& path);  ///< Makes a one-dimensional dataset a dimension scale.
+  /// Attaches a scale to one axis of a dataset.
   void attach_scale(const std::string& dataset, std::size_t axis, const std::string& scale);
   void link(const std::string& existing, const std::string& second);  ///< Gives an object a second name (hard link).
 
-  /// Throws StrangeFile unless all that can be reached from the root is in this file: links are hard links, values are
-  /// neither in other files nor views of other datasets, and only HDF5's own filters unpack them; and unless groups
-  /// form a tree that is not deep, so that whoever follows links comes to an end. Looks at no value. To be called
-  /// before anything but the root's attributes is read of a file that a stranger may have made.
+  /// Throws StrangeFile unless everything that can be reached from the root is in this file. Links must be hard links;
+  /// values must not be in other files or be views of other datasets, and must need only HDF5's own filters. Groups
+  /// must form a tree of limited depth, so that following links ends. No value is read. Call it before reading anything
+  /// but the root's attributes of a file from an unknown source.
   void expect_plain_tree() const;
 
-  bool exists(const std::string& path) const;    ///< Whether there is an object.
+  bool exists(const std::string& path) const;    ///< Whether the object exists.
   bool is_group(const std::string& path) const;  ///< Whether this object is a group.
-  /// Names of the links in a group, in the order of their bytes.
+  /// Names of the links in a group, sorted by bytes.
   std::vector<std::string> children(const std::string& path) const;
-  /// Names of the attributes of an object, in the order of their bytes.
+  /// Names of the attributes of an object, sorted by bytes.
   std::vector<std::string> attributes(const std::string& path) const;
-  bool has_attribute(const std::string& path, const std::string& name) const;  ///< Whether the object at path has it.
+  bool has_attribute(const std::string& path,
+                     const std::string& name) const;  ///< Whether the object has this attribute.
 
-  Shape shape(const std::string& path) const;  ///< Of a dataset; empty for a scalar.
+  Shape shape(const std::string& path) const;  ///< The shape of a dataset; empty for a scalar.
   /// All elements of a dataset, row-major; numbers are converted to T.
   template <Element T>
   std::vector<T> read(const std::string& path) const;
@@ -118,21 +119,21 @@ class File {
   std::vector<T> attribute(const std::string& path, const std::string& name) const;
   Value value(const std::string& path) const;  ///< A dataset as it is stored.
   Value head(const std::string& path) const;   ///< The same without its elements.
-  /// Hands the `numbers` of value() out one slice after the other. They are small where
-  /// the dataset is contiguous in the file; any other comes in one slice. Precondition: a dataset of numbers.
+  /// Passes the `numbers` of value() to take() slice by slice. Slices are small if the dataset is contiguous in the
+  /// file; otherwise there is one slice. Precondition: a dataset of numbers.
   void read_slices(const std::string& path, const std::function<void(std::span<std::byte>)>& take) const;
   Value attribute_value(const std::string& path, const std::string& name) const;  ///< An attribute as it is stored.
 
  private:
   explicit File(std::int64_t id);
 
-  std::unique_ptr<Disk> disk_;  // of a new file on one
+  std::unique_ptr<Disk> disk_;  // set for a new file on a disk
   std::int64_t id_;
 };
 
-/// Lets HDF5 give back all it holds, as it does when the program ends. Precondition: there is no File.
+/// Lets HDF5 free its memory, as at the end of the program. Precondition: there is no File.
 void close_library();
 
-std::string library_version();  ///< Version of the HDF5 library in use, "1.10.8".
+std::string library_version();  ///< The version of the HDF5 library in use, "1.10.8".
 
 }  // namespace poesy::h5

@@ -2,7 +2,7 @@
 
 #include <hdf5.h>
 #if __has_include(<H5FDdevelop.h>)
-#include <H5FDdevelop.h>  // where HDF5 declares drivers from 1.13 on
+#include <H5FDdevelop.h>  // has the declarations for drivers since HDF5 1.13
 #endif
 
 #include <algorithm>
@@ -19,11 +19,11 @@ namespace {
 /// A file that HDF5 has open.
 struct OpenFile : H5FD_t {
   std::shared_ptr<FileWriter*> writer;
-  haddr_t allocated = 0;  ///< "end of allocation": where HDF5's file is going to end
-  haddr_t end = 0;        ///< of what there is
+  haddr_t allocated = 0;  ///< "end of allocation": the final end of HDF5's file
+  haddr_t end = 0;        ///< end of what is written
 };
 
-/// What HDF5 hands from the properties to open_file().
+/// What HDF5 passes from the properties to open_file().
 struct Properties {
   const std::shared_ptr<FileWriter*>* writer;
 };
@@ -44,7 +44,7 @@ herr_t close_file(H5FD_t* file) {
   return 0;
 }
 
-/// Those of HDF5's drivers for a file in memory and for one on a disk: the same bytes from all.
+/// The features of HDF5's drivers for files in memory and on disk, so that all write the same bytes.
 herr_t features(const H5FD_t*, unsigned long* flags) {
   *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
            H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
@@ -86,7 +86,7 @@ H5FD_class_t driver_class() {
   driver.value = static_cast<H5FD_class_value_t>(H5_VFD_RESERVED + 1);
 #endif
   driver.name = "poesy";
-  driver.maxaddr = (haddr_t{1} << 63U) - 1;  // of off_t
+  driver.maxaddr = (haddr_t{1} << 63U) - 1;  // the largest off_t
   driver.fc_degree = H5F_CLOSE_STRONG;       // closing the file closes its objects too
   driver.fapl_size = sizeof(Properties);
   driver.open = open_file;

@@ -9,18 +9,18 @@ class FileWriter;
 
 namespace h5 {
 
-/// A file driver for HDF5 that keeps a new file in what a FileWriter writes: no file is opened by its name, and HDF5
-/// never meets an error of the disk. It could not get rid of a file then: what it cannot flush it does not close, and
-/// it tries again when the program ends. FileWriter keeps the error (put()). One file at a time.
+/// A file driver for HDF5 that writes a new file through a FileWriter, without opening a file by name. Disk errors are
+/// hidden from HDF5, which does not close a file that it failed to flush, and tries again when the program ends.
+/// FileWriter keeps the error (put()). It has one file at a time.
 class Disk {
  public:
-  explicit Disk(FileWriter& writer);  ///< Throws Error when HDF5 does not take the driver.
+  explicit Disk(FileWriter& writer);  ///< Throws Error if HDF5 does not accept the driver.
   Disk(const Disk&) = delete;
   Disk& operator=(const Disk&) = delete;
-  /// What HDF5 still writes goes nowhere from now on. Precondition: the file was closed, as far as HDF5 closes it.
+  /// Discards what HDF5 writes from now on. Precondition: the file was closed, as far as HDF5 closes it.
   ~Disk();
 
-  /// Lets files that are made with this access property list be here. Negative when HDF5 refuses.
+  /// Selects this driver in the access property list of a new file. Negative if HDF5 refuses.
   int choose_for(std::int64_t access) const;
 
  private:

@@ -25,7 +25,7 @@ constexpr std::string_view kUnfinished = "# unfinished";
 constexpr std::string_view kUnknown = "unknown";
 constexpr const char* kRemedy = "name another folder with -d, or move it away";
 
-/// Which file has this name; 0 where there is none. A file that replaces another is another one.
+/// The inode of this file; 0 if there is none. A file that replaces another has a different inode.
 ino_t file_at(const std::string& path) {
   struct stat found {};
   return ::lstat(path.c_str(), &found) == 0 ? found.st_ino : 0;
@@ -74,7 +74,7 @@ void OutputFolder::read_manifest() {
   }
 }
 
-/// Throws InputError where what has this name must not be replaced or removed. Precondition: something has it.
+/// Throws InputError if this file must not be replaced or removed. Precondition: it exists.
 void OutputFolder::check(const std::string& name) const {
   const auto refuse = [&](const std::string& problem) { throw InputError({.file = file(name)}, problem, kRemedy); };
   std::error_code ignored;
@@ -98,7 +98,7 @@ void OutputFolder::claim(const std::string& name) {
 void OutputFolder::fill(const std::function<void()>& write) {
   const bool of_this = !unfinished_ && result_ != kUnknown && listed_result_ == result_;
   std::set<std::string> names;
-  std::set<std::string> others;  // of other results
+  std::set<std::string> others;  // files of other results
   for (const std::string& name : listed_) {
     if (claimed_.contains(name) || !stands(file(name))) continue;
     if (!of_this) {
@@ -129,7 +129,7 @@ void OutputFolder::remove(const std::set<std::string>& names) const {
   }
 }
 
-/// After a failure: how many of the claimed files are new.
+/// The message after a failure: how many of the claimed files are new.
 std::string OutputFolder::what_is_there() const {
   const auto is_new = [&](const auto& claimed) { return file_at(file(claimed.first)) != claimed.second; };
   const auto written = static_cast<std::size_t>(std::ranges::count_if(claimed_, is_new));

@@ -25,8 +25,8 @@ namespace poesy {
 namespace {
 
 constexpr const char* kOther = "give a result file written by poesy";
-/// Bytes for which a child has a second more, of processor time and by the clock: a slow disk, and a tenth of what a
-/// processor hashes.
+/// The number of bytes for which a child gets another second of processor time and of wall time. It allows for a slow
+/// disk, and is a tenth of what a processor hashes.
 /// @{
 constexpr std::uintmax_t kBytesASecond = std::uintmax_t{16} << 20U;
 constexpr std::uintmax_t kBytesAWaitedSecond = std::uintmax_t{4} << 20U;
@@ -49,12 +49,12 @@ h5::File open_hdf5(const std::string& path) {
   }
 }
 
-/// Empty when the file is none of poesy's.
+/// The type of the file; empty if poesy did not write it.
 std::string filetype_of(const h5::File& file) {
   try {
     return file.has_attribute("/", "filetype") ? text_attribute(file, "filetype") : "";
   } catch (const h5::Error&) {
-    return "";  // an attribute of that name, but not text
+    return "";  // the attribute exists but is not a text
   }
 }
 
@@ -92,7 +92,7 @@ rlim_t stored_bytes(const std::string& path) {
   return file.is_open() ? file.stored_bytes() : 0;
 }
 
-/// What such a child says; any other says what the FileError said.
+/// The message of a child that succeeded; any other message is that of a FileError.
 constexpr std::string_view kEndedWell = "+";
 constexpr std::string_view kNoMemory = "-";
 
@@ -101,7 +101,7 @@ constexpr std::string_view kNoMemory = "-";
                   "try again when fewer processes run");
 }
 
-/// Lowers a limit of this process. Who passes it by one more is killed, whatever signals are blocked.
+/// Lowers a limit of this process. If the limit is exceeded, the process is killed even if it blocks signals.
 void limit(int resource, rlim_t most) {
   rlimit limits{};
   ::getrlimit(resource, &limits);
@@ -110,7 +110,7 @@ void limit(int resource, rlim_t most) {
   ::setrlimit(resource, &limits);
 }
 
-/// No handler of the parent runs in the child, nothing of it is seen, and it ends whatever happens.
+/// Isolates the child: it runs no signal handler of the parent, shows no output, and ends in any case.
 void confine(rlim_t file_bytes) {
   for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
   const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -129,7 +129,7 @@ void send(const Descriptor& to, std::string_view text) {
   }
 }
 
-/// The child's whole life. It ends without destructors and without what is done at exit: both are the parent's.
+/// Runs the child. It ends without destructors and exit handlers, which belong to the parent.
 [[noreturn]] void live_as_child(const Descriptor& to, rlim_t file_bytes, const std::function<void()>& read) {
   confine(file_bytes);
   try {
@@ -140,13 +140,13 @@ void send(const Descriptor& to, std::string_view text) {
   } catch (const std::bad_alloc&) {
     send(to, kNoMemory);
   } catch (...) {
-    // As good as a crash.
+    // This counts as a crash.
   }
   ::_exit(0);
 }
 
-/// What comes out of a pipe until its other end is closed; none when that does not happen in this time. The time while
-/// this process is stopped does not count.
+/// Reads a pipe until its other end is closed; none if that takes longer than this time, not counting time while this
+/// process is stopped.
 std::optional<std::string> receive(const Descriptor& from, std::uintmax_t seconds) {
   constexpr std::uintmax_t kInASecond = 10;
   constexpr int kMilliseconds = 1000 / static_cast<int>(kInASecond);
@@ -164,7 +164,7 @@ std::optional<std::string> receive(const Descriptor& from, std::uintmax_t second
   return std::nullopt;
 }
 
-/// The status of a child that ended; 0 where this process lets nobody know.
+/// The status of a child that ended; 0 if this process cannot find out.
 int status_of(pid_t child) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {
@@ -173,7 +173,7 @@ int status_of(pid_t child) {
   return status;
 }
 
-/// Throws where this process may have less memory than the child of a sound file takes. Without memory HDF5 may crash.
+/// Throws if this process may use less memory than the child needs for an intact file. Without memory HDF5 may crash.
 void refuse_for_little_memory(const std::string& path, rlim_t file_bytes) {
   constexpr rlim_t kMega = 1'000'000;
   const rlim_t most = address_space() + kTrialBytes + 16 * file_bytes;
@@ -226,7 +226,7 @@ std::string text_attribute(const h5::File& file, const std::string& name) {
 }
 
 bool is_out_of_memory(const std::exception& error) {
-  // H5E_NOSPACE, and what H5MM_malloc and its users say.
+  // H5E_NOSPACE, and the messages of H5MM_malloc and its users.
   const std::string_view text = error.what();
   return text.find("memory allocation failed") != std::string_view::npos ||
          text.find("unable to allocate memory") != std::string_view::npos ||

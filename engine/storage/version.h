@@ -6,16 +6,16 @@
 
 namespace poesy {
 
-std::string poesy_version();  ///< "0.2.0"
+std::string poesy_version();  ///< The version of the program, "0.2.0".
 
-/// The commit this program was built from, 40 hexadecimal digits, with "-dirty" behind it when files
-/// differed from that commit; "unknown" when it was not built in a git checkout.
+/// The commit from which this program was built, 40 hexadecimal digits, followed by "-dirty" if files differed from it;
+/// "unknown" if it was not built in a git checkout.
 std::string git_commit();
 
 /// A library that results depend on.
 struct LibraryVersion {
   std::string_view name;     ///< "tbb"
-  std::string_view version;  ///< as it names itself
+  std::string_view version;  ///< as the library states it
 };
 
 std::span<const LibraryVersion> build_versions();  ///< The compiler and the libraries this program was built with.

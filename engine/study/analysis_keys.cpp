@@ -29,7 +29,7 @@ std::vector<FactorIndex> factors_of_set(const StudyValue& value, const ModelDesc
   value.fail("is '" + printable(written) + "', which is no factor set of the model", suggestion(written, known));
 }
 
-/// Those of a study of this kind that names none.
+/// The factors of a study of this kind that names none.
 std::vector<FactorIndex> usual_factors(const StudyKind& kind, const ModelDescription& model) {
   const FactorSet* set = model.find_set(kind.usual_factors);
   return set != nullptr ? set->factors : all_factors(model);
@@ -59,7 +59,7 @@ struct Adaptive {
   std::size_t min = AdaptiveSamples().min;
   std::size_t max = 0;
   double relative_error = 0.0;
-  double conf_level = 0.0;  ///< 0 where it names none
+  double conf_level = 0.0;  ///< 0 if the table has no level
 };
 
 const InnerRows<Adaptive>& adaptive_keys() {
@@ -104,7 +104,7 @@ KeyValue<Study> fixed_samples() {
   return value;
 }
 
-/// A number, or the table of adaptive samples, whose level of the intervals must be the only one.
+/// Reads a number, or the table of adaptive samples. A level of the intervals may be stated only once.
 void read_samples(const StudyValue& value, Study& study, const Reading& reading) {
   Analysis& analysis = study.analysis;
   if (!value.is_section()) {
@@ -127,7 +127,7 @@ void read_samples(const StudyValue& value, Study& study, const Reading& reading)
             "write the level of the intervals once");
 }
 
-/// A line for each key of adaptive samples, so that a comparison of two studies line by line names the key.
+/// Writes each key of adaptive samples on its own line, so that comparing two studies line by line names the key.
 std::string samples_lines(const Study& study) {
   const Analysis& analysis = study.analysis;
   if (!analysis.adaptive) return fmt::format("samples = {}\n", analysis.samples);
@@ -159,7 +159,7 @@ const InnerRows<Background>& background_keys() {
   return keys;
 }
 
-/// Errors are held as large as errors of the study are, unless it says otherwise.
+/// Reads the background. By default, its errors are as large as errors of the study are.
 void read_background(const StudyValue& value, Study& study, const Reading& reading) {
   const StudySection section = value.section();
   Background background{.factors = {},
@@ -177,7 +177,7 @@ std::string background_lines(const Study& study) {
          keys_text(background_keys(), background);
 }
 
-/// Holds the set that the kind suggests, where the model has it.
+/// The background in a template: the set that the kind suggests, if the model has it.
 std::string shown_background(const TemplateLines& lines, const Study& study) {
   const std::string_view held = study.analysis.kind->usual_background;
   return lines.explanation_lines("analysis", "background") + lines.keys_lines("analysis.background") +
@@ -185,7 +185,7 @@ std::string shown_background(const TemplateLines& lines, const Study& study) {
                                                   : "# background = { factors = \"all\" }\n");
 }
 
-/// Whether the model can be calibrated is known once it is built (build_model).
+/// Reads `calibrated`. Whether the model can be calibrated is known only when it is built (build_model).
 void read_calibrated(const StudyValue& value, Study& study, const Reading&) {
   study.mechanism.calibrated = value.yes_or_no();
   study.mechanism.calibrated_place = value.place();
@@ -193,12 +193,12 @@ void read_calibrated(const StudyValue& value, Study& study, const Reading&) {
 
 std::string calibrated_line(const Study& study) { return study.mechanism.calibrated ? "calibrated = true\n" : ""; }
 
-/// For models that can be.
+/// The line of `calibrated`, for models that can be calibrated.
 std::string shown_calibrated(const TemplateLines& lines, const Study& study) {
   return study.model().separation ? lines.usual("analysis", "calibrated") : "";
 }
 
-/// In the order of the model's responses.
+/// Reads limits, in the order of the model's responses.
 void read_response_limits(const StudyValue& value, Study& study, const Reading&) {
   const std::vector<Response>& responses = study.model().responses;
   read_named(value.section(), responses, "response", [&](std::size_t r, const StudyValue& own) {
@@ -207,7 +207,7 @@ void read_response_limits(const StudyValue& value, Study& study, const Reading&)
   if (study.analysis.limits.empty()) value.fail("states no limit", "write a response with its limit, or leave it out");
 }
 
-/// A line for each limit, as for adaptive samples.
+/// Writes each limit on its own line, as for adaptive samples.
 std::string response_limits_lines(const Study& study) {
   std::string text;
   for (const ResponseLimit& limit : study.analysis.limits) {
@@ -299,12 +299,12 @@ std::vector<StudyRow> own_rows(const StudyKind& kind) {
   return kind.rows == nullptr ? std::vector<StudyRow>() : kind.rows();
 }
 
-/// Whether a row of the kind's own takes the place of a shared one.
+/// Whether the kind has a row of its own instead of a shared one.
 bool has_own_row(const StudyKind& kind, std::string_view name) {
   return std::ranges::count(own_rows(kind), name, &StudyRow::name) > 0;
 }
 
-/// For which kinds each shared row holds, and what is said of `kind`. Kinds whose factors a study names come first.
+/// Adds to each shared row the kinds to which it applies, and describes `kind`. Kinds with named factors come first.
 void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   std::vector<const StudyKind*> listed(kinds.begin(), kinds.end());
   std::stable_partition(listed.begin(), listed.end(), [](const StudyKind* kind) { return kind->has_key("factors"); });
@@ -319,7 +319,7 @@ void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   for (const StudyKind* kind : kinds) row.value.words.push_back({kind->name, kind->asks});
 }
 
-/// "in a sensitivity study deforming, where the model has that set; else all".
+/// The default factors in words: "in a sensitivity study deforming, where the model has that set; else all".
 std::string usual_factors_text(std::span<const StudyKind* const> kinds) {
   std::string text;
   for (const StudyKind* kind : kinds) {

@@ -12,11 +12,11 @@
 namespace poesy {
 namespace {
 
-constexpr double kFarBeyond = 10.0;  ///< times the size of an error
-constexpr double kRounding = 1e-9;   ///< of a workspace's range
+constexpr double kFarBeyond = 10.0;  ///< over the size of an error
+constexpr double kRounding = 1e-9;   ///< over a workspace's range
 constexpr int kDigits = 6;
 
-/// "FILE: z has no unit, so its numbers are in m: FOUND; ...".
+/// A line that asks about a number: "FILE: z has no unit, so its numbers are in m: FOUND; ...".
 std::string line(std::string_view file, std::string_view column, Dimension dimension, const std::string& found) {
   return fmt::format(
       "{}: {} has no unit, so its numbers are in {}: {}; if they are not, name their unit in the first line, e.g. '{} "
@@ -24,7 +24,7 @@ std::string line(std::string_view file, std::string_view column, Dimension dimen
       printable(file), printable(column), si_unit(dimension), found, printable(column), display_unit(dimension).name);
 }
 
-/// A magnitude that is too large, or less.
+/// Describes a magnitude that is too large; empty if it is not.
 std::string beyond_text(double value, Dimension dimension, double usual, std::string_view whose) {
   return fmt::format("one is {}, more than {} times {} ({})", readable_text({value, dimension}, kDigits), kFarBeyond,
                      whose, readable_text({usual, dimension}, kDigits));
@@ -41,7 +41,7 @@ std::string bare_pose_text(std::string_view file, const PoseTable& table, const 
   if (table.bare.empty()) return {};
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
     const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    // Coordinates of a chart determine all of the pose together.
+    // The coordinates of a chart determine the pose only together.
     const auto own = std::ranges::find(table.bare, coordinate.name);
     if (!table.chart && own == table.bare.end()) continue;
     const double lower = model.pose_lower[c];

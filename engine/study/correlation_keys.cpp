@@ -14,7 +14,7 @@
 namespace poesy {
 namespace {
 
-/// As measured together: the rows of one table belong to one part each.
+/// The word for errors that were measured together: each row of a table belongs to one part.
 constexpr std::string_view kAsMeasured = "as measured";
 
 const InnerRows<CorrelatedErrors>& block_keys() {
@@ -39,14 +39,14 @@ const InnerRows<CorrelatedErrors>& block_keys() {
   return keys;
 }
 
-/// A file's columns that errors were measured in.
+/// The columns of a file in which errors were measured.
 struct MeasuredTogether {
-  std::string file;  ///< as the study has it
+  std::string file;  ///< as the study names it
   std::vector<FactorIndex> factors;
   std::vector<std::string> columns;
 };
 
-/// What [errors.override] takes from files, file by file.
+/// The columns that [errors.override] takes from files, file by file.
 std::vector<MeasuredTogether> measured_together(const StudySection& errors, const ModelDescription& model) {
   std::vector<MeasuredTogether> tables;
   const StudySection override = errors.section("override");
@@ -62,7 +62,7 @@ std::vector<MeasuredTogether> measured_together(const StudySection& errors, cons
   return tables;
 }
 
-/// Normal scores with this correlation have the rank correlation of the columns: 2 sin(pi r / 6) for Spearman's r.
+/// The correlation of normal scores that have the rank correlation of the columns: 2 sin(pi r / 6) for Spearman's r.
 std::vector<double> correlation_of(const MeasuredTogether& table, const StudySection& errors,
                                    const ModelDescription& model) {
   const std::string path = beside_study(errors, table.file);
@@ -90,7 +90,7 @@ void check_definite(const StudyValue& value, std::span<const double> correlation
              "take smaller correlations, or leave out an error that follows from the others");
 }
 
-/// All numbers of a matrix, checked one by one.
+/// Reads and checks all numbers of a matrix.
 std::vector<double> read_matrix(const StudyValue& value, std::size_t size) {
   const std::string remedy = fmt::format("write {} rows of {} numbers, in the order of factors", size, size);
   std::vector<double> matrix;
@@ -112,7 +112,7 @@ std::vector<double> read_matrix(const StudyValue& value, std::size_t size) {
   return matrix;
 }
 
-/// The columns of these factors, which one file must have.
+/// The columns of these factors. Throws unless one file has them all.
 MeasuredTogether columns_of(const StudyValue& value, std::span<const FactorIndex> factors, const StudySection& errors,
                             const ModelDescription& model) {
   MeasuredTogether asked;
@@ -169,7 +169,7 @@ CorrelatedErrors read_block(const StudyValue& value, const Study& study, const R
   return block;
 }
 
-/// A block for each file of which errors take several columns.
+/// Makes a block for each file from which errors take several columns.
 void read_as_measured(const StudyValue& value, Study& study, const Reading& reading) {
   const StudySection errors = reading.root.section("errors");
   for (const MeasuredTogether& table : measured_together(errors, study.model())) {
@@ -217,7 +217,7 @@ std::string shown_correlated(const TemplateLines& lines, const Study& study) {
                      factors[0].name, factors[1].name);
 }
 
-/// "x1, x2 and 3 more".
+/// A short list of names: "x1, x2 and 3 more".
 std::string some_names(std::span<const FactorIndex> factors, const ModelDescription& model) {
   constexpr std::size_t kMost = 4;
   std::string text;

@@ -15,26 +15,27 @@ namespace {
 
 using Shape = Distribution::Shape;
 
-/// SI. Fourth powers of an error, and of indices down to rounding times it, then are far above the smallest double.
+/// The smallest size, SI. Fourth powers of an error, and of indices down to rounding times it, are then far above the
+/// smallest double.
 constexpr double kSmallest = 1e-30;
 
-/// A measured distribution has at most so many values: they become part of every result.
+/// The largest number of values of a measured distribution, because they become part of every result.
 constexpr std::size_t kMostMeasured = 10'000;
 
-/// What a study says of a distribution.
+/// The parameters of a distribution in a study.
 struct Parameters {
   Shape shape = Shape::normal;
-  double sigma = 0.0;       ///< SI; 0 where the shape has none
-  double half_width = 0.0;  ///< likewise
+  double sigma = 0.0;       ///< SI; 0 if the shape has none
+  double half_width = 0.0;  ///< SI; 0 if the shape has none
   double shift = 0.0;       ///< SI
   Dimension dimension = Dimension::length;
-  std::string file = {};            ///< of measured values
-  std::string column = {};          ///< of the file
-  std::vector<double> values = {};  ///< that were measured, SI
-  std::string doubt = {};           ///< about their unit
+  std::string file = {};            ///< file of measured values
+  std::string column = {};          ///< column of the file
+  std::vector<double> values = {};  ///< measured values, SI
+  std::string doubt = {};           ///< doubt about their unit
 };
 
-/// Without its shift.
+/// The distribution without its shift.
 Distribution centred_distribution_of(const Parameters& parameters) {
   switch (parameters.shape) {
     case Shape::normal:
@@ -59,7 +60,7 @@ Distribution centred_distribution_of(const Parameters& parameters) {
   return measured;
 }
 
-/// read: StudyValue::positive_quantity or half_width.
+/// A key of a size. read_size: StudyValue::positive_quantity or half_width.
 KeyValue<Parameters> size_at(double Parameters::*member, double (StudyValue::*read_size)(Dimension) const) {
   const auto read = [=](const StudyValue& value, Parameters& parameters) {
     parameters.*member = (value.*read_size)(parameters.dimension);
@@ -150,8 +151,8 @@ const InnerRows<Parameters>& distribution_keys() {
 
 Distribution default_distribution(Dimension dimension) { return Distribution::normal(display_unit(dimension).si); }
 
-/// The values of a file, where the study names one; whether there are any values. Files are opened to run alone.
-/// usual: how other errors of this dimension scatter.
+/// Reads the values of a file if the study names one; returns whether there are any. Files are opened only for a run.
+/// usual: the distribution of other errors of this dimension.
 bool take_values(const StudySection& section, StudyUse use, const Distribution& usual, Parameters& parameters) {
   if (section.find("values")) {
     for (const std::string_view key : {"file", "column"}) section.refuse(key, "a distribution with values");
@@ -172,7 +173,8 @@ bool take_values(const StudySection& section, StudyUse use, const Distribution& 
       fmt::format("measure at least {} parts, or write a distribution with sigma", Distribution::kLeastMeasured));
 }
 
-/// usual: how other errors of this dimension scatter. doubts: gets what is doubtful about a file of measured values.
+/// Reads a distribution. usual: that of other errors of this dimension. doubts: receives doubts about a file of
+/// measured values.
 Distribution read_distribution(const StudyValue& value, Dimension dimension, StudyUse use, const Distribution& usual,
                                std::vector<std::string>& doubts) {
   const StudySection section = value.section();
@@ -211,7 +213,7 @@ void read_override(const StudyValue& value, Study& study, const Reading& reading
   });
 }
 
-/// A TOML list over several lines, because a line of a study file is not endless.
+/// The values as a TOML list over several lines, to keep lines of a study file short.
 std::string values_text(std::span<const double> values, Dimension dimension, ValueText value) {
   constexpr std::size_t kOfLine = 5;
   std::string text = "[";
@@ -244,7 +246,7 @@ std::string distribution_text(const Distribution& distribution, Dimension dimens
   return text + " }";
 }
 
-/// The distribution that most factors of this dimension have: what `linear` or `angular` is set to.
+/// The distribution that most factors of this dimension have, to which `linear` or `angular` is set.
 Distribution commonest_distribution(const Study& study, Dimension dimension) {
   const std::vector<Factor>& factors = study.model().factors;
   std::vector<Distribution> all;
@@ -293,7 +295,7 @@ StudyRow usual_row(std::string_view meaning) {
           .lines = usual_line<kDimension>};
 }
 
-/// At what gives the factor its distribution: the first of these keys that it has, else sigma.
+/// Refuses at the value that determines the factor's distribution: the first of these keys that it has, or else sigma.
 [[noreturn]] void refuse_distribution(const StudySection& root, const Factor& factor, const std::string& problem,
                                       std::span<const std::string_view> keys) {
   const StudySection errors = root.section("errors");
@@ -307,7 +309,8 @@ StudyRow usual_row(std::string_view meaning) {
   refuse_error(distribution, "sigma", problem);
 }
 
-/// Of the distributions of what varies: the largest possible error, for a normal its standard deviation.
+/// Checks the distributions of the factors that vary by their largest possible error, or the standard deviation of a
+/// normal.
 void check_distributions(const StudySection& root, const Study& study, const Model& model) {
   for (const FactorIndex factor : study.analysis.factors) {
     const Distribution& distribution = study.errors.by_factor[factor.value];

@@ -57,7 +57,7 @@ void read_geometry(const StudyValue& value, Study& study, const Reading&) {
   });
 }
 
-/// Takes the entry of the mechanism under other loads.
+/// Selects the entry of the mechanism with other loads.
 void read_load(const StudyValue& value, Study& study, const Reading&) {
   MechanismChoice& choice = study.mechanism;
   if (!choice.entry->with_load) {
@@ -72,7 +72,7 @@ std::string load_lines(const Study& study) {
   return load.empty() ? "" : "\n[mechanism.load]\n" + load;
 }
 
-/// Sets `fidelity`, and `compared` for "both", which a model with two fidelities offers.
+/// Sets `fidelity`; for "both", which needs a model with two fidelities, also `compared`.
 void read_fidelity(const StudyValue& value, Study& study, const Reading& reading) {
   const ModelDescription& model = study.model();
   if (model.fidelities.empty()) {

@@ -37,14 +37,14 @@ std::string points_text(std::span<const PlatformPoint> points, ValueText value) 
   return list_text(list);
 }
 
-/// Throws where nothing is weighed by a metric.
+/// Throws if the mechanism has no metric.
 void require_metric(std::string_view key, const Study& study, const Reading& reading) {
   if (!study.model().metric.empty()) return;
   reading.root.section("solver").refuse(
       key, "model \"" + study.model().name + "\", whose responses weigh no angles against lengths");
 }
 
-/// Takes the entry of the mechanism by the metric that the study asks for.
+/// Selects the entry of the mechanism with the metric that the study names.
 void read_metric(const StudyValue& value, Study& study, const Reading& reading) {
   require_metric("metric", study, reading);
   const std::vector<std::string_view> known = names(row_of(solver_keys(), "metric").value.words);
@@ -59,7 +59,7 @@ void read_metric(const StudyValue& value, Study& study, const Reading& reading) 
   study.mechanism.entry = &entry;
 }
 
-/// A point of the platform: three lengths.
+/// Reads a point of the platform: three lengths.
 PlatformPoint read_point(const StudyValue& value) {
   const std::vector<StudyValue> coordinates = value.list(3, "a point has three, [\"60 mm\", 0, 0]");
   PlatformPoint point{};
@@ -96,7 +96,7 @@ std::string shown_metric(const TemplateLines& lines, const Study& study) {
   return metric.empty() ? "" : lines.explained("solver", "metric", "metric = " + in_quotes(metric));
 }
 
-/// The published mechanism's own points.
+/// The points of the published mechanism.
 std::string shown_points(const TemplateLines& lines, const Study& study) {
   if (study.model().metric.empty()) return {};
   std::vector<double> geometry;
@@ -109,7 +109,7 @@ std::string shown_tolerance(const TemplateLines& lines, const Study& study) {
   return lines.explained("solver", "tolerance", "tolerance = " + shortest(study.model().tolerance));
 }
 
-/// "fail" is short for "exclude" and a limit of 0.
+/// Reads `not_converged`. "fail" means "exclude" with a limit of 0.
 void read_not_converged(const StudyValue& value, Study& study, const Reading& reading) {
   const std::vector<std::string_view> known = names(row_of(solver_keys(), "not_converged").value.words);
   const std::string_view word = known[value.word(known)];
@@ -174,7 +174,7 @@ std::vector<StudyRow> solver_rows() {
                .meaning = "Share of all samples; if more fail, the run ends with exit code 5, its result kept."}};
 }
 
-/// A row for a table of the file, which is read by itself.
+/// A row for a table of the file that has its own reader.
 StudyRow table_row(std::string_view name, std::string missing, std::string usual, std::string_view meaning) {
   return {.name = name,
           .value = {.type = "table"},

@@ -15,7 +15,7 @@ namespace poesy {
 
 namespace {
 
-/// In the order of the enumerations.
+/// The words of a study file, in the order of the enumerations.
 /// @{
 constexpr std::array<std::string_view, 5> kSelectNames{"interior", "file", "boundary", "grid", "trajectory"};
 constexpr std::array<std::string_view, 2> kDrawsNames{"per pose", "per machine"};
@@ -29,7 +29,7 @@ std::string_view name_among(const std::array<std::string_view, kCount>& names, E
   return names.at(static_cast<std::size_t>(value));
 }
 
-/// Of the background, those that neither vary nor are zero.
+/// The errors of the background that neither vary nor are zero.
 std::vector<FactorIndex> held_errors(const Study& study) {
   const std::vector<double> errors = background_errors(study.analysis.background, study.model());
   std::vector<FactorIndex> held;
@@ -40,7 +40,8 @@ std::vector<FactorIndex> held_errors(const Study& study) {
   return held;
 }
 
-/// "30 errors of set 'benign'", "2 of the 30 errors of set 'benign'", "delta_1 and delta_2", "12 errors".
+/// The errors in words: "30 errors of set 'benign'", "2 of the 30 errors of set 'benign'", "delta_1 and delta_2", "12
+/// errors".
 std::string owners_text(const std::vector<FactorIndex>& held, const Study& study) {
   const std::vector<FactorIndex>& named = study.analysis.background->factors;
   const std::string all = held.size() == named.size() ? "" : fmt::format("{} of the ", held.size());
@@ -54,7 +55,7 @@ std::string owners_text(const std::vector<FactorIndex>& held, const Study& study
   return fmt::format("{}", fmt::join(names, " and "));
 }
 
-/// "1 mm and 1 deg", of the dimensions that the held errors have.
+/// The sizes in words, for the dimensions that the constant errors have: "1 mm and 1 deg".
 std::string sizes_text(const std::vector<FactorIndex>& held, const Study& study) {
   const Background& background = *study.analysis.background;
   std::vector<std::string> sizes;
@@ -107,7 +108,7 @@ MechanismChoice at_compared_fidelity(MechanismChoice mechanism) {
 
 namespace {
 
-/// The mechanism as it is without a correction of its actuators.
+/// Builds the mechanism without correction of its actuators.
 std::unique_ptr<Model> build_uncorrected(const MechanismChoice& mechanism) {
   const CatalogEntry& entry = *mechanism.entry;
   if (mechanism.points.empty()) {
@@ -123,7 +124,7 @@ std::unique_ptr<Model> build_uncorrected(const MechanismChoice& mechanism) {
   } catch (const std::invalid_argument& reason) {
     MechanismChoice without_points = mechanism;
     without_points.points.clear();
-    static_cast<void>(build_uncorrected(without_points));  // throws where the geometry is impossible by itself
+    static_cast<void>(build_uncorrected(without_points));  // throws if the geometry itself is impossible
     throw InputError(
         mechanism.points_place, reason.what(),
         "name points around the platform, such as its joints' centres, or leave the key out to take these");

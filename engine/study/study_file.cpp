@@ -25,7 +25,7 @@ bool begins_like_hdf5(const std::string& path) {
   return file.is_open() && file.read(0, std::as_writable_bytes(std::span(begin))) && begin == kSignature;
 }
 
-/// Keeps the numbers of cells and solves within what memory and 64-bit counts hold.
+/// Throws if there are more cells or solves than memory and 64-bit counts allow.
 void check_size(const StudySection& root, const Study& study) {
   const bool from_file = study.poses.select == PoseSelection::Select::file;
   const double poses = static_cast<double>(from_file ? study.poses.from_file.points.size() : study.poses.count);
@@ -45,7 +45,7 @@ void check_size(const StudySection& root, const Study& study) {
   }
 }
 
-/// "both" is for kinds that compare fidelities, with a fixed number of samples.
+/// Throws if "both" is used with a kind that compares no fidelities, or with adaptive samples.
 void check_fidelities(const Study& study, const Reading& reading) {
   if (!study.mechanism.compared) return;
   if (!study.analysis.kind->compares_fidelities) {
@@ -64,8 +64,7 @@ void check_fidelities(const Study& study, const Reading& reading) {
   }
 }
 
-/// A background does nothing to an error that varies, so one that names such an error by itself, or a set of nothing
-/// else, says what will not happen.
+/// Throws if the background names only errors that vary, alone or as a set, because it has no effect on them.
 void check_background(const Study& study, const Reading& reading) {
   if (!study.analysis.background || study.analysis.kind->varies == Varies::none) return;
   const auto varies = [&](FactorIndex factor) {
@@ -108,7 +107,7 @@ Study study_from(const Reading& reading) {
   return study;
 }
 
-/// The keys that hold for the study's kind.
+/// The keys of [analysis] for the study's kind.
 StudyRows analysis_keys_of(const Study& study) {
   const StudyKind& kind = *study.analysis.kind;
   StudyRows keys = analysis_keys(kind);

@@ -21,39 +21,39 @@ using Names = std::vector<std::string_view>;
 
 bool contains(const Names& list, std::string_view name) { return std::ranges::find(list, name) != list.end(); }
 
-/// A column of numbers that a table may have.
+/// A known column of numbers.
 struct KnownColumn {
-  std::string_view name;   ///< as the header has it
+  std::string_view name;   ///< name in the header
   Dimension dimension;     ///< of its numbers
-  std::string_view meant;  ///< the name that it means: its own, unless it is another word for it
+  std::string_view meant;  ///< its own name, or the name of which it is a synonym
 };
 
-/// What the header of a table may name.
+/// The columns that the header of a table may name.
 struct KnownColumns {
-  std::vector<KnownColumn> numbers;  ///< what is read
-  Names facts = {};                  ///< other columns that `poesy export` writes: passed over
-  Names labels = {};                 ///< of which one may name the rows
-  bool has_texts = false;            ///< whether it may also have columns of text, which are passed over
+  std::vector<KnownColumn> numbers;  ///< columns that are read
+  Names facts = {};                  ///< other columns that `poesy export` writes, which are ignored
+  Names labels = {};                 ///< columns of which one may name the rows
+  bool has_texts = false;            ///< whether it may also have columns of text, which are ignored
   std::string_view what;             ///< a column of numbers, for messages: "pose coordinate"
 };
 
-/// A column of a table that is being read.
+/// A column of a table, while it is read.
 struct TableColumn {
-  /// What its cells are.
+  /// The role of its cells.
   enum class Role { number, fact, label, text };
   Role role;                                ///< of its cells
-  std::string_view name;                    ///< KnownColumn::meant, or one of KnownColumns::labels; refers to these
-  std::string_view title;                   ///< as the header has it, with its unit; refers to the lines
-  Dimension dimension = Dimension::number;  ///< of its numbers
-  double si = 1.0;                          ///< by which its numbers are multiplied
-  Place place = {};                         ///< of a text: of the title
-  bool bare = false;                        ///< whether it names no unit
+  std::string_view name;                    ///< KnownColumn::meant, or one of KnownColumns::labels; a view of these
+  std::string_view title;                   ///< title in the header, with its unit; a view of the lines
+  Dimension dimension = Dimension::number;  ///< dimension of its numbers
+  double si = 1.0;                          ///< factor that converts its numbers to SI
+  Place place = {};                         ///< for a text: place of the title
+  bool bare = false;                        ///< whether it states no unit
 
-  /// "z [mm]": how the header may say the unit in which people read such numbers.
+  /// The title with the unit that people read: "z [mm]".
   std::string with_unit() const { return std::string(name) + " [" + std::string(display_unit(dimension).name) + "]"; }
 };
 
-/// "z [mm]" taken apart: "z" and "mm". Without brackets there is no unit.
+/// The parts of "z [mm]": "z" and "mm". Without brackets there is no unit.
 struct Title {
   explicit Title(std::string_view text) : name(text) {
     const std::size_t bracket = text.find('[');
@@ -66,7 +66,7 @@ struct Title {
   std::optional<std::string_view> unit;
 };
 
-/// The size in SI of a column's unit.
+/// The size of a column's unit in SI.
 double size_of(const CsvCell& cell, const Title& title, Dimension dimension) {
   if (!title.unit || *title.unit == si_unit(dimension)) return 1.0;
   const Unit* unit = find_unit(*title.unit);
@@ -113,9 +113,9 @@ TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
   return {.role = text, .name = title.name, .title = cell.text, .place = cell.place};
 }
 
-/// Reads the first line. A name may be followed by the unit of its numbers in brackets, "z [mm]"; without one they are
-/// SI. Throws InputError with its place for a column that is unknown, is there a second time, or has a unit that is
-/// unknown or measures something else, and for two columns that name the rows.
+/// Reads the first line. The unit of a column may follow its name in brackets, "z [mm]"; without it numbers are SI.
+/// Throws InputError with its place for a column that is unknown or repeated, for a unit that is unknown or of another
+/// dimension, and for two columns that name the rows.
 std::vector<TableColumn> read_header(CsvLines& lines, const KnownColumns& known) {
   std::vector<TableColumn> columns;
   for (const CsvCell& cell : lines.next()) {
@@ -148,7 +148,7 @@ enum class Timed { no, yes };
 constexpr std::string_view kTime = "t";
 constexpr std::string_view kExportedTime = "time";
 
-/// The columns that a table of poses may have: one list for the pose's own coordinates, then one for each chart.
+/// The headers that a table of poses may have: the pose's own coordinates, then those of each chart.
 std::vector<Names> possible_headers(const ModelDescription& model, Timed timed) {
   const auto header = [&](const std::vector<PoseCoordinate>& coordinates) {
     Names columns;
@@ -167,7 +167,7 @@ std::string one_of(const std::vector<Names>& headers) {
   return fmt::format("{}", fmt::join(list, " | "));
 }
 
-/// The position of the header whose names these different columns are, in any order.
+/// The position of the header with these column names, in any order.
 std::size_t header_of(const Names& columns, const std::vector<Names>& headers, const std::string& path) {
   const Names* unfinished = nullptr;
   for (std::size_t k = 0; k < headers.size(); ++k) {
@@ -188,9 +188,10 @@ std::size_t header_of(const Names& columns, const std::vector<Names>& headers, c
 /// The cells below a header.
 struct Rows {
   std::vector<double> values;       ///< row-major, SI, in the order of the columns of numbers
-  std::vector<std::string> labels;  ///< of each row; empty without a column of labels
-  std::map<std::string_view, std::size_t, std::less<>> line_of;  ///< each label's; refers to the lines
-  std::set<std::string_view> texts;                              ///< columns of text in which there is some
+  std::vector<std::string> labels;  ///< labels of the rows; empty without a column of labels
+  std::map<std::string_view, std::size_t, std::less<>>
+      line_of;                       ///< line of each label; the labels are views of the lines
+  std::set<std::string_view> texts;  ///< columns with text
 };
 
 double number(const CsvCell& cell, const TableColumn& column) {
@@ -201,7 +202,7 @@ double number(const CsvCell& cell, const TableColumn& column) {
       fmt::format("write a plain number, in SI units unless the first line names another: '{}'", column.with_unit()));
 }
 
-/// Whether a cell begins as a number does, or is one that is not finite.
+/// Whether a cell begins like a number, or is a number that is not finite.
 bool is_like_a_number(std::string_view cell) {
   const std::string_view body = cell.substr(std::min(cell.find_first_not_of("+-."), cell.size()));
   if (!body.empty() && body.front() >= '0' && body.front() <= '9') return true;
@@ -209,14 +210,14 @@ bool is_like_a_number(std::string_view cell) {
   return word == "nan" || word == "inf" || word == "infinity";
 }
 
-/// Whether there is a letter of any language.
+/// Whether the cell has a letter of any language.
 bool has_letter(std::string_view cell) {
   return std::ranges::any_of(cell, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) > 127;
   });
 }
 
-/// Appends a row's label.
+/// Adds the label of a row.
 void read_label(const CsvCell& cell, const TableColumn& column, Rows& rows) {
   const std::string what = std::string(column.name) + " '" + printable(cell.text) + "'";
   if (const auto problem = label_problem(cell.text)) {
@@ -230,10 +231,10 @@ void read_label(const CsvCell& cell, const TableColumn& column, Rows& rows) {
   rows.labels.emplace_back(cell.text);
 }
 
-/// Throws for a number (SI) that does not belong into its column, the n-th of the columns of numbers.
+/// Throws if a number (SI) is not allowed in its column, the n-th of the columns of numbers.
 using CheckCell = std::function<void(const Place& place, std::size_t n, const TableColumn& column, double value)>;
 
-/// Appends one line.
+/// Reads one line.
 void read_row(CsvLines& lines, std::span<const TableColumn> columns, const KnownColumns& known, const CheckCell& check,
               Rows& rows) {
   const Place line = lines.next_place();
@@ -257,7 +258,7 @@ void read_row(CsvLines& lines, std::span<const TableColumn> columns, const Known
   }
 }
 
-/// All lines below the header.
+/// Reads all lines below the header.
 Rows read_rows(CsvLines& lines, std::span<const TableColumn> columns, const KnownColumns& known,
                const CheckCell& check) {
   if (lines.done()) {
@@ -274,7 +275,7 @@ Rows read_rows(CsvLines& lines, std::span<const TableColumn> columns, const Know
   return rows;
 }
 
-/// The columns of a table of poses or a trajectory. `poesy export` calls the time "time", and adds the numbers of the
+/// The columns of a table of poses or a trajectory. `poesy export` names the time "time", and adds the numbers of the
 /// poses and their condition numbers.
 KnownColumns pose_columns(const ModelDescription& model, Timed timed) {
   KnownColumns known{.numbers = {}, .facts = {"pose", "condition"}, .what = "pose coordinate"};
@@ -296,7 +297,7 @@ KnownColumns pose_columns(const ModelDescription& model, Timed timed) {
   return known;
 }
 
-/// Throws unless the last time is one, and comes after the one before.
+/// Throws unless the last time is finite and larger than the one before.
 void check_last(const std::vector<double>& time, const std::string& path) {
   if (!time.empty() && std::abs(time.back()) > kLatestTime) {
     throw InputError({path, time.size() + 1, 1}, "t = " + shortest(time.back()) + " s is more than 1e9 s from 0",
@@ -318,7 +319,7 @@ TimedPoints read_points(CsvLines& lines, const std::string& path, const ModelDes
   const Names columns = names_of_numbers(all);
   const std::vector<Names> headers = possible_headers(model, timed);
   const std::size_t kind = header_of(columns, headers, path);
-  std::vector<std::size_t> order;  // of the columns that the header has, in the file
+  std::vector<std::size_t> order;  // order of the header's columns in the file
   for (const std::string_view name : headers[kind]) {
     order.push_back(static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin()));
   }

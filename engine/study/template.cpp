@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// Those in which values of a study of this model may be written: of lengths, angles, times, and what it responds with.
+/// The units in which a study of this model may state values: of lengths, angles, times and responses.
 std::string model_units(const ModelDescription& model) {
   std::string list;
   for (const Dimension dimension : all_dimensions()) {
@@ -63,7 +63,7 @@ std::string mechanism_section(const TemplateLines& lines, const Study& shown) {
   return text;
 }
 
-/// Other coordinates in which a file may give poses.
+/// A comment on other coordinates in which a file may give poses.
 std::string charts_comment(const ModelDescription& model) {
   std::string text;
   for (const PoseChart& chart : model.charts) {
@@ -81,7 +81,7 @@ std::string analysis_section(const TemplateLines& lines, const Study& shown) {
   return text;
 }
 
-/// "`m`, `cm`".
+/// The units of a dimension as Markdown: "`m`, `cm`".
 std::string units_of(Dimension dimension) {
   std::vector<std::string_view> list;
   for (const Unit& unit : units()) {

@@ -9,29 +9,29 @@
 
 namespace poesy {
 
-/// Reads a whole file. `what` names what it should be, for messages ("study").
-/// Throws InputError for what is no plain file or has more than most_bytes, FileError when it cannot be read.
+/// Reads a whole file. what: the kind of file for messages ("study"). Throws InputError if it is not a plain file or
+/// has more than most_bytes, FileError if it cannot be read.
 std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes);
 
-/// One comma-separated part of a line, without the spaces around it.
+/// A comma-separated part of a line, without surrounding blanks.
 struct CsvCell {
-  std::string_view text;  ///< refers to the lines, which must live as long
-  Place place;            ///< where it begins
+  std::string_view text;  ///< a view of the lines
+  Place place;            ///< place of its beginning
 };
 
-/// The lines of a CSV file, one by one: commas between cells, no quotes, no blank lines but at the end. A byte order
-/// mark and line ends of Windows are passed over.
+/// Reads a CSV file line by line: commas between cells, no quotes, no blank lines except at the end. A byte order mark
+/// and line ends of Windows are ignored.
 class CsvLines {
  public:
-  /// `what` names what the file should be, for messages ("table of poses"). Throws InputError for an empty file or
-  /// what is no plain file, FileError when it cannot be read.
+  /// what: the kind of file for messages ("table of poses"). Throws InputError for an empty file or one that is not a
+  /// plain file, FileError if it cannot be read.
   CsvLines(const std::string& path, std::string_view what);
   CsvLines(const CsvLines&) = delete;
   CsvLines& operator=(const CsvLines&) = delete;
 
-  bool done() const { return rest_.empty(); }                 ///< Whether all lines were taken.
-  Place next_place() const { return {path_, line_ + 1, 1}; }  ///< Where the next line begins.
-  /// Takes a line. Throws InputError when its cells are separated by semicolons.
+  bool done() const { return rest_.empty(); }                 ///< Whether all lines were read.
+  Place next_place() const { return {path_, line_ + 1, 1}; }  ///< The place of the next line.
+  /// Reads a line. Throws InputError if its cells are separated by semicolons.
   std::vector<CsvCell> next();
 
  private:

@@ -52,7 +52,7 @@ struct Weighted {
   static constexpr bool kWeighted = true;  ///< W is the chain's
 };
 
-/// Carries a type.
+/// Passes the type of a kernel as a value.
 template <class Kernel>
 struct KernelClass {
   using Type = Kernel;  ///< the kernel
@@ -293,8 +293,8 @@ class BlockKernel {
   const KernelOutcome outcome_;
   const std::size_t capacity_;
 
-  // Per sample, in rows of capacity_.
-  double* value_;  ///< of varied errors, but for the first in_place_ samples
+  // Rows of capacity_ with a value for each sample.
+  double* value_;  ///< varied errors, except of the first in_place_ samples
   double* q_;
   double*
       memory_;  ///< published: residual of the last round; follow: displacements of an earlier one; map: coordinates

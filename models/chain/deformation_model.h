@@ -45,11 +45,11 @@ struct DeformationModel {
 
   /// Where a factor's error is among all frames.
   FrameEntry entry(const ErrorSlot& slot) const;
-  /// What is reported of the platform there; none: only the deformation.
+  /// The platform's points in the report at these displacements; none if only the deformation is reported.
   std::optional<PlatformPoints> platform_points(std::span<const double> displacements) const;
-  /// At nominal displacements [all joints]; none: as published.
+  /// The metric at nominal displacements [all joints]; none for the published metric.
   std::optional<Metric> metric(std::span<const double> displacements) const;
-  /// Of held_at, likewise.
+  /// The metric of held_at at nominal displacements [all joints]; none if there are no such points.
   std::optional<Metric> held(std::span<const double> displacements) const;
 };
 

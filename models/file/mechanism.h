@@ -52,11 +52,12 @@ struct Limb {
   std::vector<Joint> joints;    ///< [n], in the order from the body where it begins to that where it ends
   std::vector<Transform> home;  ///< [n + 1]: body to first joint, joint to joint, last joint to body, at home
   std::size_t from = kBase;     ///< position of the body where it begins
-  std::size_t to = kPlatform;   ///< and of that where it ends
+  std::size_t to = kPlatform;   ///< position of the body where it ends
   std::string label = {};       ///< its number, counted from 1, or its name with that of the copy
-  std::vector<assembly::Bearing> bearings = {};      ///< that give way
-  std::vector<assembly::Link> links = {};            ///< likewise
-  std::optional<assembly::Matrix6> compliance = {};  ///< of the whole limb, in the frame of the body where it ends
+  std::vector<assembly::Bearing> bearings = {};  ///< bearings with compliance
+  std::vector<assembly::Link> links = {};        ///< links with compliance
+  std::optional<assembly::Matrix6> compliance =
+      {};  ///< compliance of the whole limb, in the frame of the body where it ends
 
   /// That have a displacement.
   std::size_t moving() const;

@@ -10,9 +10,9 @@
 namespace poesy::file {
 namespace {
 
-/// Of the singular values' largest: what a rounded number may leave of zero, at the most.
+/// The largest singular value that rounded input may leave in place of zero, relative to the largest of all.
 constexpr double kLargestZero = 1e-2;
-/// Ranks that are tried.
+/// The number of ranks that are tried.
 constexpr std::size_t kMostGaps = 4;
 /// By how much singular values that are zero but for rounding may be larger elsewhere; the second where numbers are off
 /// by so much that the first leaves nothing to move.

@@ -15,10 +15,10 @@ namespace {
 
 using Law = StatedCost::Law;
 
-/// In the order of the enumeration.
+/// The words of a study file, in the order of the enumeration.
 constexpr std::array<std::string_view, 4> kLawNames{"none", "reciprocal", "reciprocal-power", "exponential"};
 
-/// A cost as it is written: b counts T in a unit.
+/// A cost with the numbers of the study file, in which b is for T in a unit.
 struct WrittenCost {
   StatedCost cost = {};
   Dimension dimension = Dimension::length;

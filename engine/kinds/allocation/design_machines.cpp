@@ -1,4 +1,4 @@
-// What several stages of the search ask the design's machines.
+// Functions of the design's machines that several stages of the search use.
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,8 @@ double load_before_deciding(const std::vector<double>& load, std::uint64_t rejec
   return rejects == 0 ? std::numeric_limits<double>::infinity() : deciding_load(load, rejects - 1);
 }
 
-/// By what all tolerances are multiplied so that the machine which decides comes to the limit, just within, and the one
-/// before it remains beyond, however near to each other they are.
+/// The factor on all tolerances that brings the deciding machine just within the limit. The machine before it remains
+/// beyond the limit, however close the two loads are.
 double factor_to_limit(double deciding, double before) {
   constexpr double kWithin = 1.0 + 0.5 * kFinalLoadTolerance;
   const double between = before > deciding && std::isfinite(before) ? std::sqrt(before / deciding) : kWithin;
@@ -96,7 +96,7 @@ ToleranceDesign scale_screened(const SearchProblem& problem, const ToleranceDesi
                                const std::vector<bool>& stays) {
   const std::uint64_t most = problem.allowed.design;
   ToleranceDesign best = from;
-  double low = 0.0;  // a factor that keeps the yield
+  double low = 0.0;  // the largest factor so far that keeps the yield
   double high = std::numeric_limits<double>::infinity();
   double factor = 1.0;
   double load = deciding_load(from.screened.load, most);

@@ -98,7 +98,7 @@ const Group<YieldVerdict> kVerdict{
      {"ci_low", &YieldVerdict::ci_low, "1", "Lower end of its two-sided interval (Clopper and Pearson)"},
      {"ci_high", &YieldVerdict::ci_high, "1", "Upper end of its two-sided interval (Clopper and Pearson)"}}};
 
-/// Which machines were drawn, and what was asked of them.
+/// The seeds and numbers of the machines, and the yield and confidence that the study asked for.
 const Fields<Result> kMachines{
     {"seed", &Result::certificate_seed, "1", "Seed of the fresh machines"},
     {"most_rejects", &Result::certificate_most, "1", "The certificate holds with no more rejects than these"},
@@ -134,7 +134,7 @@ void write_certificate(ResultBuilder& result, const Result& found) {
                      "bound is below it; undecided: neither"});
 }
 
-/// Throws h5::Error for counts that no machines give.
+/// Throws h5::Error for counts that no run can give.
 void read_certificate(const h5::File& file, Result& found) {
   YieldVerdict& shown = found.certificate;
   read_group(file, kVerdict, shown);
@@ -151,7 +151,7 @@ void read_certificate(const h5::File& file, Result& found) {
   }
 }
 
-/// What follows from the rest, for those who read the file without this program, and what is no number.
+/// Adds attributes that are not numbers, and those that follow from other data, for readers without this program.
 void add_attributes(h5::File& file, const Result& found) {
   const auto set = [&](const char* name, const auto& value) { file.set_attribute(kAllocation.path, name, value); };
   set("yield", found.certificate.value);
@@ -191,7 +191,7 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   add_failures(result, found.failures, {std::string(kAllFactors)}, found.total().not_converged());
 }
 
-/// What tables and CSV rely on. Throws h5::Error.
+/// Checks what tables and CSV rely on. Throws h5::Error.
 void check(const Result& found) {
   check_names(found.part_names, "/part");
   check_names(found.part_unit, "/allocation/unit");
@@ -232,14 +232,14 @@ const FieldRow<Result>& row(std::string_view name) {
   return *std::ranges::find(kAllocation.fields, name, &FieldRow<Result>::name);
 }
 
-/// Units of the parts, as of things with names.
+/// The names of the parts with their units.
 std::vector<NamedUnit> named_parts(const Result& found) {
   std::vector<NamedUnit> parts;
   for (std::size_t n = 0; n < found.parts(); ++n) parts.push_back({found.part_names[n], found.part_unit(n)});
   return parts;
 }
 
-/// What goes on the drawing.
+/// The tolerances of the drawing, a line for each part.
 CsvTable part_table(const Result& found) {
   CsvTable table{"allocation",
                  {"part", [&found](std::size_t n) { return found.part_names[n]; }},
@@ -263,7 +263,7 @@ CsvTable part_table(const Result& found) {
   return table;
 }
 
-/// The share of each error.
+/// The share of the mean square of each error.
 CsvTable error_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   CsvTable table = lines_of_factors(result, "allocation_errors");
@@ -320,7 +320,7 @@ CsvTable stage_table(const Result& found) {
   return table;
 }
 
-/// Both curves, one below the other.
+/// The costs of other yields, followed by the costs of other limits.
 CsvTable curve_table(const Result& found) {
   const std::size_t yields = found.curve_yield.size();
   const auto of = [yields](std::span<const double> by_yield, std::span<const double> by_factor) {
@@ -359,7 +359,7 @@ CsvTable certificate_table(const Result& found) {
   return table;
 }
 
-/// The addresses of the certificate's samples, which are those of the study that repeats it.
+/// The failed samples of the certificate. Their addresses are those of the study that repeats it.
 CsvTable certificate_failures(const Result& found) {
   const std::vector<Failure>& list = found.failures;
   return {"failures",

@@ -10,8 +10,8 @@
 namespace poesy::allocation {
 namespace {
 
-/// [N] The shares that root mean squares give the parts: what each part's tolerance takes of the limits, at their
-/// multipliers.
+/// [N] The part of the limits that each part's tolerance uses on root mean squares, weighted by the multipliers of the
+/// limits.
 std::vector<double> shares_by_multipliers(const ToleranceLimits& limits, const Candidate& candidate) {
   std::vector<double> shares(limits.parts, 0.0);
   for (std::size_t l = 0; l < limits.count(); ++l) {
@@ -27,7 +27,7 @@ std::vector<double> shares_by_multipliers(const ToleranceLimits& limits, const C
   return shares;
 }
 
-/// The machines of largest load that tell the gradient.
+/// The machines of largest load, from which the gradient is estimated.
 std::vector<std::uint32_t> machines_of_largest_load(const SearchProblem& problem, const ToleranceDesign& design) {
   const auto& [numbers, load] = design.screened;
   const std::size_t share = std::min<std::size_t>(kMaxGradientMachines, design.load.size() / 30);
@@ -40,8 +40,8 @@ std::vector<std::uint32_t> machines_of_largest_load(const SearchProblem& problem
   return machines;
 }
 
-/// One limit in place of all: what each part adds to the machines of largest load, by its score among them; where that
-/// is noise, by the share [N] that root mean squares give it.
+/// One limit that replaces all others: what each part adds to the machines of largest load, by its score among them.
+/// Where the score is noise, the part's share [N] on root mean squares is used.
 ToleranceLimits gradient_limit(const SearchProblem& problem, const ToleranceDesign& design,
                                std::span<const double> shares) {
   const auto [scores, is_sure] = part_scores(problem, design, machines_of_largest_load(problem, design));
@@ -58,7 +58,7 @@ ToleranceLimits gradient_limit(const SearchProblem& problem, const ToleranceDesi
   return limit;
 }
 
-/// The design by the tolerances that this limit gives, scaled to the yield; none where they save too little.
+/// The design with the tolerances that this limit gives, scaled to the yield; none if they save too little.
 std::optional<ToleranceDesign> fit_gradient(const SearchProblem& problem, const ToleranceDesign& from,
                                             ToleranceLimits limit) {
   const TolerancePoint& before = from.candidate.point;

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kTabulated = 13;  // IT01 to IT11
 constexpr std::size_t kFive = 5;        // five grades coarser is ten times as wide, from IT7 on
 
-/// Widths up to and including a size.
+/// The widths of the zones for sizes up to and including this one.
 struct SizeStep {
   double up_to;                               ///< mm
   std::array<double, kTabulated> micrometre;  ///< IT01, IT0, IT1, ..., IT11; 0 where there is none

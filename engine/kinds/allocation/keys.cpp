@@ -18,18 +18,18 @@ namespace {
 constexpr std::array<std::string_view, 11> kAllocationKeys{
     "factors", "limits", "yield", "confidence", "samples", "aim", "background", "sigmas", "cpk", "calibrated", "parts"};
 
-/// In the order of the enumeration.
+/// The words of a study file, in the order of the enumeration.
 constexpr std::array<std::string_view, 4> kAimNames{"least-cost", "equal-effect", "equal-tolerance", "common-factor"};
 
-/// With so many expected rejects a yield is known to 5 % of what it lacks.
+/// Enough expected rejects to estimate 1 - yield within 5 %.
 constexpr double kUsualRejects = 400.0;
 constexpr double kFewestUsual = 2000.0;
 constexpr double kMostUsual = 20e6;
 
-/// Machines for a study that does not say how many.
+/// The default number of machines.
 std::size_t usual_samples(double yield) {
   constexpr double kThousand = 1000.0;
-  constexpr double kRounding = 1e-11;  // of 1 - yield, so that 0.9 takes 4000 and not 5000
+  constexpr double kRounding = 1e-11;  // relative; without it a yield of 0.9 would take 5000 machines instead of 4000
   const double machines = std::ceil(kUsualRejects / (1.0 - yield) * (1.0 - kRounding));
   return static_cast<std::size_t>(std::clamp(std::ceil(machines / kThousand) * kThousand, kFewestUsual, kMostUsual));
 }
@@ -44,12 +44,12 @@ void read_samples(const StudyValue& value, Study& study, const Reading&) {
   samples_value().read(value, study);
 }
 
-/// Looks at them alone: parts take what they say (read_sigmas).
+/// Checks these keys alone; read_sigmas() gives their values to the parts.
 void read_usual_sigmas(const StudyValue&, Study&, const Reading& reading) {
   static_cast<void>(read_sigmas(reading.root.section("analysis")));
 }
 
-/// Throws for an error of the new parts that an earlier one has.
+/// Throws if an error of the new parts belongs to an earlier part.
 void check_own_errors(const StudySection& block, std::span<const AllocatedPart> earlier,
                       std::span<const AllocatedPart> parts, const ModelDescription& model) {
   std::vector<const AllocatedPart*> owner(model.factors.size());
@@ -86,7 +86,7 @@ std::string parts_lines(const Study& study) {
   return text;
 }
 
-/// The first two limbs, for which errors may be the same.
+/// The first two limbs, as an example of limbs whose errors are the same.
 std::string shown_limbs(const ModelDescription& model) {
   std::set<std::size_t> limbs;
   for (const Factor& factor : model.factors) limbs.insert(factor.limb);
@@ -94,7 +94,7 @@ std::string shown_limbs(const ModelDescription& model) {
   return fmt::format("# identical_limbs = [{}, {}]\n", *limbs.begin(), *std::next(limbs.begin()));
 }
 
-/// Every error of this dimension a part of its own.
+/// A block in which each error of this dimension is a part of its own.
 std::string shown_block(Dimension dimension, const ModelDescription& model) {
   if (std::ranges::count(model.factors, dimension, &Factor::dimension) == 0) return {};
   return fmt::format(
@@ -180,7 +180,7 @@ std::vector<StudyRow> allocation_rows() {
                    .shown = shown_parts}};
 }
 
-/// Refuses so few machines that they certify nothing even if all of them are good.
+/// Refuses a number of machines that is too small for a certificate even if all of them are good.
 void check_samples(const Study& study, const StudySection& section) {
   const AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
   const std::uint64_t needed = trials_without_failure(asked.yield, asked.confidence);
@@ -194,7 +194,7 @@ void check_samples(const Study& study, const StudySection& section) {
   throw InputError(yield ? yield->place() : section.place(), problem, remedy);
 }
 
-/// What a run needs.
+/// Refuses a study that lacks what a run needs.
 void require_all(const Study& study, const StudySection& section) {
   static_cast<void>(
       section.require("limits", "write what every machine must keep, e.g. limits = " + example_limits(study.model())));

@@ -4,13 +4,13 @@
 
 namespace poesy {
 
-/// The parts of the row for studies that find tolerances under limits.
+/// How results of studies that find tolerances under limits are stored and reported.
 /// @{
 extern const FileKind kAllocationFile;
 extern const ReportKind kAllocationReport;
 /// @}
 
-/// The kind itself.
+/// Runs and reports studies that find tolerances under limits.
 extern const Kind kAllocationKind;
 
 }  // namespace poesy

@@ -50,7 +50,7 @@ Linearised linearise(const SearchProblem& problem, StageLog& log) {
   std::vector<double> small = usual;
   for (double& tolerance : small) tolerance *= kLinearSize;
   Linearisation linearisation = measure(problem, small, 0);
-  // |z| of a standard normal is below the quantile in a share `yield` of all draws.
+  // The share `yield` of the draws of a standard normal have |z| below this quantile.
   const double share = 1.0 / normal_quantile(1.0, 0.5 + 0.5 * problem.options.yield);
   std::optional<Candidate> candidate = choose(problem, linearisation, share, {});
   if (!candidate) {
@@ -59,7 +59,7 @@ Linearised linearise(const SearchProblem& problem, StageLog& log) {
     candidate = choose_by_least_share(problem, linearisation, share, 1.0, {});
   }
   log.add("linear", *candidate, 0, 0);
-  // An error that does nothing alone may act among others, and is as large as usual until this is known.
+  // An error without an effect of its own may have one among other errors. Until that is known it has its usual size.
   const ToleranceLimits limits = programme.limits(linearisation.squares, small, candidate->share);
   for (std::size_t i = 0; i < programme.size(); ++i) {
     bool acts = false;
@@ -76,7 +76,7 @@ Settled settle(const SearchProblem& problem, Linearised from, StageLog& log) {
     const TolerancePoint before = candidate.point;
     linearisation = measure(problem, before.tolerance, kDrawsAmongOthers);
     const auto next = choose(problem, linearisation, candidate.share, {before.tolerance, kMaxGrowth});
-    if (!next) {  // machines will tell whether the lowest tolerances keep the limits
+    if (!next) {  // the machines show whether the lowest tolerances keep the limits
       const Candidate lowest{problem.programme.lowest(), candidate.chosen, candidate.share};
       return {std::move(linearisation), lowest, std::move(candidate)};
     }

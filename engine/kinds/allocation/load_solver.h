@@ -17,34 +17,35 @@
 
 namespace poesy {
 
-/// Machines that are solved at once at each pose.
+/// The number of machines that are solved together at each pose.
 inline constexpr std::size_t kMachinesOfPiece = 200;
 
-/// So many solves as converged, of work that only counts them: how solves end is told by the machines that are tried.
+/// This number of solves, counted as converged. For work that only counts solves; how solves end is counted when all
+/// machines are tried.
 inline SolveCounts as_converged(std::uint64_t solves) {
   SolveCounts counts;
   counts.by_status[static_cast<std::size_t>(SolveStatus::converged)] = solves;
   return counts;
 }
 
-/// So many loads. No load is negative; that of a machine without a solution is infinite.
+/// Reads or writes `count` loads. No load is negative, and a machine without a solution has an infinite load.
 inline void loads_state(Archive& archive, std::vector<double>& loads, std::size_t count) {
   archive.list(loads, count);
   archive.expect(std::ranges::all_of(loads, [](double load) { return load >= 0.0; }), "has loads that no machine has");
 }
 
-/// Solves machines at all poses of a plan, and finds their loads. Owns the scratch of one thread.
+/// Draws machines, solves them at the poses of a plan, and computes their loads. Owns the scratch of one thread.
 class LoadSolver : protected UnitSolver {
  protected:
-  /// Refers to all three.
+  /// Refers to all three arguments.
   LoadSolver(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits)
       : UnitSolver(plan, model, plan.factors().size()), limits_(limits) {}
 
-  /// Draws the errors of these machines, ascending numbers, at most kMachinesOfPiece of them: [P x B] of values_.
+  /// Draws the errors of these machines into values_ [P x B]. machines: ascending numbers, at most kMachinesOfPiece.
   void draw(std::span<const std::size_t> machines) {
     const std::size_t count = machines.size();
     const std::size_t errors = plan_->factors().size();
-    for (std::size_t from = 0; from < count;) {  // consecutive ones are drawn together
+    for (std::size_t from = 0; from < count;) {  // consecutive machines are drawn together
       std::size_t to = from + 1;
       while (to < count && machines[to] == machines[to - 1] + 1) ++to;
       const WorkUnit run{0, PoseIndex(0), SampleIndex(machines[from]), to - from};
@@ -56,8 +57,8 @@ class LoadSolver : protected UnitSolver {
     plan_->transform(std::span(values_).first(errors * count), count);
   }
 
-  /// Solves the machines that were drawn at one pose and raises their loads [B]. missing: [B] set to 1 where a machine
-  /// is not solved. beyond: [K x B] set to 1 where it breaks a limit.
+  /// Solves the drawn machines at one pose and raises their loads [B]. Sets missing [B] to 1 where a machine is not
+  /// solved, and beyond [K x B] to 1 where it breaks a limit.
   UnitOutcomes add_pose(PoseIndex pose, std::span<double> loads, std::span<std::uint8_t> missing,
                         std::span<std::uint8_t> beyond) {
     const std::size_t count = loads.size();
@@ -80,7 +81,7 @@ class LoadSolver : protected UnitSolver {
   std::span<const ResponseLimit> limits_;  ///< [K]
 
  private:
-  /// At most 1 for a value up to the limit, whatever a division rounds to.
+  /// value / limit, but at most 1 for a value up to the limit, whatever the rounding.
   static double over_limit(double value, double limit) {
     const double load = value / limit;
     return value <= limit ? std::min(load, 1.0) : std::max(load, std::nextafter(1.0, 2.0));

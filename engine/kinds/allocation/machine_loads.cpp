@@ -23,7 +23,7 @@ struct Machines {
   std::size_t number(std::size_t n) const { return listed.empty() ? n : listed[n]; }
 };
 
-/// Some of the machines, one after the other, at all poses: those of one piece of work, or of several.
+/// The loads of consecutive machines at all poses: the result of one piece of work or of several.
 struct LoadSums : MachineLoads {
   const Machines* machines = nullptr;
 
@@ -54,7 +54,7 @@ struct LoadSums : MachineLoads {
   }
 };
 
-/// Owns the scratch of one thread.
+/// Solves one piece of work at a time. Owns the scratch of one thread.
 class LoadEvaluator : private LoadSolver {
  public:
   LoadEvaluator(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, const Machines& machines)
@@ -102,7 +102,7 @@ class LoadEvaluator : private LoadSolver {
   std::vector<std::uint8_t> beyond_;   ///< [K x B] whether the limit is broken at a pose
 };
 
-/// A job of UnitFold: the pieces of work.
+/// The job of UnitFold, whose units are the pieces of work.
 struct LoadJob {
   const Plan& plan;
   const Model& model;

@@ -14,9 +14,9 @@
 
 namespace poesy {
 
-/// What n machines do at some tolerances. The load of a machine is its largest response over its limit, among all
-/// limits (K) at all poses (M): a machine is good up to a load of 1. One that is not solved at a pose has an infinite
-/// load.
+/// The results of n machines at given tolerances. The load of a machine is the largest ratio of a response to its
+/// limit, among all limits (K) at all poses (M), so a machine is good if its load is at most 1. A machine that is not
+/// solved at a pose has an infinite load.
 struct MachineLoads {
   std::vector<double> load;           ///< [n] in the order of their numbers
   std::vector<SolveCounts> solves;    ///< [M] how their solves ended
@@ -25,9 +25,9 @@ struct MachineLoads {
   std::uint64_t unsolved = 0;         ///< machines that are rejected only because a pose was not solved
 };
 
-/// Solves machines of a plan: all of them, or those of a list of ascending numbers below plan.samples(). Machine s has
-/// the errors of sample s of a Monte Carlo study with draws per machine. On all ranks of a team, the same bits for any
-/// number of threads. Empty when stopped. Precondition: Draws::per_machine.
+/// Solves machines of a plan: all of them, or those that are listed (ascending numbers below plan.samples()). Machine s
+/// has the errors of sample s of a Monte Carlo study with draws per machine. The result has the same bits for any
+/// number of threads and on all ranks. Empty when stopped. Precondition: Draws::per_machine.
 /// @{
 std::optional<MachineLoads> machine_loads(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                           const RunOptions& options);

@@ -74,12 +74,12 @@ class AddedSquaresEvaluator : private UnitSolver {
   }
 
  private:
-  /// The value of another error in a slot.
+  /// The value of another error in a slot of the batch.
   double other(std::size_t n, std::size_t sample, std::size_t slot) const {
     return pieces_.alone(n) ? 0.0 : draws_[slot * pieces_.draws + pieces_.first_draw(n) + sample];
   }
 
-  /// Solves pairs of a sample and an error, sample by sample, each at its nodes.
+  /// Solves pairs of a sample and an error, sample by sample, at each of the three nodes.
   void add_pairs(std::size_t n, std::size_t first, std::size_t pairs, AddedSquares& found) {
     const std::size_t errors = plan_->factors().size();
     const std::size_t count = pairs * kNodes;
@@ -126,7 +126,7 @@ class AddedSquaresEvaluator : private UnitSolver {
   std::vector<double> rounding_;  ///< [K]
 };
 
-/// All pieces together: K limits at M poses, L rows in all.
+/// The results of all pieces: K limits at M poses, L rows in all.
 struct SquareSums {
   const Pieces* pieces;
   std::size_t errors;           ///< P
@@ -169,7 +169,7 @@ struct SquareSums {
   }
 };
 
-/// A job of UnitFold: the pieces.
+/// The job of UnitFold, whose units are the pieces.
 struct SquareJob {
   const Plan& plan;
   const Model& model;

@@ -21,7 +21,7 @@ bool varies(const Study& study, FactorIndex factor) {
   return std::ranges::find(study.analysis.factors, factor) != study.analysis.factors.end();
 }
 
-/// What varies and has this dimension.
+/// The errors that vary and have this dimension.
 PartMembers members_of(const StudyValue& value, Dimension dimension, const Study& study) {
   PartMembers members;
   for (const FactorIndex factor : study.analysis.factors) {
@@ -33,7 +33,7 @@ PartMembers members_of(const StudyValue& value, Dimension dimension, const Study
              "leave this part out");
 }
 
-/// Those of a word: all that vary and are lengths, or angles; else of a factor set.
+/// The errors that a word names: "linear" or "angular" for all of that dimension that vary, else a factor set.
 PartMembers members_by_word(const StudyValue& value, const Study& study) {
   const ModelDescription& model = study.model();
   for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
@@ -49,7 +49,7 @@ PartMembers members_by_word(const StudyValue& value, const Study& study) {
   return members;
 }
 
-/// At a name or a pattern of a list.
+/// Refuses a name or a pattern of a list.
 [[noreturn]] void refuse_pattern(const StudyValue& value, const std::string& pattern, const Study& study) {
   const ModelDescription& model = study.model();
   const auto fits = [&](const Factor& factor) { return matches(pattern, factor.name); };
@@ -80,7 +80,7 @@ PartMembers members_by_pattern(const StudyValue& value, const Study& study) {
   return members;
 }
 
-/// A part's errors get a standard deviation, so they vary by themselves, and by a law that has one.
+/// Throws if an error does not vary by itself, or if its distribution has no standard deviation to set.
 void check_distributions(const StudyValue& value, const PartMembers& members, const Study& study) {
   for (const FactorIndex factor : members) {
     const std::string& error = factor_of(study, factor).name;
@@ -120,7 +120,7 @@ bool is_digit(const std::string& text, std::size_t at) {
   return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
 }
 
-/// The error of another limb whose name differs in the limb's number alone.
+/// The error of the other limb whose name differs only in the limb's number.
 std::optional<FactorIndex> counterpart(const Factor& factor, std::size_t limb, const ModelDescription& model) {
   const std::string number = std::to_string(factor.limb);
   for (std::size_t at = factor.name.find(number); at != std::string::npos; at = factor.name.find(number, at + 1)) {
@@ -134,7 +134,7 @@ std::optional<FactorIndex> counterpart(const Factor& factor, std::size_t limb, c
   return std::nullopt;
 }
 
-/// Each error with those of the other limbs that are the same error there.
+/// Joins each error with its counterparts in the other limbs.
 std::vector<PartMembers> joined(const PartMembers& members, const Limbs& limbs, const ModelDescription& model) {
   std::vector<bool> left(model.factors.size());
   for (const FactorIndex factor : members) left[factor.value] = true;

@@ -5,14 +5,14 @@
 #include "engine/base/index.h"
 #include "engine/study/study_kind.h"
 
-/// Whose tolerance a part is: the errors of a block [[analysis.parts]].
+/// Reads which errors a block [[analysis.parts]] joins into parts.
 namespace poesy {
 
 using PartMembers = std::vector<FactorIndex>;  ///< Errors that share one tolerance, at least one.
 
-/// The errors of one block, in parts: one part, or with `each` one for each error, where errors of identical limbs
-/// share theirs. Throws InputError at its place for errors that cannot be a part's: unknown ones, such as do not vary,
-/// and those whose distribution is measured or correlated. An error is in one part of the block.
+/// The errors of each part of one block: a single part, or with `each` a part for each error, where corresponding
+/// errors of identical limbs share a part. An error is in one part of the block. Throws InputError at the place for
+/// errors that a part cannot have: unknown or fixed ones, and those whose distribution is measured or correlated.
 std::vector<PartMembers> read_members(const StudySection& block, const Study& study);
 
 /// Whether every error of the block is a part of its own.

@@ -8,8 +8,8 @@
 namespace poesy {
 namespace {
 
-/// Bounds of the window: loads farther from the limit say nothing about it, and where loads are alike a narrower window
-/// holds too few machines.
+/// The bounds of the window. Loads farther from the limit say nothing about it. If loads are nearly equal, a narrower
+/// window would hold too few machines.
 constexpr double kWidest = 0.2;
 constexpr double kNarrowest = 0.02;
 
@@ -71,7 +71,7 @@ double NearLimit::added_rejects(std::span<const double> coarser, std::span<const
                 mirrored_coarser.size() == loads_.size());
   double come = 0.0;
   for (std::size_t k = 0; k < loads_.size(); ++k) {
-    // Where both machines of a pair are near, either may have been drawn, so each counts as half of the pair.
+    // Where both machines of a pair are near the limit, either may have been drawn, so each counts half.
     const double weight = is_near(mirrored[k]) ? 0.5 : 1.0;
     const double of_machine = reject(coarser[k]) - reject(loads_[k]);
     const double of_mirrored = reject(mirrored_coarser[k]) - reject(mirrored[k]);

@@ -18,8 +18,8 @@ namespace {
 
 using PartChoice = AllocatedPart::Choice;
 
-constexpr double kSigmasOfCpk = 3.0;  // a capability of 1 is three standard deviations
-// So that a tolerance over it is no rounding.
+constexpr double kSigmasOfCpk = 3.0;  // by definition, Cpk = 1 means three standard deviations
+// An upper bound that keeps a tolerance over it far above rounding.
 constexpr double kMostSigmas = 1e6;
 constexpr double kMostCpk = 1e5;
 
@@ -28,7 +28,7 @@ NumberBounds sigmas_bounds(double most, std::string_view example) {
           fmt::format("it must be greater than zero and below {}, e.g. {}", shortest(most), example)};
 }
 
-/// The least and the largest tolerance.
+/// Reads the lower and the upper bound of a tolerance.
 std::pair<double, double> read_bounds(const StudyValue& value, Dimension dimension) {
   const std::vector<StudyValue> list =
       value.list(2, "write the least and the largest tolerance, e.g. [\"0.01 mm\", \"0.5 mm\"]");
@@ -108,7 +108,7 @@ void read_fixed(const StudyValue& value, const StudySection&, Dimension dimensio
   part.lo = value.positive_quantity(dimension);
 }
 
-/// A key that says of what a tolerance is chosen.
+/// A key that determines from what a tolerance is chosen.
 struct ChoiceKey {
   std::string_view name;
   PartChoice choice;
@@ -121,7 +121,7 @@ constexpr std::array<ChoiceKey, 5> kChoiceKeys{{{"bounds", PartChoice::range, re
                                                 {"processes", PartChoice::processes, read_processes},
                                                 {"tolerance", PartChoice::fixed, read_fixed}}};
 
-/// Cost and choice, as the block has them for errors of this dimension.
+/// Reads cost and choice of a block whose errors have this dimension.
 void read_choice(const StudySection& block, Dimension dimension, AllocatedPart& part) {
   std::optional<StudyValue> chosen;
   for (const ChoiceKey& key : kChoiceKeys) {
@@ -154,7 +154,8 @@ double read_shift(const StudySection& block) {
   value->fail("is " + shortest(shift), "it must be at least 0 and less than 1, a share of the tolerance");
 }
 
-/// "the length 'delta_1' and the angle 'epsilon_1'" among these errors; empty where all have one dimension.
+/// The names of two errors of different dimensions, "the length 'delta_1' and the angle 'epsilon_1'"; empty if all have
+/// one dimension.
 std::string two_dimensions(std::span<const PartMembers> parts, const ModelDescription& model) {
   const Factor& first = model.factors[parts.front().front().value];
   for (const PartMembers& part : parts) {
@@ -168,7 +169,7 @@ std::string two_dimensions(std::span<const PartMembers> parts, const ModelDescri
   return {};
 }
 
-/// A part has one dimension, and so has a block whose parts share a cost or a choice.
+/// Throws if a part has errors of two dimensions, or if parts of two dimensions share a cost or a choice.
 void check_dimensions(const StudySection& block, std::span<const PartMembers> parts, const ModelDescription& model) {
   constexpr std::string_view kRemedy = "write a block with factors = \"linear\" and another with factors = \"angular\"";
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -192,7 +193,7 @@ double sigmas_of(const StudySection& block, std::optional<double> usual, const s
                    "say how many standard deviations a tolerance is: sigmas = 3 or cpk = 1");
 }
 
-/// Each part of a block with `each` has the name of its first error.
+/// Throws if the name of a part of a block with `each`, which is that of its first error, is taken.
 void check_each_name(const StudySection& block, std::span<const std::string_view> taken, const std::string& name) {
   if (const auto value = block.find("name")) {
     static_cast<void>(value->text());
@@ -215,7 +216,7 @@ std::string grades_text(const AllocatedPart& part) {
                      exact_value(part.nominal_size, Dimension::length));
 }
 
-/// A process in each line, because a line of a study file is not endless.
+/// The processes as TOML, one a line to keep lines of a study file short.
 std::string processes_text(const AllocatedPart& part, Dimension dimension) {
   std::string text = "processes = [\n";
   for (const StatedProcess& process : part.processes) {
@@ -248,7 +249,7 @@ std::string choice_text(const AllocatedPart& part, Dimension dimension) {
   return std::isfinite(part.hi) ? "bounds = " + bounds_text(part.lo, part.hi, dimension) + "\n" : "";
 }
 
-/// Throws at the value where this tolerance is too large for an error of the part.
+/// Throws at the value if this tolerance is too large for an error of the part.
 void check_size(const StudyValue& value, double tolerance, const AllocatedPart& part, const Model& model) {
   for (const FactorIndex factor : part.factors) {
     if (const auto problem = beyond_bound(model, factor, tolerance, "a tolerance")) {

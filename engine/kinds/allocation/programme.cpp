@@ -15,10 +15,10 @@ namespace poesy {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// The largest tolerance over the size of its part: four standard deviations of a normal error are the whole part then.
+/// The largest tolerance over the size of its part. Four standard deviations of a normal error are then the whole part.
 constexpr double kShareOfPart = 0.25;
 
-/// The standard deviation of a perfect part, m or rad: far below what any solve can tell from zero.
+/// The standard deviation of a perfect part, m or rad: far below what any solve can distinguish from zero.
 constexpr double kPerfect = 1e-18;
 
 /// The largest tolerance that makes sense, whatever the study says.
@@ -59,7 +59,7 @@ std::vector<Process> processes_of(const AllocatedPart& part, const Model& model)
   return {{law, part.lo, bounded(part.hi, part.lo)}};
 }
 
-/// Errors of this shape about a mean that is off, SI. Precondition: the shape is not measured.
+/// Errors with this shape, this standard deviation and a shifted mean, SI. Precondition: the shape is not measured.
 Distribution error_of(const Distribution& shape, double sigma, double shift) {
   const double without_shift =
       std::sqrt(shape.standard_deviation() * shape.standard_deviation() - shape.shift() * shape.shift());
@@ -91,13 +91,14 @@ DrawnPart drawn_part(const AllocatedPart& part, const Study& study) {
   return drawn;
 }
 
-/// A tolerance and a process that holds it.
+/// A tolerance and a process that can make it.
 struct Held {
   double tolerance;
   std::size_t process;
 };
 
-/// The largest tolerance up to `most` that some process holds, and the cheapest such process; else the lowest one.
+/// The largest tolerance up to `most` that a process can make, with the cheapest such process; otherwise the lowest
+/// tolerance.
 Held held_below(const std::vector<Process>& processes, double most) {
   std::optional<Held> best;
   for (std::size_t k = 0; k < processes.size(); ++k) {
@@ -169,7 +170,7 @@ std::optional<TolerancePoint> ToleranceProgramme::coarser(const TolerancePoint& 
   if (now.hi > from) {
     next.tolerance[part] = std::min(now.hi, factor * from);
   } else {
-    std::optional<std::size_t> above;  // the next single value
+    std::optional<std::size_t> above;  // the next larger single value
     for (std::size_t k = 0; k < list.size(); ++k) {
       if (list[k].lo != list[k].hi || list[k].lo <= from) continue;
       if (!above || list[k].lo < list[*above].lo) above = k;
@@ -249,7 +250,7 @@ ChoiceOfTolerances ToleranceProgramme::least(const ToleranceLimits& limits, cons
   const LeastCost& found = std::get<LeastCost>(outcome);
   ChosenTolerances chosen{{found.best.tolerance, {}, 0.0}, found.lower_bound, found.multiplier};
   if (std::ranges::all_of(chosen.multiplier, [](double one) { return one == 0.0; })) {
-    chosen.multiplier = found.relaxed;  // single values have no multiplier of their own
+    chosen.multiplier = found.relaxed;  // single values have no multipliers, so those of the relaxation are used
   }
   for (std::size_t i = 0; i < size(); ++i) chosen.process.push_back(kept[i][found.best.process[i]]);
   chosen.cost = cost_of(chosen);

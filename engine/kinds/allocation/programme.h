@@ -40,7 +40,7 @@ struct TrustRegion {
 /// The result of a programme: tolerances, or why there are none.
 using ChoiceOfTolerances = std::variant<ChosenTolerances, Infeasible, Unbounded>;
 
-/// The parts of a study as an optimiser sees them.
+/// The optimisation problem of a study: its parts with their bounds, processes and costs.
 class ToleranceProgramme {
  public:
   /// Refers to the study. A part without an upper bound may have a quarter of the size that Model::error_bound gives.
@@ -55,14 +55,14 @@ class ToleranceProgramme {
   std::string chosen_name(std::size_t part,
                           std::size_t process) const;  ///< The name of a process or grade; else empty.
 
-  std::vector<double> usual() const;  ///< [N] The tolerances of errors as [errors] states them, within bounds.
-  /// Each tolerance [N], or the next lower one that its part can have; the lowest one where there is no lower one.
+  std::vector<double> usual() const;  ///< [N] The tolerances that [errors] states, moved within bounds.
+  /// Each tolerance [N], or the next lower one that its part can have, or the lowest one.
   TolerancePoint at_most(std::span<const double> tolerance) const;
   TolerancePoint lowest() const;  ///< The lowest tolerances.
-  /// The point with one part coarser: its tolerance `factor` times as large, or the next value that can be had. None
-  /// where its process allows none, and for a tolerance of 0.
+  /// The point with one part coarser: its tolerance `factor` times as large, or the next larger value it can have. None
+  /// if its process allows no such value, and for a tolerance of 0.
   std::optional<TolerancePoint> coarser(const TolerancePoint& point, std::size_t part, double factor) const;
-  /// Whether a tolerance is at a bound of the part.
+  /// Whether a tolerance is at a bound of its part.
   AtBound at_bound(std::size_t part, double tolerance, std::size_t process) const;
   /// The cost of a part; 0 where none is stated.
   double cost(std::size_t part, double tolerance, std::size_t process) const;
@@ -70,7 +70,7 @@ class ToleranceProgramme {
   /// the tolerances at which the mean squares were measured.
   ToleranceLimits limits(const MeanSquares& squares, std::span<const double> at, double share,
                          double wider = 1.0) const;
-  /// The tolerances for the study's aim.
+  /// The tolerances that are best for the study's aim.
   ChoiceOfTolerances choose(const ToleranceLimits& limits, const TrustRegion& region) const;
 
   /// The study with these tolerances [N].

@@ -1,4 +1,4 @@
-// What a search says where no tolerances keep the limits.
+// The messages of a search that finds no tolerances within the limits.
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ void refuse_infeasible(const SearchProblem& problem, const Infeasible& infeasibl
   const Study& study = problem.run.study;
   const ResponseLimit& limit = study.analysis.limits[infeasible.limit / problem.run.poses.size()];
   const Response& response = study.model().responses[limit.response];
-  const double fixed = limit.most * limit.most - infeasible.room;  // what belongs to no part
+  const double fixed = limit.most * limit.most - infeasible.room;  // the effect of errors that belong to no part
   const auto text = [&](double square) {
     return readable_text({std::sqrt(std::max(0.0, square)), response.dimension}, 4);
   };

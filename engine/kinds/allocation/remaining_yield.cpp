@@ -1,4 +1,4 @@
-// The last stage of the search: what one coarser part does, and parts that take up remaining yield.
+// The last stage of the search: it finds the effect of each part alone, and makes parts coarser to use remaining yield.
 
 #include <algorithm>
 #include <functional>
@@ -17,7 +17,7 @@ namespace {
 struct CoarserPart {
   std::size_t part;
   double step;   ///< its errors are so many times as large
-  double steps;  ///< such steps of T^2 to the next tolerance that can be had
+  double steps;  ///< the number of such steps of T^2 to the next tolerance that the part can have
 };
 
 Variation varied(const SearchProblem& problem, std::size_t part, double factor) {
@@ -33,13 +33,13 @@ std::vector<double> try_varied(const SearchProblem& problem, const ToleranceDesi
                                        variations, run.options));
 }
 
-/// The share of good machines where the step of a part adds so many rejects.
+/// The share of good machines if the step of a part adds this many rejects.
 double yield_with(const ToleranceDesign& design, const CoarserPart& coarser, double added) {
   const double rejects = static_cast<double>(rejects_of(design.screened.load)) + coarser.steps * added;
   return std::clamp(1.0 - rejects / static_cast<double>(design.load.size()), 0.0, 1.0);
 }
 
-/// Finds the yields of parts that hardly change loads: by many machines, each with its mirror.
+/// Finds the yields of parts that hardly change loads, from many machines and their mirror images.
 void probe_small(const SearchProblem& problem, const ToleranceDesign& design, std::span<const CoarserPart> parts,
                  std::vector<double>& yield) {
   const NearLimit many(design.screened.numbers, design.screened.load, kProbesOfSmall);
@@ -54,9 +54,9 @@ void probe_small(const SearchProblem& problem, const ToleranceDesign& design, st
   }
 }
 
-/// Finds the yield with each of these parts coarser alone and sets it in the others' list [N]; NaN for a part that can
-/// be no coarser. A step to the next value that can be had may be large, and few machines come that far. So the rejects
-/// of a small step are taken, in proportion to T^2.
+/// Finds the yield with each of these parts coarser alone, and sets it in the list [N]; NaN for a part that cannot be
+/// coarser. Where the next value that a part can have is far away, few machines tell its effect, so the rejects of a
+/// small step are scaled in proportion to T^2.
 std::vector<double> probe(const SearchProblem& problem, const ToleranceDesign& design,
                           std::span<const std::size_t> parts, std::vector<double> yield) {
   const NearLimit few(design.screened.numbers, design.screened.load, kProbes);
@@ -83,8 +83,8 @@ std::vector<double> probe(const SearchProblem& problem, const ToleranceDesign& d
   return yield;
 }
 
-/// The parts among these that could be coarser alone, to save cost, and the design would still have no more rejects
-/// than it may. Of parts that together would use up more than is left, those of the least effect.
+/// The parts among these that could be coarser alone, at a lower cost, with no more rejects than the design may have.
+/// If together they would use more than that, those of the least effect are taken.
 std::vector<std::size_t> idle_parts(const SearchProblem& problem, const Probed& probed,
                                     std::span<const std::size_t> parts) {
   const auto& [design, coarser_yield] = probed;
@@ -105,8 +105,8 @@ std::vector<std::size_t> idle_parts(const SearchProblem& problem, const Probed& 
   return idle;
 }
 
-/// Makes these parts coarser by steps that grow, until each would break the yield or can be no coarser; the others are
-/// scaled to what that leaves. None where that does not cost less or does not keep the yield.
+/// Makes these parts coarser by growing steps, until each would break the yield or cannot be coarser. Then scales the
+/// other parts to the yield. None if that does not reduce the cost or does not keep the yield.
 std::optional<Probed> loosen(const SearchProblem& problem, const Probed& from, std::vector<std::size_t> idle) {
   Probed loose = from;
   std::vector<bool> stays(problem.programme.size(), false);

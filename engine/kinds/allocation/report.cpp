@@ -43,7 +43,7 @@ void add_certificate(const StoredResult& result, std::span<const Table> tables, 
   }
 }
 
-/// The unit in which people read each part's T, and T in it.
+/// The unit in which each part's T is shown, and T in that unit.
 std::pair<std::vector<std::string>, std::vector<double>> shown_tolerances(const Result& found) {
   std::pair<std::vector<std::string>, std::vector<double>> shown;
   for (std::size_t n = 0; n < found.parts(); ++n) {
@@ -54,7 +54,7 @@ std::pair<std::vector<std::string>, std::vector<double>> shown_tolerances(const 
   return shown;
 }
 
-/// Cost, share of the mean square and tolerance of each part.
+/// Bars of cost, share of the mean square and tolerance of each part.
 Bars part_bars(const Result& found, ArrayPool& pool) {
   const auto [units, tolerances] = shown_tolerances(found);
   Bars bars{{}, {}, found.part_names};
@@ -76,7 +76,7 @@ void add_drawing(const StoredResult& result, std::span<const Table> tables, Page
              has_costs(found) ? "What the tolerance of each part costs." : "Which parts use the tightest limit.");
 }
 
-/// A panel of costs over x.
+/// A line chart of costs over x.
 Lines cost_lines(const std::string& key, Coordinate x, std::span<const double> costs, Mark mark, ArrayPool& pool) {
   return {.x = std::move(x),
           .panels = {{"predicted cost", "", {{"cost", pool.add(key, costs)}}}},
@@ -105,14 +105,14 @@ void add_costs(const StoredResult& result, std::span<const Table> tables, Page& 
   }
 }
 
-/// Numbers of these responses at the poses, one row behind the other.
+/// The values of these responses at all poses, response by response.
 std::vector<double> rows_of(const Result::AtPoses& values, std::span<const std::size_t> responses) {
   std::vector<double> list;
   for (const std::size_t r : responses) std::ranges::copy(values.row(r), std::back_inserter(list));
   return list;
 }
 
-/// How much of each limit is used at each pose, and where a limit costs.
+/// Shows how much of each limit is used at each pose, and where a limit costs.
 void add_where(const StoredResult& result, Page& page) {
   const Result& found = allocation_of(result);
   const PoseFigures figures(result, cells(result), page);
@@ -129,7 +129,7 @@ void add_where(const StoredResult& result, Page& page) {
   std::vector<HeatLayer> layers{{"use of the limit", "%", add("limit_use", found.limit_use, 0.01)}};
   std::vector<Field> fields{{"use of the limit", "%", layers.front().value, names}};
   if (has_costs(found)) {
-    Result::AtPoses price = found.multiplier;  // per unit that people read
+    Result::AtPoses price = found.multiplier;  // per unit in which the limit is shown
     for (std::size_t r = 0; r < result.responses.size(); ++r) {
       for (double& one : price.row(r)) one *= display(result.responses[r]).si;
     }
@@ -160,13 +160,13 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   list.push_back(text + ".");
 }
 
-/// A sentence of its own.
+/// The text as a sentence, with a capital letter and a full stop.
 std::string sentence(std::string text) {
   text.front() = static_cast<char>(text.front() - 'a' + 'A');
   return text + ".";
 }
 
-/// Which parts cost most, or use most of the limits.
+/// Names the parts that cost most, or that use most of the limits.
 std::string largest_parts(const Result& found) {
   constexpr std::size_t kMost = 3;
   const Result::Parts<double>& shares = shown_shares(found);
@@ -178,7 +178,7 @@ std::string largest_parts(const Result& found) {
   return text;
 }
 
-/// The limit that would save most, and the pose where it is used most; empty where none is known.
+/// Names the limit whose relaxation would save most, and the pose where it is used most; empty if none is known.
 std::string tightest_text(const StoredResult& result) {
   const Result& found = allocation_of(result);
   std::optional<std::size_t> most;
@@ -224,7 +224,7 @@ StudyWords words(const StoredResult& result) {
           .samples = counted(allocation_of(result).certificate.machines, "fresh machine", "fresh machines")};
 }
 
-/// Of each part its share of the mean square, and at each pose the use of the limit that is used most.
+/// The share of each part in the mean square, and at each pose the use of the limit that is used most.
 ErrorShares error_shares(const StoredResult& result) {
   const Result& found = allocation_of(result);
   if (found.parts() == 0 || found.poses() == 0) return {};
@@ -245,7 +245,7 @@ ErrorShares error_shares(const StoredResult& result) {
   return shares;
 }
 
-/// The parts; costs are compared where both results have them.
+/// The parts of two results; costs are compared if both have them.
 Comparable comparable(const StoredResult& result, const StoredResult& other) {
   const Result& found = allocation_of(result);
   Comparable all{"tolerances", {"all limits"}, "part", found.part_names};

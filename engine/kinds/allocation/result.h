@@ -20,7 +20,8 @@
 
 namespace poesy {
 
-/// What a tolerance T costs, as a study states it; numbers in SI, so that the text of a study has their every digit.
+/// The cost of a tolerance T as a study states it; SI. The law and its numbers are kept so that the text of the study
+/// repeats every digit.
 struct StatedCost {
   /// The law, by its name in a study file.
   enum class Law {
@@ -29,9 +30,9 @@ struct StatedCost {
     reciprocal_power,  ///< a + b / T^k
     exponential        ///< a + b exp(-T / tau)
   };
-  Law law = Law::none;  ///< which
-  double a = 0.0;       ///< what no tolerance saves
-  double b = 0.0;       ///< >= 0, in costs times (m or rad)^k, k = 1 but for reciprocal_power; of exponential in costs
+  Law law = Law::none;  ///< the law of the cost
+  double a = 0.0;       ///< the cost that does not depend on T
+  double b = 0.0;       ///< >= 0; cost x (m or rad)^k, with k = 1 for reciprocal; a cost for exponential
   double k = 1.0;       ///< > 0, for reciprocal_power
   double tau = 0.0;     ///< > 0, m or rad, for exponential
 
@@ -42,14 +43,14 @@ struct StatedCost {
 /// One way to make a part: a process with the tolerances that it holds.
 struct StatedProcess {
   std::string name;                                     ///< for people: "turning"
-  StatedCost cost = {};                                 ///< over its range
-  double lo = 0.0;                                      ///< least tolerance, SI
-  double hi = std::numeric_limits<double>::infinity();  ///< largest one
+  StatedCost cost = {};                                 ///< the cost within its range
+  double lo = 0.0;                                      ///< smallest tolerance, SI
+  double hi = std::numeric_limits<double>::infinity();  ///< largest tolerance, SI
 };
 
 /// A part of the drawing: errors that share one tolerance T, written +-T.
 struct AllocatedPart {
-  /// Of what the tolerance is chosen.
+  /// From what the tolerance is chosen.
   enum class Choice {
     range,      ///< any value within bounds
     values,     ///< one of a list of values
@@ -61,18 +62,18 @@ struct AllocatedPart {
   std::vector<FactorIndex> factors;  ///< of one dimension, at least one
   double sigmas = 3.0;               ///< T = shift T + sigmas x standard deviation
   double shift = 0.0;                ///< the mean is off by this share of T, as often up as down; 0 <= shift < 1
-  Choice choice = Choice::range;     ///< which of the following counts
-  StatedCost cost = {};              ///< of all but processes
-  double lo = 0.0;                   ///< of range; of fixed the value itself. SI
+  Choice choice = Choice::range;  ///< from what the tolerance is chosen; it determines which of the members below count
+  StatedCost cost = {};           ///< cost, for all choices except processes
+  double lo = 0.0;                ///< smallest tolerance of a range, or the fixed tolerance, SI
   double hi =
-      std::numeric_limits<double>::infinity();  ///< of range; infinity: what the part allows (Model::error_bound)
-  std::vector<double> values = {};              ///< of values, ascending
-  std::vector<ItGrade> grades = {};             ///< of grades, from the finest one
-  double nominal_size = 0.0;                    ///< of grades, m
-  std::vector<StatedProcess> processes = {};    ///< of processes
+      std::numeric_limits<double>::infinity();  ///< largest tolerance of a range; infinity: Model::error_bound decides
+  std::vector<double> values = {};              ///< the values, ascending
+  std::vector<ItGrade> grades = {};             ///< the grades, from the finest one
+  double nominal_size = 0.0;                    ///< the nominal size for grades, m
+  std::vector<StatedProcess> processes = {};    ///< the processes
 };
 
-/// What tolerances are for, in a study of tolerances.
+/// Which of the tolerances that keep the limits a study seeks.
 enum class Aim {
   least_cost,       ///< the least sum of the parts' costs
   equal_effect,     ///< each part uses the same share of the limit that it uses most
@@ -80,28 +81,28 @@ enum class Aim {
   common_factor     ///< the standard deviations of [errors], all times the largest factor that limits allow
 };
 
-/// What a study of tolerances alone asks.
+/// The options of a study that finds tolerances.
 struct AllocationOptions {
-  std::vector<AllocatedPart> parts;  ///< whose tolerances are wanted; other errors keep their distribution
-  Aim aim = Aim::least_cost;         ///< of several that keep the limits, which ones
+  std::vector<AllocatedPart> parts;  ///< the parts whose tolerances are wanted; other errors keep their distribution
+  Aim aim = Aim::least_cost;         ///< which tolerances to find among those that keep the limits
   double yield = 0.9973;             ///< share of the machines that must be within all limits at all poses
-  double confidence = 0.95;          ///< of the certificate
+  double confidence = 0.95;          ///< confidence of the certificate
 };
 
-std::string_view name(StatedCost::Law law);  ///< As a study file has it.
-std::string_view name(Aim aim);              ///< As a study file has it.
+std::string_view name(StatedCost::Law law);  ///< The word in a study file.
+std::string_view name(Aim aim);              ///< The word in a study file.
 
 /// The kind of study that finds tolerances under limits.
 extern const StudyKind kAllocationStudy;
 
-/// One step on the way to the tolerances.
+/// One step of the search for the tolerances.
 struct AllocationStage {
-  std::string name;            ///< for people: "linear", "at these tolerances", "scaled to the yield", ...
-  double cost = 0.0;           ///< of all parts; NaN for an aim without costs
-  double lower_bound = 0.0;    ///< on the least cost of this stage's programme; NaN likewise
-  double rms_share = 0.0;      ///< limit on a root mean square over limit on a value, of this stage
-  std::uint64_t machines = 0;  ///< that were tried at these tolerances; 0: none
-  std::uint64_t rejects = 0;   ///< of them
+  std::string name;          ///< for people: "linear", "at these tolerances", "scaled to the yield", ...
+  double cost = 0.0;         ///< of all parts; NaN for an aim without costs
+  double lower_bound = 0.0;  ///< lower bound on the least cost of this stage's programme; NaN for an aim without costs
+  double rms_share = 0.0;    ///< limit on a root mean square over limit on a value, of this stage
+  std::uint64_t machines = 0;  ///< machines tried at these tolerances; 0: none
+  std::uint64_t rejects = 0;   ///< rejects among these machines
 };
 
 namespace axis {
@@ -111,75 +112,78 @@ using CurveYield = Axis<"curve_yield">;    ///< Yields of a curve.
 using CurveFactor = Axis<"curve_factor">;  ///< Factors of all tolerances of a curve.
 }  // namespace axis
 
-/// What a study of tolerances found of the parts of its drawing; SI; NaN where undefined. A response without a limit
-/// has no multiplier, no use and no saving: NaN.
+/// The result of a study that finds tolerances; SI; NaN where undefined. A response without a limit has no multiplier,
+/// use or saving: NaN.
 struct AllocationResult {
-  /// One of each part.
+  /// A value for each part.
   template <class T>
   using Parts = Array<T, axis::Part>;
-  /// A number of each response at each pose.
+  /// A number for each response and pose.
   using AtPoses = Array<double, axis::Response, axis::Pose>;
 
-  std::vector<std::string> part_names;  ///< of the parts
+  std::vector<std::string> part_names;  ///< names of the parts
   Parts<std::string> part_members;      ///< names of a part's errors, with blanks between
   Parts<std::string> part_unit;         ///< "m" or "rad"
   Parts<double> tolerance;              ///< T, the drawing says +-T
-  Parts<double> sigma;                  ///< standard deviation about the mean
+  Parts<double> sigma;                  ///< standard deviation of the errors about their mean
   Parts<double> sigmas;                 ///< T = shift + sigmas x sigma
-  Parts<double> shift;                  ///< by how much the mean is off, as often up as down
+  Parts<double> shift;                  ///< offset of the mean in either direction
   Parts<double> cost;                   ///< NaN for an aim without costs
-  Parts<double> share;                  ///< of the cost of all
-  Parts<double> mean_square_share;      ///< of what all parts add to the mean square under the tightest limit
-  /// The same of each error, whose sum over a part is that of the part; NaN for an error of no part.
+  Parts<double> share;                  ///< share of the total cost
+  Parts<double> mean_square_share;      ///< share of the sum over all parts in the mean square under the tightest limit
+  /// The same for each error; the shares of a part's errors add up to that of the part. NaN for an error of no part.
   Array<double, axis::Factor> error_mean_square_share;
   Parts<std::uint8_t> bound;  ///< AtBound: 0 between its bounds, 1 at the lower, 2 at the upper, 3 no choice
   Parts<std::string> chosen;  ///< name of the process or grade; empty where there is none
-  /// Predicted share of the design's machines that are good if this part alone is made 5 % coarser, or the next coarser
-  /// value that can be had; NaN where nothing coarser is allowed.
+  /// Predicted share of good machines among the design's if this part alone is made 5 % coarser, or has its next larger
+  /// value; NaN if it cannot be coarser.
   Parts<double> coarser_yield;
 
-  AtPoses multiplier;                    ///< what one unit more of the limit at this pose alone would save
-  AtPoses limit_use;                     ///< predicted root mean square over what the tightest limit allows it
+  AtPoses multiplier;  ///< what one unit more of the limit at this pose alone would save
+  AtPoses limit_use;   ///< predicted root mean square over the root mean square that the tightest limit allows
   Array<double, axis::Response> limit;   ///< SI
   Array<double, axis::Response> saving;  ///< what a limit wider by one percent at all poses would save, to first order
 
-  Aim aim = Aim::least_cost;  ///< that was asked for
-  double total_cost = 0.0;    ///< of all parts; NaN for an aim without costs
-  double lower_bound = 0.0;   ///< no tolerances cost less under the last limits on root mean squares; NaN likewise
-  double gap = 0.0;           ///< by how much the tolerances of these limits may cost too much; NaN likewise
-  double wanted_yield = 0.0;  ///< that was asked for
-  double confidence = 0.95;   ///< that was asked for
+  Aim aim = Aim::least_cost;  ///< what the study optimised
+  double total_cost = 0.0;    ///< cost of all parts; NaN for an aim without costs
+  double lower_bound =
+      0.0;  ///< lower bound on the cost under the last limits on root mean squares; NaN for an aim without costs
+  double gap = 0.0;           ///< total_cost less the bound, at most; NaN for an aim without costs
+  double wanted_yield = 0.0;  ///< yield that the study asked for
+  double confidence = 0.95;   ///< confidence that the study asked for
 
-  std::vector<AllocationStage> stages;                     ///< in their order
-  Array<double, axis::Stage, axis::Part> stage_tolerance;  ///< T at the end of each
-  std::uint64_t design_machines = 0;                       ///< with which the tolerances were found
-  std::uint64_t design_rejects = 0;                        ///< of them
-  std::uint64_t design_most = 0;                           ///< with so many of them the certificate will probably hold
+  std::vector<AllocationStage> stages;                     ///< stages, in their order
+  Array<double, axis::Stage, axis::Part> stage_tolerance;  ///< T at the end of each stage
+  std::uint64_t design_machines = 0;                       ///< machines with which the tolerances were found
+  std::uint64_t design_rejects = 0;                        ///< rejects among them
+  std::uint64_t design_most = 0;  ///< largest number of rejects with which the certificate will probably hold
 
-  std::uint64_t certificate_seed = 0;  ///< of the fresh machines
-  std::uint64_t certificate_most = 0;  ///< rejects with which the certificate would hold
-  YieldVerdict certificate;            ///< what the fresh machines show; kept: it is certified
-  bool calibrated = false;             ///< whether responses are what the best correction of the actuators leaves
+  std::uint64_t certificate_seed = 0;  ///< seed of the fresh machines
+  std::uint64_t certificate_most = 0;  ///< largest number of rejects with which the certificate holds
+  YieldVerdict certificate;            ///< what the fresh machines show; `kept` means certified
+  bool calibrated = false;  ///< whether the responses are those that remain after the best correction of the actuators
 
-  std::vector<double> curve_yield;                     ///< ascending
+  std::vector<double> curve_yield;                     ///< yields of the curve, ascending
   Array<double, axis::CurveYield> curve_yield_cost;    ///< predicted cost at these yields
-  std::vector<double> curve_factor;                    ///< ascending, of all limits
-  Array<double, axis::CurveFactor> curve_factor_cost;  ///< predicted cost with limits wider by this factor
+  std::vector<double> curve_factor;                    ///< factors on all limits, ascending
+  Array<double, axis::CurveFactor> curve_factor_cost;  ///< predicted cost with limits multiplied by these factors
 
   std::string certificate_study;          ///< text of the study that repeats the certificate
-  Array<SolveCounts, axis::Pose> solves;  ///< of the certificate's machines
-  std::vector<Failure> failures;          ///< the first of these machines that are not solved
+  Array<SolveCounts, axis::Pose> solves;  ///< how solves of the certificate's machines ended
+  std::vector<Failure> failures;          ///< the first samples of these machines that were not solved
 
-  std::size_t parts() const { return part_names.size(); }                                  ///< Of the drawing.
-  std::size_t poses() const { return limit_use.length<axis::Pose>(); }                     ///< Of the study.
-  SolveCounts total() const { return total_of(solves.all()); }                             ///< Of the certificate.
-  bool certified() const { return certificate.decision == YieldVerdict::Decision::kept; }  ///< Whether it holds.
+  std::size_t parts() const { return part_names.size(); }               ///< The number of parts of the drawing.
+  std::size_t poses() const { return limit_use.length<axis::Pose>(); }  ///< The number of poses of the study.
+  SolveCounts total() const { return total_of(solves.all()); }          ///< The solves of the certificate at all poses.
+  bool certified() const {
+    return certificate.decision == YieldVerdict::Decision::kept;
+  }  ///< Whether the certificate holds.
 };
 
-/// What a study of tolerances found, read back. Precondition: a result of that kind.
+/// The result of a study that finds tolerances, read from a file. Precondition: the result is of that kind.
 inline const AllocationResult& allocation_of(const StoredResult& result) { return found_of<AllocationResult>(result); }
 
-/// The certificate, the drawing's table, what each limit costs, and the way to the tolerances.
+/// Tables of the certificate, the drawing's parts, the cost of each limit, and the stages of the search.
 std::vector<Table> allocation_tables(const StoredResult& result, const TableOptions& options = {});
 
 }  // namespace poesy

@@ -51,7 +51,8 @@ YieldVerdict verdict_of(const MachineLoads& fresh, double yield, double confiden
   return verdict;
 }
 
-/// Divides a part's share of the mean square among its errors, which have one variance, in proportion to their slopes.
+/// Divides a part's share of the mean square among its errors in proportion to their slopes, because they have one
+/// variance.
 void divide_share(std::span<const double> slopes, std::span<const std::size_t> errors, double of_part,
                   Array<double, axis::Factor>& shares) {
   double sum = 0.0;
@@ -62,7 +63,7 @@ void divide_share(std::span<const double> slopes, std::span<const std::size_t> e
   }
 }
 
-/// Fills in what is found of each part.
+/// Fills in the results of each part.
 void add_parts(const SearchProblem& problem, const FoundTolerances& search, const ToleranceLimits& limits,
                AllocationResult& found) {
   const Study& study = problem.run.study;
@@ -107,7 +108,7 @@ void add_parts(const SearchProblem& problem, const FoundTolerances& search, cons
   found.coarser_yield = {{parts}, search.coarser_yield};
 }
 
-/// Fills in what is found of each limit.
+/// Fills in the results of each limit.
 void add_limits(const SearchProblem& problem, const Candidate& candidate, const ToleranceLimits& limits,
                 AllocationResult& found) {
   const std::vector<ResponseLimit>& stated = problem.run.study.analysis.limits;
@@ -126,7 +127,7 @@ void add_limits(const SearchProblem& problem, const Candidate& candidate, const 
       const double square = allowed * allowed - limits.room[row] + limits.need(row, candidate.point.tolerance);
       found.limit_use(r, m) = std::sqrt(std::max(0.0, square)) / allowed;
       if (multiplier.empty()) continue;
-      // The room is (share x limit)^2 less what is fixed.
+      // The room is (share x limit)^2 less the effect of the fixed errors.
       found.multiplier(r, m) = multiplier[row] * 2.0 * candidate.share * allowed;
       sum += found.multiplier(r, m);
     }
@@ -173,7 +174,7 @@ AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& 
   found.aim = problem.options.aim;
   found.calibrated = study.mechanism.calibrated;
   found.total_cost = candidate.point.cost;
-  found.lower_bound = candidate.chosen.lower_bound;  // NaN where nothing but the lowest tolerances was left
+  found.lower_bound = candidate.chosen.lower_bound;  // NaN if only the lowest tolerances were left to try
   found.gap = candidate.chosen.cost - candidate.chosen.lower_bound;
   found.wanted_yield = problem.options.yield;
   found.confidence = problem.options.confidence;
@@ -220,7 +221,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   return StudyResult{std::move(found), std::move(verdicts), {}, certificate};
 }
 
-/// Machines are tried about so many times, those of the certificate among them.
+/// About how many times machines are tried, including those of the certificate.
 constexpr double kTrials = 5.0;
 
 Outlook allocation_outlook(const Study& study, const Model& model, const PoseSet& poses) {
@@ -232,10 +233,10 @@ Outlook allocation_outlook(const Study& study, const Model& model, const PoseSet
   const std::size_t rows = study.analysis.limits.size() * poses.size();
   const std::size_t loads = plan->samples() * sizeof(double);
   const std::size_t squares = 3 * rows * errors * sizeof(double);
-  // Use and multiplier of each limit; the pose with its condition number.
+  // The use and the multiplier of each limit, and the coordinates and condition number of the pose.
   const std::size_t of_pose = 2 * study.model().responses.size() + study.model().pose_coordinates.size() + 1;
   const std::size_t numbers = poses.size() * of_pose * sizeof(double);
-  // Numbers and names of each part, and what the certificate's study says of it.
+  // The numbers and names of each part, and its text in the certificate's study.
   constexpr std::size_t kPart = 400;
   const std::size_t parts = kPart * asked_of<AllocationOptions>(study.analysis).parts.size();
   const std::size_t file = numbers + poses.size() * kSolverColumns + parts;

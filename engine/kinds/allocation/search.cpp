@@ -16,13 +16,13 @@ AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t ma
   const auto holds = [&](std::uint64_t rejects) {
     return proportion_at_least(machines - rejects, machines, confidence) >= yield;
   };
-  std::uint64_t low = 0;  // holds
+  std::uint64_t low = 0;  // a number of rejects with which the certificate holds
   std::uint64_t high = machines;
   while (high - low > 1) {
     const std::uint64_t middle = low + (high - low) / 2;
     (holds(middle) ? low : high) = middle;
   }
-  // The largest d with d + z sqrt(2 d) <= low, because both numbers of rejects scatter.
+  // The largest d with d + z sqrt(2 d) <= low. The 2 is there because both numbers of rejects scatter.
   const double half = 0.5 * normal_quantile(1.0, 0.99) * std::sqrt(2.0);
   const double root = std::sqrt(half * half + static_cast<double>(low)) - half;
   return {low, static_cast<std::uint64_t>(root * root)};
@@ -52,7 +52,7 @@ std::optional<FoundTolerances> find_tolerances(const SearchProblem& problem) {
     auto [linearisation, design] =
         scale_to_yield(problem, settle(problem, linearise(problem, found.log), found.log), found.log);
     found.coarser_yield.assign(problem.programme.size(), kNaN);
-    if (!design.screened.numbers.empty()) {  // else the lowest tolerances leave nothing to choose
+    if (!design.screened.numbers.empty()) {  // otherwise the tolerances are the lowest, and nothing is left to choose
       design = improve(problem, linearisation, std::move(design), found.log);
       design = scale_to_other_machines(problem, design, found.log);
       Probed probed = use_remaining_yield(problem, std::move(design), found.log);

@@ -11,7 +11,8 @@
 namespace poesy {
 namespace {
 
-/// To this many significant digits, towards zero. What is off by rounding from a shorter number is that number.
+/// Rounds to this many significant digits, towards zero. A value within rounding of a shorter number becomes that
+/// number.
 double rounded_down(double value, int digits) {
   constexpr double kRounding = 1e-12;
   if (!(value > 0.0) || std::isinf(value)) return value;

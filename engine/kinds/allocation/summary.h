@@ -10,7 +10,7 @@
 #include "engine/kinds/allocation/result.h"
 #include "engine/report/tables.h"
 
-/// What files, tables and reports all say of tolerances that were found.
+/// Texts and orders that files, tables and reports of tolerances share.
 namespace poesy {
 
 /// Whether the aim has costs.
@@ -22,16 +22,16 @@ std::vector<std::size_t> limited_responses(const AllocationResult& found);
 /// The pose at which these numbers of a response are largest; none where none is above zero.
 std::optional<std::size_t> worst_pose(std::span<const double> at_poses);
 
-/// By which parts are ordered: their shares of the cost, or without costs of the mean square.
+/// The shares by which parts are ordered: of the cost, or of the mean square if the aim has no costs.
 const AllocationResult::Parts<double>& shown_shares(const AllocationResult& found);
 
-/// Positions of the parts in this order: by shown_shares, the largest first; or by name, or as the study has them.
+/// The positions of the parts in this order: by shown_shares() descending, by name, or as in the study.
 std::vector<std::size_t> ordered_parts(const AllocationResult& found, RowOrder order);
 
 /// "certified: at least 99.73 % of the machines are within all limits at all poses, ...", or why it is not.
 std::string certificate_text(const AllocationResult& found);
 
-/// T as a drawing has it, "+-0.0123 mm": to four digits, rounded down so that limits are still kept.
+/// T as a drawing has it, "+-0.0123 mm": four digits, rounded down so that limits are still kept.
 std::string drawing_text(double tolerance, const std::string& si_unit);
 
 }  // namespace poesy

@@ -22,7 +22,7 @@ constexpr int kCostDigits = 6;
 
 std::string cost_text(double cost) { return number_text(cost, kCostDigits); }
 
-/// The table of every yield, in the words of a certificate.
+/// The table of the yield, in the words of a certificate.
 Table certificate_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   Table table = yield_table(result, {.judge = Judge::yield, .limits = {}, .yield = found.certificate});
@@ -35,7 +35,7 @@ Table certificate_table(const StoredResult& result) {
   return table;
 }
 
-/// "3 sigma + 10 % of T": what T is made of.
+/// The composition of T: "3 sigma + 10 % of T".
 std::string made_of(const Result& found, std::size_t n) {
   const std::string text = number_text(found.sigmas(n), kCostDigits) + " sigma";
   const double share = found.shift(n) / found.tolerance(n);
@@ -59,7 +59,7 @@ std::string drawing_caption(const Result& found) {
   return {};
 }
 
-/// How far from the least cost of its problem the search was.
+/// Says how far the cost may be from the least one.
 void add_bound_note(const Result& found, Table& table) {
   if (std::isnan(found.lower_bound) || !has_costs(found)) return;
   const std::string least = fmt::format(
@@ -86,7 +86,7 @@ FilledColumn words_column(std::string name, std::string heading, std::span<const
           [values](std::size_t at) { return text_cell(values[at]); }};
 }
 
-/// T in full and what it means, for those who have the room.
+/// Adds columns with T in full and its meaning, for wide tables.
 void add_details(const Result& found, std::vector<FilledColumn>& columns) {
   constexpr int kFirstToGo = 3;
   const auto unit = [&](std::size_t n) { return display_unit(dimension_of(found.part_unit(n))); };
@@ -149,7 +149,7 @@ Table drawing_table(const Result& found, RowOrder order) {
   return table;
 }
 
-/// A pose, with the cell of its number and that of its coordinates.
+/// The columns of a pose: its number and its coordinates.
 std::vector<FilledColumn> pose_columns(const StoredResult& result, const std::string& name,
                                        const Result::AtPoses& values, int dispensable) {
   return {{number_column(name + "_pose", "at pose", "", dispensable),
@@ -163,7 +163,7 @@ std::vector<FilledColumn> pose_columns(const StoredResult& result, const std::st
            }}};
 }
 
-/// The largest of numbers at poses, 0 where none is above zero.
+/// The largest of these numbers; 0 if none is above zero.
 double largest(std::span<const double> at_poses) {
   const std::optional<std::size_t> pose = worst_pose(at_poses);
   return pose ? at_poses[*pose] : 0.0;
@@ -235,7 +235,7 @@ Table stages_table(const Result& found) {
   return table;
 }
 
-/// A predicted cost beside that of the tolerances found.
+/// Shows predicted costs beside that of the tolerances found.
 void add_costs(const Result& found, std::span<const double> costs, FilledColumn at, Table& table) {
   table.notes.emplace_back("predicted, not certified; change: from the cost of the tolerances found");
   fill(table, positions(costs.size()),

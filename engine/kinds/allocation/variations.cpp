@@ -12,10 +12,11 @@
 namespace poesy {
 namespace {
 
-/// Machines that are varied together. They are few so that a piece of work ends soon however many variations there are.
+/// The number of machines that are varied together. It is small, so that a piece of work ends soon even with many
+/// variations.
 constexpr std::size_t kVariedAtOnce = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// About one of so many poses decides, for a guess of the solves that are left.
+/// About one in this many poses decides. Used to estimate the solves that remain.
 constexpr std::size_t kOfPosesDecide = 4;
 
 /// Machines and their variations. A piece of work has all variations of some of the machines.
@@ -35,10 +36,10 @@ struct VariedMachines {
   }
 };
 
-/// The loads of a piece of work, or of several, one after the other.
+/// The loads of one piece of work, or of several in order.
 struct VariedLoads {
   const VariedMachines* varied = nullptr;
-  std::vector<double> load = {};  ///< of each piece [V x B]
+  std::vector<double> load = {};  ///< [V x B] of each piece
   std::uint64_t solves = 0;
 
   void add(std::size_t, const VariedLoads& later) {
@@ -53,7 +54,7 @@ struct VariedLoads {
   }
 };
 
-/// Owns the scratch of one thread.
+/// Solves one piece of work at a time. Owns the scratch of one thread.
 class VariationEvaluator : private LoadSolver {
  public:
   VariationEvaluator(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
@@ -87,8 +88,9 @@ class VariationEvaluator : private LoadSolver {
     found.solves += at_pose_.size();
   }
 
-  /// Solves variations at a pose, for machines that it decides. Or for the other machines the variations that change
-  /// much in any of the machines, because what hardly acts at the pose that decides for one may act at another.
+  /// Solves variations at a pose that decides for a machine (`deciding`). Otherwise solves, for the other machines,
+  /// those variations that change the load of any machine much, because their effect at the deciding pose may be small
+  /// and elsewhere large.
   void solve_at(std::size_t m, bool deciding, VariedLoads& found) {
     pairs_.clear();
     for (std::size_t pair = 0; pair < found.load.size(); ++pair) {
@@ -134,7 +136,7 @@ class VariationEvaluator : private LoadSolver {
   }
 
   const VariedMachines& varied_;
-  std::size_t count_ = 0;             ///< B, machines of the piece
+  std::size_t count_ = 0;             ///< B, the machines of the piece
   std::vector<std::size_t> numbers_;  ///< [B]
   std::vector<double> drawn_;         ///< [P x B] errors
   std::vector<double> at_pose_;       ///< [M x B] loads without variations
@@ -146,7 +148,7 @@ class VariationEvaluator : private LoadSolver {
   std::vector<std::uint8_t> beyond_;
 };
 
-/// A job of UnitFold: the pieces of work.
+/// The job of UnitFold, whose units are the pieces of work.
 struct VariationJob {
   const Plan& plan;
   const Model& model;

@@ -13,16 +13,16 @@
 
 namespace poesy {
 
-/// Errors that are all multiplied by one factor: a tolerance that is changed, or errors that are mirrored.
+/// A factor on some errors: a changed tolerance, or mirrored errors.
 struct Variation {
   std::vector<std::size_t> errors;  ///< positions among the plan's factors
   double factor;                    ///< finite; a negative one mirrors the errors
 };
 
-/// Loads (MachineLoads) [V x n] of the listed machines, ascending numbers below plan.samples(), with each variation
-/// alone. A machine is solved at the poses that decide, where its load is within kDeciding of its largest. If a
-/// variation changes a load there by more than half of that, in any of some forty machines, other poses may come to
-/// decide, and these machines are solved at all poses. On all ranks of a team, the same bits for any number of threads.
+/// The loads (MachineLoads) [V x n] of the listed machines with each variation alone. machines: ascending numbers below
+/// plan.samples(). A machine is solved at the poses that decide, where its load is within kDeciding of its largest. If
+/// a variation changes a load there by more than half of that, in any of about forty machines, other poses may decide,
+/// and these machines are solved at all poses. The result has the same bits for any number of threads and on all ranks.
 /// Empty when stopped. Precondition: Draws::per_machine.
 std::optional<std::vector<double>> try_variations(const Plan& plan, const Model& model,
                                                   std::span<const ResponseLimit> limits,

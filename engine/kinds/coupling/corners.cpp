@@ -11,10 +11,11 @@
 namespace poesy {
 namespace {
 
-/// Samples that are solved in one go.
+/// The number of samples that are solved together.
 constexpr std::size_t kBlock = 256;
 
-/// Sums of responses that are tried, about: those of the three components of a vector are 13.
+/// The largest number of weighted sums of responses that are tried, approximately. The three components of a vector
+/// have 13 of them.
 constexpr std::size_t kMostSums = 13;
 
 Signs opposite(Signs signs) {
@@ -108,7 +109,7 @@ std::vector<CornerSearch::Direction> CornerSearch::directions(const ModelDescrip
       const std::size_t before = sums.size();
       for (std::size_t n = 0; n < before; ++n) {
         for (const double weight : {1.0, -1.0}) {
-          if (weight < 0.0 && sums[n].empty()) continue;  // the opposite is tried anyway
+          if (weight < 0.0 && sums[n].empty()) continue;  // the opposite signs are tried anyway
           Direction more = sums[n];
           more.emplace_back(r, weight);
           sums.push_back(std::move(more));

@@ -34,7 +34,7 @@ bool takes(const ErrorPattern& pattern, const Factor& factor) {
   return std::ranges::find(pattern.axes, factor.axis) != pattern.axes.end();
 }
 
-/// What the factors of a block have in common: limb, then frame, dimension and axis.
+/// The place by which factors belong to one block: limb, frame, dimension and axis.
 using BlockPlace = std::tuple<std::size_t, std::size_t, Dimension, std::string>;
 
 BlockPlace place_of(const Factor& factor, const ErrorPattern& pattern) {
@@ -62,12 +62,12 @@ void add_errors(const ErrorBlock& more, ErrorBlock& errors) {
   std::ranges::sort(errors);
 }
 
-/// What a subset does at one pose. A NaN among the effects makes NaN of all that rests on it.
+/// The effects of a subset at one pose. NaN effects make NaN of every number that depends on them.
 struct Combination {
   double effect = 0.0;
   double sum = 0.0;
-  double magnitudes = 0.0;  ///< sum over the sources of |effect of the source|
-  double largest = 0.0;     ///< |effect of a source|
+  double magnitudes = 0.0;  ///< sum of |effect of a source|
+  double largest = 0.0;     ///< largest |effect of a source|
   double first_order_sum = 0.0;
   double squares = 0.0;
 
@@ -79,7 +79,7 @@ struct Combination {
   bool is_opposed(double rounding) const { return largest - std::abs(sum) > rounding; }
 };
 
-/// effects: [N] of the rows of one size, at one pose.
+/// Combines the effects of a subset's rows. effects: [N] of all rows at one size and pose.
 Combination combination(const CouplingRows& rows, std::size_t subset, std::span<const double> effects) {
   Combination found;
   found.effect = effects[subset];
@@ -95,7 +95,7 @@ Combination combination(const CouplingRows& rows, std::size_t subset, std::span<
   return found;
 }
 
-/// The largest magnitude among the values at these poses, and the first pose that has it; without poses NaN and -1.
+/// The largest magnitude at these poses, and the first pose that has it; NaN and -1 if there are no poses.
 std::pair<double, std::int64_t> largest_at(std::span<const double> values, std::span<const std::size_t> poses) {
   std::pair<double, std::int64_t> largest{kNaN, -1};
   for (const std::size_t m : poses) {
@@ -105,7 +105,7 @@ std::pair<double, std::int64_t> largest_at(std::span<const double> values, std::
   return largest;
 }
 
-/// "0.1 mm", or "0.1 mm, 0.1 deg".
+/// The names of the sizes: "0.1 mm", or "0.1 mm, 0.1 deg".
 std::vector<std::string> size_names(const CouplingStudy& study) {
   std::vector<std::string> names;
   for (std::size_t z = 0; z < study.sizes(); ++z) {
@@ -117,12 +117,12 @@ std::vector<std::string> size_names(const CouplingStudy& study) {
   return names;
 }
 
-/// The sizes of errors of one dimension; NaN where no error has it.
+/// The sizes of errors of one dimension; NaN if no error has it.
 Array<double, axis::Size> sizes_or_nan(const std::vector<double>& sizes, std::size_t count) {
   return {{count}, sizes.empty() ? std::vector<double>(count, kNaN) : sizes};
 }
 
-/// A result with the names of its axes, and arrays of their lengths. responses, poses: how many.
+/// A result with the names of its axes and arrays of the right lengths.
 CouplingResult empty_result(const CouplingStudy& study, std::size_t responses, std::size_t poses) {
   CouplingResult found;
   found.size_names = size_names(study);
@@ -141,7 +141,7 @@ CouplingResult empty_result(const CouplingStudy& study, std::size_t responses, s
   return found;
 }
 
-/// Fills a result: for each response, size and subset its poses, and then their summary.
+/// Fills a result: the values at the poses of each response, size and subset, then their summary.
 class Composer {
  public:
   Composer(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model, NotConverged policy,
@@ -164,7 +164,7 @@ class Composer {
     for (std::size_t z = 0; z < found_.size_names.size(); ++z) {
       for (std::size_t m = 0; m < evaluation_.poses(); ++m) found_.solves(z, m) = solves_at(z, m);
     }
-    // Last, because it follows from others: the outcomes and all curves need not be in memory both.
+    // Last, because sums follow from other curves, and the outcomes need not be in memory together with them.
     evaluation_ = {};
     make_room(found_.effect.lengths(), found_.interaction);
     std::ranges::transform(found_.effect, found_.sum, found_.interaction.begin(), std::minus());
@@ -172,13 +172,13 @@ class Composer {
   }
 
  private:
-  /// What each row of errors does.
+  /// The effect of each row of errors.
   using Effects = Array<double, axis::Pose, axis::Sample>;
 
   std::size_t rows() const { return rows_.errors.size(); }
   std::size_t sample(std::size_t z, std::size_t n) const { return z * rows() + n; }
 
-  /// Of all rows of a size; NaN where the solve does not count.
+  /// The effects of all rows of a size; NaN if the solve does not count.
   Effects effects_of(std::size_t r, std::size_t z) const {
     Effects effects({evaluation_.poses(), rows()});
     for (std::size_t m = 0; m < evaluation_.poses(); ++m) {
@@ -232,7 +232,7 @@ class Composer {
   CouplingResult found_;
 };
 
-/// The solves of both stages as those of one run: the first is the table of errors, the second the corners.
+/// Reports the solves of both stages as one run: first the table of errors, then the corners.
 class TwoStages {
  public:
   TwoStages(const StudyRun& run, double expected_corners) : run_(run), expected_(expected_corners) {}
@@ -245,7 +245,7 @@ class TwoStages {
     };
     return options;
   }
-  /// A first stage that reports nothing was done by the run that is continued.
+  /// The options of the second stage. If the first stage reports nothing, the continued run has already done it.
   RunOptions of_corners() {
     RunOptions options = run_.options;
     const SolveCounts done = run_.checkpoints().solves();
@@ -287,7 +287,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   return StudyResult{std::move(found), std::nullopt, {}};
 }
 
-/// Corners at one size and pose after the other.
+/// The work of the corners, at one size and pose after the other.
 WorkOutlook corner_work(const Study& study, const Model& model, const PoseSet& poses) {
   struct Trial {
     Trial(const Study& study, const Model& model, const PoseSet& poses)
@@ -320,7 +320,8 @@ Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& 
   const bool searches = coupling.worst_case == UnknownSigns::search;
   const std::size_t of_corners = searches ? curve + 2 * sizeof(std::uint64_t) * cells * rows.subsets.size() : 0;
   const std::size_t result = 6 * curve + of_corners + cells * sizeof(SolveCounts);
-  // While the result is composed, the outcomes are there besides all curves but one. While it is written, its lists go
+  // While the result is composed, the outcomes and all curves but one are in memory. While it is written, its lists are
+  // freed one by one.
   // one by one.
   const std::size_t composing = outcomes + 5 * curve + of_corners;
   Outlook expected{.solves = counted_things(coupling.sizes(), "sizes x ") +

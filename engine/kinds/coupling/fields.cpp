@@ -65,7 +65,7 @@ const Fields<CouplingResult> kSizes{
     {"size_linear", &CouplingResult::linear, "m", "Size of errors that are lengths; NaN where there is none"},
     {"size_angular", &CouplingResult::angular, "rad", "Size of errors that are angles; NaN where there is none"}};
 
-/// 1 where a subset has a source, subset by subset.
+/// Subset by subset, 1 for each source in the subset and 0 for the others.
 std::vector<std::uint8_t> members(std::size_t sources) {
   std::vector<std::uint8_t> list;
   for (const std::vector<std::size_t>& subset : source_subsets(sources)) {
@@ -74,7 +74,7 @@ std::vector<std::uint8_t> members(std::size_t sources) {
   return list;
 }
 
-/// The source of each factor of the result, and its block in it, by their positions.
+/// Adds the source of each factor, and its block in that source, as positions.
 void add_membership(ResultBuilder& result, const Study& study) {
   const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   std::map<FactorIndex, std::pair<std::size_t, std::size_t>> places;
@@ -94,7 +94,7 @@ void add_membership(ResultBuilder& result, const Study& study) {
              {"1", "Block of its source that the error belongs to, from 0; errors of a block move together"});
 }
 
-/// The sizes, the subsets, and where each error belongs.
+/// Adds the sizes, the subsets, and the source of each error.
 void add_choices(ResultBuilder& result, const Study& study, const CouplingResult& found) {
   write_fields(result, "/coupling", kSizes, found);
   result.add("/coupling/subset_sources", {"subset", "source"}, members(found.sources.size()),
@@ -103,10 +103,10 @@ void add_choices(ResultBuilder& result, const Study& study, const CouplingResult
   result.show_axes("/coupling", {"source", "factor"});
 }
 
-/// A line of a table of sizes and subsets, each with so many poses or errors.
+/// The lines of a table: for each size and subset a number of poses or errors.
 using SubsetLines = AxisLayout<axis::Size, axis::Subset, axis::Pose>;
 
-/// The sizes of the errors in each line.
+/// Adds columns with the sizes of the errors.
 void append_size_columns(CsvTable& table, const CouplingResult& found, const SubsetLines& lines) {
   const auto append = [&](std::string heading, const Array<double, axis::Size>& sizes) {
     table.columns.push_back(
@@ -116,7 +116,7 @@ void append_size_columns(CsvTable& table, const CouplingResult& found, const Sub
   append("size_angular [rad]", found.angular);
 }
 
-/// A table with a line for each size and subset, and for each of `repeated` poses.
+/// A table with `repeated` lines for each size and subset.
 CsvTable subset_table(const StoredResult& result, const std::string& name, std::size_t repeated) {
   const CouplingResult& found = coupling_of(result);
   const SubsetLines lines({found.size_names.size(), found.subsets.size(), repeated});
@@ -127,7 +127,7 @@ CsvTable subset_table(const StoredResult& result, const std::string& name, std::
   return table;
 }
 
-/// For each response a column of each row along the axes of this member; without the sum, which follows from others.
+/// Adds a column for each response and each row of this member that is not redundant.
 template <class AnArray>
 void append_response_columns(CsvTable& table, const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
@@ -160,7 +160,7 @@ CsvTable curve_table(const StoredResult& result) {
   return table;
 }
 
-/// The signs of each error at the worst cases, and at the first corner that is not solved.
+/// The sign of each error at the worst cases, and at the first corner that is not solved.
 CsvTable corner_table(const StoredResult& result) {
   const std::size_t errors = result.factors.size();
   CsvTable table = subset_table(result, "coupling_corners", errors);
@@ -195,7 +195,8 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   add_solver(result, found.solves);
 }
 
-/// In files of version 0.2.0 `worst_case` is the first-order sum, there are no corners, and rounding is that of digits.
+/// In files of version 0.2.0 `worst_case` is the first-order sum, there are no corners, and rounding is that of printed
+/// digits.
 void read_older(CouplingResult& found) {
   if (!found.first_order_sum.empty()) {
     const bool searched = has_worst_cases(found);

@@ -20,7 +20,7 @@ using PatternChoice = ErrorPattern::Choice;
 constexpr std::size_t kFewestSources = 2;
 constexpr std::size_t kMostSources = 8;  // 255 subsets
 
-/// "all" or "independent".
+/// Reads "all" or "independent".
 PatternChoice read_choice(const StudyValue& value) {
   constexpr std::array<std::string_view, 2> kWords{"all", "independent"};
   return value.word(kWords) == 0 ? PatternChoice::all : PatternChoice::independent;
@@ -62,7 +62,7 @@ void read_components(const StudyValue& value, Study& study, const Reading&) {
   if (pattern.axes.empty()) value.fail("is empty", "name components, e.g. [\"x\", \"z\"], or write \"all\"");
 }
 
-/// Throws for a factor that an earlier source has.
+/// Throws if an earlier source has one of these factors.
 void require_own_factors(const StudyValue& factors, const ErrorSource& source, std::span<const ErrorSource> others,
                          const ModelDescription& model) {
   for (const ErrorSource& other : others) {
@@ -93,7 +93,7 @@ ErrorSource read_source(const StudySection& section, std::span<const ErrorSource
   return source;
 }
 
-/// The literature's sources. Throws at the section where the model has none.
+/// The sources of the literature. Throws at the section if the model has none.
 std::vector<ErrorSource> usual_sources(const StudySection& analysis, const ModelDescription& model,
                                        const ErrorPattern& pattern) {
   constexpr std::string_view kNameThem =
@@ -139,7 +139,7 @@ std::string sources_lines(const Study& study) {
 
 using Sizes = std::vector<double>;
 
-/// Sizes of this dimension.
+/// A key with the sizes of errors of this dimension.
 KeyValue<Study> sizes_at(Dimension dimension, Sizes CouplingStudy::*member) {
   const auto read = [=](const StudyValue& value, Study& study) {
     Sizes& sizes = asked_of<CouplingStudy>(study.analysis).*member;
@@ -158,7 +158,7 @@ std::string sizes_line(const Study& study) {
   return sizes.empty() ? "" : fmt::format("{} = {}\n", error_kind(kDimension), list_text(sizes));
 }
 
-/// Whether an error of this dimension is among the literature's sources.
+/// Whether a source of the literature has an error of this dimension.
 bool has_source_of(const ModelDescription& model, Dimension dimension) {
   return std::ranges::any_of(model.sources, [&](const SourceSet& source) {
     return std::ranges::any_of(model.find_set(source.set)->factors,
@@ -218,7 +218,7 @@ void require_sizes(const StudySection& analysis, Dimension dimension, const Coup
                    "write sizes, e.g. " + key + " = [\"0.1 " + std::string(display_unit(dimension).name) + "\"]");
 }
 
-/// Sizes of a dimension that no error of the sources has, whatever the pattern leaves of them, are a mistake.
+/// Refuses sizes of a dimension that no error of the sources has, even without a pattern.
 void refuse_idle_sizes(const StudySection& analysis, Dimension dimension, const CouplingStudy& study,
                        const ModelDescription& model) {
   const auto value = analysis.find(error_kind(dimension));
@@ -239,7 +239,7 @@ void require_equal_numbers(const StudyValue& angular, const CouplingStudy& study
                "a run takes one of each, so write as many");
 }
 
-/// `value` is linear or angular.
+/// Throws if two runs have the same sizes. value: the linear or the angular sizes.
 void require_different_runs(const StudyValue& value, const CouplingStudy& study) {
   const auto same = [](const std::vector<double>& sizes, std::size_t a, std::size_t b) {
     return sizes.empty() || sizes[a] == sizes[b];
@@ -253,7 +253,7 @@ void require_different_runs(const StudyValue& value, const CouplingStudy& study)
   }
 }
 
-/// Fills in the literature's sources, and asks for a size of each of their errors.
+/// Fills in the sources of the literature, and requires a size for each of their errors.
 void complete_sources(const StudySection& analysis, const ModelDescription& model, CouplingStudy& study) {
   if (!analysis.find("sources")) study.sources = usual_sources(analysis, model, study.pattern);
   for (const Dimension dimension : {Dimension::length, Dimension::angle}) {

@@ -4,10 +4,10 @@
 
 namespace poesy {
 
-/// Coupling: what sources of errors of fixed size do one by one and together.
+/// Runs and reports coupling studies: the effects of error sources of fixed size, alone and together.
 extern const Kind kCouplingKind;
 
-/// How result files and reports know them.
+/// How results of coupling studies are stored and reported.
 /// @{
 extern const FileKind kCouplingFile;
 extern const ReportKind kCouplingReport;

@@ -46,7 +46,7 @@ std::vector<Cell> subset_row(const StoredResult& result, std::size_t r, std::siz
           place_cell(result, opposed, found.cancellation_max_pose(r, z, k))};
 }
 
-/// "+leg_1 -leg_2", of the errors that are not zero.
+/// The signs of the errors that are not zero: "+leg_1 -leg_2".
 std::string corner_text(const StoredResult& result, std::span<const std::int64_t> signs) {
   constexpr std::size_t kMost = 12;
   std::vector<std::string> names;
@@ -56,7 +56,7 @@ std::string corner_text(const StoredResult& result, std::span<const std::int64_t
   return some_names(names, kMost);
 }
 
-/// Where the worst case of all sources is, and with which signs; empty where it is rounding, or there is none.
+/// The pose and the signs of the worst case of all sources; empty if there is none or it is rounding.
 std::string worst_corner_text(const StoredResult& result, std::size_t z, std::size_t r) {
   const CouplingResult& found = coupling_of(result);
   const std::size_t all = found.subsets.size() - 1;
@@ -66,7 +66,7 @@ std::string worst_corner_text(const StoredResult& result, std::size_t z, std::si
                      corner_text(result, found.worst_case_signs.row(r, z, all)));
 }
 
-/// How many corners have no solution, and the first of them; empty where all have one.
+/// The number of corners without a solution, and the first of them; empty if there are none.
 std::string unsolved_text(const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
   const auto sum = [](const auto& counts) { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); };
@@ -104,7 +104,7 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
   return table;
 }
 
-/// Whether a source alone does nothing at any pose, at any size, to one of the responses shown.
+/// Whether a source alone has no effect on one of the shown responses, at all poses and sizes.
 bool does_nothing(const StoredResult& result, const std::string& source) {
   const CouplingResult& found = coupling_of(result);
   const auto k = static_cast<std::size_t>(std::ranges::find(found.subsets, source) - found.subsets.begin());
@@ -117,7 +117,7 @@ bool does_nothing(const StoredResult& result, const std::string& source) {
   });
 }
 
-/// Whether each limb has the same errors, as the stored study, complete as it is, says.
+/// Whether each limb has the same errors, by the stored study, which has all defaults filled in.
 bool same_in_all_limbs(const StoredResult& result) {
   return study_setting(result.study_text, "analysis", "limbs") == "\"all\"";
 }
@@ -150,13 +150,13 @@ std::vector<std::string> notes(const StoredResult& result) {
   return list;
 }
 
-/// Norms have no sign and cannot tell what cancels, so they are not shown.
+/// Leaves out norms, which have no sign and cannot show what cancels.
 ShownCells cells(const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
   return shown_cells(result, found.size_names.size() * (2 * found.subsets.size() + 3), result.signed_headline);
 }
 
-/// The curves of a coupling result: one panel for each response and size. Refers to all that it is given.
+/// The curves of a coupling result, with one panel for each response and size. Refers to its arguments.
 class Curves {
  public:
   Curves(const StoredResult& result, const PoseFigures& figures)
@@ -165,7 +165,7 @@ class Curves {
   Lines effects() const {
     return lines("", [&](std::size_t r, std::size_t z) { return effect_series(r, z); });
   }
-  /// In panels of their own, because they may be far smaller than effects.
+  /// Interactions have panels of their own, because they may be far smaller than effects.
   Lines interactions() const {
     return lines("interaction in ",
                  [&](std::size_t r, std::size_t z) { return subset_series("interaction", found_.interaction, r, z); });
@@ -176,7 +176,7 @@ class Curves {
     for (Panel& panel : all.panels) panel.unit = "%";
     return all;
   }
-  /// What all sources do together at each pose, and how much they cancel.
+  /// The effect of all sources together at each pose, and how much they cancel.
   std::vector<Field> fields() const {
     std::vector<Field> list;
     for (const auto& [r, z] : panels()) {
@@ -192,11 +192,11 @@ class Curves {
   bool has_subsets() const { return found_.subsets.size() > sources(); }
 
  private:
-  /// The first subsets are the sources one by one.
+  /// The number of single sources, which are the first subsets.
   std::size_t sources() const { return std::min(found_.sources.size(), found_.subsets.size()); }
   std::size_t last() const { return found_.subsets.size() - 1; }
   const std::string& subset(std::size_t k) const { return found_.subsets[k]; }
-  /// Each response with each size, of which the last comes first: it is what tables show.
+  /// Pairs of a response and a size. The last size comes first, because tables show it.
   std::vector<std::pair<std::size_t, std::size_t>> panels() const {
     std::vector<std::pair<std::size_t, std::size_t>> list;
     for (const std::size_t r : figures_.responses()) {
@@ -217,14 +217,14 @@ class Curves {
     return all;
   }
 
-  /// One curve; shares in percent.
+  /// One curve, with shares in percent.
   ArrayName curve(std::string_view what, const CouplingResult::Curves& values, std::size_t r, std::size_t z,
                   std::size_t k) const {
     const double unit = what == "cancellation" ? 0.01 : display(result_.responses[r]).si;
     return figures_.add(fmt::format("{}/{}/{}/{}", what, r, z, k), values.row(r, z, k), unit);
   }
 
-  /// The subsets of several sources, without the subset of all.
+  /// Adds the subsets of several sources, except the one of all sources.
   void add_subsets(std::vector<Series>& list, std::string_view what, const CouplingResult::Curves& values,
                    std::size_t r, std::size_t z) const {
     for (std::size_t k = sources(); k + 1 < found_.subsets.size(); ++k) {
@@ -240,7 +240,7 @@ class Curves {
     return list;
   }
 
-  /// Each source alone, all together with what they add up to and their interaction, then the other subsets.
+  /// Each source alone, then all together with their sum and their interaction, then the other subsets.
   std::vector<Series> effect_series(std::size_t r, std::size_t z) const {
     std::vector<Series> list;
     for (std::size_t k = 0; k < sources(); ++k) {
@@ -267,7 +267,7 @@ class Curves {
   const PoseFigures& figures_;
 };
 
-/// The tables of the last size, and those of the others to be unfolded.
+/// Adds the tables of the last size, and those of the other sizes folded.
 void add_tables(const StoredResult& result, std::span<const Table> tables, Section& section) {
   const std::size_t shown = std::min(tables.size(), result.signed_headline.size());
   section.folded("The tables of the other sizes", tables.first(tables.size() - shown));
@@ -306,7 +306,7 @@ SolveTally tally(const StoredResult& result) {
   return {"size", found.size_names, result.poses.size(), {found.solves.begin(), found.solves.end()}};
 }
 
-/// Items are subsets at a size.
+/// The names of subsets with their size.
 std::vector<std::string> sized_subsets(const CouplingResult& coupling) {
   std::vector<std::string> list;
   for (const std::string& size : coupling.size_names) {
@@ -315,7 +315,7 @@ std::vector<std::string> sized_subsets(const CouplingResult& coupling) {
   return list;
 }
 
-/// Of the last size, which the tables show, and the first response.
+/// Answers for the last size, which tables show, and the first response.
 Answer answer(const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
   if (found.subsets.empty() || found.size_names.empty() || result.signed_headline.empty()) return {};

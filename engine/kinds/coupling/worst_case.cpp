@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// Signs of so many blocks, or none.
+/// Reads or writes the signs of so many blocks, or none.
 void signs_state(Archive& archive, Signs& signs, std::size_t blocks) {
   archive.text(signs);
   const auto is_sign = [](char sign) { return sign == '+' || sign == '-'; };
@@ -29,7 +29,7 @@ void place_state(Archive& archive, WorstCases::Place& place, std::size_t poses, 
   archive.expect((place.pose < 0) == place.signs.empty(), "has a corner without a pose");
 }
 
-/// Of an earlier pose and a later one.
+/// Keeps the larger value; the place of the earlier pose if they are equal.
 void take_worse(WorstCases::Place& worst, WorstCases::Place later) {
   if (later.signs.empty() || (worst.pose >= 0 && !(later.value > worst.value))) return;
   worst = std::move(later);
@@ -38,12 +38,12 @@ void take_first(WorstCases::Place& first, WorstCases::Place later) {
   if (first.pose < 0 && !later.signs.empty()) first = std::move(later);
 }
 
-/// Which ones the n-th unit has.
+/// The size and the pose of the n-th unit.
 std::pair<std::size_t, std::size_t> size_and_pose(const CornerTable& table, std::size_t n) {
   return {n % table.size_of_error.size(), n / table.size_of_error.size()};
 }
 
-/// What was found at one size and pose, on its way to rank 0.
+/// The result at one size and pose, as ranks send it to rank 0.
 struct CornerUnit : CornersAtPose {
   const CornerTable* table = nullptr;
 
@@ -61,7 +61,7 @@ struct CornerUnit : CornersAtPose {
   }
 };
 
-/// All sizes at all poses, pose by pose: R responses, Z sizes, K subsets, M poses.
+/// The results of all sizes at all poses, pose by pose: R responses, Z sizes, K subsets, M poses.
 struct CornerSums : WorstCases {
   const CornerTable* table;
 
@@ -113,7 +113,7 @@ struct CornerSums : WorstCases {
       for (std::size_t r = 0; r < value.length<axis::Response>(); ++r) archive.real(value(r, z, k, m));
     }
   }
-  /// take(place, later): of the place that is here and one of later units.
+  /// Reads or writes places; take(place, later) merges a read place of later units into the present one.
   template <class Take>
   void places_state(Archive& archive, std::size_t subset, Place& place, const Take& take) {
     Place read = archive.reads() ? Place() : place;
@@ -122,7 +122,7 @@ struct CornerSums : WorstCases {
   }
 };
 
-/// A job of UnitFold: each size at each pose, pose by pose.
+/// The job of UnitFold. A unit is one size at one pose; units are in the order of poses, then sizes.
 struct CornerJob {
   const StudyRun& run;
   const CornerTable& table;
@@ -152,7 +152,7 @@ struct CornerJob {
   CornerSums sums() const { return {table, responses(), run.poses.size()}; }
 };
 
-/// Fills in the signs of the errors at this place.
+/// Fills in the signs of the errors at this corner.
 void fill_signs(const WorstCases::Place& place, std::size_t subset, const CornerTable& table,
                 std::span<std::int64_t> signs) {
   std::ranges::transform(table.signs_of_errors(subset, place.signs), signs.begin(),

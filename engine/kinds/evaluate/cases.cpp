@@ -99,7 +99,7 @@ std::vector<RowOutcome> row_outcomes(const Evaluation& found, std::size_t respon
       const double value = solves.response(response, m, s);
       RowOutcome& row = rows[row_of_solve(found, m, s)];
       if (row.solved == 0) row.mean = row.extreme = 0.0;
-      row.mean += value;  // their sum, until all are there
+      row.mean += value;  // the sum, until all poses are added
       if (row.solved == 0 || std::abs(value) > std::abs(row.extreme)) {
         row.extreme = value;
         row.pose = m;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kLabels = "/evaluate/label";
 
-/// How poses and rows of errors belong together, as files say it.
+/// The words of a file for how poses and rows of errors are paired.
 /// @{
 constexpr const char* kRowByRow = "row-by-row";
 constexpr const char* kEveryPoseWithEveryRow = "every-pose-with-every-row";
@@ -30,7 +30,7 @@ const Fields<Evaluation> kCaseFields{
     {"max", &Evaluation::max, kResponseUnit, "Largest value over the poses that count"},
     {"count", &Evaluation::count, "1", "Poses that count: solved, or as not_converged has it"}};
 
-/// How a file keeps solves: those of a table pose by pose, those of cases case by case.
+/// The order of solves in a file: pose by pose for a table, case by case for cases.
 /// @{
 using TableLayout = AxisLayout<axis::Pose, axis::Sample>;
 using CaseLayout = AxisLayout<axis::Case, axis::Pose>;
@@ -43,7 +43,7 @@ std::pair<std::size_t, std::size_t> solve_at(std::size_t first, std::size_t seco
   return {first, second};
 }
 
-/// A dataset of solves. value(pose, sample): of one.
+/// Adds a dataset of solves. value(pose, sample) gives one value.
 template <h5::Number T, class Layout, class Value>
 void add_values(ResultBuilder& result, const std::string& name, const Layout& layout, const Value& value,
                 const Label& label) {
@@ -52,7 +52,7 @@ void add_values(ResultBuilder& result, const std::string& name, const Layout& la
       [&](std::size_t first, std::size_t second) { return std::apply(value, solve_at<Layout>(first, second)); }, label);
 }
 
-/// Reads it. set(pose, sample, value): takes one.
+/// Reads a dataset of solves. set(pose, sample, value) takes one value.
 template <h5::Number T, class... A, class Set>
 void read_values(const h5::File& file, const std::string& name, const AxisLayout<A...>& layout, const Set& set) {
   const auto values = read_array<Array<T, A...>>(file, "/evaluate/" + name);
@@ -124,7 +124,7 @@ void read_detail_values(const h5::File& file, const AxisLayout<A...>& layout, Ev
   }
 }
 
-/// Fills in the solves. layout: of the file.
+/// Fills in the solves. layout: the order of solves in the file.
 template <class Layout>
 void read_solves(const h5::File& file, const std::vector<NamedUnit>& responses, const Layout& layout,
                  Evaluation& found) {
@@ -151,7 +151,7 @@ void read_solves(const h5::File& file, const std::vector<NamedUnit>& responses, 
   read_fields(file, "/evaluate", kJointFields, solves);
 }
 
-/// layout: of the solves in the file.
+/// Adds the solves. layout: the order of solves in the file.
 template <class Layout>
 void add_solves(ResultBuilder& result, const ModelDescription& model, const Evaluation& found, const Layout& layout) {
   const EvaluationResult& solves = found.solves;
@@ -176,7 +176,7 @@ void add_solves(ResultBuilder& result, const ModelDescription& model, const Eval
   write_fields(result, "/evaluate", kJointFields, solves);
 }
 
-/// rows: the axis of the rows of errors.
+/// Adds the errors that were given. rows: the name of their axis.
 void add_errors(ResultBuilder& result, const Evaluation& found, const std::string& rows) {
   const bool row_by_row = found.pairing == Pairing::row_by_row;
   result.file().make_group("/errors");
@@ -189,13 +189,13 @@ void add_errors(ResultBuilder& result, const Evaluation& found, const std::strin
   result.file().set_attribute(kLabels, "column", found.labels.column);
 }
 
-/// Every row of errors was tried, so that a verdict names one of them.
+/// Throws unless all rows of errors were tried for every verdict.
 void check_rows(const std::vector<LimitVerdict>& limits, std::size_t rows) {
   const bool fits = std::ranges::all_of(limits, [rows](const LimitVerdict& one) { return one.tried == rows; });
   if (!fits) throw h5::Error("/limits/tried is not the number of rows of errors");
 }
 
-/// The names of the rows of errors, where they have some.
+/// The labels of the rows of errors; empty if they have none.
 RowLabels read_labels(const h5::File& file, const std::string& rows) {
   RowLabels labels;
   if (!file.exists(kLabels)) return labels;
@@ -207,7 +207,7 @@ RowLabels read_labels(const h5::File& file, const std::string& rows) {
   return labels;
 }
 
-/// "rad,rad,m" as a unit for each of `count` components; one unit may stand for all.
+/// Splits "rad,rad,m" into a unit for each of `count` components. A single unit applies to all.
 std::vector<std::string> component_units(const std::string& text, std::size_t count) {
   std::vector<std::string> list;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -219,7 +219,8 @@ std::vector<std::string> component_units(const std::string& text, std::size_t co
   return list;
 }
 
-/// The first cells of a line: the label of its row of errors, where rows have labels, and a number. row(line): the row.
+/// Sets the first cells of a line: the label of its row of errors, if rows have labels, and a number. row(line): the
+/// position of the row.
 template <class Row, class Number>
 void set_first_cells(CsvTable& table, const RowLabels& labels, const std::string& heading, const Row& row,
                      const Number& number) {
@@ -231,7 +232,7 @@ void set_first_cells(CsvTable& table, const RowLabels& labels, const std::string
   table.columns.push_back({heading, [number](std::size_t line) { return to_number(number(line)); }});
 }
 
-/// What a solve gave. solve(line): its pose and its sample.
+/// Adds columns with the results of solves. solve(line): the pose and the sample of a line.
 template <class Solve>
 void append_solve_columns(CsvTable& table, const StoredResult& result, const Solve& solve) {
   const Evaluation& found = evaluation_of(result);
@@ -258,7 +259,7 @@ void append_solve_columns(CsvTable& table, const StoredResult& result, const Sol
   append("iterations", [&](std::size_t m, std::size_t s) { return solves.iterations(m, s); });
 }
 
-/// Pose by pose.
+/// The table of all solves, pose by pose.
 CsvTable solve_table(const StoredResult& result) {
   const Evaluation& found = evaluation_of(result);
   const auto solve = [layout = TableLayout(found.solves.status.lengths())](std::size_t line) {
@@ -275,7 +276,7 @@ CsvTable solve_table(const StoredResult& result) {
   return table;
 }
 
-/// Case by case.
+/// The table of all solves, case by case.
 CsvTable case_solve_table(const StoredResult& result) {
   const Evaluation& found = evaluation_of(result);
   const auto solve = [layout = CaseLayout({found.cases.size(), found.solves.poses()})](std::size_t line) {
@@ -352,7 +353,7 @@ CsvTable case_sum_table(const StoredResult& result) {
   return table;
 }
 
-/// What `poesy evaluate` writes: what it found, and the errors that its table gives. Refers to both.
+/// The content of the file of `poesy evaluate`: its result, and the errors of its table. Refers to both.
 struct TableOfErrors {
   std::span<const FactorIndex> factors;
   const Evaluation& found;

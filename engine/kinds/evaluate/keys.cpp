@@ -28,7 +28,8 @@ void set_case_errors(const StudyValue& value, std::string_view key, const ModelD
   }
 }
 
-/// The factor sets that a case names, each before those that lie inside it. Throws where two overlap otherwise.
+/// The factor sets that a case names, each before the sets inside it. Throws if two overlap without one being inside
+/// the other.
 std::vector<const FactorSet*> sets_in_case(const StudySection& section, const ModelDescription& model) {
   std::vector<const FactorSet*> sets;
   for (const FactorSet& set : model.factor_sets) {
@@ -50,8 +51,8 @@ std::vector<const FactorSet*> sets_in_case(const StudySection& section, const Mo
   return sets;
 }
 
-/// The errors of a case: `linear` and `angular` for all, then factor sets from wide to narrow, then single factors,
-/// each over the last.
+/// The errors of a case. `linear` and `angular` apply to all; factor sets, from wide to narrow, and then single factors
+/// override them.
 std::vector<double> read_case_errors(const StudySection& section, const ModelDescription& model,
                                      std::vector<double> errors) {
   std::vector<std::string_view> known = names(model.factors);
@@ -92,7 +93,7 @@ void read_cases(const StudyValue& value, Study& study, const Reading&) {
   }
 }
 
-/// Every error by name.
+/// Lines of a template that list every error by name.
 std::string cases_lines(const Study& study) {
   std::string text;
   for (const ErrorCase& one : asked_of<CaseOptions>(study.analysis).cases) {
@@ -157,7 +158,7 @@ StudyTables case_tables() {
   return {cases, errors, of_set};
 }
 
-/// Factors come from the cases alone.
+/// Takes the factors of the study from its cases.
 void complete_cases(Study& study, const Reading& reading) {
   study.analysis.factors.clear();
   if (!asked_of<CaseOptions>(study.analysis).cases.empty() || reading.use == StudyUse::evaluate) return;
@@ -165,7 +166,7 @@ void complete_cases(Study& study, const Reading& reading) {
                    "write [[analysis.cases]] with name and errors, or use 'poesy evaluate' for a table of errors");
 }
 
-/// At the error itself, at what sets all of its dimension, or at the case, where a factor set does.
+/// Refuses at the error itself, at what sets all errors of its dimension, or at the case if a factor set sets it.
 [[noreturn]] void refuse_case(const StudySection& errors, const std::string& name, const Factor& factor,
                               const std::string& problem) {
   for (const std::string_view key : {std::string_view(factor.name), error_kind(factor.dimension)}) {

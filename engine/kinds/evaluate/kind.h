@@ -4,10 +4,10 @@
 
 namespace poesy {
 
-/// Named cases: what fixed errors do.
+/// Runs and reports studies of named cases: the responses to fixed errors.
 extern const Kind kEvaluateKind;
 
-/// How result files and reports know them.
+/// How results of evaluations are stored and reported.
 /// @{
 extern const FileKind kEvaluationFile;
 extern const ReportKind kEvaluationReport;

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kDigits = 6;
 
-/// Mean and extremes of a response over the solved samples; NaN where none is.
+/// The mean and the extremes of a response over the solved samples; NaN if none is solved.
 struct Summary {
   double mean = kNaN;
   double smallest = mean;
@@ -51,7 +51,7 @@ std::string passes(const StoredResult& result, std::size_t r) {
   return verdict == nullptr ? "" : fmt::format("; {} of {} pass", verdict->within, verdict->tried);
 }
 
-/// "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty where rows have no labels or none
+/// "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty if rows have no labels or none
 /// was solved.
 std::string worst_note(const StoredResult& result, std::size_t r) {
   const RowLabels& labels = evaluation_of(result).labels;
@@ -71,7 +71,7 @@ Table parts_table(const StoredResult& result) {
               .caption = "Each " + labels.column + " over its poses: mean, and the value of the largest magnitude",
               .columns = {},
               .notes = {"poses: those that were solved"}};
-  std::vector<std::vector<RowOutcome>> outcomes;  // of each response of the headline
+  std::vector<std::vector<RowOutcome>> outcomes;  // [responses of the headline] the outcome of each row
   for (const std::size_t r : result.headline) outcomes.push_back(row_outcomes(evaluation_of(result), r));
   std::vector<FilledColumn> columns{
       {text_column("label", labels.column), [&](std::size_t row) { return text_cell(labels.names[row]); }},
@@ -81,7 +81,7 @@ Table parts_table(const StoredResult& result) {
     const NamedUnit& response = result.responses[result.headline[h]];
     const std::vector<RowOutcome>& of = outcomes[h];
     const std::string_view unit = display(response).name;
-    const int dispensable = 3 * static_cast<int>(h);  // the last response's columns go first
+    const int dispensable = 3 * static_cast<int>(h);  // the columns of the last response are left out first
     columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable + 2),
                        [&](std::size_t row) { return value_cell(of[row].mean, response, kDigits); }});
     columns.push_back({number_column(response.name + "_extreme", response.name + " extreme", unit, dispensable),
@@ -103,7 +103,7 @@ Table cases_table(const StoredResult& result) {
   std::vector<FilledColumn> columns{
       {text_column("case", "case"), [&](std::size_t c) { return text_cell(found.cases[c]); }},
       {number_column("poses", "poses"), [&](std::size_t c) { return count_cell(found.count.all()[c]); }}};
-  int dispensable = 0;  // of the first response's columns; the last response's go first
+  int dispensable = 0;  // for the first response; the columns of the last one are left out first
   for (const std::size_t r : result.headline) {
     const NamedUnit& response = result.responses[r];
     const std::string_view unit = display(response).name;
@@ -154,7 +154,7 @@ void add_cases(const StoredResult& result, const PoseFigures& figures, Page& pag
   figures.add_workspace(section, std::move(fields));
 }
 
-/// Order statistics of these values where they were solved; NaN where none was.
+/// Order statistics of the values that were solved; NaN if none was.
 std::vector<double> order_statistics(std::span<const double> all, std::span<const SolveStatus> status,
                                      std::span<const double> levels) {
   std::vector<double> values;
@@ -170,7 +170,7 @@ std::vector<double> order_statistics(std::span<const double> all, std::span<cons
   return list;
 }
 
-/// Of the rows at each pose: the 5 % quantile, the median, the 95 % quantile and the largest value.
+/// For each pose, over its rows: the 5 % quantile, the median, the 95 % quantile and the largest value.
 std::array<std::vector<double>, 4> quantiles_at_poses(const EvaluationResult& found, std::size_t r) {
   constexpr std::array kLevels{0.05, 0.5, 0.95, 1.0};
   std::array<std::vector<double>, 4> quantiles;
@@ -252,7 +252,7 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   }
 }
 
-/// Samples that are no cases are one row together.
+/// Counts solves by case, or together for rows of a table.
 SolveTally tally(const StoredResult& result) {
   const std::vector<std::string>& cases = evaluation_of(result).cases;
   const EvaluationResult& found = evaluation_of(result).solves;
@@ -274,7 +274,7 @@ StudyWords words(const StoredResult& result) {
   return {.samples = counted(found.cases.size(), "case", "cases")};
 }
 
-/// By the response that ranks.
+/// Answers for the response that ranks.
 Answer answer(const StoredResult& result) {
   const Evaluation& found = evaluation_of(result);
   const std::size_t r = response_named(result, default_ranking(result));

@@ -12,13 +12,13 @@
 namespace poesy {
 namespace {
 
-/// An error takes part in a deformation of which at most this share remains when the error is set to zero.
+/// An error takes part in a deformation if setting it to zero reduces the deformation to at most this share.
 constexpr double kReduced = 0.1;
 
 /// Errors of one frame that are tried together, as positions among the factors.
 using FrameErrors = std::vector<std::size_t>;
 
-/// The deformations that one set of errors gives at all poses; NaN where not solved.
+/// The deformations at all poses with one set of errors; NaN if not solved.
 using Deformations = std::vector<double>;
 
 class Identification {
@@ -58,7 +58,7 @@ class Identification {
     return is_length ? asked_->groups[group].linear : asked_->groups[group].angular;
   }
 
-  /// Solves all trials at all poses at once, and gives the deformations of each. Empty when stopped.
+  /// Solves all trials at all poses and returns the deformations of each. Empty when stopped.
   std::optional<std::vector<Deformations>> solve(const std::vector<ErrorSet>& trials) {
     ErrorTable table{analysis_->factors, {}, trials.size()};
     table.values.resize(trials.size() * found_.factors());
@@ -83,8 +83,8 @@ class Identification {
   }
 
   std::uint64_t below(const Deformations& deformations) const {
-    return static_cast<std::uint64_t>(std::ranges::count_if(
-        deformations, [&](double value) { return value <= found_.rounding; }));  // NaN is not below
+    return static_cast<std::uint64_t>(
+        std::ranges::count_if(deformations, [&](double value) { return value <= found_.rounding; }));  // false for NaN
   }
 
   bool deforms(std::uint64_t below_rounding) const { return below_rounding < found_.required_poses; }
@@ -103,7 +103,7 @@ class Identification {
       double largest = kNaN;
       std::uint64_t missing = 0;
       for (const double value : values) {
-        largest = std::fmax(largest, value);  // passes over NaN
+        largest = std::fmax(largest, value);  // ignores NaN
         missing += std::isnan(value) ? 1 : 0;
       }
       found_.single_below(g, p) = below(values);
@@ -115,7 +115,7 @@ class Identification {
     return true;
   }
 
-  /// The errors of each frame that do not deform alone in this group; two at least.
+  /// The errors of each frame that do not deform alone in this group. Frames with fewer than two are left out.
   std::vector<FrameErrors> frames(std::size_t group) const {
     std::map<std::pair<std::size_t, std::size_t>, FrameErrors> by_frame;
     for (std::size_t p = 0; p < found_.factors(); ++p) {
@@ -146,7 +146,7 @@ class Identification {
     return true;
   }
 
-  /// Which members of a unit that deforms take part in it, and which pairs of its members deform.
+  /// Finds which errors of a set that deforms take part, and which pairs deform. Returns whether the run goes on.
   bool split(const ErrorSet& whole, const Deformations& with_all) {
     std::vector<ErrorSet> trials;
     for (const std::size_t p : whole.members) {
@@ -189,7 +189,7 @@ class Identification {
       name_members(whole.group, pair[0], pair[1]);
     }
     if (found_.couplings.size() > known) return true;
-    // It takes more than two of them.
+    // No pair deforms: more than two errors are needed.
     for (const std::size_t p : taking_part) found_.coupled_by_group(whole.group, p) = 1;
     return true;
   }

@@ -4,10 +4,10 @@
 
 namespace poesy {
 
-/// Identification: which errors deform the mechanism at all.
+/// Runs and reports identification studies: which errors deform the mechanism at all.
 extern const Kind kIdentificationKind;
 
-/// How result files and reports know them.
+/// How results of identification studies are stored and reported.
 /// @{
 extern const FileKind kIdentificationFile;
 extern const ReportKind kIdentificationReport;

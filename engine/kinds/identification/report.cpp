@@ -77,7 +77,7 @@ std::vector<std::string> group_names(const StoredResult& result) {
   return names;
 }
 
-/// The share that counts of poses have of all poses, or what is left of them.
+/// The share of the poses that are counted, or with but_these the share of the others.
 std::vector<double> share_of_poses(const IdentificationResult& found,
                                    const IdentificationResult::ByGroup<std::uint64_t>& counts, bool but_these) {
   std::vector<double> list;

@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// All that a finished pose of a result knows from a response's sketch.
+/// Reads or writes what a result keeps of a response's sketch at a finished pose.
 void sketched_state(Archive& archive, MonteCarloResult& result, std::size_t response, std::size_t pose) {
   archive.real(result.min(response, pose), result.max(response, pose));
   archive.reals(result.quantiles.row(response, pose));
@@ -20,7 +20,7 @@ void sketched_state(Archive& archive, MonteCarloResult& result, std::size_t resp
   if (!result.share_magnitude.empty()) archive.real(result.share_magnitude(response, pose));
 }
 
-/// What is read must be the solves of whole units, of so many samples at most.
+/// The solves that are read must be those of whole units, and of at most most_samples samples.
 void expect_whole(const Archive& archive, const SolveCounts& solves, std::size_t most_samples) {
   const std::uint64_t total = solves.total();
   archive.expect(total > 0 && total % Plan::kUnitSamples == 0 && total <= most_samples,

@@ -10,10 +10,10 @@
 namespace poesy {
 namespace {
 
-/// NaN where nothing counts.
+/// The mean, or NaN if no samples count.
 double mean_of(const Moments& moments) { return moments.count() == 0 ? kNaN : moments.mean(); }
 
-/// Ranks among `trials` values as ranks among `count` values, each trial with its share of them.
+/// Converts ranks among `trials` values to ranks among `count` values, in proportion.
 RankInterval among(const RankInterval& ranks, std::uint64_t trials, std::uint64_t count) {
   if (trials == count || trials == 0) return ranks;
   const double each = static_cast<double>(count) / static_cast<double>(trials);
@@ -22,7 +22,7 @@ RankInterval among(const RankInterval& ranks, std::uint64_t trials, std::uint64_
   return {static_cast<std::uint64_t>(low), ranks.high > trials ? count + 1 : static_cast<std::uint64_t>(high)};
 }
 
-/// Samples whose magnitude is within a limit; a bucket that the limit divides counts as its middle lies.
+/// The number of samples whose magnitude is within a limit. A bucket that the limit divides counts by its middle.
 std::uint64_t count_within(const QuantileSketch& samples, double limit) {
   std::uint64_t within = 0;
   for (const Bucket& bucket : samples.buckets()) {
@@ -32,7 +32,7 @@ std::uint64_t count_within(const QuantileSketch& samples, double limit) {
   return within;
 }
 
-/// What the share of the draws stays within at the worst pose, into `value` and `pose`.
+/// Sets `value` and `pose` of the verdict by the pose with the largest share_magnitude.
 void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
   const std::span at_poses = found.share_magnitude.row(verdict.response);
   const auto worst = std::ranges::max_element(at_poses);

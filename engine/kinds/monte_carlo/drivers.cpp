@@ -22,7 +22,7 @@ const YieldResult* yield_in(const StoredResult& result) {
   return machines && machines->yield ? &*machines->yield : nullptr;
 }
 
-/// Limited responses of which shares are known, the one that rejects most machines first.
+/// Limited responses whose shares are known, starting with the one that rejects most machines.
 std::vector<std::size_t> shared_responses(const StoredResult& result, const YieldResult& yield) {
   std::vector<std::size_t> list;
   if (!yield.has_shares()) return list;
@@ -33,14 +33,14 @@ std::vector<std::size_t> shared_responses(const StoredResult& result, const Yiel
   return list;
 }
 
-/// What the yield changes by, with its interval: in files without it a part of the slope.
+/// The change of the yield by each error, with its interval. Files without it have the slope, which is converted.
 struct Changes {
   using Values = Array<double, axis::Factor>;
   Values value;
   Values low;
   Values high;
 
-  /// Whether it is told from zero.
+  /// Whether the interval excludes zero.
   bool is_told(std::size_t p) const { return low(p) > 0.0 || high(p) < 0.0; }
 };
 
@@ -57,7 +57,7 @@ Changes changes_of(const StoredResult& result, const YieldResult& yield) {
   return {part(yield.gradient), part(yield.gradient_ci_low), part(yield.gradient_ci_high)};
 }
 
-/// Errors of which the change is told from zero, the largest loss first.
+/// The errors whose interval excludes zero, the largest loss first.
 std::vector<std::size_t> told_errors(const Changes& changes) {
   std::vector<std::size_t> told;
   for (std::size_t p = 0; p < changes.value.size(); ++p) {
@@ -101,7 +101,8 @@ Table share_table(const StoredResult& result, const YieldResult& yield, const st
   return table;
 }
 
-/// "33 errors whose effect cannot be told from zero", in the place of their rows.
+/// Adds a line that replaces the rows of errors without a clear effect: "33 errors whose effect cannot be told from
+/// zero".
 void add_line(Table& table, std::size_t errors, std::string_view one, std::string_view many) {
   if (errors == 0) return;
   std::vector<Cell> row{text_cell(fmt::format("{} {}", counted(errors, "error", "errors"), errors == 1 ? one : many))};
@@ -169,7 +170,7 @@ void add_share_figure(const StoredResult& result, const YieldResult& yield, Sect
              "intervals.");
 }
 
-/// Of the errors whose effect is told from zero.
+/// Adds the figure of errors whose effect is distinct from zero.
 void add_change_figure(const StoredResult& result, const YieldResult& yield, Section& section, Page& page) {
   const Changes changes = changes_of(result, yield);
   const std::vector<std::size_t> told = told_errors(changes);

@@ -75,7 +75,7 @@ const Group<MonteCarlo> kMonteCarlo{
       "and no main effects; left out where all vary",
       Presence::where_computed}}};
 
-/// What a table shows of some samples: arrays whose last axis but that of the quantiles is the one of its lines.
+/// The numbers of a CSV table: arrays whose last axis, apart from the quantiles, is that of the lines.
 template <class Numbers, class Quantiles, class Counts>
 struct ShownNumbers {
   std::vector<std::pair<std::string, const Numbers*>> first;  ///< with their names
@@ -130,7 +130,7 @@ CsvTable response_table(const StoredResult& result, std::size_t r) {
   return table;
 }
 
-/// Responses have units of their own, so a row ends with its unit.
+/// Responses have different units, so each line ends with its unit.
 CsvTable overall_table(const StoredResult& result) {
   const MonteCarlo& found = monte_carlo_of(result);
   CsvTable table{"overall",
@@ -152,7 +152,7 @@ CsvTable overall_table(const StoredResult& result) {
   return table;
 }
 
-/// Bins of no width, which fill up the result's table, are left out.
+/// Leaves out bins of zero width, which fill up unused places of the result's table.
 CsvTable histogram_table(const StoredResult& result, std::size_t r) {
   const MonteCarlo& found = monte_carlo_of(result);
   const NamedUnit& response = result.responses[r];

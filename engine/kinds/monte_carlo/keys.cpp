@@ -11,7 +11,7 @@ constexpr std::array<std::string_view, 11> kMonteCarloKeys{"factors",    "sample
                                                            "conf_level", "quantiles", "limits",    "judge",
                                                            "share",      "yield",     "background"};
 
-/// Shares between 0 and 1, ascending.
+/// The key with shares between 0 and 1, ascending.
 KeyValue<MonteCarloOptions> quantiles() {
   const NumberBounds bounds = between_0_and_1("0.95");
   const auto read = [=](const StudyValue& value) {
@@ -46,7 +46,7 @@ KeyValue<MonteCarloOptions> judge() {
       &MonteCarloOptions::judge);
 }
 
-/// Where the study says nothing else.
+/// How limits are judged if the study does not say.
 Judge usual_judge(const Analysis& analysis) { return analysis.draws == Draws::per_machine ? Judge::yield : Judge::rms; }
 
 std::string judge_line(const Study& study) {
@@ -55,8 +55,8 @@ std::string judge_line(const Study& study) {
   return idle ? "" : "judge = " + in_quotes(name(asked.judge)) + "\n";
 }
 
-/// What a share of the draws stays within is part of a run's state, so `share` has its line even where limits are left
-/// out (CheckpointIdentity).
+/// The line of `share`. It is written even if limits are left out (CheckpointIdentity), because the magnitude that a
+/// share of the draws stays within is part of a run's state.
 std::string share_line(const Study& study) {
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   return asked.judge == Judge::share ? "share = " + shortest(asked.share) + "\n" : "";
@@ -110,7 +110,7 @@ void check_share(const Study& study, const StudySection& section) {
   }
 }
 
-/// Refuses a yield that is not judged, and one that so many machines cannot show even if all are good.
+/// Refuses a yield that is not judged, and one that so few machines cannot show even if all are good.
 void check_yield(const Study& study, const StudySection& section) {
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   const auto yield = section.find("yield");

@@ -8,16 +8,16 @@
 
 namespace poesy {
 
-/// Runs a Monte Carlo study on a pool of threads: as run_sensitivity, and memory does not grow with the number of
-/// samples either; a pose's samples are dropped once its quantiles are known, but for what MonteCarloCollector keeps
-/// for a longer study. Of the analysis it takes conf_level, quantiles and limits.
+/// Runs a Monte Carlo study on a pool of threads; see run_sensitivity(). Memory does not grow with the number of
+/// samples: a pose's samples are dropped once its quantiles are known, except those that MonteCarloCollector keeps for
+/// a longer study. Of the analysis it uses conf_level, quantiles and limits.
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
                                                 const RunOptions& options);
 
-/// Monte Carlo studies: what all errors do together.
+/// Runs and reports Monte Carlo studies: the effect of all errors together.
 extern const Kind kMonteCarloKind;
 
-/// How result files and reports know them.
+/// How Monte Carlo results are stored and reported.
 /// @{
 extern const FileKind kMonteCarloFile;
 extern const ReportKind kMonteCarloReport;

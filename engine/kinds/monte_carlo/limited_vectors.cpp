@@ -7,7 +7,7 @@
 namespace poesy {
 namespace {
 
-/// Sums of fits at all poses, and no more.
+/// The largest number of sums for fits at all poses.
 constexpr std::size_t kMostSums = std::size_t{4} << 20U;
 
 std::size_t components_of(const std::vector<Detail>& details) {

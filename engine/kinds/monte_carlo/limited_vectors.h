@@ -19,30 +19,30 @@ using DetailComponent = Axis<"detail_component">;  ///< Components of the model'
 using VectorRow = Axis<"vector_row">;              ///< Components of the vectors behind all limited responses.
 }  // namespace axis
 
-/// The vector behind a limited response, of which the response is the norm: components that are linear in the errors to
-/// first order. Of a response with a sign that is itself.
+/// The vector whose norm is a limited response. Its components are linear in the errors to first order. For a response
+/// with a sign, the response itself is its only component.
 struct LimitedVector {
-  std::size_t response;                ///< that is limited
+  std::size_t response;                ///< the limited response
   double most;                         ///< its limit
-  std::vector<std::size_t> responses;  ///< that are the components; empty: Model::norm_of_details makes them
-  std::size_t first_row;               ///< of its components among those of all limited vectors
-  std::size_t rows;                    ///< components
+  std::vector<std::size_t> responses;  ///< responses that are its components; empty: Model::norm_of_details makes them
+  std::size_t first_row;               ///< position of its first component among those of all limited vectors
+  std::size_t rows;                    ///< number of components
 };
 
-/// The vectors behind all limited responses of a study, which are fitted at each pose: how the machines' rows come from
-/// what is solved.
+/// The vectors of all limited responses of a study, and how their components are computed from the outcomes of solves.
+/// They are fitted at each pose.
 class LimitedVectors {
  public:
-  /// Refers to the plan and the model. No vectors where the study states no limit, or where fits at all poses would
+  /// Refers to the plan and the model. There are no vectors if the study states no limit, or if fits at all poses would
   /// take more than some tens of megabytes.
   LimitedVectors(const Plan& plan, const Model& model, const Analysis& analysis);
 
-  std::span<const LimitedVector> each() const { return vectors_; }  ///< In the order of the limits.
-  std::size_t rows() const { return rows_; }                        ///< Of all vectors at one pose; 0 where none are.
-  /// Components of the model's details where a vector is made of them, else 0.
+  std::span<const LimitedVector> each() const { return vectors_; }  ///< The vectors, in the order of the limits.
+  std::size_t rows() const { return rows_; }  ///< Components of all vectors at one pose; 0 if there are none.
+  /// Components of the model's details if a vector is made of them, otherwise 0.
   std::size_t details() const { return details_; }
 
-  /// Fills the rows from what was solved at a pose.
+  /// Fills the components from the outcomes of the solves at a pose.
   void fill(PoseIndex pose, const UnitOutcomes& outcomes,
             const Array<double, axis::DetailComponent, axis::Sample>& details,
             const ArrayView<double, axis::VectorRow, axis::Sample>& rows) const;

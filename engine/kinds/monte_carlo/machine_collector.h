@@ -15,44 +15,44 @@
 
 namespace poesy {
 
-/// Puts units of machines together, in their order: the sums of a UnitFold. Holds a sketch of each response at each
-/// pose; memory hardly grows with the number of machines, by one sum for each octal digit of it (MergeTree).
+/// Merges units of machines in their order: the sums of a UnitFold. It holds a sketch of each response at each pose.
+/// Memory hardly grows with the number of machines, by one sum for each octal digit of that number (MergeTree).
 class MachineCollector {
  public:
-  /// Refers to both.
+  /// Refers to both arguments.
   MachineCollector(const MachineTable& table, const Analysis& analysis);
 
-  void add(std::size_t n, MachineUnit&& unit);  ///< The next unit.
-  /// Of each response the mean over the samples of all poses, with its interval: machines are what is independent. Of
-  /// machines that are solved at each pose.
+  void add(std::size_t n, MachineUnit&& unit);  ///< Adds the next unit.
+  /// The mean of each response over the samples of all poses, with its interval, from machines that are solved at each
+  /// pose. The interval takes the machines as independent.
   std::vector<Estimate> overall_means() const;
-  /// Of all machines that were added. Precondition: no more follow.
+  /// The result of all machines that were added. Precondition: no units follow.
   MonteCarloResult result() &&;
 
-  /// What these units came to. Where it is read, it is added.
+  /// Reads or writes the sums of these units. What is read is added.
   void state(Archive& archive, const NumberRange& units);
 
  private:
-  /// What is counted, so that no order shows in it.
+  /// Sums that do not depend on the order in which they are added.
   struct Counts {
     Array<QuantileSketch, axis::Pose, axis::Response> at_pose;
-    std::vector<QuantileSketch> largest;  ///< of each response
-    std::vector<QuantileSketch> rms;      ///< of each response
-    std::vector<SolveCounts> solves;      ///< of each pose
-    std::vector<FailedSamples> failed;    ///< of each pose
-    std::vector<std::uint8_t> rejected;   ///< of the machines that MachineTable::kept() counts
+    std::vector<QuantileSketch> largest;  ///< [R]
+    std::vector<QuantileSketch> rms;      ///< [R]
+    std::vector<SolveCounts> solves;      ///< [M]
+    std::vector<FailedSamples> failed;    ///< [M]
+    std::vector<std::uint8_t> rejected;   ///< 1 or 0 for each machine that MachineTable::kept() counts
     MachineCounts machines;
 
     Counts(std::size_t responses, std::size_t poses);
     void add(const MachineUnit& unit);
-    /// Precondition: the machines of `later` come after those of this.
+    /// Adds those of later machines. Precondition: the machines of `later` come after those of this object.
     void merge(const Counts& later);
-    /// Of these machines, which nobody looks at where it is written. Throws BytesError.
+    /// Reads or writes the counts of these machines. A writer ignores `range`. Throws BytesError.
     void state(Archive& archive, const MachineTable& table, const NumberRange& range);
   };
 
   std::size_t poses() const { return table_->plan().poses().size(); }
-  /// What follows from the moments and sketches of samples.
+  /// Sets the numbers that depend on the moments and sketches of the samples.
   void set_columns(const MachineSums& sums, MonteCarloResult& found, class MonteCarloColumns& columns) const;
   MachineResult machines(const MachineSums& sums, std::span<const BinSpread> spreads) const;
   EffectResult effects(const MachineSums& sums, std::span<const BinSpread> spreads) const;

@@ -13,10 +13,10 @@ namespace {
 
 const Axes kByEffectPose{"effect_pose"};
 
-/// What a machine that is not solved at every pose has.
+/// Ends descriptions of values that only machines solved at every pose have.
 const std::string kOfSolved = " over the machines that are solved at every pose";
 
-/// One number of each machine. `what`: "largest magnitude over the poses".
+/// The fields of one number of each machine. what: "largest magnitude over the poses".
 Group<MachineValues> values_group(const std::string& path, const std::string& what) {
   using Values = MachineValues;
   const std::string of = "of the machines' " + what + ",";
@@ -118,7 +118,7 @@ const Group<PartsYield> kPartsYield{
     {{"ci_low", &PartsYield::ci_low, "1", "Lower end of the interval at the conf_level of /yield"},
      {"ci_high", &PartsYield::ci_high, "1", "Upper end of the interval at the conf_level of /yield"}}};
 
-/// S1, its interval.
+/// The fields of S1 and its interval.
 Fields<MainEffects> index_fields(const std::string& what) {
   return {{"S1", &MainEffects::s1, "1", "First-order index " + what},
           {"S1_ci_low", &MainEffects::s1_ci_low, "1", "Lower end of its interval"},
@@ -147,7 +147,7 @@ const Group<MainEffects> kCurvesOfLargest =
 
 const Fields<EffectResult> kBins{{"error", &EffectResult::bin_error, kFactorUnit, "Mean of the error in its bin"}};
 
-/// S1 and its interval, in a group.
+/// Writes S1 and its interval into a group.
 void write_indices(ResultBuilder& result, const std::string& group, const Fields<MainEffects>& fields,
                    const MainEffects& effects, double conf_level) {
   write_fields(result, group, fields, effects);
@@ -155,7 +155,7 @@ void write_indices(ResultBuilder& result, const std::string& group, const Fields
   result.file().set_attribute(group + "/S1", "conf_level", conf_level);
 }
 
-/// One line for each response.
+/// A table of one number of each machine, a line for each response.
 CsvTable by_response(const StoredResult& result, const std::string& name, const MachineValues& values) {
   const std::vector<double>& levels = monte_carlo_of(result).levels;
   CsvTable table{name,
@@ -186,7 +186,8 @@ CsvTable by_response(const StoredResult& result, const std::string& name, const 
   return table;
 }
 
-/// Appends what each error does to a response, with its interval: "share_RESPONSE", "share_ci_low_RESPONSE" and so on.
+/// Adds columns with the effect of each error on a response and its interval: "share_RESPONSE", "share_ci_low_RESPONSE"
+/// and so on.
 void append_error_columns(CsvTable& table, const std::string& name, const std::string& response,
                           std::span<const double> value, std::span<const double> low, std::span<const double> high) {
   table.columns.push_back(list_column(name + "_" + response, value));
@@ -205,7 +206,7 @@ CsvTable share_table(const StoredResult& result, const YieldResult& found) {
   return table;
 }
 
-/// All limits, then each.
+/// Adds tables of the yield under all limits, then under each limit.
 void append_yield_tables(CsvTables& tables, const StoredResult& result, const YieldResult& found) {
   CsvTable all{"yield", {"limit", [](std::size_t) { return std::string("all"); }}, 1, {}, {}};
   for (const FieldRow<YieldResult>& field : kYield.fields) {
@@ -246,7 +247,7 @@ void append_yield_tables(CsvTables& tables, const StoredResult& result, const Yi
   tables.push_back(std::move(poses));
 }
 
-/// S1 of each error on each response, as SALib names them.
+/// A table of S1 of each error on each response, with the column names of SALib.
 CsvTable index_table(const StoredResult& result, const std::string& name, const MainEffects& effects) {
   CsvTable table = lines_of_factors(result, name);
   for (std::size_t r = 0; r < result.responses.size(); ++r) {

@@ -5,29 +5,30 @@
 #include "engine/result/fields.h"
 #include "engine/result/result_file.h"
 
-/// How files keep what the bins of errors say, and what a Monte Carlo study of machines found in addition.
+/// Reads and writes main effects, and what a Monte Carlo study with draws per machine finds in addition.
 namespace poesy {
 
-/// Bytes of the numbers of effects, and of what studies of machines find in addition, along axes of these lengths.
+/// Bytes of the numbers of main effects and of studies with draws per machine, along axes of these lengths.
 /// @{
 std::size_t effect_bytes(const AxisLengths& lengths);
 std::size_t machine_bytes(const AxisLengths& lengths);
 /// @}
 
-/// Adds first-order indices and the group /monte_carlo/main_effect. Precondition: /monte_carlo is there.
+/// Adds first-order indices and the group /monte_carlo/main_effect. Precondition: the file has /monte_carlo.
 void write_effects(ResultBuilder& result, const EffectResult& found);
-/// The opposite. Throws h5::Error.
+/// Reads what write_effects() wrote. Throws h5::Error.
 EffectResult read_effects(const h5::File& file);
-/// Appends S1.csv and the curves.
+/// Adds S1.csv and the curves.
 void append_effect_tables(CsvTables& tables, const StoredResult& result);
 
-/// Adds the groups /machines and /yield. Precondition: the axes of the Monte Carlo study and of the effects are there.
+/// Adds the groups /machines and /yield. Precondition: the file has the axes of the Monte Carlo study and of the
+/// effects.
 void write_machines(ResultBuilder& result, const MachineResult& found);
 
-/// The opposite; empty where errors were drawn per pose. Throws h5::Error.
+/// Reads what write_machines() wrote; empty if errors were drawn per pose. Throws h5::Error.
 std::optional<MachineResult> read_machines(const h5::File& file);
 
-/// Appends yield.csv and its like.
+/// Adds yield.csv and the other tables of machines.
 void append_machine_tables(CsvTables& tables, const StoredResult& result);
 
 }  // namespace poesy

@@ -23,7 +23,7 @@ const MachineResult& machines_of(const StoredResult& result) { return *monte_car
 
 const EffectResult& effects_of(const StoredResult& result) { return monte_carlo_of(result).effects; }
 
-/// "q_0_95", a name of JSON.
+/// A quantile's name in JSON: "q_0_95".
 std::string quantile_name(double level) {
   std::string name = "q_" + shortest(level);
   std::ranges::replace_if(
@@ -62,7 +62,7 @@ Table values_table(const StoredResult& result) {
   return table;
 }
 
-/// The poses at which most machines are rejected, of each limit.
+/// The poses at which most machines are rejected, for each limit.
 Table rejects_table(const StoredResult& result) {
   constexpr std::size_t kMost = 5;
   const YieldResult& yield = *machines_of(result).yield;
@@ -83,19 +83,19 @@ Table rejects_table(const StoredResult& result) {
   return table;
 }
 
-/// Of errors that have no index of their own.
+/// Whether errors are correlated and therefore have no index.
 bool has_correlated(const StoredResult& result) {
   return result.study_text.find("\n[[errors.correlated]]\n") != std::string::npos;
 }
 
-/// Whether at one of the poses over which indices add up too few samples of the response count.
+/// Whether the response has too few samples that count at one of the poses over which indices are summed.
 bool has_too_few_samples(const StoredResult& result, std::size_t r) {
   const MonteCarloResult& found = monte_carlo_of(result);
   return std::ranges::any_of(found.effects.s1_poses,
                              [&](std::uint64_t m) { return found.count(r, m) < kFewestIndexSamples; });
 }
 
-/// Why no error has an index on a response.
+/// The reason why no error has an index on a response.
 std::string no_index_text(const StoredResult& result, std::size_t r) {
   const std::string& response = result.responses[r].name;
   if (!varies(result, r)) return constant_text(result.responses[r]);
@@ -121,14 +121,14 @@ std::string indices_note(const StoredResult& result, std::size_t r) {
       result.responses[r].name, number_text(sum, 3));
 }
 
-/// A panel for each response of the headline, with the errors of the largest indices first.
+/// Charts with a panel for each response of the headline. The errors of the largest indices come first.
 Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
   constexpr std::size_t kMost = 12;
   const MainEffects& effects = effects_of(result).effects;
   const std::size_t factors = result.factors.size();
   std::vector<double> below;
   for (std::size_t k = 0; k < kEffectBins; ++k) below.push_back((static_cast<double>(k) + 0.5) / kEffectBins);
-  constexpr std::size_t kAtFirst = 5;  // more bands cover each other
+  constexpr std::size_t kAtFirst = 5;  // more bands would hide each other
   Lines lines{.x = {"share of the error's values below", "%", pool.add("effect_bin", below, 0.01)},
               .panels = {},
               .most = kAtFirst};
@@ -165,7 +165,7 @@ std::string quantile_error_text(std::span<const std::size_t> responses, std::spa
 std::vector<Table> machine_tables(const StoredResult& result) {
   std::vector<Table> tables{values_table(result)};
   if (const auto& yield = machines_of(result).yield) {
-    // Where limits are judged by other numbers.
+    // If limits are judged by other numbers, the yield is not in the verdicts.
     if (result.verdicts && !result.verdicts->yield) {
       tables.insert(tables.begin(),
                     yield_table(result, {.judge = Judge::yield,

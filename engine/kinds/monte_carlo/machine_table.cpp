@@ -31,8 +31,8 @@ ErrorScore score_of(const Distribution& distribution) {
 ErrorScores scores_of(const Plan& plan) {
   ErrorScores scores;
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {
-    // The score of an error by itself is not that of one whose others go with it, or whose mean is shifted: the shift
-    // does not grow with sigma.
+    // A correlated error has no score of its own. Nor has one whose mean is shifted, because the shift does not grow
+    // with sigma.
     const bool has_score = !plan.is_correlated(p) && plan.distributions()[p].shift() == 0.0;
     scores.each.push_back(has_score ? score_of(plan.distributions()[p]) : ErrorScore());
   }
@@ -47,10 +47,10 @@ ErrorScores scores_of(const Plan& plan) {
   return scores;
 }
 
-/// As many machines as a second or so suffices for.
+/// The number of machines for which the gradient takes a second or so.
 std::size_t kept_machines(const Plan& plan, const LimitedVectors& vectors, const ErrorScores& scores) {
-  constexpr std::size_t kMostWork = 1'000'000'000;  // products
-  constexpr std::size_t kWorkOfRange = 10;          // of one error at one limit
+  constexpr std::size_t kMostWork = 1'000'000'000;  // number of products
+  constexpr std::size_t kWorkOfRange = 10;          // products for the range of one error at one limit
   constexpr std::size_t kLeast = 1000;
   constexpr std::size_t kMost = 1'000'000;
   const bool is_wanted = std::ranges::any_of(
@@ -78,7 +78,7 @@ MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis&
 }
 
 std::size_t MachineTable::unit_machines(std::size_t poses) {
-  // Rows of 500 numbers would lie nearly a page apart, which costs a third of the solver's speed.
+  // Rows of 500 numbers would be nearly a page apart, which costs a third of the solver's speed.
   constexpr std::array<std::size_t, 4> kSizes{1000, 200, 100, 40};
   static_assert(std::ranges::all_of(kSizes, [](std::size_t size) { return Plan::kUnitSamples % size == 0; }));
   constexpr std::size_t kMostSamples = 160'000;

@@ -8,7 +8,7 @@
 namespace poesy {
 namespace {
 
-/// How many machines of a range MachineTable::kept() counts.
+/// The number of machines of a range that MachineTable::kept() counts.
 std::size_t kept_of(const MachineTable& table, const NumberRange& machines) {
   return std::min(machines.end, table.kept()) - std::min(machines.first, table.kept());
 }

@@ -21,52 +21,52 @@
 #include "engine/stats/sums.h"
 #include "engine/stats/yield_gradient.h"
 
-/// Units of machines and what they come to.
+/// Units of machines and their sums.
 namespace poesy {
 
-/// Sums over machines whose order shows in their last bits: a Sum of MergeTree.
+/// Sums over machines whose last bits depend on the order of addition: a Sum of MergeTree.
 struct MachineSums {
-  Array<Moments, axis::Pose, axis::Response> at_pose;  ///< of the samples that count
-  std::vector<Moments> mean;                           ///< of each response, of the machines' means over the poses
-  std::vector<Moments> largest;                        ///< likewise, of the machines' largest magnitudes
-  std::vector<Moments> rms;                            ///< likewise, of the machines' root mean squares
-  std::optional<ScoreSums> scores;                     ///< where there are limits
-  std::optional<LinearFitSums> fit;     ///< of the limited vectors at all poses, over the machines that are fitted
-  std::optional<PartSums> parts;        ///< where errors were measured on parts as well
-  std::vector<MainEffectSums> effects;  ///< as MachineTable::effects() counts them
+  Array<Moments, axis::Pose, axis::Response> at_pose;  ///< moments of the samples that count
+  std::vector<Moments> mean;                           ///< [R] of the machines' means over the poses
+  std::vector<Moments> largest;                        ///< [R] of the machines' largest magnitudes
+  std::vector<Moments> rms;                            ///< [R] of the machines' root mean squares
+  std::optional<ScoreSums> scores;                     ///< set if there are limits
+  std::optional<LinearFitSums> fit;     ///< fit of the limited vectors at all poses, for the machines that are fitted
+  std::optional<PartSums> parts;        ///< set if there are limits and errors were measured on parts
+  std::vector<MainEffectSums> effects;  ///< [MachineTable::effects()]
 
-  /// Of no machines.
+  /// Empty sums.
   explicit MachineSums(const MachineTable& table);
-  /// Precondition: the machines of `later` come after those of this.
+  /// Adds later machines. Precondition: the machines of `later` come after those of this object.
   void merge(const MachineSums& later);
 
-  void state(Archive& archive);  ///< Every bit.
+  void state(Archive& archive);  ///< Reads or writes every bit.
 
  private:
   const MachineTable* table_;
 };
 
-/// Whether each machine of a range that MachineTable::kept() counts is rejected, 1 or 0.
+/// Reads or writes, for each machine of a range that MachineTable::kept() counts, whether it is rejected, 1 or 0.
 void rejected_state(Archive& archive, std::vector<std::uint8_t>& rejected, const MachineTable& table,
                     const NumberRange& machines);
 
 /// What one unit of machines contributes.
 struct MachineUnit {
   MachineUnit() = default;
-  /// Of no machines yet, of this range.
+  /// An empty unit for this range of machines.
   MachineUnit(const MachineTable& table, const NumberRange& range);
 
-  std::optional<MachineSums> sums;                         ///< empty in a default-constructed one alone
-  MachineCounts counts;                                    ///< which of them are good
-  Array<NumberBlock, axis::Pose, axis::Response> at_pose;  ///< the samples that count, ready for a sketch
-  std::vector<NumberBlock> largest;    ///< of each response, of the machines that are solved at each pose
-  std::vector<NumberBlock> rms;        ///< likewise
+  std::optional<MachineSums> sums;                         ///< empty only in a default-constructed unit
+  MachineCounts counts;                                    ///< how many machines are good
+  Array<NumberBlock, axis::Pose, axis::Response> at_pose;  ///< the samples that count, sorted for a sketch
+  std::vector<NumberBlock> largest;                        ///< [R] of the machines that are solved at each pose
+  std::vector<NumberBlock> rms;                            ///< [R] of the machines that are solved at each pose
   std::vector<std::uint8_t> rejected;  ///< 1 or 0 for each of the machines that MachineTable::kept() counts
-  std::vector<SolveCounts> solves;     ///< how they ended at each pose
-  std::vector<FailedSamples> failed;   ///< the first of them at each pose
-  SolveCounts total;                   ///< of all poses
+  std::vector<SolveCounts> solves;     ///< how the solves at each pose ended
+  std::vector<FailedSamples> failed;   ///< the first failed samples at each pose
+  SolveCounts total;                   ///< the solves at all poses
 
-  void state(Archive& archive);  ///< For a message or a state.
+  void state(Archive& archive);  ///< Reads or writes the unit as a message or state.
 
  private:
   const MachineTable* table_ = nullptr;
@@ -74,13 +74,13 @@ struct MachineUnit {
 };
 
 /// Solves units of machines serially: draws their errors once and solves them pose by pose. Owns the scratch of one
-/// thread; what a unit gives depends on the study and the unit.
+/// thread. The result of a unit depends only on the study and the unit.
 class MachineUnitEvaluator : private UnitSolver {
  public:
-  /// Refers to both.
+  /// Refers to both arguments.
   MachineUnitEvaluator(const MachineTable& table, const Model& model);
 
-  /// Unit n at all poses.
+  /// Solves unit n at all poses.
   MachineUnit operator()(std::size_t n);
 
  private:
@@ -89,16 +89,17 @@ class MachineUnitEvaluator : private UnitSolver {
   void add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found);
   /// Fits the limited vectors to these machines, whose rows at all poses are in rows_.
   void add_fit(std::span<const std::uint8_t> solved, MachineUnit& found) const;
-  /// Those of the values whose machine or sample counts.
+  /// The values whose machine or sample counts.
   std::span<const double> only(std::span<const double> values, std::span<const std::uint8_t> counts);
 
   const MachineTable* table_;
-  std::vector<std::uint8_t> counts_;                            ///< of the machines at the pose
-  Array<double, axis::Response, axis::Sample> sum_;             ///< over the poses
-  std::vector<double> kept_;                                    ///< of one response
-  bool is_fitted_ = false;                                      ///< the unit at work
-  Array<double, axis::DetailComponent, axis::Sample> details_;  ///< at the pose, where a limited vector is made of them
-  /// Of the limited vectors, where the unit is fitted.
+  std::vector<std::uint8_t> counts_;                 ///< whether each machine counts at the pose
+  Array<double, axis::Response, axis::Sample> sum_;  ///< sums over the poses
+  std::vector<double> kept_;                         ///< values of one response
+  bool is_fitted_ = false;                           ///< whether the present unit is fitted
+  Array<double, axis::DetailComponent, axis::Sample>
+      details_;  ///< details at the pose, if a limited vector is made of them
+  /// Components of the limited vectors, if the unit is fitted.
   Array<double, axis::Pose, axis::VectorRow, axis::Sample> rows_;
 };
 

@@ -19,8 +19,8 @@
 namespace poesy {
 namespace {
 
-/// What machines take in addition: a sketch of each response at each pose, sums over machines at some of their places
-/// in the tree, and what pieces in flight hold.
+/// The additional memory of machines: a sketch of each response at each pose, the sums in the nodes of the merge tree,
+/// and the pieces that are being solved.
 MemoryOutlook machine_memory(const Study& study, const Model& model, const Plan& plan) {
   constexpr std::size_t kSketch = 20'000;
   constexpr std::size_t kPackedSketch = 6000;
@@ -43,7 +43,7 @@ MemoryOutlook sum_of(const MemoryOutlook& a, const MemoryOutlook& b) {
 
 MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const Plan& plan) {
   const std::size_t responses = study.model().responses.size();
-  // Quantiles with both ends of their intervals, and the magnitude that a share of the draws is judged by.
+  // Quantiles with both ends of their intervals, and the magnitude by which a share of the draws is judged.
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   const std::size_t of_sketch = 3 * asked.quantiles.size() + (asked.judge == Judge::share ? 1 : 0);
   const MemoryOutlook of_pose{responses * sizeof(Moments) + sizeof(FailedSamples) + sizeof(SolveCounts) + sizeof(Bytes),
@@ -68,7 +68,7 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const P
   memory.file += numbers;
   if (machines) return sum_of(memory, machine_memory(study, model, plan));
   if (!plan.adaptive()) return memory;
-  // Packed sketches of finished poses, for the next round.
+  // Packed sketches of finished poses, which the next round continues.
   constexpr std::size_t kPackedSketch = 6000;
   const std::size_t kept =
       std::min(plan.poses().size() * responses * kPackedSketch, MonteCarloCollector::kMostKeptBytes);
@@ -77,7 +77,7 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const P
   return memory;
 }
 
-/// So many poses of a study at the most, its first ones.
+/// The first poses of a study, at most this many.
 PoseSet first_of(const PoseSet& poses, std::size_t most) {
   std::vector<double> some;
   for (std::size_t m = 0; m < std::min(most, poses.size()); ++m) {
@@ -87,7 +87,7 @@ PoseSet first_of(const PoseSet& poses, std::size_t most) {
   return PoseSet(poses.coordinates(), std::move(some));
 }
 
-/// A study that draws per pose, at a few of its poses with a few of its units.
+/// A small version of a study that draws per pose, with a few of its poses and units, whose work is timed.
 class PoseTrial {
  public:
   PoseTrial(const Study& study, const Model& model, const PoseSet& poses)
@@ -96,13 +96,13 @@ class PoseTrial {
         solves_(static_cast<double>(poses.size()) * static_cast<double>(study.analysis.samples)),
         plan_(Plan(study, first_of(poses, kPoses)).with_samples(samples(study.analysis.samples))) {}
 
-  /// Solves a unit, which then is merged at all poses.
+  /// Solves a unit, so that merge() has one to merge.
   void prepare() {
     unit_ = PoseUnitEvaluator(plan_, model_)(plan_.unit(0));
     effects_ = std::exchange(unit_.effects, std::nullopt);
     fill();
   }
-  /// The share of the study that this is.
+  /// Merges the unit at all poses. Returns the share of the whole study's merging.
   double merge() {
     fill();
     return static_cast<double>(plan_.solves()) / solves_;
@@ -116,7 +116,7 @@ class PoseTrial {
  private:
   static constexpr std::size_t kPoses = 8;
 
-  /// Whole units, so many that finishing a pose hardly counts where the study has more.
+  /// A number of whole units, so many that finishing a pose hardly counts if the study has more.
   static std::size_t samples(std::size_t of_study) {
     constexpr std::size_t kMostUnits = 8;
     if (of_study < Plan::kUnitSamples) return of_study;
@@ -139,8 +139,8 @@ class PoseTrial {
   std::optional<MonteCarloCollector> collect_;
 };
 
-/// A study of machines at some of its poses: so many that what is done once for each machine, and at the few poses of
-/// main effects, has about its share.
+/// A small version of a study of machines, with some of its poses. They are enough to give a fair share to what is done
+/// once for each machine, and to the few poses of main effects.
 class MachineTrial {
  public:
   MachineTrial(const Study& study, const Model& model, const PoseSet& poses)
@@ -156,12 +156,12 @@ class MachineTrial {
   MachineTrial(const MachineTrial&) = delete;
   MachineTrial& operator=(const MachineTrial&) = delete;
 
-  /// Solves as many machines as a unit of the study has. The share of the study that this is.
+  /// Solves as many machines as a unit of the study has. Returns the share of the whole study's solves.
   double solve() {
     static_cast<void>(evaluate_(0));
     return share_of(unit_table_.unit(0).count);
   }
-  /// Solves a unit, which then is merged again and again.
+  /// Solves a unit, which is then merged repeatedly.
   void prepare() {
     unit_ = MachineUnitEvaluator(table_, model_)(0);
     begin();
@@ -174,7 +174,7 @@ class MachineTrial {
     collect_->add(next_++, MachineUnit(unit_));
     return share_of(table_.unit(0).count);
   }
-  /// Reads off what is known of one pose. The share of all poses that this is.
+  /// Computes the result of one pose. Returns the share of all poses.
   double read_pose() {
     MonteCarloColumns columns(1, responses_, analysis_);
     for (std::size_t r = 0; r < responses_; ++r) {
@@ -196,7 +196,7 @@ class MachineTrial {
     collect_.emplace(table_, analysis_);
     next_ = 0;
   }
-  /// So many machines at the poses that are tried.
+  /// The share of the study in this many machines at the poses that are tried.
   double share_of(std::size_t machines) const {
     const double tried = static_cast<double>(machines) * static_cast<double>(plan_.poses().size());
     return tried / (static_cast<double>(plan_.samples()) * static_cast<double>(poses_));
@@ -204,7 +204,7 @@ class MachineTrial {
 
   const Analysis& analysis_;
   const Model& model_;
-  std::size_t poses_;  ///< of the study
+  std::size_t poses_;  ///< number of poses of the study
   std::size_t responses_;
   Plan plan_;
   MachineTable table_;  ///< all machines
@@ -212,9 +212,9 @@ class MachineTrial {
   MachineTable unit_table_;  ///< as many machines as a unit of the study has
   MachineUnitEvaluator evaluate_;
   MachineUnit unit_;
-  std::vector<QuantileSketch> sketches_;  ///< of each response at one pose
+  std::vector<QuantileSketch> sketches_;  ///< sketch of each response at one pose
   std::optional<MachineCollector> collect_;
-  std::size_t next_ = 0;  ///< unit to be merged
+  std::size_t next_ = 0;  ///< the next unit to merge
 };
 
 void add_pose_works(const Study& study, const Model& model, const PoseSet& poses,

@@ -15,7 +15,7 @@ namespace {
 
 double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
 
-/// For each x the sum of y over all larger x, with half of those that are equal.
+/// For each x, the sum of y over all larger x plus half of the y of equal x.
 std::vector<double> sums_above(std::span<const double> x, std::span<const double> y) {
   std::vector<std::size_t> order(x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -33,7 +33,7 @@ std::vector<double> sums_above(std::span<const double> x, std::span<const double
   return sums;
 }
 
-/// The share of the x below each, less 1/2: its grade.
+/// The grade of each x: the share of values below it, less 1/2.
 std::vector<double> grades(std::span<const double> x) {
   const auto n = static_cast<double>(x.size());
   std::vector<double> found = sums_above(x, std::vector<double>(x.size(), 1.0));
@@ -45,8 +45,8 @@ double mean_product(std::span<const double> a, std::span<const double> b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0) / static_cast<double>(a.size());
 }
 
-/// d rho / dw_i of Spearman's rho = E[a b] / sqrt(E[a^2] E[b^2]) with the grades a, b: the part's own product, and what
-/// its weight does to the grades of all others.
+/// d rho / dw_i of Spearman's rho = E[a b] / sqrt(E[a^2] E[b^2]) with the grades a, b. It is the sum of the part's own
+/// product and of the effect of its weight on the grades of all others.
 std::vector<double> rank_moves(std::span<const double> x, std::span<const double> y) {
   const auto n = static_cast<double>(x.size());
   const std::vector<double> a = grades(x);
@@ -62,11 +62,11 @@ std::vector<double> rank_moves(std::span<const double> x, std::span<const double
   return moves;
 }
 
-/// Of the normal scores that have this rank correlation, and its slope by it.
+/// The correlation of normal scores with this rank correlation, and its derivative.
 double score_correlation(double rank) { return 2.0 * std::sin(std::numbers::pi / 6.0 * rank); }
 double score_slope(double rank) { return std::numbers::pi / 3.0 * std::cos(std::numbers::pi / 6.0 * rank); }
 
-/// [pairs x n], where the correlation is that of the rows.
+/// [pairs x n] The derivatives of correlations by the weights, if the correlation is that of the measured rows.
 std::vector<double> correlation_moves(std::span<const SmoothedValues> parts, std::span<const double> correlation) {
   constexpr double kSame = 1e-9;
   std::vector<double> moves;
@@ -82,7 +82,7 @@ std::vector<double> correlation_moves(std::span<const SmoothedValues> parts, std
   return moves;
 }
 
-/// Of a positive definite matrix [k x k], column by column.
+/// The inverse of a positive definite matrix [k x k], column by column.
 std::vector<double> inverse_of(std::span<const double> matrix, std::size_t size) {
   const std::vector<double> triangle = lower_triangle(matrix);
   std::vector<double> inverse(matrix.size(), 0.0);
@@ -101,14 +101,14 @@ std::vector<double> inverse_of(std::span<const double> matrix, std::size_t size)
   return inverse;
 }
 
-/// A part's value, spread.
+/// The smoothed value of one part.
 struct Range {
   double low;
   double high;
 
   bool single() const { return low == high; }
   bool holds(double x) const { return low <= x && x <= high; }
-  /// The share of it below x.
+  /// The share of its density below x.
   double share(double x) const {
     if (single()) return x == low ? 0.5 : static_cast<double>(x > low);
     return std::clamp((x - low) / (high - low), 0.0, 1.0);
@@ -119,11 +119,11 @@ Range range_of(const SmoothedValues& parts, std::size_t i) {
   return {parts.values()[i] - parts.half_widths()[i], parts.values()[i] + parts.half_widths()[i]};
 }
 
-/// Adds the influence of each part's weight on the logarithm of the density at x: g_i / f - 1 for g_i of the part
-/// alone.
+/// Adds the influence of each part's weight on the logarithm of the density at x: g_i / f - 1, where g_i is the density
+/// of the part alone.
 void add_density(const SmoothedValues& parts, double x, std::span<double> influence) {
   const std::size_t n = influence.size();
-  bool single = false;  // values that are not spread outweigh all others
+  bool single = false;  // values that are not smoothed outweigh all others
   for (std::size_t i = 0; i < n; ++i) single = single || (range_of(parts, i).single() && range_of(parts, i).low == x);
   const auto own = [&](std::size_t i) {
     const Range range = range_of(parts, i);
@@ -136,7 +136,7 @@ void add_density(const SmoothedValues& parts, double x, std::span<double> influe
   for (std::size_t i = 0; i < n; ++i) influence[i] += static_cast<double>(n) * own(i) / sum - 1.0;
 }
 
-/// The same of errors that go with each other, whose normal scores move with the shares of the parts below them.
+/// The same for correlated errors, whose normal scores depend on the shares of the parts below them.
 void add_scores(const PartGroup& group, std::span<const double> x, std::span<double> influence) {
   const std::size_t size = group.errors.size();
   const std::size_t n = group.size();
@@ -165,7 +165,7 @@ void add_scores(const PartGroup& group, std::span<const double> x, std::span<dou
   }
 }
 
-/// A block whose errors were measured on the same parts; nothing where one of them was not.
+/// Whether all errors of a block were measured on the same parts.
 bool measured_together(const Plan& plan, std::span<const std::size_t> errors) {
   const auto& first = plan.distributions()[errors.front()].parts();
   return first && std::ranges::all_of(errors, [&](std::size_t p) {

@@ -65,10 +65,10 @@ Interval PartSums::interval(double conf_level) const {
   const auto machines = static_cast<double>(machines_);
   const double yield = 1.0 - static_cast<double>(rejects_) / machines;
   double of_parts = 0.0;
-  double squares = 0.0;  // of each group's variance, over its degrees of freedom
+  double squares = 0.0;  // sum of each group's variance over its degrees of freedom
   for (std::size_t g = 0; g < sums_.size(); ++g) {
     const auto n = static_cast<double>(sums_[g].size());
-    // without what the squares of sums of few machines are too large by
+    // Corrects the bias of squares of sums over few machines
     const double variance = (square_sum(sums_[g]) - squares_[g]) / (machines * machines * n * (n - 1.0));
     of_parts += variance;
     squares += variance * variance / (n - 1.0);

@@ -10,34 +10,34 @@
 
 namespace poesy {
 
-/// Sums over the rejects of how much each part weighs in the probability p of a reject: with the density f of all
-/// errors, made of parts of weight w_i = 1/n, dp/dw_i = E[1_reject d ln f / dw_i]. Looks at the rejects alone.
+/// Sums the influence of each part's weight on the probability p of a reject. If the density f of all errors is made of
+/// parts of weight w_i = 1/n, then dp/dw_i = E[1_reject d ln f / dw_i], so only rejects are added.
 class PartSums {
  public:
-  /// Of no machines. Refers to the groups.
+  /// Empty sums. Refers to the groups.
   explicit PartSums(const PartGroups& groups);
 
-  /// Adds machines. errors: along errors and machines, row-major, SI. rejected: of each machine 1 or 0.
+  /// Adds machines. errors: [errors x machines], SI. rejected: [machines] 1 or 0.
   void add(std::span<const double> errors, std::span<const std::uint8_t> rejected);
-  /// Adds what the other one added. Merging in the same order gives the same bits.
+  /// Adds the sums of later machines. Merging in the same order gives the same bits.
   void merge(const PartSums& later);
 
-  /// Rejects of fewer machines, or good ones, do not say how much a part weighs.
+  /// With fewer rejects, or fewer good machines, the influence of a part is unknown.
   static constexpr std::uint64_t kLeast = 10;
 
-  /// The interval of the yield that counts both that machines and that parts are few: Student's on the scale of normal
-  /// scores. NaN at both ends below kLeast rejects or good machines, and where the groups are not known.
-  /// Precondition: 0 < conf_level < 1.
+  /// The interval of the yield that includes the uncertainty from few machines and from few parts: Student's on the
+  /// scale of normal scores. NaN at both ends with fewer than kLeast rejects or good machines, and if the groups are
+  /// not known. Precondition: 0 < conf_level < 1.
   Interval interval(double conf_level) const;
 
-  void state(Archive& archive);  ///< Every bit.
+  void state(Archive& archive);  ///< Reads or writes every bit.
 
  private:
   const PartGroups* groups_;
   std::uint64_t machines_ = 0;
   std::uint64_t rejects_ = 0;
-  std::vector<std::vector<double>> sums_;  ///< of each group, [n] of A
-  std::vector<double> squares_;            ///< of each group, of the square of A over all parts
+  std::vector<std::vector<double>> sums_;  ///< [groups] [n] sums of A
+  std::vector<double> squares_;            ///< [groups] sum of A^2 over all parts
 };
 
 }  // namespace poesy

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kDigits = 6;
 
-/// "q_0_95", a name of JSON.
+/// A quantile's name in JSON: "q_0_95".
 std::string quantile_name(double level) {
   std::string name = "q_" + shortest(level);
   std::ranges::replace_if(
@@ -33,7 +33,8 @@ std::string quantile_name(double level) {
 
 std::string quantile_heading(double level) { return "q_" + shortest(level); }
 
-/// The lowest quantiles go first, then the smallest value; mean, spread and what is high stay.
+/// In narrow tables the lowest quantiles are left out first, then the smallest value; mean, spread and high values
+/// stay.
 std::vector<FilledColumn> overall_columns(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const auto number = [&result](std::string name, std::string heading, const auto& values, int dispensable = 0,
@@ -56,16 +57,16 @@ std::vector<FilledColumn> overall_columns(const StoredResult& result) {
   return columns;
 }
 
-/// How good the quantiles over all poses are.
+/// The accuracy of the quantiles over all poses.
 std::string overall_error_text(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
-  if (found.overall_quantile_error.empty()) {  // of version 0.2
+  if (found.overall_quantile_error.empty()) {  // files of version 0.2
     return fmt::format("quantiles to {} of their value", percent_text(found.quantile_relative_error));
   }
   return quantile_error_text(result.headline, found.overall_quantile_error, found.overall_std);
 }
 
-/// Precondition: there are poses and quantiles.
+/// The table over all poses. Precondition: there are poses and quantiles.
 Table overall_table(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   Table table{.name = "overall",
@@ -89,7 +90,7 @@ std::size_t worst_pose(std::span<const double> at_poses) {
   return static_cast<std::size_t>(worst - at_poses.begin());
 }
 
-/// The largest of one number of each pose, and its pose.
+/// Adds the largest value over the poses, and its pose.
 void add_worst_pose(std::vector<Cell>& row, std::span<const double> at_poses, const Unit& unit) {
   const std::size_t worst = worst_pose(at_poses);
   row.push_back(number_cell(at_poses[worst] / unit.si, kDigits));
@@ -107,9 +108,9 @@ std::vector<double> at_poses(const MonteCarloResult::QuantilesAtPoses& quantiles
 struct WorstPoses {
   std::vector<double> quantile;  ///< at all poses
   std::size_t worst;             ///< the pose of the largest
-  double low;                    ///< its interval
+  double low;                    ///< lower end of its interval
   double high;
-  std::vector<std::size_t> alike;  ///< other poses whose intervals reach above `low`, the largest quantile first
+  std::vector<std::size_t> alike;  ///< other poses whose intervals reach above `low`, in order of decreasing quantile
 };
 
 WorstPoses worst_poses(const MonteCarloResult& found, std::size_t r) {
@@ -141,7 +142,7 @@ std::vector<Cell> poses_row(const StoredResult& result, std::size_t r) {
   return row;
 }
 
-/// Names the poses that cannot be told from the worst; empty where there is none.
+/// Names the poses that cannot be distinguished from the worst; empty if there are none.
 std::string alike_text(const StoredResult& result, std::size_t r) {
   constexpr std::size_t kMost = 5;
   const WorstPoses poses = worst_poses(monte_carlo_of(result), r);
@@ -156,7 +157,7 @@ std::string alike_text(const StoredResult& result, std::size_t r) {
                      quantile_heading(monte_carlo_of(result).levels.back()), place_text(result, poses.worst), names);
 }
 
-/// Precondition: there are poses and quantiles.
+/// The table of the worst poses. Precondition: there are poses and quantiles.
 Table poses_table(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const std::string name = "largest_" + quantile_name(found.levels.back());
@@ -181,11 +182,11 @@ Table poses_table(const StoredResult& result) {
   return table;
 }
 
-/// The histogram of a response and its cumulative curve, as outlines over the edges of the bins. Without the first and
-/// the last bin, which reach out to the extremes.
+/// The histogram of a response and its cumulative curve, as outlines over the edges of the bins. The first and the last
+/// bin, which extend to the extremes, are left out.
 struct Outline {
   std::vector<double> x;        ///< each bin's lower and upper end, in the unit shown
-  std::vector<double> density;  ///< share of the samples per unit of x, there
+  std::vector<double> density;  ///< share of the samples per unit of x
   std::vector<double> below;    ///< share of the samples below x
 };
 
@@ -196,7 +197,7 @@ Outline outline(const MonteCarloResult& found, std::size_t r, double unit) {
   Outline drawn;
   double sum = static_cast<double>(counts.front()) / all;
   for (std::size_t b = 1; b + 1 < counts.size(); ++b) {
-    // Bins that are left over are at the largest value.
+    // Unused bins are at the largest value.
     if (!(edges[b] < edges[b + 1]) || !(edges[b + 1] < edges.back())) continue;
     const double share = static_cast<double>(counts[b]) / all;
     const double density = share / ((edges[b + 1] - edges[b]) / unit);
@@ -258,7 +259,7 @@ SolveTally tally(const StoredResult& result) {
   return {"", {"all errors"}, result.poses.size(), monte_carlo_of(result).solves};
 }
 
-/// The mean of each pose in a band from the lowest to the highest quantile, and what colours the workspace.
+/// Shows the mean of each pose in a band from the lowest to the highest quantile, and colours the workspace.
 void add_where(const StoredResult& result, Page& page) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const std::vector<double>& levels = found.levels;
@@ -333,15 +334,15 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   add_how_sure(result, tables, page);
 }
 
-/// "Make delta_1 (12 %), ... smaller first", the errors that make most of a response's variance alone; empty where that
-/// is not known, or is little, as of a response without sign.
+/// "Make delta_1 (12 %), ... smaller first": the errors that make most of a response's variance alone. Empty if that is
+/// not known or is little, as for norms.
 std::string drivers_text(const StoredResult& result, std::size_t r) {
   constexpr std::size_t kMost = 3;
   constexpr double kLittle = 0.1;
   const MonteCarloResult& found = monte_carlo_of(result);
   const MainEffects& effects = found.effects.effects;
   const auto share = [&](std::size_t p) { return effects.s1(r, p); };
-  std::vector<std::size_t> order;  // those that certainly have an effect alone
+  std::vector<std::size_t> order;  // errors that certainly have an effect alone
   for (std::size_t p = 0; p < result.factors.size(); ++p) {
     if (effects.s1_ci_low(r, p) > 0.0) order.push_back(p);
   }
@@ -358,8 +359,8 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
                      text);
 }
 
-/// "Make flange_x (36 %), ... smaller first", the errors that add most to the mean square of a limited response; empty
-/// where their shares are not known.
+/// "Make flange_x (36 %), ... smaller first": the errors that add most to the mean square of a limited response. Empty
+/// if their shares are not known.
 std::string limit_drivers_text(const StoredResult& result) {
   constexpr std::size_t kMost = 3;
   const auto shares = response_shares(result);
@@ -377,7 +378,7 @@ std::string limit_drivers_text(const StoredResult& result) {
                      result.responses[shares->response].name, text);
 }
 
-/// By the limits, where the study has some.
+/// Advice by the limits if the study has some, otherwise by the response.
 std::string advice(const StoredResult& result, std::size_t r) {
   if (result.verdicts && result.verdicts->passed())
     return "Nothing has to be done: as far as it shows, the limits are kept.";
@@ -387,7 +388,7 @@ std::string advice(const StoredResult& result, std::size_t r) {
   return (result.verdicts ? "" : "State limits under [analysis.limits], and the report judges them. ") + which;
 }
 
-/// What one may expect, and where the worst pose is, of a response.
+/// The values of a response that one may expect, and its worst pose.
 Answer answer(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.poses() == 0 || found.levels.empty()) return {};
@@ -422,7 +423,7 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
 }
 
-/// The numbers of a Monte Carlo result over the samples of all poses, by name; in the order of the levels.
+/// The named numbers of a Monte Carlo result over the samples of all poses, in the order of the levels.
 std::vector<std::pair<std::string, std::function<double(std::size_t r)>>> overall(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const auto of = [](const MonteCarloResult::Overall& numbers) { return [&](std::size_t r) { return numbers(r); }; };
@@ -438,7 +439,7 @@ std::vector<std::pair<std::string, std::function<double(std::size_t r)>>> overal
   return list;
 }
 
-/// Shares of the mean square of a limited response, else first-order indices; and root mean squares at the poses.
+/// Shares of the mean square of a limited response, or else first-order indices, and root mean squares at the poses.
 ErrorShares error_shares(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.poses() == 0) return {};

@@ -22,78 +22,80 @@ using HistogramEdge = Axis<"edge">;    ///< Where the bins of a histogram begin 
 using EffectBin = Axis<"effect_bin">;  ///< Bins of equal probability of an error.
 }  // namespace axis
 
-/// What a Monte Carlo study alone asks.
+/// The options of a Monte Carlo study.
 struct MonteCarloOptions {
   std::vector<double> quantiles{0.05, 0.5, 0.95};  ///< shares of samples below, ascending
-  Judge judge = Judge::rms;                        ///< of the limits; yield where a study with machines says nothing
-  double share = 0.0;                              ///< for Judge::share: of the draws at each pose
-  double yield = 0.0;                              ///< for Judge::yield: of the machines; 0: none is asked for
+  Judge judge = Judge::rms;  ///< how limits are judged; Judge::yield is the default with draws per machine
+  double share = 0.0;        ///< for Judge::share: the share of the draws at each pose
+  double yield = 0.0;        ///< for Judge::yield: the share of the machines; 0: no yield is asked for
 };
 
 /// The kind of study in which all errors vary together.
 extern const StudyKind kMonteCarloStudy;
 
-/// One number of each machine: over those that are solved at each pose. SI.
+/// One number of each machine, over the machines that are solved at each pose; SI.
 struct MachineValues {
-  using Numbers = Array<double, axis::Response>;                    ///< one for each response
-  using Quantiles = Array<double, axis::Response, axis::Quantile>;  ///< all of each response
+  using Numbers = Array<double, axis::Response>;                    ///< a number for each response
+  using Quantiles = Array<double, axis::Response, axis::Quantile>;  ///< all quantiles of each response
 
-  Numbers mean;                                                               ///< over the machines
+  Numbers mean;                                                               ///< mean over the machines
   Numbers mean_ci_low;                                                        ///< Student's interval
-  Numbers mean_ci_high;                                                       ///< likewise
+  Numbers mean_ci_high;                                                       ///< upper end
   Numbers std;                                                                ///< sample standard deviation
-  Numbers min;                                                                ///< of any machine
-  Numbers max;                                                                ///< of any machine
-  Array<std::uint64_t, axis::Response> count;                                 ///< machines behind these
+  Numbers min;                                                                ///< least value of a machine
+  Numbers max;                                                                ///< largest value of a machine
+  Array<std::uint64_t, axis::Response> count;                                 ///< number of machines
   Quantiles quantiles;                                                        ///< order statistics
-  Quantiles quantiles_ci_low;                                                 ///< as MonteCarloResult has them
-  Quantiles quantiles_ci_high;                                                ///< likewise
-  Numbers quantile_error;                                                     ///< as MonteCarloResult has it
-  Array<double, axis::Response, axis::HistogramEdge> histogram_edges;         ///< of the bins
+  Quantiles quantiles_ci_low;                                                 ///< lower ends, see MonteCarloResult
+  Quantiles quantiles_ci_high;                                                ///< upper ends
+  Numbers quantile_error;                                                     ///< see MonteCarloResult::quantile_error
+  Array<double, axis::Response, axis::HistogramEdge> histogram_edges;         ///< edges of the bins
   Array<std::uint64_t, axis::Response, axis::HistogramBin> histogram_counts;  ///< machines in each bin
 };
 
-/// What a yield may be, as far as the few parts tell on which errors were measured: an interval that holds the one of
-/// the machines. NaN where the rejects do not say how much a part weighs (PartSums::interval).
+/// The interval of the yield that also includes the uncertainty from the few parts on which errors were measured. It
+/// contains the interval of the machines. NaN if the influence of parts is unknown (PartSums::interval).
 struct PartsYield {
-  double ci_low = 0.0;   ///< of the yield
-  double ci_high = 0.0;  ///< of it
+  double ci_low = 0.0;   ///< lower end
+  double ci_high = 0.0;  ///< upper end
 };
 
-/// The share of machines that are within every limit at every pose. A machine that is not solved at a pose is a reject,
-/// unless said otherwise. Intervals: Clopper and Pearson, two-sided, at conf_level. NaN for a response without a limit.
+/// The yield: the share of machines that are within every limit at every pose. A machine that is not solved at a pose
+/// is a reject unless stated otherwise. Intervals are two-sided at conf_level (Clopper and Pearson). NaN for a response
+/// without a limit.
 struct YieldResult {
   double conf_level = 0.95;                        ///< of all intervals
   double value = 0.0;                              ///< the yield
-  double ci_low = 0.0;                             ///< of it
-  double ci_high = 0.0;                            ///< of it
+  double ci_low = 0.0;                             ///< lower end
+  double ci_high = 0.0;                            ///< upper end
   std::uint64_t rejects = 0;                       ///< machines that are not within every limit at every pose
-  std::uint64_t machines = 0;                      ///< that were tried
-  std::uint64_t unsolved = 0;                      ///< of these, those with a pose that is not solved
+  std::uint64_t machines = 0;                      ///< machines that were tried
+  std::uint64_t unsolved = 0;                      ///< rejects that were not solved at a pose
   double unsolved_pass = 0.0;                      ///< the yield if samples that are not solved were within every limit
-  double unsolved_pass_ci_low = 0.0;               ///< of it
-  double unsolved_pass_ci_high = 0.0;              ///< of it
-  std::uint64_t unsolved_pass_rejects = 0;         ///< then
+  double unsolved_pass_ci_low = 0.0;               ///< lower end
+  double unsolved_pass_ci_high = 0.0;              ///< upper end
+  std::uint64_t unsolved_pass_rejects = 0;         ///< rejects in that case
   Array<double, axis::Response> by_response = {};  ///< share of the machines that are within this limit at every pose
   Array<double, axis::Response> by_response_ci_low = {};   ///< lower ends
   Array<double, axis::Response> by_response_ci_high = {};  ///< upper ends
   /// Share of the machines that are not within this limit at the pose.
   Array<double, axis::Response, axis::Pose> worst_pose_share = {};
-  Array<double, axis::Factor> gradient = {};  ///< of the yield by the sigma of each error; NaN where it is not known
-  Array<double, axis::Factor> gradient_ci_low = {};   ///< central limit theorem
-  Array<double, axis::Factor> gradient_ci_high = {};  ///< likewise
-  /// What the yield changes by if the sigma of an error grows by a tenth; NaN as the gradient. This and the lists that
-  /// follow are empty where a file of version 0.2 was read.
+  Array<double, axis::Factor> gradient = {};  ///< derivative of the yield by the sigma of each error; NaN if not known
+  Array<double, axis::Factor> gradient_ci_low = {};   ///< lower ends, from the central limit theorem
+  Array<double, axis::Factor> gradient_ci_high = {};  ///< upper ends
+  /// Change of the yield if the sigma of an error grows by a tenth; NaN if not known. This and the following lists are
+  /// empty in files of version 0.2.
   Array<double, axis::Factor> change = {};
   Array<double, axis::Factor> change_ci_low = {};   ///< lower ends
   Array<double, axis::Factor> change_ci_high = {};  ///< upper ends
-  /// Of each limited response; NaN where not known.
+  /// Share of each error in the mean square of each limited response; NaN if not known.
   Array<double, axis::Response, axis::Factor> mean_square_share = {};
   Array<double, axis::Response, axis::Factor> mean_square_share_ci_low = {};   ///< lower ends
   Array<double, axis::Response, axis::Factor> mean_square_share_ci_high = {};  ///< upper ends
-  Array<double, axis::Response> linear_share = {};  ///< of the mean square of the scatter, what is linear in the errors
+  Array<double, axis::Response> linear_share =
+      {};  ///< share of the mean square of the scatter that is linear in the errors
 
-  /// Whether these lists are there.
+  /// Whether the file has these lists.
   /// @{
   bool has_change() const { return !change.empty() && !change_ci_low.empty() && !change_ci_high.empty(); }
   bool has_shares() const {
@@ -101,47 +103,47 @@ struct YieldResult {
            !linear_share.empty();
   }
   /// @}
-  std::optional<PartsYield> parts = {};  ///< where errors are measured
+  std::optional<PartsYield> parts = {};  ///< set if errors are measured
 };
 
-/// How much of the scatter of each response an error makes alone.
+/// The part of each response's scatter that each error makes alone.
 struct MainEffects {
-  using Indices = Array<double, axis::Response, axis::Factor>;                  ///< one of each error
-  using Curves = Array<double, axis::Response, axis::Factor, axis::EffectBin>;  ///< one of each error
+  using Indices = Array<double, axis::Response, axis::Factor>;                  ///< a number for each error
+  using Curves = Array<double, axis::Response, axis::Factor, axis::EffectBin>;  ///< a curve for each error
 
   Indices s1;          ///< first-order index
   Indices s1_ci_low;   ///< lower ends
   Indices s1_ci_high;  ///< upper ends
-  Curves mean;         ///< of the response while the error is in the bin
+  Curves mean;         ///< mean of the response while the error is in the bin
   Curves ci_low;       ///< lower ends
   Curves ci_high;      ///< upper ends
 };
 
-/// What a Monte Carlo study of machines found in addition.
+/// The additional result of a Monte Carlo study with draws per machine.
 struct MachineResult {
   double conf_level = 0.95;          ///< of all intervals
-  MachineValues largest;             ///< of each machine its largest magnitude over the poses
-  MachineValues rms;                 ///< of each machine its root mean square over the poses
-  std::optional<YieldResult> yield;  ///< where the study states limits
-  MainEffects effects_on_largest;    ///< of the machines' largest magnitudes
+  MachineValues largest;             ///< the largest magnitude of each machine over the poses
+  MachineValues rms;                 ///< the root mean square of each machine over the poses
+  std::optional<YieldResult> yield;  ///< set if the study states limits
+  MainEffects effects_on_largest;    ///< main effects on the machines' largest magnitudes
 };
 
-/// First-order indices and main effects that every Monte Carlo study finds.
+/// First-order indices and main effects, which every Monte Carlo study computes.
 struct EffectResult {
   double conf_level = 0.95;                                ///< of all intervals
-  std::vector<std::uint64_t> s1_poses;                     ///< over which effects.s1 adds up
-  Array<double, axis::Factor, axis::EffectBin> bin_error;  ///< mean of the error in its bin
-  /// Curves: of the machines' means over all poses; with draws per pose of all samples at s1_poses.
+  std::vector<std::uint64_t> s1_poses;                     ///< the poses over which effects.s1 sums
+  Array<double, axis::Factor, axis::EffectBin> bin_error;  ///< [P x bins] mean of the error in its bin
+  /// Curves are of the machines' means over all poses, or with draws per pose of all samples at s1_poses.
   MainEffects effects;
 };
 
-/// What a Monte Carlo study found, all errors varying together; SI; NaN where undefined. The overall numbers are over
-/// the samples of all poses together.
+/// The result of a Monte Carlo study, in which all errors vary together; SI; NaN where undefined. The overall numbers
+/// are over the samples of all poses together.
 struct MonteCarloResult {
   using AtPoses = Array<double, axis::Response, axis::Pose>;                           ///< a number at each pose
-  using QuantilesAtPoses = Array<double, axis::Response, axis::Pose, axis::Quantile>;  ///< all at each pose
-  using Overall = MachineValues::Numbers;                                              ///< a number of each response
-  using OverallQuantiles = MachineValues::Quantiles;                                   ///< all of each response
+  using QuantilesAtPoses = Array<double, axis::Response, axis::Pose, axis::Quantile>;  ///< all quantiles at each pose
+  using Overall = MachineValues::Numbers;                                              ///< a number for each response
+  using OverallQuantiles = MachineValues::Quantiles;  ///< all quantiles of each response
 
   double conf_level = 0.95;              ///< of all intervals
   double quantile_relative_error = 0.0;  ///< bound on |quantile - order statistic| / |order statistic| of any quantile
@@ -149,61 +151,61 @@ struct MonteCarloResult {
 
   AtPoses mean;                                            ///< over the samples
   AtPoses mean_ci_low;                                     ///< Student's interval
-  AtPoses mean_ci_high;                                    ///< likewise
+  AtPoses mean_ci_high;                                    ///< upper end
   AtPoses std;                                             ///< sample standard deviation
-  AtPoses min;                                             ///< of the samples
-  AtPoses max;                                             ///< of the samples
-  Array<std::uint64_t, axis::Response, axis::Pose> count;  ///< samples behind these
+  AtPoses min;                                             ///< least sample
+  AtPoses max;                                             ///< largest sample
+  Array<std::uint64_t, axis::Response, axis::Pose> count;  ///< number of samples
   QuantilesAtPoses quantiles;                              ///< order statistics
   AtPoses rms;                                             ///< root mean square
-  /// Interval of the distribution's quantile (stats/buckets.h), an end infinite where the samples are too few for it.
+  /// Interval of the distribution's quantile (stats/buckets.h). An end is infinite if the samples are too few for it.
   QuantilesAtPoses quantiles_ci_low;
-  QuantilesAtPoses quantiles_ci_high;  ///< likewise
+  QuantilesAtPoses quantiles_ci_high;  ///< upper ends
   /// Bound on |quantile - order statistic| of each quantile at the pose; empty in results of version 0.2.
   AtPoses quantile_error;
-  /// Where limits are judged by a share of the draws, else empty: the magnitude within which that share of them stays.
-  /// Draws that do not count never stay within anything; infinite where they are too many.
+  /// The magnitude that a share of the draws stays within, if limits are judged by that share, else empty. Draws that
+  /// do not count exceed every magnitude; infinite if they are too many.
   AtPoses share_magnitude;
 
-  Overall overall_mean;                                ///< as mean
-  Overall overall_std;                                 ///< as std
-  Overall overall_min;                                 ///< as min
-  Overall overall_max;                                 ///< as max
-  Array<std::uint64_t, axis::Response> overall_count;  ///< as count
-  OverallQuantiles overall_quantiles;                  ///< as quantiles
-  Overall overall_rms;                                 ///< as rms
-  OverallQuantiles overall_quantiles_ci_low;           ///< as quantiles_ci_low
-  OverallQuantiles overall_quantiles_ci_high;          ///< likewise
-  Overall overall_quantile_error;                      ///< as quantile_error
-  /// Of a histogram of the samples of all poses (stats/buckets.h).
+  Overall overall_mean;                                ///< the same as mean, for the samples of all poses
+  Overall overall_std;                                 ///< the same as std
+  Overall overall_min;                                 ///< the same as min
+  Overall overall_max;                                 ///< the same as max
+  Array<std::uint64_t, axis::Response> overall_count;  ///< the same as count
+  OverallQuantiles overall_quantiles;                  ///< the same as quantiles
+  Overall overall_rms;                                 ///< the same as rms
+  OverallQuantiles overall_quantiles_ci_low;           ///< the same as quantiles_ci_low
+  OverallQuantiles overall_quantiles_ci_high;          ///< the same as quantiles_ci_high
+  Overall overall_quantile_error;                      ///< the same as quantile_error
+  /// Edges of a histogram of the samples of all poses (stats/buckets.h).
   Array<double, axis::Response, axis::HistogramEdge> histogram_edges;
   Array<std::uint64_t, axis::Response, axis::HistogramBin> histogram_counts;  ///< samples in each bin
-  std::vector<SolveCounts> solves;                                            ///< of each pose
+  std::vector<SolveCounts> solves;                                            ///< [M]
   std::vector<Failure> failures;  ///< the first, in the order of poses and samples
-  /// Where the study has adaptive samples.
+  /// Set if the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
-  /// Where it states limits.
+  /// Set if the study states limits.
   std::optional<LimitVerdicts> verdicts;
 
-  Array<std::uint8_t, axis::Response> varies;  ///< whether it is more than rounding: 0 or 1; empty where all are
+  Array<std::uint8_t, axis::Response> varies;  ///< whether the response is more than rounding, 0 or 1; empty if all are
   EffectResult effects;                        ///< first-order indices
-  /// Where errors are drawn per machine.
+  /// Set if errors are drawn per machine.
   std::optional<MachineResult> machines;
 
-  std::size_t responses() const { return overall_mean.size(); }  ///< Number of them.
-  std::size_t poses() const { return solves.size(); }            ///< Number of them.
-  SolveCounts total() const { return total_of(solves); }         ///< Over all poses.
+  std::size_t responses() const { return overall_mean.size(); }  ///< The number of responses.
+  std::size_t poses() const { return solves.size(); }            ///< The number of poses.
+  SolveCounts total() const { return total_of(solves); }         ///< The solves at all poses.
 };
 
-/// Bytes of the numbers of a result whose axes have these lengths. machines: whether errors are drawn per machine.
+/// Bytes of the numbers of a result with axes of these lengths. machines: whether errors are drawn per machine.
 std::size_t monte_carlo_bytes(const AxisLengths& lengths, bool machines);
 
-/// What a Monte Carlo study found, read back: its failures, convergence and verdicts are those of StoredResult.
-/// Precondition: a Monte Carlo result.
+/// The Monte Carlo result in a stored result; StoredResult has its failures, convergence and verdicts.
+/// Precondition: the result is of that kind.
 inline const MonteCarloResult& monte_carlo_of(const StoredResult& result) { return found_of<MonteCarloResult>(result); }
 
-/// Per response mean, spread, extremes and quantiles over the samples of all poses
-/// together; then the mean of the poses' means, and the largest mean and highest quantile with the pose where it is.
+/// For each response a table of mean, spread, extremes and quantiles over the samples of all poses, then one of the
+/// mean of the poses' means, and the largest mean and highest quantile with their poses.
 std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions& options = {});
 
 }  // namespace poesy

@@ -19,7 +19,7 @@
 namespace poesy {
 namespace {
 
-/// Of each response over the samples of all poses.
+/// The mean of each response over the samples of all poses.
 std::vector<Estimate> overall_means(const MonteCarloResult& found) {
   std::vector<Estimate> means;
   for (std::size_t r = 0; r < found.responses(); ++r) {
@@ -28,7 +28,7 @@ std::vector<Estimate> overall_means(const MonteCarloResult& found) {
   return means;
 }
 
-/// Adaptive samples are for the means of the headline.
+/// The rule of adaptive samples, which stops by the means of the headline.
 Rounds::Rule rule_of(const Model& model, const Analysis& analysis) {
   const ModelDescription& description = model.description();
   const std::size_t responses = description.responses.size();
@@ -36,7 +36,7 @@ Rounds::Rule rule_of(const Model& model, const Analysis& analysis) {
           analysis.conf_level, std::vector<double>(responses, 0.0)};
 }
 
-/// A job of PoseFold: the draws of all errors together, pose by pose.
+/// The job of PoseFold: draws of all errors together, pose by pose.
 struct PoseJob {
   const Plan& plan;
   const Model& model;
@@ -60,7 +60,7 @@ struct PoseJob {
   }
 };
 
-/// A job of UnitFold: the machines of a study that draws errors per machine, unit by unit at all poses.
+/// The job of UnitFold: the machines of a study that draws errors per machine, unit by unit at all poses.
 struct MachineJob {
   const Plan& plan;
   const Model& model;
@@ -87,7 +87,7 @@ struct MachineJob {
   }
 };
 
-/// A study of machines divides between its units, any other at its poses.
+/// A study with draws per machine can be divided between its units, any other between its poses.
 std::size_t most_shards(const Study& study, std::size_t poses) {
   if (study.analysis.draws == Draws::per_pose) return shards_by_pose(study, poses);
   return MachineTable::units_for(study.analysis.samples, poses);

@@ -16,14 +16,14 @@ namespace {
 
 double share(std::uint64_t part, std::uint64_t all) { return static_cast<double>(part) / static_cast<double>(all); }
 
-/// Sets such lists of errors.
+/// Copies estimates into lists of values and of the ends of their intervals.
 void set_all(const std::vector<Estimate>& estimates, Array<double, axis::Factor>& value,
              Array<double, axis::Factor>& low, Array<double, axis::Factor>& high) {
   make_room({estimates.size()}, value, low, high);
   for (std::size_t p = 0; p < estimates.size(); ++p) set_estimate(estimates[p], value, low, high, p);
 }
 
-/// With room for so many responses.
+/// Values with room for this many responses.
 MachineValues values_of(std::size_t responses, std::size_t levels) {
   MachineValues values;
   make_room({responses}, values.mean, values.mean_ci_low, values.mean_ci_high, values.std, values.min, values.max,
@@ -45,7 +45,7 @@ void set_quantiles(std::span<const Bucket> buckets, std::span<const double> leve
   values.quantile_error(response) = found.error;
 }
 
-/// What an error does alone, or all of them do on a response.
+/// Sets main effects to NaN at these positions: an error on a response, or all errors on it.
 template <class... Positions>
 void leave_out(MainEffects& effects, Positions... at) {
   for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) std::ranges::fill(list->row(at...), kNaN);

@@ -13,7 +13,7 @@
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
 
-/// From counts and sums over machines to what a result says of them.
+/// Computes the numbers of a result from counts and sums over machines.
 namespace poesy {
 
 /// Sets an estimate in lists of values and of the ends of their intervals, at these positions.
@@ -24,44 +24,42 @@ void set_estimate(const Estimate& estimate, Values& value, Values& low, Values& 
   high(at...) = estimate.interval.high;
 }
 
-/// One number of each machine. moments, sketches: of each response, of the machines that are solved at each pose.
+/// One number of each machine. moments, sketches: [R] of the machines that are solved at each pose.
 MachineValues machine_values(std::span<const Moments> moments, std::span<const QuantileSketch> sketches,
                              const Analysis& analysis);
 
-/// limits: those of the study.
+/// The yield and its gradient. limits: those of the study.
 YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::span<const ResponseLimit> limits,
                      double conf_level);
 
-/// The interval of the parts, which holds that of the machines. parts: of the same machines as `found`.
+/// The interval that includes the uncertainty from few parts. parts: of the same machines as `found`.
 PartsYield parts_yield(const PartSums& parts, const YieldResult& found);
 
-/// First-order indices and curves of all errors: the indices added up over the poses that `at_poses` are of, the curves
-/// of `curve`. errors: all of them.
+/// First-order indices, summed over the poses of `at_poses`, and curves from `curve`. errors: [P] all errors.
 MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence dependence, const MainEffectSums& curve,
                          std::span<const BinSpread> errors, std::size_t responses, double conf_level);
 
-/// Makes indices and curves of correlated errors NaN: what the uniform of such an error does is not what the error
-/// does, and others go with it.
+/// Sets indices and curves of correlated errors to NaN, because other errors vary with them, and the uniform from which
+/// such an error is drawn is not its own.
 void leave_out_correlated(const Plan& plan, MainEffects& effects);
 
-/// Makes indices and curves of responses NaN that do not vary (stats/indices.h), at the poses over which indices add up
-/// or from machine to machine. Says which do not vary at any pose, where there are such. rounding: of each response as
-/// joint_rounding (run/response_rounding.h) gives it.
+/// Sets indices and curves to NaN for responses that do not vary (stats/indices.h), at the poses over which indices are
+/// summed or from machine to machine. Records which responses do not vary at any pose, if there are some. rounding: [R]
+/// see joint_rounding() (run/response_rounding.h).
 void leave_out_constant(std::span<const double> rounding, MonteCarloResult& found);
 
-/// How each error of a study lies in its bins.
+/// The distribution of each error of a study in its bins.
 std::vector<BinSpread> bin_spreads(const Plan& plan);
 
-/// What is found at these poses, but for the effects.
+/// The result at these poses, without the effects.
 EffectResult effect_result(std::span<const PoseIndex> poses, std::span<const BinSpread> errors, double conf_level);
 
-/// What is shown of the yield that is asked for, 0 for none: kept if the one-sided lower limit at the result's level is
-/// at least that, not kept if the upper limit is below it. solves: of the
-/// machines at all poses.
+/// Judges the yield against the wanted one (0: none): kept if the one-sided lower limit at the result's level is at
+/// least that, not kept if the upper limit is below it. solves: those of the machines at all poses.
 YieldVerdict judge_yield(const YieldResult& found, const SolveCounts& solves, double asked);
 
-/// Judges the limits of a study of machines: all together, and each alone. largest: of each response, of the machines
-/// that are solved at each pose. counts: as for yield_of; solves: as for judge_yield.
+/// Judges the limits of a study with draws per machine, together and each alone. largest: [R] of the machines that are
+/// solved at each pose. counts: see yield_of(); solves: see judge_yield().
 LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked, const YieldResult& found,
                              const SolveCounts& solves, const MachineCounts& counts,
                              std::span<const QuantileSketch> largest);

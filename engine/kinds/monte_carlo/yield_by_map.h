@@ -9,11 +9,11 @@
 
 namespace poesy {
 
-/// What the limited vectors say of the yield to first order, fitted to the study's first machines (sums; null: there is
-/// no fit):
+/// Sets what the linear map of the limited vectors says about the yield. The map is fitted to the study's first
+/// machines (sums; null: there is no fit):
 /// - the shares of the mean square of each limited response, for all errors; NaN without a fit;
-/// - the gradient and the change by errors whose score is a polynomial, by MappedGradient in place of what is there,
-///   if the map judges few machines wrongly. rejected: of the first machines, which are drawn anew.
+/// - the gradient and the change by errors whose score is a polynomial, by MappedGradient instead of the present
+/// numbers, if the map judges few machines wrongly. rejected: [first machines] 1 or 0; their errors are drawn again.
 void set_first_order(const MachineTable& table, const LinearFitSums* sums, std::span<const std::uint8_t> rejected,
                      double conf_level, YieldResult& yield);
 

@@ -22,17 +22,17 @@
 namespace poesy {
 namespace {
 
-/// Which errors make most of the mean square, and which together make next to none.
+/// The errors that make most of the mean square, and those that together make hardly any of it.
 struct FewMatter {
-  std::vector<std::string> names;   ///< of those that make most, the largest first
+  std::vector<std::string> names;   ///< errors that make most of it, the largest first
   double sum = 0.0;                 ///< their share
-  std::vector<std::string> hardly;  ///< of those that together make less than kHardly
+  std::vector<std::string> hardly;  ///< errors that together make less than kHardly
 };
 
 constexpr double kMost = 0.8;
 constexpr double kHardly = 0.01;
 
-/// None where not all effects are known, or none has one.
+/// None if not all effects are known, or no error has one.
 std::optional<FewMatter> few_matter(const StoredResult& result) {
   const std::size_t response = response_named(result, default_ranking(result));
   const MeanSquare found = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
@@ -55,7 +55,7 @@ std::optional<FewMatter> few_matter(const StoredResult& result) {
   return few;
 }
 
-/// The error of the largest effect on the response that ranks, with its interval.
+/// The error with the largest effect on the response that ranks, with its interval.
 std::string largest_text(const StoredResult& result, const RankedErrors& ranked) {
   const std::size_t p = ranked.rows.front();
   const std::size_t r = ranked.response;
@@ -69,7 +69,7 @@ std::string largest_text(const StoredResult& result, const RankedErrors& ranked)
                      response_text(response, shown.high(r, p) * sigma));
 }
 
-/// How far the intervals of the errors that matter reach, and for which sizes the indices hold.
+/// How wide the intervals of the errors that matter are, and for which sizes the indices hold.
 std::string sure_text(const StoredResult& result, const RankedErrors& ranked) {
   const GlobalIndices shown = shown_indices(result);
   double widest = 0.0;
@@ -122,7 +122,7 @@ std::string worst_place_text(const StoredResult& result) {
     if (effects[m] > effects[worst]) worst = m;
   }
   const double ratio = effects.empty() ? 0.0 : effects[worst] * static_cast<double>(effects.size()) / sum;
-  if (!(ratio >= kHardlyDiffers)) return {};  // neither where an effect is not known
+  if (!(ratio >= kHardlyDiffers)) return {};  // also if an effect is not known
   return fmt::format("The effect of {} on {} is largest at {}, {:.1f} times its mean over the poses.",
                      result.factors[error].name, result.responses[ranked.response].name, place_text(result, worst),
                      ratio);

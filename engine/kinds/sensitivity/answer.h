@@ -7,14 +7,14 @@
 
 namespace poesy {
 
-/// The errors that make most of the mean square, and those that together make next to none, in two sentences; empty
-/// where not all of their effects are known, or none has one.
+/// The errors that make most of the mean square, and those that together make hardly any of it, in two sentences. Empty
+/// if not all effects are known, or no error has one.
 std::string few_matter_text(const StoredResult& result);
 
-/// Where the most important error has its largest effect; empty where poses hardly differ.
+/// The pose where the most important error has its largest effect; empty if poses hardly differ.
 std::string worst_place_text(const StoredResult& result);
 
-/// What the report of a sensitivity result says first.
+/// The first lines of the report of a sensitivity result.
 Answer sensitivity_answer(const StoredResult& result);
 
 }  // namespace poesy

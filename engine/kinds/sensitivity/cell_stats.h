@@ -10,8 +10,8 @@
 
 namespace poesy {
 
-/// What the samples of consecutive cells came to, of R responses. Each response has a list of its own, so that whoever
-/// is done with a response can give its memory back.
+/// Statistics of the samples of consecutive cells, for R responses. Each response has a list of its own, so that its
+/// memory can be freed separately.
 struct CellStats {
   std::vector<std::vector<Moments>> responses;  ///< [R][cells] over the samples that count
   std::vector<SolveCounts> solves;              ///< [cells]
@@ -23,13 +23,15 @@ struct CellStats {
   CellStats(std::size_t response_count, std::size_t cells)
       : responses(response_count, std::vector<Moments>(cells)), solves(cells), failed(cells) {}
 
-  std::size_t size() const { return solves.size(); }  ///< Cells.
-  UnitStats at(std::size_t cell) const;               ///< One cell.
-  /// One cell, of samples from `first` on.
+  std::size_t size() const { return solves.size(); }  ///< The number of cells.
+  UnitStats at(std::size_t cell) const;               ///< The statistics of one cell.
+  /// Reads or writes one cell, whose samples begin at `first`.
   void state(Archive& archive, std::size_t cell, std::uint64_t first);
-  CellStats part(const NumberRange& cells) const;       ///< Some of them.
-  void merge(std::size_t cell, const UnitStats& unit);  ///< Precondition: as for UnitStats::merge.
-  /// The same cells: the samples of `later` come after those of this. Gives the memory of `later` back as it goes.
+  CellStats part(const NumberRange& cells) const;  ///< The statistics of some of the cells.
+  void merge(std::size_t cell,
+             const UnitStats& unit);  ///< Adds a unit to a cell. Precondition: see UnitStats::merge().
+  /// Adds later samples of the same cells. Frees the memory of `later` step by step. Precondition: the samples of
+  /// `later` come after those of this object.
   void merge(CellStats later);
 };
 

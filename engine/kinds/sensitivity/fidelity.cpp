@@ -15,7 +15,7 @@
 namespace poesy {
 namespace {
 
-/// A spread that solvers leave where there is none, SI; with errors of 1e-3, of kIndexRounding.
+/// The spread, SI, that the rounding of solvers leaves where there is none: kIndexRounding with errors of 1e-3.
 constexpr double kSpreadRounding = 1e-13;
 
 /// Two results and what belongs to both.
@@ -29,7 +29,7 @@ struct BothFidelities {
     return index < kIndexRounding || index * sigma[factor] < kSpreadRounding;
   }
 
-  /// The error's largest index on a response of the same dimension; NaN when one is not known.
+  /// The error's largest index on any response of the same dimension; NaN if one is not known.
   double effect(const SensitivityResult& result, std::size_t response, std::size_t factor) const {
     double largest = 0.0;
     for (std::size_t r = 0; r < result.responses(); ++r) {
@@ -41,7 +41,7 @@ struct BothFidelities {
     return largest;
   }
 
-  /// Of the mean, over what the background alone gives.
+  /// The increase of the mean above the response to the background alone.
   static double growth(const SensitivityResult& result, std::size_t response, std::size_t factor, std::size_t pose) {
     return result.mean(response, factor, pose) - result.background(response, pose);
   }
@@ -57,7 +57,7 @@ struct BothFidelities {
     return std::sqrt(sum / static_cast<double>(first.poses())) / sigma[factor];
   }
 
-  /// Whether as many samples of an error count in both, at every pose.
+  /// Whether the same number of an error's samples count in both results, at every pose.
   bool same_samples(std::size_t factor) const {
     for (std::size_t r = 0; r < first.responses(); ++r) {
       if (!std::ranges::equal(first.count.row(r, factor), second.count.row(r, factor))) return false;
@@ -66,8 +66,8 @@ struct BothFidelities {
   }
 };
 
-/// What the ratios of one error and response are counted from: NaN where there is nothing, 0 where only the second
-/// fidelity has anything.
+/// The denominator of the ratios of one error and response: NaN if neither fidelity has an effect, 0 if only the second
+/// one has.
 double ratio_base(const BothFidelities& both, std::size_t response, std::size_t factor) {
   const double effect = both.effect(both.first, response, factor);
   if (!both.is_rounding(factor, effect)) return effect;
@@ -97,7 +97,7 @@ const Group<Fidelity> kFidelity{
 
 using Measure = FidelityResult::Indices;
 
-/// The response where a measure of an error has its largest magnitude; none where it has no value.
+/// The response with the largest magnitude of an error's measure; none if no value is known.
 std::optional<std::size_t> largest(const Measure& measure, std::size_t factor) {
   std::optional<std::size_t> found;
   for (std::size_t r = 0; r < measure.length<axis::Response>(); ++r) {
@@ -107,7 +107,7 @@ std::optional<std::size_t> largest(const Measure& measure, std::size_t factor) {
   return found;
 }
 
-/// The largest value in percent, and the response where it is. Refers to the result and the measure.
+/// Adds columns with the largest value in percent, and its response. Refers to the result and the measure.
 void add_largest(std::vector<FilledColumn>& columns, const StoredResult& result, const Measure& measure,
                  const std::string& name, int dispensable) {
   const auto value = [&measure](std::size_t p) {
@@ -145,7 +145,7 @@ std::vector<std::string> fidelity_notes(const FidelityResult& found) {
   return list;
 }
 
-/// The largest magnitude over the responses of a measure of each error; NaN where none is known.
+/// The largest magnitude over the responses, for each error; NaN if none is known.
 std::vector<double> largest_magnitudes(const Measure& measure) {
   std::vector<double> list;
   for (std::size_t p = 0; p < measure.length<axis::Factor>(); ++p) {

@@ -10,41 +10,42 @@
 
 namespace poesy {
 
-/// Compares two sensitivity results of the same draws at two fidelities of a model. dimensions: of the responses.
-/// sigma: standard deviations of the errors, SI. linearity: between 0 and 1.
+/// Compares two sensitivity results of the same draws at two fidelities of a model. dimensions: [R] of the responses.
+/// sigma: [P] standard deviations of the errors, SI. linearity: between 0 and 1.
 ///
-/// All ratios are of the error's effect: its largest global index, by the first fidelity, on any response of the same
-/// dimension. So a component in which the error hardly shows does not make it nonlinear.
-///   discrepancy           global of the second - global of the first
-///   relative_discrepancy  discrepancy / effect
-///   nonlinearity          root mean square over the poses of hypot(m1 - m2, s1 - s2) / sigma, over effect, with m
-///                         and s the mean, less the response to the background alone, and the standard deviation of
-///                         the response by each. It sees what the indices see, and besides a shift of the mean: that is
-///                         where an even, second-order effect shows, which hardly changes the spread. It is never more
-///                         than the root mean square difference of the samples themselves.
+/// All ratios have the error's effect as denominator: its largest global index by the first fidelity, on any response
+/// of the same dimension. So an error is not called nonlinear because of a component on which it hardly acts.
 ///
-/// An error is linear when no response's nonlinearity or relative discrepancy, as a magnitude, is above `linearity`.
-/// An effect below 1e-10 in SI, or which makes a spread below 1e-13 in SI, is rounding. Where the first fidelity has
-/// no more, the ratios are NaN and say nothing if the second has no more either, and are infinite if it has.
-/// An error with an index that is not known, or with different numbers of solved samples by each fidelity, is not
-/// linear: that was not shown. A verdict holds for errors of the study's size; larger ones may be nonlinear. The names
-/// of the fidelities are left out.
+///     discrepancy           global of the second - global of the first
+///     relative_discrepancy  discrepancy / effect
+///     nonlinearity          root mean square over the poses of hypot(m1 - m2, s1 - s2) / sigma, over effect
+///
+/// with m the mean, less the response to the background alone, and s the standard deviation of the response.
+/// Nonlinearity includes a shift of the mean, where a second-order effect shows that hardly changes the spread. It is
+/// at most the root mean square difference of the samples themselves.
+///
+/// An error is linear if no response has a nonlinearity or a magnitude of relative discrepancy above `linearity`. An
+/// effect below 1e-10 in SI, or one with a spread below 1e-13 in SI, is rounding. If the first fidelity has only
+/// rounding, the ratios are NaN if the second has only rounding too, and infinite otherwise. An error is also called
+/// nonlinear if an index is not known, or if the two fidelities solved different numbers of samples, because linearity
+/// was not shown. A verdict holds for errors of the study's size; larger ones may be nonlinear. The names of the
+/// fidelities are left empty.
 FidelityResult compare_fidelities(const SensitivityResult& first, const SensitivityResult& second,
                                   std::span<const Dimension> dimensions, std::span<const double> sigma,
                                   double linearity);
 
-/// The second fidelity beside the first in result files: /fidelity, nothing where the study compares none.
+/// Writes the second fidelity of a result, /fidelity; nothing if the study compares none.
 /// @{
 void write_fidelity(ResultBuilder& result, const std::optional<FidelityResult>& found);
 std::optional<FidelityResult> read_fidelity(const h5::File& file);
 /// @}
-/// fidelity.csv and fidelity_not_converged.csv.
+/// Adds fidelity.csv and fidelity_not_converged.csv.
 void append_fidelity_tables(CsvTables& tables, const StoredResult& result);
 
-/// The largest discrepancy of the two fidelities and the verdict, with the errors in this order. Precondition: the
-/// study compares two.
+/// The table of the largest discrepancy of the two fidelities and the verdict, with the errors in this order.
+/// Precondition: the study compares two.
 Table fidelity_table(const StoredResult& result, const RankedErrors& ranked);
-/// The section of a report, where the study compares two.
+/// Adds the section of a report if the study compares two fidelities.
 void add_fidelity_section(const StoredResult& result, std::span<const Table> tables, Page& page);
 
 }  // namespace poesy

@@ -52,7 +52,7 @@ const Group<Indices> kIndices{
      {"background", &Indices::background, kResponseUnit,
       "The response with all varied errors zero; NaN where that was not solved"}}};
 
-/// What the ranking owes to the metric's points.
+/// How much the ranking depends on the metric's points.
 const FieldRow<Indices> kRadiusTau{
     "radius_tau", &Indices::radius_tau, "1",
     "Kendall's tau of the errors' effects with the metric's points so far from their middle and as they are, to first "
@@ -97,7 +97,8 @@ void read_radius_tau(const h5::File& file, Indices& found) {
   if (!found.radius_tau.empty() && radii != kPointsRadii.size()) throw h5::Error("/radius_multiple is of other radii");
 }
 
-/// The index by one estimator ("global", "global_corrected") with its interval, in SI or in the units people read.
+/// Adds columns of the index by one estimator ("global", "global_corrected") with its interval, in SI or in the units
+/// that people read.
 void append_index_columns(CsvTable& table, const StoredResult& result, const std::string& estimator, std::size_t r,
                           bool displayed) {
   const NamedUnit& response = result.responses[r];
@@ -114,7 +115,7 @@ void append_index_columns(CsvTable& table, const StoredResult& result, const std
   }
 }
 
-/// By the published estimator, and by the corrected one.
+/// The table of global indices by the published estimator and by the corrected one.
 CsvTable global_table(const StoredResult& result) {
   CsvTable table = lines_of_factors(result, "global");
   for (const std::string& estimator : {std::string("global"), std::string("global_corrected")}) {
@@ -133,7 +134,7 @@ CsvTable index_change_table(const StoredResult& result) {
   return table;
 }
 
-/// A table for each row along [response x factor x pose] and response.
+/// Adds a table for each response and each field along [response x factor x pose].
 void append_local_tables(CsvTables& tables, const StoredResult& result) {
   for (const FieldRow<Indices>& field : kIndices.fields) {
     if (field.axes != Indices::Cells<double>::axis_names()) continue;

@@ -24,7 +24,7 @@ bool same_poses(const StoredResult& a, const StoredResult& b) {
   return true;
 }
 
-/// Local index x sigma of B less that of A, of the errors that both have.
+/// The local index x sigma of B less that of A, for the errors that both have.
 ErrorCells local_differences(const StoredResult& a, const StoredResult& b, const Common& factors,
                              std::pair<std::size_t, std::size_t> response) {
   const ErrorCells in_a = local_effects(a, response.first);
@@ -41,7 +41,7 @@ ErrorCells local_differences(const StoredResult& a, const StoredResult& b, const
   return differences;
 }
 
-/// The errors that both have, the one that is most important in A first.
+/// The errors that both have, in the order of importance in A.
 Common ranked_common(const StoredResult& a, const StoredResult& b) {
   Common factors = common(names_of(a.factors), names_of(b.factors));
   const std::vector<std::size_t> ranks = ranked_errors(a, default_ranking(a)).ranks;
@@ -49,7 +49,7 @@ Common ranked_common(const StoredResult& a, const StoredResult& b) {
   return factors;
 }
 
-/// Where indices differ, of results at the same poses.
+/// Shows where indices differ, for results at the same poses.
 void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
   if (!same_poses(a, b)) {
     page.add_section("where", "Where in the workspace they differ")
@@ -81,7 +81,7 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
   figures.add_workspace(section, std::move(fields), "Each dot is a pose, coloured by what is chosen.");
 }
 
-/// Their rankings beside each other.
+/// Shows the two rankings side by side.
 void add_rankings(const ReportedResult& a, const ReportedResult& b, Page& page) {
   const auto ranked = [](const ReportedResult& one) {
     return RankedResult{one.stored, one.path, default_ranking(one.stored), sensitivity_tally(one.stored).total()};
@@ -99,7 +99,7 @@ void add_rankings(const ReportedResult& a, const ReportedResult& b, Page& page) 
   }
 }
 
-/// Predicted from the errors one by one (stats/tolerance.h), in the unit shown.
+/// The root mean square predicted from the errors one by one (stats/tolerance.h), in the unit shown.
 double total_rms(const StoredResult& result, std::size_t response) {
   const MeanSquare squares = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
   return std::sqrt(squares.at(result.factor_sigma)) / display(result.responses[response]).si;

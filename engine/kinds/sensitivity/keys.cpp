@@ -66,7 +66,7 @@ std::string linearity_line(const Study& study) {
   return study.mechanism.compared ? "linearity = " + linearity().text(study) + "\n" : "";
 }
 
-/// For models of which a study may compare two fidelities.
+/// The line of `linearity`, for models with two fidelities to compare.
 std::string shown_linearity(const TemplateLines& lines, const Study& study) {
   return study.model().fidelities.size() == 2 ? lines.usual("analysis", "linearity", "# ") : "";
 }

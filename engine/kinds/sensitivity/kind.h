@@ -9,20 +9,20 @@
 
 namespace poesy {
 
-/// Runs a sensitivity study at one fidelity on a pool of threads. Units are merged in plan order, so the result has the
-/// same bits for any number of threads, and whether it was continued from checkpoints or not: also from those of a plan
-/// with fewer samples. Memory does not grow with the number of samples. Empty when stopped, and of a shard.
+/// Runs a sensitivity study at one fidelity on a pool of threads. Units are merged in the order of the plan, so the
+/// result has the same bits for any number of threads, and also if it is continued from checkpoints, even those of a
+/// plan with fewer samples. Memory does not grow with the number of samples. Empty when stopped, and for a shard.
 std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
                                                  const RunOptions& options);
 
-/// Bytes of what a result of these lengths says of its responses and errors (/sensitivity), in memory and in a file
-/// alike.
+/// Bytes of the responses' and errors' numbers in a result with axes of these lengths (/sensitivity), in memory and in
+/// a file alike.
 std::size_t sensitivity_bytes(const AxisLengths& lengths);
 
-/// Sensitivity studies: the effect of each error on its own.
+/// Runs and reports sensitivity studies: the effect of each error alone.
 extern const Kind kSensitivityKind;
 
-/// How result files and reports know them.
+/// How sensitivity results are stored and reported.
 /// @{
 extern const FileKind kSensitivityFile;
 extern const ReportKind kSensitivityReport;

@@ -25,15 +25,15 @@
 namespace poesy {
 namespace {
 
-/// The study's size and a tenth of it, draws and their mirror images.
+/// The number of sizes: the study's, and a tenth of it.
 constexpr std::size_t kSizes = 2;
 constexpr std::size_t kSigns = 2;
 constexpr std::array kScales{1.0, -1.0, kSmallerSize, -kSmallerSize};
 
-/// Poses at which draws are solved at both sizes.
+/// The number of poses at which draws are solved at both sizes.
 std::size_t chosen_poses(const Plan& plan) { return some_poses(plan.poses().size()); }
 
-/// The cells of the plan at the chosen poses, slot by slot, counted from 0.
+/// The first draws of a cell at a chosen pose. chosen_cell: counts the cells at the chosen poses, slot by slot, from 0.
 WorkUnit first_draws(const Plan& plan, std::size_t chosen_cell) {
   const std::size_t poses = chosen_poses(plan);
   return {chosen_cell / poses, some_pose(chosen_cell % poses, plan.poses().size()), SampleIndex(0),
@@ -55,7 +55,7 @@ class CellEvaluator {
 
   CellIndices operator()(std::size_t cell) {
     const WorkUnit unit = first_draws(*plan_, cell);
-    const UnitOutcomes found = solve_.solve(unit, kScales);  // at once, because a model prepares for a pose
+    const UnitOutcomes found = solve_.solve(unit, kScales);  // together, because a model prepares for a pose
     const std::size_t draws = kSigns * unit.count;
     const ArrayView<const double, axis::Response, ErrorSize, axis::Sample> responses(found.responses,
                                                                                      {responses_, kSizes, draws});
@@ -83,11 +83,11 @@ class CellEvaluator {
   UnitEvaluator solve_;
 };
 
-/// Collects cells, pose by pose, and fills in an error's changes when its poses are there.
+/// Collects cells, pose by pose, and computes an error's changes when all its poses are there.
 struct ChangeSums {
   const Plan* plan;
-  std::vector<double> rounding;  ///< of the responses
-  /// Of the error that is being collected.
+  std::vector<double> rounding;  ///< [R]
+  /// The indices of the error that is being collected.
   Array<std::vector<LocalIndex>, ErrorSize, axis::Response> at_poses;
   SensitivityResult::Indices changes;
 
@@ -105,7 +105,7 @@ struct ChangeSums {
     for (std::size_t r = 0; r < rounding.size(); ++r) changes(r, slot) = change(r, slot);
     for (std::vector<LocalIndex>& poses_of_one : at_poses) poses_of_one.clear();
   }
-  /// Of all cells: no checkpoint is kept of some.
+  /// Reads or writes all changes; there are no checkpoints between the cells.
   void state(Archive& archive, const NumberRange&) { archive.reals(changes.all()); }
 
  private:
@@ -120,7 +120,7 @@ struct ChangeSums {
   }
 };
 
-/// A job of UnitFold: the cells. Its solves are not counted.
+/// The job of UnitFold, whose units are the cells. Its solves are not counted.
 struct ChangeJob {
   const Plan& plan;
   const Model& model;
@@ -135,27 +135,27 @@ struct ChangeJob {
   ChangeSums sums() const { return {plan, response_rounding(model)}; }
 };
 
-/// Names in one sentence, at most.
+/// The largest number of names in one sentence.
 constexpr std::size_t kMostNames = 10;
 
 std::span<const double> changes_of(const StoredResult& result, std::size_t response) {
   return sensitivity_of(result).index_change.row(response);
 }
 
-/// Of a change that is known: "-99.1 %".
+/// A known change as text: "-99.1 %".
 std::string change_text(double change) { return fmt::format("{:+.1f} %", 100.0 * change); }
 
-/// The size to study, as a multiple of the size studied. At this size the tolerance counted from the index is the size
-/// itself, if the index grows with a power of the size. ratio: tolerance over size studied; change: of the index at a
-/// tenth of the size.
+/// The size to study, as a multiple of the size studied. If the index grows with a power of the size, the tolerance
+/// from the index at this size is the size itself. ratio: tolerance over size studied; change: of the index at a tenth
+/// of the size.
 double corrected_ratio(double ratio, double change) {
   constexpr double kFallsTooFast = -0.9;
   const double power = -std::log10(1.0 + change);
   return std::isfinite(power) && power > kFallsTooFast ? std::pow(ratio, 1.0 / (1.0 + power)) : ratio;
 }
 
-/// A size that is about that of the first of the error's tolerances that is of another size than was studied; none
-/// where all are of that size.
+/// The size to study for the first of the error's tolerances that is far from the size studied; none if all are near
+/// it.
 std::optional<double> size_to_study(const ResponseTolerances& tolerances, std::size_t factor, double studied,
                                     double change) {
   for (const std::span<const double> proposed : proposed_tolerances(tolerances)) {
@@ -186,7 +186,7 @@ double index_change_solves(const Plan& plan) {
 
 Cell change_cell(double change) {
   if (std::isnan(change)) return text_cell("");
-  // Rounding has either sign.
+  // Removes the sign of changes that round to zero.
   const double percent = std::abs(change) < 5e-4 ? 0.0 : 100.0 * change;
   return {fmt::format("{:.1f}", percent), std::isfinite(change) ? std::optional(100.0 * change) : std::nullopt};
 }

@@ -24,7 +24,7 @@
 namespace poesy {
 namespace {
 
-/// An interval that reaches further than this share of its index is called wide.
+/// An interval is called wide if it extends by more than this share of its index.
 constexpr double kWideInterval = 0.10;
 
 constexpr std::string_view kCorrected =
@@ -57,7 +57,7 @@ void add_which_errors_matter(const StoredResult& result, std::span<const Table> 
   section.table(tables, "ranked");
 }
 
-/// The rows of cells in this order, one behind the other.
+/// The rows of the cells in this order, one after the other.
 std::vector<double> in_order(const ErrorCells& cells, std::span<const std::size_t> rows) {
   std::vector<double> list;
   list.reserve(cells.size());
@@ -95,7 +95,7 @@ Lines along_trajectory(const StoredResult& result, const PoseFigures& figures) {
   return lines;
 }
 
-/// With which coordinate the effects of all errors grow or fall; empty where none is clear.
+/// The coordinate with which the effects of all errors grow or fall; empty if none is clear.
 std::string trend_text(const StoredResult& result) {
   const std::size_t r = response_named(result, default_ranking(result));
   const auto order = explaining_order(result, root_sum_squares(local_effects(result, r)));
@@ -135,7 +135,7 @@ void add_where(const StoredResult& result, Page& page) {
   figures.add_workspace(section, std::move(fields));
 }
 
-/// With fewer samples.
+/// The indices with fewer samples.
 EstimateCourse course_of(const StoredResult& result) {
   return result.convergence ? with_ends(result.convergence->course) : sensitivity_of(result).history.value();
 }
@@ -208,7 +208,7 @@ void warn_of_small_errors(const StoredResult& result, std::vector<std::string>& 
                   counted(small.size(), "error is", "errors are"), some_names(small)));
 }
 
-/// Errors that add next to nothing to the mean square are no reason to warn.
+/// Warns only of errors that add a noticeable part to the mean square.
 void warn_of_sizes(const StoredResult& result, std::vector<std::string>& list) {
   const std::size_t response = response_named(result, default_ranking(result));
   const MeanSquare square = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
@@ -248,7 +248,7 @@ void warn_of_wide_intervals(const StoredResult& result, std::vector<std::string>
                   percent_text(widest)));
 }
 
-/// What each error adds to the mean square, and the effect of all errors at each pose.
+/// The share of each error in the mean square, and the effect of all errors at each pose.
 ErrorShares error_shares(const StoredResult& result) {
   if (result.factors.empty() || result.poses.size() == 0) return {};
   const std::size_t r = response_named(result, default_ranking(result));

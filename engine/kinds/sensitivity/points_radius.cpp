@@ -15,7 +15,7 @@
 namespace poesy {
 namespace {
 
-/// The points at this multiple of their distance from their middle.
+/// Moves the points to this multiple of their distance from their middle.
 std::vector<PlatformPoint> at_radius(std::vector<PlatformPoint> points, double multiple) {
   PlatformPoint middle{};
   for (const PlatformPoint& point : points) {
@@ -27,7 +27,7 @@ std::vector<PlatformPoint> at_radius(std::vector<PlatformPoint> points, double m
   return points;
 }
 
-/// The study's mechanism to first order; nothing where it has no first order.
+/// The study's mechanism to first order; none if it has no first order.
 std::optional<MechanismChoice> to_first_order(MechanismChoice mechanism) {
   const std::vector<std::string>& fidelities = mechanism.entry->description.fidelities;
   const auto found = std::ranges::find(fidelities, "first-order");
@@ -37,7 +37,7 @@ std::optional<MechanismChoice> to_first_order(MechanismChoice mechanism) {
   return mechanism;
 }
 
-/// The mechanism with these points; null where it refuses them.
+/// The mechanism with these points; null if it refuses them.
 std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<PlatformPoint> points) {
   mechanism.points = std::move(points);
   try {
@@ -47,11 +47,12 @@ std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<Platfor
   }
 }
 
-/// Effects of all errors on all responses, by the published estimator. Poses without a first order are left out.
+/// Effects of all errors on all responses by the published estimator. Poses without a first order are left out.
 SensitivityResult::Indices effects_of(const Plan& plan, const Model& model) {
   const std::vector<double> no_background(model.description().factors.size(), 0.0);
   std::vector<double> responses(model.description().responses.size());
-  Array<std::vector<LocalIndex>, axis::Response, axis::Factor> local({responses.size(), plan.slots()});  // at the poses
+  Array<std::vector<LocalIndex>, axis::Response, axis::Factor> local(
+      {responses.size(), plan.slots()});  // indices at each pose
   const auto evaluator = model.evaluator(plan.solver());
   for (std::size_t n = 0; n < some_poses(plan.poses().size()); ++n) {
     const std::span<const double> pose = plan.poses()[some_pose(n, plan.poses().size())];

@@ -8,14 +8,14 @@
 
 namespace poesy {
 
-/// Distances of the platform's points from their middle at which a ranking is made again, as multiples of the study's.
+/// Multiples of the distance of the platform's points from their middle at which the ranking is repeated.
 inline constexpr std::array kPointsRadii{0.5, 2.0};
 
-/// What the ranking of a sensitivity study by the platform's metric owes to the choice of its points: Kendall's tau of
-/// the errors' effects (index x sigma) between points at each of kPointsRadii and the study's own. To first order,
-/// without the background's errors, and at some of the poses (run/evaluate_unit.h). NaN where fewer than two errors
-/// have an effect, and where the mechanism refuses points so far apart or so close. Empty where the mechanism has no
-/// such metric. Precondition: a plan of a sensitivity study.
+/// How much the ranking of a sensitivity study by the platform's metric depends on the choice of its points: Kendall's
+/// tau between the errors' effects (index x sigma) with points at each of kPointsRadii and with the study's own.
+/// Computed to first order, without the background's errors, at some of the poses (run/evaluate_unit.h). NaN if fewer
+/// than two errors have an effect, and if the mechanism refuses points so far apart or so close. Empty if the mechanism
+/// has no such metric. Precondition: a plan of a sensitivity study.
 Array<double, axis::RadiusMultiple, axis::Response> radius_rank_correlations(const Study& study, const Plan& plan);
 
 }  // namespace poesy

@@ -39,11 +39,11 @@ std::vector<std::size_t> ordered(const StoredResult& result, std::size_t respons
   return rows;
 }
 
-/// The effects of one result's errors on its response, in SI, for the errors that both results have.
+/// The effects of one result's errors on the response that ranks, SI, for the errors that both results have.
 struct Ranking {
-  std::vector<double> effects;  ///< 0: none; NaN: not known
-  std::string metric;           ///< its name
-  NamedUnit response;           ///< that ranks
+  std::vector<double> effects;  ///< 0: no effect; NaN: not known
+  std::string metric;           ///< name of the metric
+  NamedUnit response;           ///< the response that ranks
 };
 
 Ranking ranking_of(const RankedResult& ranked, const std::vector<std::size_t>& factors) {
@@ -58,14 +58,14 @@ Ranking ranking_of(const RankedResult& ranked, const std::vector<std::size_t>& f
   return ranking;
 }
 
-/// One more than the number of errors with a larger effect.
+/// The rank: one more than the number of errors with a larger effect.
 Cell rank_cell(const Ranking& ranking, std::size_t at) {
   if (std::isnan(ranking.effects[at])) return text_cell("");
   const auto larger = [&](double effect) { return effect > ranking.effects[at]; };
   return count_cell(1 + static_cast<std::uint64_t>(std::ranges::count_if(ranking.effects, larger)));
 }
 
-/// Rank and effect of each error. Refers to the ranking.
+/// Adds rank and effect of each error. Refers to the ranking.
 void add_columns(std::vector<FilledColumn>& columns, char letter, const Ranking& ranking, bool by_metric) {
   const std::string suffix = letter == 'A' ? "_a" : "_b";
   const NamedUnit& response = ranking.response;
@@ -78,7 +78,7 @@ void add_columns(std::vector<FilledColumn>& columns, char letter, const Ranking&
        [&ranking](std::size_t n) { return value_cell(ranking.effects[n], ranking.response); }});
 }
 
-/// How many errors have a known effect in both.
+/// The number of errors with a known effect in both rankings.
 std::size_t known_in_both(const Ranking& a, const Ranking& b) {
   std::size_t known = 0;
   for (std::size_t n = 0; n < a.effects.size(); ++n) known += !std::isnan(a.effects[n]) && !std::isnan(b.effects[n]);
@@ -125,10 +125,11 @@ Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder or
   return both;
 }
 
-/// Which columns go first where the room does not suffice: other responses, from the last, then the rank.
+/// The order in which columns are left out of narrow tables: other responses first, beginning with the last, then the
+/// rank.
 enum Dispensable : int { kIndexChange = 1, kNotConverged = 2, kRank = 3, kFirstOther = 4 };
 
-/// The responses of the headline beside the one that ranks, those that have a dimension.
+/// The headline's responses that have a dimension, except the one that ranks.
 std::vector<std::size_t> other_responses(const StoredResult& result, std::size_t ranking) {
   std::vector<std::size_t> others;
   for (const std::size_t r : varying_first(result, result.headline)) {
@@ -139,7 +140,7 @@ std::vector<std::size_t> other_responses(const StoredResult& result, std::size_t
 
 using Columns = std::vector<FilledColumn>;
 
-/// An index and the ends of its interval.
+/// Adds columns of an index and the ends of its interval.
 void add_index(Columns& columns, const StoredResult& result, std::size_t r, const std::string& name,
                const std::string& heading, int dispensable) {
   const GlobalIndices shown = shown_indices(result);
@@ -148,7 +149,7 @@ void add_index(Columns& columns, const StoredResult& result, std::size_t r, cons
   columns.push_back(index_column(result, shown.high, r, name + "_high", "high", dispensable));
 }
 
-/// Refers to both.
+/// The columns of the ranking. Refers to both arguments.
 Columns ranked_columns(const StoredResult& result, const RankedErrors& ranked) {
   const std::size_t response = ranked.response;
   const Unit& unit = display(result.responses[response]);
@@ -191,7 +192,7 @@ std::vector<std::string> ranked_notes(const StoredResult& result, const RankedEr
           "not converged: share of the samples whose solve did not settle"};
 }
 
-/// How the ranking changes with the points of the platform's metric; empty where the result does not say it.
+/// How the ranking changes with the points of the platform's metric; empty if the result does not have it.
 std::string radius_note(const StoredResult& result, std::size_t response) {
   const auto& tau = sensitivity_of(result).radius_tau;
   if (tau.empty() || std::isnan(tau(0, response)) || std::isnan(tau(1, response))) return {};
@@ -201,12 +202,12 @@ std::string radius_note(const StoredResult& result, std::size_t response) {
       result.responses[response].name, tau(0, response), tau(1, response));
 }
 
-/// How often intervals of so few samples hold the index; empty where that is as often as they say. Of a norm, and of an
-/// error that acts by its square, the samples are skewed, and few of them hardly show their tails.
+/// How often intervals from this few samples contain the index; empty if that is as often as they state. The samples of
+/// a norm, and of an error that acts by its square, are skewed, and few samples hardly show the tails.
 std::string few_samples_note(const StoredResult& result, std::size_t response) {
   constexpr std::uint64_t kEnoughOfNorms = 200;
   constexpr std::uint64_t kEnoughOfSquares = 1000;
-  constexpr double kSquare = -0.5;  // an index in proportion to the error changes by -90 % at a tenth
+  constexpr double kSquare = -0.5;  // an index in proportion to the error's size changes by -90 % at a tenth of it
   const SensitivityResult& found = sensitivity_of(result);
   if (found.solves.empty()) return {};
   const std::uint64_t samples = std::ranges::min(found.solves, {}, &SolveCounts::total).total();
@@ -219,7 +220,7 @@ std::string few_samples_note(const StoredResult& result, std::size_t response) {
       counted(samples, "sample", "samples"));
 }
 
-/// Why some cells hold no number; empty where none is so.
+/// The reasons why cells have no number; empty if all have one.
 std::string rounding_note(const Table& table) {
   const auto is_rounding = [](const Cell& cell) { return cell.text == kTooSmall; };
   const bool any = std::ranges::any_of(

@@ -20,7 +20,7 @@
 namespace poesy {
 namespace {
 
-/// Below which the index of each error is rounding, [R x P].
+/// [R x P] The magnitude below which the index of each error is rounding.
 std::vector<double> index_roundings(const Plan& plan, const Model& model) {
   std::vector<double> list;
   for (const double rounding : response_rounding(model)) {
@@ -31,7 +31,7 @@ std::vector<double> index_roundings(const Plan& plan, const Model& model) {
   return list;
 }
 
-/// A job of PoseFold: the draws of one error at one pose after the other.
+/// The job of PoseFold: the draws of one error, at one pose after the other.
 struct SensitivityJob {
   const Plan& plan;
   const Model& model;
@@ -64,13 +64,13 @@ std::vector<Dimension> response_dimensions(const ModelDescription& model) {
   return dimensions;
 }
 
-/// The study at both of its fidelities, on the same draws.
+/// Runs the study at both of its fidelities, on the same draws.
 std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const Plan& plan) {
   const Analysis& analysis = run.study.analysis;
   const auto report = [&](const Progress& progress) {
     if (run.options.progress) run.options.progress(progress);
   };
-  // Progress is that of both as one run. A first half that reports none was done by the run that is continued.
+  // Progress covers both as one run. If the first half reports none, the continued run has already done it.
   std::optional<std::uint64_t> before;
   RunOptions options = run.options;
   options.progress = [&](const Progress& half) {
@@ -120,7 +120,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
 
 std::size_t cells(const Study& study, std::size_t poses) { return study.analysis.factors.size() * poses; }
 
-/// Separating the errors of a sensitivity study at one pose of all.
+/// The work of separating the errors of a sensitivity study, timed at one of its poses.
 WorkOutlook separating(const Study& study, const Model& model, const PoseSet& poses) {
   return {[&](double at) {
     const auto pose = poses[PoseIndex(static_cast<std::size_t>(at * static_cast<double>(poses.size())))];
@@ -130,7 +130,7 @@ WorkOutlook separating(const Study& study, const Model& model, const PoseSet& po
   }};
 }
 
-/// The result takes up the room that accumulators give back, one response after the other.
+/// The result uses the memory that accumulators free, one response after the other.
 MemoryOutlook sensitivity_memory(const Study& study, const Plan& plan, std::size_t fidelities) {
   const std::size_t responses = study.model().responses.size();
   const AxisLengths lengths{{"response", responses}, {"factor", plan.factors().size()}, {"pose", plan.poses().size()}};
@@ -138,7 +138,7 @@ MemoryOutlook sensitivity_memory(const Study& study, const Plan& plan, std::size
   const std::size_t separated = study.model().separation ? separation_bytes(lengths) : 0;
   const std::size_t result = numbers + plan.cells() * sizeof(SolveCounts);
   const std::size_t ends = plan.cells() * (sizeof(SolveCounts) + sizeof(FailedSamples));
-  const std::size_t moments = plan.cells() * sizeof(Moments);  // of a response
+  const std::size_t moments = plan.cells() * sizeof(Moments);  // for one response
   // A smaller last unit is kept apart from whole ones.
   const bool both = plan.samples() > Plan::kUnitSamples && plan.samples() % Plan::kUnitSamples != 0;
   const std::size_t parts = both ? 2 : 1;

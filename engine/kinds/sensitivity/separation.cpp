@@ -15,13 +15,13 @@
 namespace poesy {
 namespace {
 
-/// 1 - residual / effect, at least zero; NaN where that is not finite.
+/// 1 - residual / effect, at least zero; NaN if that is not finite.
 double removable_part(double residual, double effect) {
   const double left = residual / effect;
   return std::isfinite(left) ? std::max(0.0, 1.0 - left) : kNaN;
 }
 
-/// Of one error: the same, and NaN where its effect is rounding.
+/// The same for one error; NaN if its effect is rounding.
 double removable_share(double residual, double effect) {
   return has_effect(effect) ? removable_part(residual, effect) : kNaN;
 }
@@ -34,7 +34,7 @@ double root_mean_square(std::span<const double> values) {
 
 using Cells = SeparationResult::Cells;
 
-/// What the separated errors are at all poses.
+/// Fills in the separated errors at all poses.
 void fill_cells(const Model& model, const PoseSet& poses, std::span<const FactorIndex> factors,
                 SeparationResult& result) {
   for (Cells* cells : {&result.drive, &result.constraint, &result.effect, &result.residual, &result.removable_local}) {
@@ -77,7 +77,7 @@ const Group<SeparationResult> kSeparation{
      {"published", &SeparationResult::published, "1",
       "Class of the error in the literature; empty where it gives none"}}};
 
-/// The published classes that occur, in the order of their first errors.
+/// The published classes of these errors, in the order of their first errors.
 std::vector<std::string> classes_of(std::span<const std::string> of_errors) {
   std::vector<std::string> classes;
   for (const std::string& published : of_errors) {

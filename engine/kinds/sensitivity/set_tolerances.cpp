@@ -28,12 +28,12 @@ namespace {
 constexpr const char* kStem = "confirm";
 constexpr const char* kEqualEffect = "confirm_equal_effect";
 constexpr const char* kEqualTolerance = "confirm_equal_tolerance";
-/// Four standard deviations of a normal error reach as far as its part is large.
+/// The largest tolerance over the size of the part. Four standard deviations of a normal error are then the whole part.
 constexpr double kShareOfPart = 0.25;
 
 /// The study of a sensitivity result, as a Monte Carlo study of the same errors at the same poses.
 Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
-  // The file of poses, if there is one, is known by a path relative to a study that may be gone; the result has them.
+  // A file of poses has a path relative to a study that may no longer exist, so the poses of the result are used.
   Study study = stored_study(result, "the result", catalog).study;
   if (study.analysis.factors.size() != result.factors.size()) {
     throw FileError("the result", "keeps a study that does not fit its factors", "run the study again");
@@ -41,7 +41,7 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   return as_confirming_study(std::move(study), kStem);
 }
 
-/// A quarter of the part that each of the study's errors is an error of.
+/// A quarter of the part to which each of the study's errors belongs.
 std::vector<double> quarters_of_parts(const Study& study) {
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   std::vector<double> largest;
@@ -51,7 +51,7 @@ std::vector<double> quarters_of_parts(const Study& study) {
   return largest;
 }
 
-/// Errors whose tolerance is as large as it may be go to `at_largest`.
+/// Sets tolerances. Errors whose tolerance is cut to the largest are added to `at_largest`.
 void set_tolerances(Study& study, std::span<const double> largest, std::span<const double> tolerances,
                     std::vector<std::string>& at_largest) {
   for (std::size_t p = 0; p < tolerances.size(); ++p) {
@@ -64,7 +64,7 @@ void set_tolerances(Study& study, std::span<const double> largest, std::span<con
   }
 }
 
-/// Position of the thing that an option names.
+/// The position of the item that an option names.
 std::size_t position(const std::vector<NamedUnit>& things, const std::string& name, std::string_view option,
                      std::string_view what) {
   const auto at = std::ranges::find(things, name, &NamedUnit::name);
@@ -73,7 +73,7 @@ std::size_t position(const std::vector<NamedUnit>& things, const std::string& na
                    suggestion(name, names(things)));
 }
 
-/// A quantity above zero of the dimension that belongs to an SI unit.
+/// A positive quantity, of the dimension of the owner's SI unit.
 double positive(const std::string& text, std::string_view option, const NamedUnit& owner) {
   const Dimension dimension = dimension_of(owner.unit);
   const std::string example = fmt::format("{} is measured in {}", owner.name, display_unit(dimension).name);
@@ -96,7 +96,7 @@ double positive(const std::string& text, std::string_view option, const NamedUni
   return quantity.si;
 }
 
-/// Position of the response that the tolerances are for.
+/// The position of the response for which tolerances are set.
 std::size_t chosen_response(const TolerancesOptions& options, const StoredResult& result) {
   if (!options.response.empty()) return position(result.responses, options.response, "--response", "response");
   std::vector<std::string> known;
@@ -166,7 +166,7 @@ void check_prediction(const StoredResult& result, const MeanSquare& response, co
   }
 }
 
-/// What --limit limits the response to, SI, above what the background alone gives.
+/// The limit that --limit sets on the response, SI. Throws if the background alone exceeds it.
 double checked_limit(const TolerancesOptions& options, const StoredResult& result, const MeanSquare& response,
                      const NamedUnit& named) {
   const double limit = positive(*options.limit, "--limit", named);
@@ -180,7 +180,7 @@ double checked_limit(const TolerancesOptions& options, const StoredResult& resul
       "raise the limit, or study smaller errors in [analysis] background");
 }
 
-/// Tolerances for errors that are not negligible within what the others leave of the limit.
+/// Sets tolerances for errors that are not negligible, within what the others leave of the limit.
 void set_limit(ResponseTolerances& found, double limit, const StoredResult& result, const ResponseStudy& study,
                const Catalog& catalog) {
   const MeanSquare& response = found.all.mean_square;
@@ -196,7 +196,7 @@ void set_limit(ResponseTolerances& found, double limit, const StoredResult& resu
   }
 }
 
-/// Without a limit: all but the reference may be negligible.
+/// Finds negligible errors without a limit. The reference is never one.
 void set_negligible(ResponseTolerances& found, const StoredResult& result) {
   const MeanSquare& response = found.all.mean_square;
   found.negligible = negligible_errors(result, found.response, response, response.growth(result.factor_sigma));
@@ -204,7 +204,7 @@ void set_negligible(ResponseTolerances& found, const StoredResult& result) {
   for (const std::size_t p : found.negligible) found.all.equal_effect[p] = result.factor_sigma[p];
 }
 
-/// How to run the studies, and where a tolerance is as large as it may be.
+/// The commands that run the studies, and the errors whose tolerance is as large as possible.
 std::string commands_of(const Confirmation& written) {
   std::string commands;
   for (const std::string& study : written.paths) {
@@ -217,7 +217,7 @@ std::string commands_of(const Confirmation& written) {
   return commands;
 }
 
-/// Writes the table and the studies that test it; says what that was.
+/// Writes the table and the studies that test it, and returns what was written.
 std::string write_files(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found,
                         const Catalog& catalog) {
   const std::string beside = std::filesystem::path(options.result).stem().string() + "_tolerances";
@@ -233,8 +233,8 @@ std::string write_files(const TolerancesOptions& options, const StoredResult& re
   return table + "\n" + commands;
 }
 
-/// Errors of the mechanism that the study neither varies nor has in its background; none where this program has no such
-/// mechanism, or cannot read the stored study any more.
+/// Names the errors of the mechanism that the study neither varies nor has in its background; none if this program does
+/// not have the mechanism or cannot read the stored study.
 std::optional<std::string> perfect_errors_note(const StoredResult& result, const Catalog& catalog) {
   const std::optional<Study> study = study_in(result, catalog);
   if (!study) return std::nullopt;
@@ -250,7 +250,7 @@ std::optional<std::string> perfect_errors_note(const StoredResult& result, const
                      absent == 1 ? "was" : "were", absent == 1 ? "counts" : "count");
 }
 
-/// Refuses tolerances for errors whose index does not hold at their size, or says why they may not hold.
+/// Refuses tolerances for errors whose index does not hold at their size, or returns why they may not hold.
 std::string caveat_of(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found) {
   const std::string caveat = wrong_sizes_text(result, found);
   if (caveat.empty() || options.extrapolate) return caveat;

@@ -17,7 +17,7 @@ namespace {
 
 using Indices = SensitivityResult::Indices;
 
-/// What follows from other groups, for programs that know /tolerances alone.
+/// Data that other groups have too, for programs that read only /tolerances.
 struct ToleranceGroup {
   Array<std::string, axis::Factor> kind;  ///< "linear" or "angular"
   Array<std::string, axis::Factor> unit;
@@ -48,7 +48,7 @@ const Group<ToleranceGroup> kToleranceGroup{
 
 const std::vector<Attribute<SensitivityResult>> kIndexLevel{{"conf_level", &SensitivityResult::conf_level}};
 
-/// Beside them the indices once more.
+/// The indices, which other groups have too.
 const Fields<SensitivityResult> kIndexFields{
     {"index", &SensitivityResult::global, kIndexUnit,
      "Global sensitivity index as published, /sensitivity/global: tolerances are counted from it"},
@@ -57,17 +57,17 @@ const Fields<SensitivityResult> kIndexFields{
     {"index_ci_high", &SensitivityResult::global_ci_high, kIndexUnit, "Upper end of the interval of index",
      Presence::always, kIndexLevel}};
 
-/// Facts of the study. They and the references alone are read back.
+/// Facts of the study. Only they and the references are read back.
 const Fields<SensitivityResult> kStudyFields{
     {"limb", &SensitivityResult::limb, "1", "Limb of the error, from 1"},
     {"mean_square_bound", &SensitivityResult::mean_square_bound, "1",
      "To first order, the mean square of all errors together is at most this times the sum of those of each error "
      "alone; 1: they add exactly"}};
 
-/// The reference of each response.
+/// The references of all responses.
 struct ReferenceColumns {
-  Array<std::string, axis::Response> factor;  ///< its name; empty where there is none
-  Array<double, axis::Response> tolerance;    ///< NaN where there is none
+  Array<std::string, axis::Response> factor;  ///< name of the reference; empty if there is none
+  Array<double, axis::Response> tolerance;    ///< NaN if there is none
 };
 
 const Fields<ReferenceColumns> kReferenceFields{
@@ -88,8 +88,8 @@ std::optional<ReferenceError> reference_for(const Study& study, const Sensitivit
   return ReferenceError{*smallest, display_unit(study.model().factors[factors[*smallest].value].dimension).si};
 }
 
-/// The numbers of each error. heading(name, unit, suffix): of a column; the suffix is "_display" for the units people
-/// read.
+/// Adds the numbers of each error. heading(name, unit, suffix) gives the heading of a column; the suffix is "_display"
+/// for the units that people read.
 template <class Heading>
 void append_tolerance_columns(CsvTable& table, const StoredResult& result, const ResponseTolerances& tolerances,
                               const Heading& heading) {
@@ -157,7 +157,7 @@ void add_limit_notes(std::vector<std::string>& notes, const StoredResult& result
       "allocation");
 }
 
-/// How much the limit may be exceeded although the study was made at small errors.
+/// Says how far the limit may be exceeded, because the study was made with small errors.
 void add_bound_note(std::vector<std::string>& notes, const StoredResult& result, const ResponseTolerances& tolerances) {
   if (!tolerances.limit) return;
   const double bound = std::sqrt(sensitivity_of(result).mean_square_bound(tolerances.response));
@@ -171,7 +171,7 @@ void add_bound_note(std::vector<std::string>& notes, const StoredResult& result,
                   response_text(response, tolerances.limit->limit / bound)));
 }
 
-/// That a tolerance speaks of a normal error, where the study's errors are something else.
+/// Says that a tolerance is for a normal error if the study's errors have another distribution.
 void add_distribution_note(std::vector<std::string>& notes, const StoredResult& result) {
   std::vector<std::string> shapes;
   std::size_t count = 0;
@@ -192,8 +192,8 @@ void add_distribution_note(std::vector<std::string>& notes, const StoredResult& 
       "here, and means of several errors do not add as scatter does. Confirm by a Monte Carlo study");
 }
 
-/// How many errors have a tolerance larger than the size at which they were studied, of a limit by either way to share
-/// it.
+/// Says how many errors have a tolerance larger than the size at which they were studied, by either way to share the
+/// limit.
 void add_extrapolation_note(std::vector<std::string>& notes, const StoredResult& result,
                             const ResponseTolerances& tolerances) {
   const std::vector<std::span<const double>> lists = proposed_tolerances(tolerances);
@@ -228,7 +228,7 @@ std::vector<std::string> notes(const StoredResult& result, const ResponseToleran
   return list;
 }
 
-/// Refers to both.
+/// The columns of the table. Refers to both arguments.
 std::vector<FilledColumn> columns(const StoredResult& result, const ResponseTolerances& tolerances) {
   const std::size_t r = tolerances.response;
   const SensitivityResult& found = sensitivity_of(result);

@@ -20,62 +20,61 @@ namespace poesy {
 /// Tolerances for one response of a sensitivity result, within a limit on it if there is one.
 struct ResponseTolerances {
   std::size_t response;                  ///< position among the result's
-  Tolerances all;                        ///< without regard to a limit
+  Tolerances all;                        ///< without a limit
   std::optional<LimitTolerances> limit;  ///< within the limit, if there is one
-  /// Positions of errors that have the size studied in what is proposed; see negligible_errors().
+  /// Positions of errors for which the size studied is proposed; see negligible_errors().
   std::vector<std::size_t> negligible = {};
-  std::string caveat = {};  ///< why they may not hold, for tables and studies; empty: no known reason
+  std::string caveat = {};  ///< why they may not hold, for tables and studies; empty if no reason is known
 };
 
-/// Fills in what the study says for tolerances: limb, reference and mean_square_bound. The
-/// reference of each response is the study's, or the error of smallest effect at one unit of those in which people read
-/// it.
+/// Sets the members that tolerances need: limb, reference and mean_square_bound. The reference of each response is the
+/// one that the study states, or else the error of smallest effect, with one unit in which people read it as tolerance.
 void set_references(const Study& study, SensitivityResult& found);
 
-/// What a program that sets tolerances needs, without the rest: /tolerances.
+/// Writes the group /tolerances, which has all that a program needs to set tolerances.
 /// @{
 void write_tolerance_group(ResultBuilder& result, const Study& study, const SensitivityResult& found);
-/// Throws h5::Error where a reference is none of these factors.
+/// Reads the group /tolerances. Throws h5::Error if a reference is none of these factors.
 void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, SensitivityResult& found);
 /// @}
-/// tolerances_RESPONSE.csv.
+/// Adds tolerances_RESPONSE.csv.
 void append_tolerance_tables(CsvTables& tables, const StoredResult& result);
-/// The section of a report.
+/// Adds the section of a report.
 void add_tolerance_section(const StoredResult& result, Page& page);
 
-/// The lists of tolerances that are to be used: within the limit by either way to share it, without one those of
-/// equal effect. Refers to the tolerances.
+/// The lists of tolerances to be used: with a limit, those of both ways to share it; without, those of equal effect.
+/// Refers to the tolerances.
 std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerances& tolerances);
 
-/// The largest tolerance that makes sense for each error of a sensitivity result, SI: a quarter of the part that
-/// it is an error of (Model::error_bound). Throws InputError when the stored study cannot be read with this catalog.
+/// The largest sensible tolerance for each error of a sensitivity result, SI: a quarter of the part to which the error
+/// belongs (Model::error_bound). Throws InputError if the stored study cannot be read with this catalog.
 std::vector<double> largest_tolerances(const StoredResult& result, const Catalog& catalog);
 
-/// Those of one response, counted from the reference that the result states.
+/// The tolerances of one response, relative to the reference that the result states.
 ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t response);
 
-/// Writes tolerances.csv into a folder, made if missing, for programs that assign tolerances:
+/// Writes tolerances.csv for programs that assign tolerances. The folder is made if missing. Columns:
 ///
 ///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit, studied_as (its distribution in the
 ///     study) | index, index_ci_low, index_ci_high, mean_square_share, index_change (as
 ///     /sensitivity/index_change), with a limit limit_equal_effect and limit_equal_tolerance, and equal_effect, which
 ///     keeps no limit, in `unit`; then the tolerances once more in `display_unit`: equal_effect_display ...
 ///
-/// The one table in which more than the first column is text. A tolerance is the standard deviation of a normal error,
-/// whatever the error was studied as; "inf" says that the error has no effect on its own. Returns the path. Throws
-/// FileError.
+/// This is the only table in which more than the first column is text. A tolerance is the standard deviation of a
+/// normal error, whatever distribution was studied; "inf" means that the error has no effect alone. Returns the path.
+/// Throws FileError.
 std::string write_tolerances(const std::string& folder, const StoredResult& result,
                              const ResponseTolerances& tolerances);
 
-/// Claims what write_tolerances, and with a limit write_confirmation, are going to write into the folder. Throws
-/// InputError where they would replace what is not poesy's.
+/// Claims the files that write_tolerances(), and with a limit write_confirmation(), are going to write. Throws
+/// InputError if a file that poesy did not write would be replaced.
 void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, const ResponseTolerances& tolerances,
                            const Catalog& catalog);
 
 /// The studies that test tolerances.
 struct Confirmation {
   std::vector<std::string> paths;       ///< the studies that were written
-  std::vector<std::string> at_largest;  ///< "delta_1_0_y is 15 mm", each once
+  std::vector<std::string> at_largest;  ///< "delta_1_0_y is 15 mm", each error once
 };
 
 /// Writes Monte Carlo studies that confirm or refute the tolerances within the limit, confirm_equal_effect.toml and
@@ -87,11 +86,11 @@ struct Confirmation {
 Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
                                 const ResponseTolerances& tolerances, const Catalog& catalog);
 
-/// Tolerances of every error for one response, in mm and deg; notes say from which reference and limit, and the root
-/// mean square that the equal-effect tolerances are predicted to give.
+/// The table of the tolerances of every error for one response, in mm and deg. Notes state the reference, the limit,
+/// and the root mean square that is predicted for the equal-effect tolerances.
 Table tolerance_table(const StoredResult& result, const ResponseTolerances& tolerances);
 
-/// Tolerances from the indices of a sensitivity result; see SetTolerances.
+/// Sets tolerances by the indices of a sensitivity result; see SetTolerances.
 std::string set_sensitivity_tolerances(const StoredResult& result, const TolerancesOptions& options,
                                        const Catalog& catalog, std::size_t width);
 

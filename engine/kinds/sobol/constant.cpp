@@ -19,21 +19,21 @@ std::vector<Dimension> detail_dimensions(const ModelDescription& model) {
   return list;
 }
 
-/// Of a row its standard deviations at the poses.
+/// The standard deviations of a row at all poses.
 std::vector<double> deviations(const PanelSums& sums, std::size_t row) {
   std::vector<double> list;
   for (const Moments& moments : sums.moments.row(row)) list.push_back(moments.standard_deviation());
   return list;
 }
 
-/// Both indices at these positions.
+/// Sets both indices at these positions to NaN.
 template <class Indices, class... Positions>
 void leave_out(Indices& indices, Positions... at) {
   indices.S1.leave_out(at...);
   indices.ST.leave_out(at...);
 }
 
-/// Flags as a result has them: none where all are 1.
+/// Copies flags into a result, which has none if all are 1.
 template <class Flags>
 void keep_flags(std::span<const std::uint8_t> from, Flags& flags) {
   const bool any = std::ranges::find(from, 0) != from.end();

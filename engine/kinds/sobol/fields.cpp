@@ -11,17 +11,17 @@
 namespace poesy {
 namespace {
 
-/// The axis of what the indices belong to: the errors, or the groups to which the study joins them.
+/// The axis of the indices: the errors, or the groups into which the study joins them.
 std::string axis_of(bool joined) { return joined ? "group" : "factor"; }
 
-/// The same rows along that axis.
+/// The same fields along that axis.
 template <class Found>
 Fields<Found> along(bool joined, Fields<Found> rows) {
   for (FieldRow<Found>& row : rows) std::ranges::replace(row.axes, std::string("group"), axis_of(joined));
   return rows;
 }
 
-/// Shares and the ends of their intervals.
+/// The fields of shares and the ends of their intervals.
 template <class Shares>
 Fields<Shares> share_rows(bool joined, const std::string& name, std::string meaning) {
   return along<Shares>(joined, {{name, &Shares::value, "1", std::move(meaning)},
@@ -29,7 +29,7 @@ Fields<Shares> share_rows(bool joined, const std::string& name, std::string mean
                                 {name + "_ci_high", &Shares::ci_high, "1", "Upper end of the interval of " + name}});
 }
 
-/// The group of the indices of some quantities.
+/// The fields of the indices of some quantities, as a group.
 template <NamedAxis... Axes>
 struct IndexRows {
   IndexRows(bool joined, std::string path, std::string description)
@@ -69,7 +69,7 @@ const std::string kVaries =
     "0 where it does not vary: what its samples scatter at any pose is rounding, so nothing has a share of it; "
     "left out where all vary";
 
-/// The datasets of a result whose errors are joined, or not.
+/// The datasets of a result, whose axis depends on whether errors are joined.
 struct Layout {
   explicit Layout(bool joined)
       : at_poses(joined, "/sobol", "Sobol' indices of each response at each pose"),
@@ -112,7 +112,7 @@ const CourseWords kConvergence = convergence_words(kByResponse, "ST", "1", "Larg
                                                    "largest ST, for each response of the headline, or max was there",
                                                    "errors");
 
-/// Either of the two.
+/// The layout for joined errors, or for single ones.
 const Layout& layout(bool joined) {
   static const Layout kOfErrors(false);
   static const Layout kOfGroups(true);
@@ -182,7 +182,7 @@ void read(const h5::File& file, StoredResult& result) {
   result.constant = constant_responses(found.varies);
   found.solves = read_solver(file, kByPose);
   result.convergence = read_convergence(file, kConvergence);
-  // Only random draws have addresses by which a sample can be solved again.
+  // Only random draws have addresses, so only their samples can be replayed.
   if (study_setting(result.study_text, "analysis", "design") == "\"random\"")
     result.varied = {std::string(kAllFactors)};
   result.failures = read_failures(file, result);
@@ -195,7 +195,7 @@ CsvTable lines_of_groups(const SobolResult& found, std::string name) {
       std::move(name), {axis_of(found.joined), [&](std::size_t g) { return found.group_names[g]; }}, found.groups()};
 }
 
-/// Appends the index NAME and NAME_conf, half its interval, as SALib calls them. row: of the quantity.
+/// Adds the index NAME and half its interval, NAME_conf, as SALib names them. row: position of the quantity.
 template <class Shares>
 void append_salib_columns(CsvTable& table, const std::string& name, const Shares& shares, std::size_t row) {
   table.columns.push_back(list_column(name, shares.value.row(row)));
@@ -209,7 +209,7 @@ void append_interval_columns(CsvTable& table, const std::string& name, const Sha
   table.columns.push_back(list_column(name + "_ci_high", shares.ci_high.row(row)));
 }
 
-/// Lines of the groups, with columns for the indices of one quantity.
+/// A table with a line for each group and columns for the indices of one quantity.
 template <class Indices>
 CsvTable indices_table(const SobolResult& result, std::string name, const Indices& found, std::size_t quantity) {
   CsvTable table = lines_of_groups(result, std::move(name));
@@ -234,7 +234,7 @@ void append_pose_tables(CsvTables& tables, const StoredResult& result, const Fie
   }
 }
 
-/// Each pair of groups on a line.
+/// A table with a line for each pair of groups.
 CsvTable pairs_table(const StoredResult& result, std::size_t r) {
   const SobolResult& found = sobol_of(result);
   const auto pairs = std::make_shared<const std::vector<GroupPair>>(group_pairs(found.groups()));

@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 9> kSobolKeys{"factors", "samples", "conf
 
 constexpr std::array kGroupings{GroupsBy::none, GroupsBy::limb, GroupsBy::frame};
 
-/// Patterns of one group: a text, or a list of texts.
+/// The patterns of one group, written as a text or a list of texts.
 std::vector<std::string> read_patterns(const StudyValue& value) {
   if (value.is_text()) return {value.text()};
   std::vector<std::string> patterns;
@@ -27,7 +27,7 @@ std::vector<std::string> read_patterns(const StudyValue& value) {
   return patterns;
 }
 
-/// A name for tables and files.
+/// Throws if the name does not fit in tables and files.
 void check_group_name(const StudyValue& value, std::string_view name) {
   if (const auto problem = label_problem(name)) value.fail("is not a name for a group: it " + *problem, kLabelRule);
   if (name == kOtherErrors) value.fail("is not a name for a group", "it is that of the errors of no group");
@@ -133,7 +133,7 @@ const std::string& factor_name(const Study& study, std::size_t position) {
   return study.model().factors[study.analysis.factors[position].value].name;
 }
 
-/// Each pattern has errors, and none of these belongs to an earlier group.
+/// Throws if a pattern has no errors, or errors of an earlier group.
 void check_named_groups(const Study& study, const StudySection& section) {
   std::vector<std::string_view> owner(study.analysis.factors.size());
   for (const NamedGroup& group : asked_of<SobolOptions>(study.analysis).named_groups) {
@@ -157,7 +157,7 @@ void check_named_groups(const Study& study, const StudySection& section) {
   }
 }
 
-/// Samples divide among the replicates.
+/// Throws if the samples cannot be divided among the replicates.
 void check_replicates(const Study& study, const StudySection& analysis) {
   const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
   const auto replicates = analysis.find("replicates");
@@ -181,7 +181,7 @@ std::string names_of(const std::vector<FactorIndex>& factors, const Study& study
   return printable(text, 120);
 }
 
-/// Indices are of errors that vary independently of all others.
+/// Throws if errors of different groups are correlated, because indices need independent groups.
 void check_correlation(const Study& study, const StudySection& analysis) {
   const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
   const std::vector<ErrorGroup> groups = error_groups(study.analysis, study.model());
@@ -226,7 +226,8 @@ void check_sobol(Study& study, const Reading& reading) {
                    "name more factors, or other groups");
 }
 
-/// Samples A and B, one for each group or subset of groups, and for each pair of groups where these are asked for.
+/// The number of solves for each sample: A and B, one for each group or subset of groups, and one for each pair of
+/// groups if second-order indices are wanted.
 double solves_of_sample(const Study& study) {
   const auto groups = static_cast<double>(error_groups(study.analysis, study.model()).size());
   const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);

@@ -5,10 +5,11 @@
 
 namespace poesy {
 
-/// Studies of Sobol' indices: how the variance of each response divides among the errors and their interactions.
+/// Runs and reports studies of Sobol' indices, which divide the variance of each response among errors and
+/// interactions.
 extern const Kind kSobolKind;
 
-/// How result files and reports know them.
+/// How results of Sobol' indices are stored and reported.
 /// @{
 extern const FileKind kSobolFile;
 extern const ReportKind kSobolReport;

@@ -14,14 +14,14 @@
 namespace poesy {
 namespace {
 
-/// How many numbers all details have.
+/// The number of components of all details.
 std::size_t detail_components(const ModelDescription& model) {
   std::size_t count = 0;
   for (const Detail& detail : model.details) count += detail.components.size();
   return count;
 }
 
-/// Whether a vector has a component that is no response.
+/// Whether a vector has a component that is not a response.
 bool need_details(const std::vector<SignedVector>& vectors, std::size_t responses) {
   return std::ranges::any_of(vectors, [&](const SignedVector& vector) {
     return std::ranges::any_of(vector.components, [&](std::size_t component) { return component >= responses; });
@@ -44,8 +44,8 @@ std::vector<SplitBlock> split_blocks(const Plan& plan, std::span<const ErrorGrou
   return blocks;
 }
 
-/// By how much a subset of this size counts in the Shapley effect of one of n groups that is not in it:
-/// s! (n - s - 1)! / n! (Shapley 1953; of variances Owen 2014, SIAM/ASA J. Uncertain. Quantif. 2, 245-251).
+/// The weight of a subset of this size in the Shapley effect of a group outside it, with n groups: s! (n - s - 1)! / n!
+/// (Shapley 1953; of variances Owen 2014, SIAM/ASA J. Uncertain. Quantif. 2, 245-251).
 double shapley_weight(std::size_t size, std::size_t groups) {
   double weight = 1.0 / static_cast<double>(groups);
   for (std::size_t k = 1; k <= size; ++k) weight *= static_cast<double>(k) / static_cast<double>(groups - k);
@@ -335,7 +335,7 @@ void PanelEvaluator::add_shapley(PoseIndex pose) {
     for (std::size_t g = 0; g < groups; ++g) {
       if ((subset >> g & 1U) == 0) others.push_back(g);
     }
-    if (others.size() == 1) continue;  // has been solved
+    if (others.size() == 1) continue;  // already solved
     mix(others);
     solve(pose, mixed_, of_mixed_);
     absorb();

@@ -15,26 +15,26 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kMostPairs = 10;  ///< that a table shows
+constexpr std::size_t kMostPairs = 10;  ///< the largest number of pairs in a table
 
 /// "error", or "group" where errors are joined.
 std::string word(const SobolResult& found) { return found.joined ? "group" : "error"; }
 
 double or_least(double value) { return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value; }
 
-/// Positions by their shares, the largest first.
+/// Positions ordered by their shares, the largest first.
 std::vector<std::size_t> by_size(std::span<const double> shares) {
   std::vector<std::size_t> order = positions(shares.size());
   std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t g) { return or_least(shares[g]); });
   return order;
 }
 
-/// Of a response Shapley effects where there are any, else total indices.
+/// The Shapley effects on a response if there are any, otherwise the total indices.
 std::span<const double> ranked_shares(const SobolResult& found, std::size_t r) {
   return (found.Sh.empty() ? found.aggregated.ST : found.Sh).value.row(r);
 }
 
-/// As the user asked for them; the groups have no index per unit, so this is their share where he asked for one.
+/// The groups in the order that the user chose. Groups have no index per unit, so for that order they use their shares.
 std::vector<std::size_t> ordered(const SobolResult& found, std::size_t r, RowOrder order) {
   std::vector<std::size_t> rows = by_size(ranked_shares(found, r));
   if (order == RowOrder::study) rows = positions(found.groups());
@@ -61,7 +61,7 @@ void append_shares(std::vector<FilledColumn>& columns, const std::string& name,
   columns.push_back(share_column(name + "_high", "high", shares.ci_high.row(r), 1));
 }
 
-/// S1 and ST with their intervals, and what lies between them.
+/// Columns of S1 and ST with their intervals, and of the difference of the two.
 std::vector<FilledColumn> index_columns(const SobolResult& found, std::size_t r) {
   const auto& [conf_level, S1, ST] = found.aggregated;
   std::vector<FilledColumn> columns{group_column(found)};
@@ -122,7 +122,7 @@ bool vector_varies(const SobolResult& found, std::size_t v) {
   return found.vector_varies.empty() || found.vector_varies(v) != 0;
 }
 
-/// "displacement and delta_mu_21_omega do not vary, so no error has a share of them"; empty where all vary.
+/// "displacement and delta_mu_21_omega do not vary, so no error has a share of them"; empty if all vary.
 std::string constant_vectors_text(const SobolResult& found) {
   std::vector<std::string> names;
   for (std::size_t v = 0; v < found.vectors.size(); ++v) {
@@ -134,7 +134,7 @@ std::string constant_vectors_text(const SobolResult& found) {
                      one ? "it" : "them");
 }
 
-/// The total index of every vector: one column each, ordered by the first one that varies.
+/// The total indices of all vectors, one column each, ordered by the first one that varies.
 Table vectors_table(const StoredResult& result) {
   const SobolResult& found = sobol_of(result);
   const std::vector<std::size_t> vectors = positions(found.vectors.size());
@@ -184,7 +184,7 @@ Table pairs_table(const StoredResult& result, std::size_t r) {
 
 using SharesOfResponses = Shares<axis::Response, axis::ErrorGroup>;
 
-/// Values of the responses in the order of a page.
+/// The values of the responses in the order of a page.
 std::vector<double> of_responses(const StoredResult& result, const SharesOfResponses::Values& values) {
   std::vector<double> list;
   for (const std::size_t r : response_order(result)) {
@@ -194,13 +194,13 @@ std::vector<double> of_responses(const StoredResult& result, const SharesOfRespo
   return list;
 }
 
-/// One of the bars of each error.
+/// One series of bars for all errors.
 struct BarSeries {
-  std::string label;                ///< not shown where it is the only one
-  const SharesOfResponses& shares;  ///< what is shown
+  std::string label;                ///< not shown if it is the only one
+  const SharesOfResponses& shares;  ///< the shares shown
 };
 
-/// Bars of shares of the variance for each response. name: of their arrays.
+/// Bars of shares of the variance for each response. name: prefix of the names of their arrays.
 Bars share_bars(const StoredResult& result, ArrayPool& pool, const std::string& name,
                 const std::vector<BarSeries>& series) {
   const auto all = [&](const std::string& array, SharesOfResponses::Values SharesOfResponses::*part) {
@@ -281,7 +281,7 @@ SolveTally tally(const StoredResult& result) {
 
 ShownCells cells(const StoredResult& result) { return shown_cells(result, 2 * sobol_of(result).groups()); }
 
-/// ST and S1 of the errors at each pose.
+/// Shows ST and S1 of the errors at each pose.
 void add_where(const StoredResult& result, Page& page) {
   const SobolResult& found = sobol_of(result);
   const PoseFigures figures(result, cells(result), page);
@@ -324,7 +324,7 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   if (!names.empty()) list.push_back(without_sign_text(some_names(names), names.size() > 1) + ".");
 }
 
-/// Shapley effects where there are some, because these add up, else total indices; and the variance at each pose.
+/// Shapley effects if there are some, because these add up, otherwise total indices; and the variance at each pose.
 ErrorShares error_shares(const StoredResult& result) {
   const SobolResult& found = sobol_of(result);
   if (found.n.empty()) return {};
@@ -339,7 +339,7 @@ ErrorShares error_shares(const StoredResult& result) {
           .at_poses = {variance.begin(), variance.end()}};
 }
 
-/// "delta_1 (41 %), delta_2 (12 %)": the largest of these shares, in this order.
+/// The largest of these shares in order: "delta_1 (41 %), delta_2 (12 %)".
 std::string largest_shares(const SobolResult& found, std::span<const double> shares) {
   constexpr std::size_t kMost = 3;
   const std::vector<std::size_t> order = by_size(shares);
@@ -350,7 +350,7 @@ std::string largest_shares(const SobolResult& found, std::span<const double> sha
   return text;
 }
 
-/// Of the response that ranks: by Shapley effects where there are any, else by total indices.
+/// Answers for the response that ranks, by Shapley effects if there are any, otherwise by total indices.
 Answer answer(const StoredResult& result) {
   constexpr double kWide = 0.2;
   const SobolResult& found = sobol_of(result);

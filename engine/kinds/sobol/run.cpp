@@ -22,14 +22,14 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The group's ST, or its Shapley effect where it has no ST.
+/// ST of the group, or its Shapley effect if it has no ST.
 Estimate headline_index(const IndexPanel& panel, const PanelSums& sums, std::size_t r, std::size_t g,
                         double conf_level) {
   return (panel.split[g] != 0 ? sums.shapley(r, g) : sums.aggregated(r, g).total).estimate(conf_level);
 }
 
-/// How sure the indices of a panel are: of each response the largest ST, and the largest half-width of any; zero where
-/// it does not vary, so that no sample is taken for it. rounding: of each row.
+/// For each response the largest ST, and the largest half-width of any interval: how certain the indices of a panel
+/// are. Zero if the response does not vary, so that it causes no further samples. rounding: [rows].
 std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelSums& sums,
                                            std::span<const double> rounding, double conf_level) {
   const std::vector<std::uint8_t> varies = varying_quantities(panel, sums, rounding);
@@ -52,13 +52,13 @@ std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelS
   return list;
 }
 
-/// The units of a panel, in their order. Of random draws each unit is a leaf of a tree; a replicate of another design
-/// is merged unit by unit, and then is one leaf.
+/// Merges the units of a panel in their order. For random draws each unit is a leaf of the tree. A replicate of another
+/// design is merged unit by unit and then is one leaf.
 struct PanelTree {
   const IndexPanel* panel;
   const PanelDesign* design;
   MergeTree<PanelSums> leaves = {};
-  PanelSums open = {};  ///< of the replicate that is not complete
+  PanelSums open = {};  ///< the replicate that is not complete
 
   std::size_t units_per_leaf() const { return design->independent() ? 1 : design->units_per_replicate(); }
   void add(std::size_t n, PanelSums&& found) {
@@ -70,7 +70,7 @@ struct PanelTree {
     }
     if ((n + 1) % units_per_leaf() == 0) leaves.add(n / units_per_leaf(), open.as_one());
   }
-  /// Samples of a design that is not random belong together, so a longer study has others and cannot go on.
+  /// The samples of a design that is not random depend on their number, so a longer study cannot continue them.
   void state(Archive& archive, const NumberRange& units) {
     archive.known(design->independent() ? 0 : panel->samples, "is of a design with other samples");
     leaves.state(archive, design->units() / units_per_leaf(), PanelSums(*panel));
@@ -82,20 +82,20 @@ struct PanelTree {
   }
 };
 
-/// A job of UnitFold: the units of a panel.
+/// The job of UnitFold, whose units are those of a panel.
 struct PanelJob {
   const Plan& plan;
   const Model& model;
   const Study& study;
   IndexPanel panel{study, plan.poses().size()};
-  std::vector<double> rounding = row_rounding(panel, plan, model);  ///< of each row
+  std::vector<double> rounding = row_rounding(panel, plan, model);  ///< [rows]
   PanelDesign design{plan, asked_of<SobolOptions>(study.analysis)};
 
   static constexpr std::string_view kName = "panel";
   std::vector<std::uint64_t> sizes() const {
     return {panel.quantities(), panel.groups.size(), panel.poses, panel.pairs.size(), panel.shapley ? 1U : 0U};
   }
-  /// Of a design whole replicates.
+  /// The units of a shard; for a design, whole replicates.
   NumberRange units(const Shard& shard) const {
     const std::size_t each = sums().units_per_leaf();
     const NumberRange leaves = shard.of(design.units() / each);
@@ -138,7 +138,7 @@ void set(Indices& indices, const IndexSums& sums, Positions... at) {
   indices.ST.set(sums.total.estimate(indices.conf_level), at...);
 }
 
-/// What the result says of one response.
+/// Sets the result of one response.
 void set_response(const IndexPanel& panel, const PanelSums& sums, std::size_t r, SobolResult& found) {
   const double level = found.aggregated.conf_level;
   for (std::size_t g = 0; g < panel.groups.size(); ++g) {
@@ -163,7 +163,7 @@ void set_response(const IndexPanel& panel, const PanelSums& sums, std::size_t r,
   found.without_sign(r) = sums.least(r) >= 0.0 ? 1 : 0;
 }
 
-/// With room for what is found.
+/// An empty result with room for all numbers.
 SobolResult room_for(const IndexPanel& panel, double level) {
   const std::size_t responses = panel.responses;
   const std::size_t groups = panel.groups.size();
@@ -204,7 +204,8 @@ SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSu
   }
   leave_out_constant(panel, sums, rounding, found);
   found.solves = sums.solves;
-  if (asked_of<SobolOptions>(study.analysis).design != Design::random) return found;  // others have no addresses
+  if (asked_of<SobolOptions>(study.analysis).design != Design::random)
+    return found;  // samples of other designs have no addresses
   for (std::size_t m = 0; m < panel.poses; ++m) {
     append_failures(0, PoseIndex(m), sums.failed[m], found.failures);
     found.failed_samples += sums.failures[m];
@@ -223,7 +224,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   return StudyResult{std::move(found), std::nullopt, {}};
 }
 
-/// The panel of an outlook, tried pose by pose.
+/// The panel of an outlook, which is timed pose by pose.
 struct Trial {
   Trial(const Study& study, const Model& model, const PoseSet& poses)
       : plan(study, poses),

@@ -13,10 +13,10 @@
 namespace poesy::python {
 namespace {
 
-/// Samples that are solved in one go. More of them leave the processor's caches with what the solver keeps of each.
+/// The number of samples that are solved together. With more, the solver's data no longer fit the processor's caches.
 constexpr std::size_t kBlock = 1024;
 
-/// "z = 0.5 m, beta = 20 rad".
+/// The pose as text: "z = 0.5 m, beta = 20 rad".
 std::string pose_text(std::span<const double> pose, const ModelDescription& model) {
   std::string text;
   for (std::size_t c = 0; c < pose.size(); ++c) {
@@ -74,8 +74,8 @@ void ArraySolver::solve_in_place(Scratch& scratch, std::span<const double> pose,
   }
 }
 
-/// Samples `first` to first + count - 1 of pose m, of a job with more samples than these: rows of the caller's arrays
-/// are longer than those of the block.
+/// Solves samples first to first + count - 1 of pose m, if the job has more samples than a block: rows of the caller's
+/// arrays are then longer than those of the block.
 void ArraySolver::solve_block(Scratch& scratch, std::span<const double> pose, const ArrayJob& job, std::size_t m,
                               std::size_t first, std::size_t count) const {
   const std::size_t rows = description().responses.size();

@@ -32,7 +32,7 @@ struct AtPose {
   std::vector<double> pose;  ///< [coordinates], checked
 };
 
-/// Lets Python end a long call by Ctrl-C, which it takes notice of only where it is asked. Called without the GIL.
+/// Lets Python end a long call by Ctrl-C, which Python notices only if it is asked. Called without the GIL.
 class Interruption {
  public:
   void operator()() {
@@ -91,7 +91,7 @@ py::dict units(const ArraySolver& solver) {
   return units;
 }
 
-/// A text as it is; a path object is a file, whatever it is called.
+/// A text unchanged; a path object as the name of a file.
 std::string mechanism_text(const py::object& mechanism) {
   const auto text = py::module_::import("os").attr("fspath")(mechanism).cast<std::string>();
   const bool is_bare = text.find('/') == std::string::npos;

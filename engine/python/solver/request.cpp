@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kEvaluatorKeys{"factors", "calibrated"};
 
-/// The only kind of study here: [analysis] says which errors vary, and whether the actuators correct them. So the
-/// registry of kinds, with all that runs and stores studies, is no part of the module.
+/// The only kind of study here: [analysis] states which errors vary, and whether the actuators correct them. So the
+/// module does not need the registry of kinds, nor what runs and stores studies.
 const StudyKind kEvaluator{.name = "evaluator",
                            .asks = "what given errors do",
                            .keys = kEvaluatorKeys,
@@ -42,7 +42,7 @@ std::string factors_text(const Request& request) {
   if (const auto* set = std::get_if<std::string>(&request.factors)) return in_quotes(*set);
   std::vector<std::string> quoted;
   for (const std::string& name : std::get<std::vector<std::string>>(request.factors)) quoted.push_back(in_quotes(name));
-  return fmt::format("[\n{}]", fmt::join(quoted, ",\n"));  // in lines of their own, for a line has a longest length
+  return fmt::format("[\n{}]", fmt::join(quoted, ",\n"));  // on separate lines, because a line has a largest length
 }
 
 }  // namespace

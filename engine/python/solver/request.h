@@ -8,17 +8,17 @@
 
 namespace poesy::python {
 
-/// What a caller in Python asks an evaluator for, in the words of study files.
+/// The options of an evaluator in Python, in the words of study files.
 struct Request {
   std::string mechanism = {};       ///< a name of the catalog, or a mechanism's file
-  std::string metric = "platform";  ///< passed over where nothing is weighed
-  std::string fidelity = "exact";   ///< passed over where there is no choice
+  std::string metric = "platform";  ///< ignored if nothing is weighed
+  std::string fidelity = "exact";   ///< ignored if there is no choice
   std::variant<std::string, std::vector<std::string>> factors = "all";  ///< a factor set, or names in any order
-  bool calibrated = false;                                              ///< as in [analysis]
+  bool calibrated = false;                                              ///< see [analysis] of study files
 };
 
-/// The study that says the same: its mechanism, its solver and the errors that vary; nothing else of it is of use.
-/// Throws InputError or FileError as reading a study file does, without a place in it.
+/// The study with the mechanism, the solver and the varied errors of the request; its other parts are unused. Throws
+/// InputError or FileError as reading a study file does, without a place in it.
 Study study_of(const Request& request);
 
 }  // namespace poesy::python

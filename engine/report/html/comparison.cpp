@@ -15,7 +15,7 @@ namespace {
                    "compare two results that share some");
 }
 
-/// Positions of options or items that are kept, in their new order.
+/// The positions of options or items that are kept, in their new order.
 using Kept = std::vector<std::size_t>;
 
 template <class Value>
@@ -31,7 +31,7 @@ Comparable kept_part(const Comparable& from, const Kept& options, const Kept& it
   part.options = picked(from.options, options);
   part.items = picked(from.items, items);
   if (!from.totals.empty()) part.totals = picked(from.totals, options);
-  Kept cells;  // of [R x P]
+  Kept cells;  // positions in [R x P]
   for (const std::size_t option : options) {
     for (const std::size_t item : items) cells.push_back(option * from.items.size() + item);
   }
@@ -47,14 +47,14 @@ Comparable kept_part(const Comparable& from, const Kept& options, const Kept& it
   return part;
 }
 
-/// The positions in one list of those that both have: of the first or of the second.
+/// The positions of the common names in the first or the second list.
 Kept positions_in(const Common& both, bool first) {
   Kept kept;
   for (const auto& [of_a, of_b] : both) kept.push_back(first ? of_a : of_b);
   return kept;
 }
 
-/// The arrays of A, then of B.
+/// The arrays of A, followed by those of B.
 std::vector<double> both(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> all = a;
   all.insert(all.end(), b.begin(), b.end());
@@ -77,7 +77,7 @@ Bars bars_of(const Comparison& compared, ArrayPool& pool) {
   return bars;
 }
 
-/// The first quantity, A against B; its units do not differ by item.
+/// A scatter plot of the first quantity, A against B. Precondition: its unit is the same for all items.
 Scatter scatter_of(const Comparison& compared, ArrayPool& pool) {
   const ComparableQuantity& a = compared.a.quantities.front();
   Scatter scatter{{{compared.a.option_word, compared.a.options}},
@@ -89,7 +89,7 @@ Scatter scatter_of(const Comparison& compared, ArrayPool& pool) {
   return scatter;
 }
 
-/// From 1, of P items of one option; unknown values come last.
+/// The ranks, from 1, of the P items of one option; unknown values come last.
 std::vector<std::size_t> ranks(std::span<const double> values) {
   std::vector<std::size_t> order = positions(values.size());
   const auto key = [&](std::size_t p) { return std::isnan(values[p]) ? -HUGE_VAL : std::abs(values[p]); };
@@ -99,7 +99,8 @@ std::vector<std::size_t> ranks(std::span<const double> values) {
   return rank;
 }
 
-/// From a to b, of a. What solvers leave of equal values, to about 1e-14 rad or m of 1e-3, is none.
+/// The relative change from a to b. Zero for differences that may be rounding of solvers (about 1e-14 of 1e-3 rad or
+/// m).
 double change_of(double a, double b) {
   constexpr double kRounding = 1e-10;
   const double change = (b - a) / std::abs(a);
@@ -111,7 +112,7 @@ std::string_view overlap(const ComparableQuantity& a, const ComparableQuantity& 
   return a.low[at] <= b.high[at] && b.low[at] <= a.high[at] ? "overlap" : "apart";
 }
 
-/// Of one option.
+/// The table of one option.
 Table table_of(const Comparison& compared, std::size_t option) {
   const Comparable& all = compared.a;
   const ComparableQuantity& a = all.quantities.back();
@@ -151,7 +152,7 @@ Table table_of(const Comparison& compared, std::size_t option) {
   return table;
 }
 
-/// One number for everything, of each option, and how many times larger it is in B.
+/// The table of the totals of each option, and their ratio B over A.
 Table totals_table(const Comparison& compared) {
   const Comparable& a = compared.a;
   Table table{.name = "totals",
@@ -167,7 +168,8 @@ Table totals_table(const Comparison& compared) {
   return table;
 }
 
-/// What the caption of the bars says of their order; quantities whose units differ by item follow the first.
+/// The part of a caption that describes the order of bars. Quantities whose units differ by item are ordered like the
+/// first.
 std::string order_of(const Comparable& a) {
   const auto differ = [](const ComparableQuantity& quantity) {
     return std::ranges::any_of(quantity.units, [](const std::vector<std::string>& units) {
@@ -215,7 +217,7 @@ Answer comparison_answer(const Comparison& compared) {
   const ComparableQuantity& in_b = compared.b.quantities.front();
   const std::size_t items = a.items.size();
   const auto first = [&](const ComparableQuantity& of) { return std::span(of.value).first(items); };
-  std::size_t most = 0;  // that changes most
+  std::size_t most = 0;  // position of the largest change
   for (std::size_t p = 0; p < items; ++p) {
     const auto change = [&](std::size_t n) { return std::abs(in_b.value[n] - in_a.value[n]); };
     if (change(p) > change(most) || std::isnan(change(most))) most = p;

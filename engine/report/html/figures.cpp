@@ -14,7 +14,7 @@ namespace poesy {
 
 using Json = nlohmann::ordered_json;
 
-// Found by the JSON library through their arguments, for lists of these parts as well.
+// The JSON library finds these functions by argument-dependent lookup, also for lists of these types.
 
 static void to_json(Json& json, const Choice& choice) { json = {{"label", choice.label}, {"options", choice.options}}; }
 
@@ -26,7 +26,7 @@ static void to_json(Json& json, const BarQuantity& quantity) {
   const auto name_or_null = [](const ArrayName& name) { return name.empty() ? Json(nullptr) : Json(name); };
   Json units = Json::array();
   for (const std::vector<std::string>& unit : quantity.units) {
-    units.push_back(unit.size() == 1 ? Json(unit.front()) : Json(unit));  // a list where items differ
+    units.push_back(unit.size() == 1 ? Json(unit.front()) : Json(unit));  // a list if items have different units
   }
   json = {{"label", quantity.label},
           {"units", std::move(units)},
@@ -135,7 +135,7 @@ std::string base64_floats(const std::vector<float>& values) {
   return base64(bytes);
 }
 
-/// In JSON "<" stands in strings alone, where it may be written by its number.
+/// Escapes "<", which in JSON occurs only in strings, by its number.
 std::string without_tags(std::string text) {
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
   return text;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
 
-/// One character of one byte.
+/// Escapes one character of one byte.
 std::string_view escaped_ascii(std::string_view character) {
   constexpr std::pair<char, std::string_view> kEscapes[] = {
       {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
@@ -31,8 +31,7 @@ std::string column_heading(const Column& column) {
   return element("th", text, column.kind == Column::Kind::number ? "scope=\"col\" class=\"n\"" : "scope=\"col\"");
 }
 
-/// A column of numbers as a page writes them (printed_numbers), each with the length of what stands behind its whole
-/// part.
+/// A column of numbers as a page prints them (printed_numbers), each with the length of the text after its whole part.
 struct NumberColumn {
   std::vector<PrintedNumber> cells;
   std::size_t longest_tail = 0;
@@ -41,15 +40,14 @@ struct NumberColumn {
 NumberColumn column_of_numbers(const Table& table, std::size_t c) {
   std::vector<Cell> cells;
   for (const std::vector<Cell>& row : table.rows) cells.push_back(row[c]);
-  constexpr int kShareDigits = 3;  // of what is missing from 100 % it has more
+  constexpr int kShareDigits = 3;  // above 90 %, digits of the difference from 100 %
   const bool shares = table.columns[c].unit == "%";
   NumberColumn column{printed_numbers(cells, shares ? kShareDigits : 0)};
   for (const PrintedNumber& one : column.cells) column.longest_tail = std::max(column.longest_tail, one.tail);
   return column;
 }
 
-/// A number with as much room behind it as brings its decimal point below the others; a point is half as wide as a
-/// digit.
+/// A number, followed by enough space to align its decimal point with the others. A point is half as wide as a digit.
 std::string number_element(const PrintedNumber& cell, std::size_t longest_tail) {
   const double point = cell.tail == 0 ? 0.5 : 0.0;
   const double room = static_cast<double>(longest_tail - cell.tail) - point;
@@ -57,7 +55,7 @@ std::string number_element(const PrintedNumber& cell, std::size_t longest_tail) 
   return element("td", cell.text, fmt::format("class=\"n\" style=\"--room:{}\"", room));
 }
 
-/// Short texts are not broken into lines; long ones get room for some words in each line.
+/// The CSS class of a column: short texts stay on one line, long ones get room for some words in each line.
 std::string_view width_class(const Table& table, std::size_t c) {
   constexpr std::size_t kLong = 30;
   const bool is_long =
@@ -65,12 +63,12 @@ std::string_view width_class(const Table& table, std::size_t c) {
   return is_long ? "class=\"long\"" : "";
 }
 
-/// "+-0.1 mm", which terminals can show, with the sign that print has.
+/// Replaces "+-" by the sign that print has: "+-0.1 mm".
 std::string printed_text(std::string_view text) {
   return text.starts_with("+-") ? "\u00b1" + std::string(text.substr(2)) : std::string(text);
 }
 
-/// The rows of a table; the first column of texts names them.
+/// The rows of a table as HTML. The first column of texts is their heading.
 std::string body_html(const Table& table) {
   const std::size_t columns = table.columns.size();
   const auto texts = std::ranges::find(table.columns, Column::Kind::text, &Column::kind);
@@ -94,7 +92,7 @@ std::string body_html(const Table& table) {
   return html;
 }
 
-/// Scripts and styles of this document alone, and nothing from elsewhere.
+/// Allows scripts and styles of this document, and nothing from elsewhere.
 constexpr std::string_view kPolicy =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:";
 
@@ -106,7 +104,7 @@ std::string head(const Page& page) {
       kReportMark, kPolicy, element("title", page.title), asset("report.css"));
 }
 
-/// The page's header with links to its sections, and the sections.
+/// The header of the page with links to its sections, followed by the sections.
 std::string sections(const Page& page) {
   std::string links;
   std::string html;

@@ -12,48 +12,49 @@
 
 namespace poesy {
 
-/// What tells a report from other pages; it stands in the first kilobyte of its file.
+/// Identifies a report among other pages; it is in the first kilobyte of the file.
 inline constexpr std::string_view kReportMark = "<meta name=\"generator\" content=\"poesy report\">";
 
-/// What a report's page is made of, with its own text: "d3.js", "plot.js", "report.js" (to be run in this order) and
-/// "report.css". Each may stand inside a script or style element as it is; scripts of others begin with their licences.
-/// Another name is a broken contract, and empty where contracts are not checked.
+/// A part of a report's page: "d3.js", "plot.js", "report.js" (to be run in this order) or "report.css". It may be
+/// inserted into a script or style element unchanged; third-party scripts begin with their licences. Precondition: the
+/// name is one of these.
 std::string_view asset(std::string_view name);
 
-/// Text as it may stand in HTML, between tags and inside double quotes. What is not UTF-8, and control characters but
-/// line feeds and tabs, become U+FFFD.
+/// Escapes text for HTML, between tags and inside double quotes. Invalid UTF-8, and control characters except line
+/// feeds and tabs, become U+FFFD.
 std::string escaped(std::string_view text);
 
-/// `<TAG ATTRIBUTES>text</TAG>`, the text escaped. attributes: HTML as it stands.
+/// `<TAG ATTRIBUTES>text</TAG>` with the text escaped. attributes: HTML, not escaped.
 std::string element(std::string_view tag, std::string_view text, std::string_view attributes = {});
 
-/// A table as HTML, in a box that scrolls: caption, headings with units, the cells as they are shown, notes below. Its
-/// box has the attribute data-table with the table's name.
+/// A table as HTML in a box that scrolls: caption, headings with units, cells, and notes below. The box has the
+/// attribute data-table with the table's name.
 std::string html_table(const Table& table);
 
-/// A section of the report under a heading. All texts are plain ones, escaped here.
+/// A section of the report with a heading. All texts are escaped here.
 class Section {
  public:
-  /// Id: as an anchor; heading: for people.
+  /// id: the anchor; heading: text for people.
   Section(std::string id, std::string heading) : id_(std::move(id)), heading_(std::move(heading)) {}
 
-  Section& paragraph(std::string_view text);                                           ///< Adds one.
-  Section& definitions(const std::vector<std::pair<std::string, std::string>>& list);  ///< Names, each with what it is.
-  /// The place of a figure of the page, which is drawn by its script. drawn: what stands there without it, as HTML.
+  Section& paragraph(std::string_view text);  ///< Adds a paragraph.
+  Section& definitions(
+      const std::vector<std::pair<std::string, std::string>>& list);  ///< Adds a list of names with their meanings.
+  /// Adds a place for a figure of the page, which a script draws. drawn: HTML that is shown without scripts.
   Section& figure(std::string_view key, std::string_view caption, std::string_view drawn = {});
-  Section& table(const Table& table);  ///< Adds it, open.
-  /// Adds the one of this name, where there is one.
+  Section& table(const Table& table);  ///< Adds a table, unfolded.
+  /// Adds the table of this name, if there is one.
   Section& table(std::span<const Table> tables, std::string_view name);
-  /// Tables that are open only when the reader asks for them.
+  /// Adds folded tables.
   Section& folded(std::string_view summary, std::span<const Table> tables);
-  /// Adds one that the reader may unfold.
+  /// Adds a folded table.
   Section& folded(std::string_view summary, const Table& table) { return folded(summary, std::span(&table, 1)); }
-  /// A long text as it stands, open only when the reader asks for it.
+  /// Adds a long text, folded.
   Section& folded_text(std::string_view summary, std::string_view text);
 
-  const std::string& id() const { return id_; }            ///< As an anchor.
-  const std::string& heading() const { return heading_; }  ///< For people.
-  const std::string& body() const { return body_; }        ///< HTML
+  const std::string& id() const { return id_; }            ///< The anchor of the section.
+  const std::string& heading() const { return heading_; }  ///< The heading for people.
+  const std::string& body() const { return body_; }        ///< The content as HTML.
 
  private:
   std::string id_;
@@ -61,22 +62,22 @@ class Section {
   std::string body_;
 };
 
-/// A line of what a report says first: "Answer", "How sure", "What to do", each with a sentence or two.
+/// A line of the summary at the top of a report: its label ("Answer", "How sure", "What to do"), and a sentence or two.
 using AnswerLine = std::pair<std::string, std::string>;
 
-/// The summary at the top of a report, made of the result's numbers: five lines at the most.
+/// The summary at the top of a report, from the result's numbers: at most five lines.
 using Answer = std::vector<AnswerLine>;
 
-/// What a report consists of.
+/// The content of a report.
 struct Page {
-  std::string title;                  ///< of the study, or of the result
+  std::string title;                  ///< title of the study, or of the result
   std::string subtitle;               ///< below the title
-  Answer answer = {};                 ///< stands before everything else; empty: nothing does
-  std::vector<std::string> warnings;  ///< what a reader must know first
+  Answer answer = {};                 ///< comes before everything else; empty: there is none
+  std::vector<std::string> warnings;  ///< warnings that come first
   std::deque<Section> sections;       ///< in order
-  FigureSet figures;                  ///< of all sections
+  FigureSet figures;                  ///< figures of all sections
 
-  /// Adds an empty one behind the others. The reference holds as long as the page.
+  /// Appends an empty section. The reference is valid as long as the page.
   Section& add_section(std::string id, std::string heading);
 };
 

@@ -13,10 +13,10 @@
 namespace poesy {
 namespace {
 
-constexpr int kLargest = 6;    ///< exponent up to which digits stand in groups
-constexpr int kSmallest = -6;  ///< exponent from which numbers are decimal
+constexpr int kLargest = 6;    ///< largest exponent whose digits are grouped
+constexpr int kSmallest = -6;  ///< smallest exponent of a decimal number
 
-/// Significant digits of a number as it is shown; 0 where it is not written as one ("75 000", "inf").
+/// The number of significant digits in a text; 0 if the text is not a plain number ("75 000", "inf").
 int digits_of(std::string_view text) {
   int digits = 0;
   for (const char c : text.substr(0, text.find('e'))) {
@@ -29,10 +29,10 @@ int digits_of(std::string_view text) {
   return digits;
 }
 
-/// The number with so many significant digits, all of them written.
+/// The number with this many significant digits, including trailing zeros.
 std::string with_digits(double value, int digits) { return fmt::format("{:#.{}g}", value, digits); }
 
-/// How many digits of `most` are zeros that the text leaves out: the most with which the number stays what is shown.
+/// The number of digits, at most `most`, to which the text can be padded with zeros and still be correctly rounded.
 int full_digits(const Cell& cell, int most) {
   const int shown = digits_of(cell.text);
   const double as_shown = std::strtod(cell.text.c_str(), nullptr);
@@ -42,7 +42,7 @@ int full_digits(const Cell& cell, int most) {
   return shown;
 }
 
-/// 10^-7 with raised digits.
+/// 10^-7 with a superscript exponent.
 std::string power_of_ten(int exponent) {
   constexpr std::string_view kRaised[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                           "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
@@ -51,13 +51,13 @@ std::string power_of_ten(int exponent) {
   return text;
 }
 
-/// Digits of a whole number in groups of three.
+/// Groups the digits of a whole number by three.
 std::string grouped(std::string digits) {
   for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, " ");
   return digits;
 }
 
-/// A number of so many significant digits, 0 not among them.
+/// Prints a nonzero number with this many significant digits.
 PrintedNumber printed(double shown, int digits) {
   const std::string scientific = fmt::format("{:.{}e}", std::abs(shown), digits - 1);
   const std::size_t e = scientific.find('e');
@@ -82,7 +82,7 @@ PrintedNumber printed(double shown, int digits) {
 
 std::vector<PrintedNumber> printed_numbers(std::span<const Cell> column, int digits) {
   int most = digits;
-  for (const Cell& cell : column) {  // with a fraction; whole numbers are counts, or exact
+  for (const Cell& cell : column) {  // only those with a fraction, because whole numbers are counts, or exact
     if (digits == 0 && cell.value && cell.text.find_first_of(".e") != std::string::npos)
       most = std::max(most, digits_of(cell.text));
   }

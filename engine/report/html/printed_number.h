@@ -9,18 +9,17 @@
 
 namespace poesy {
 
-/// A number of a table as a page prints it.
+/// A number in a table, as a page prints it.
 struct PrintedNumber {
   std::string text;        ///< UTF-8
-  std::size_t tail = 0;    ///< how many characters stand behind its whole part: those from the point or the power on
+  std::size_t tail = 0;    ///< number of characters after its whole part: from the point or the power on
   bool is_number = false;  ///< a cell without a number keeps its text, and has no tail
 };
 
-/// The cells of one column, of the digits that they have: with the zeros behind them that make as many significant
-/// digits as the others have, as far as they are digits of the number ("0.5000" below "0.4913"); digits of large
-/// numbers in groups of three; powers of ten above a million and below a millionth ("4.53 x 10^-7" with the signs of
-/// print).
-/// digits: how many those are; 0: as many as the longest has.
+/// The cells of one column in print. Trailing zeros are appended so that all have equally many significant digits, as
+/// far as these are digits of the number ("0.5000" below "0.4913"). Large numbers have groups of digits; above a
+/// million and below a millionth powers of ten are used ("4.53 x 10^-7" with typographic signs). digits: the number of
+/// significant digits; 0: that of the longest cell.
 std::vector<PrintedNumber> printed_numbers(std::span<const Cell> column, int digits = 0);
 
 }  // namespace poesy

@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// A pose with a larger condition number is called ill-conditioned; a study refuses those above 1e8.
+/// The condition number above which a pose is called ill-conditioned; a study refuses poses above 1e8.
 constexpr double kIllConditioned = 1e4;
 
 using Warnings = std::vector<std::string>;
@@ -83,7 +83,7 @@ void warn_of_calibration(const StoredResult& result, Warnings& list) {
   list.push_back(fmt::format("Calibrated: responses are {}.", kLeftByCalibration));
 }
 
-/// What a reader of this result must not miss, a sentence or two each.
+/// The warnings for a reader of this result, one or two sentences each.
 std::vector<std::string> warnings(const ReportKind& kind, const ReportedResult& result) {
   const StoredResult& stored = result.stored;
   const SolveTally tally = kind.tally(stored);
@@ -108,7 +108,7 @@ std::string subtitle(const StoredResult& result) {
 
 constexpr std::string_view kHowSure = "How sure";
 
-/// What the kind says first, with how the solves ended.
+/// The summary of the kind, with how the solves ended.
 Answer answer(const ReportKind& kind, const StoredResult& result) {
   Answer lines = kind.answer(result);
   const auto sure = std::ranges::find(lines, kHowSure, &AnswerLine::first);
@@ -122,7 +122,7 @@ Answer answer(const ReportKind& kind, const StoredResult& result) {
   return lines;
 }
 
-/// What the mechanism looks like, where its errors are, and its file.
+/// Adds the section with pictures of the mechanism, the places of its errors, and its file.
 void add_mechanism(const ReportKind& kind, const ReportedResult& result, Page& page) {
   Section section("mechanism", "The mechanism");
   const ErrorShares shares = kind.error_shares == nullptr ? ErrorShares() : kind.error_shares(result.stored);
@@ -131,7 +131,7 @@ void add_mechanism(const ReportKind& kind, const ReportedResult& result, Page& p
   if (!section.body().empty()) page.sections.push_back(std::move(section));
 }
 
-/// Of one result.
+/// The page of one result.
 Page page_of(const ReportKind& kind, const ReportedResult& result) {
   Page page;
   page.title = result.stored.title.empty() ? result.path : result.stored.title;
@@ -147,7 +147,7 @@ Page page_of(const ReportKind& kind, const ReportedResult& result) {
   return page;
 }
 
-/// How the solves of both ended.
+/// Adds how the solves of both results ended.
 void add_unsolved(const SolveCounts& of_a, const SolveCounts& of_b, Page& page) {
   Table table{.name = "solves",
               .caption = "How the solves of A and B ended",
@@ -164,7 +164,7 @@ void add_unsolved(const SolveCounts& of_a, const SolveCounts& of_b, Page& page) 
   page.add_section("not-solved", "What was not solved").table(table);
 }
 
-/// Names and readable values, without those at the top: format and title.
+/// Names and readable values of all settings, except format and title.
 std::vector<std::pair<std::string, std::string>> named_settings(const StoredResult& result) {
   std::vector<std::pair<std::string, std::string>> list;
   for (const StudySetting& one : study_settings(result.study_text)) {
@@ -173,7 +173,7 @@ std::vector<std::pair<std::string, std::string>> named_settings(const StoredResu
   return list;
 }
 
-/// What both studies set where they differ (same: where they agree), in the order of A.
+/// The settings in which both studies differ, or agree (`same`), in the order of A.
 Table settings_table(const StoredResult& a, const StoredResult& b, bool same) {
   Table table{.name = same ? "settings_alike" : "settings",
               .caption = same ? "Settings that are the same" : "Settings that differ",
@@ -195,7 +195,7 @@ Table settings_table(const StoredResult& a, const StoredResult& b, bool same) {
   return table;
 }
 
-/// What differs between the studies, which is why their numbers do.
+/// Adds the differences between the studies, which explain those of their numbers.
 void add_studies(const StoredResult& a, const StoredResult& b, Page& page) {
   Section& section = page.add_section("studies", "How the studies differ");
   const Table differing = settings_table(a, b, false);
@@ -207,7 +207,7 @@ std::string name_of(const ReportedResult& result) {
   return result.stored.title.empty() ? result.path : fmt::format("{} ({})", result.stored.title, result.path);
 }
 
-/// Of two results.
+/// The page of two results.
 Page comparison_page(const ReportKind& kind, std::span<const ReportedResult> results) {
   const ReportedResult& a = results[0];
   const ReportedResult& b = results[1];

@@ -17,25 +17,25 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kMostPoses = 10;    // in a picture
-constexpr std::size_t kShownAtOnce = 3;   // of them without a script
-constexpr std::size_t kMostErrors = 300;  // whose motions a page holds
-constexpr std::size_t kOpenRows = 10;     // of the table of errors
+constexpr std::size_t kMostPoses = 10;    // poses in a picture
+constexpr std::size_t kShownAtOnce = 3;   // poses that are visible without scripts
+constexpr std::size_t kMostErrors = 300;  // errors whose motions a page has
+constexpr std::size_t kOpenRows = 10;     // unfolded rows of the table of errors
 constexpr double kMillimetres = 1e3;      // in a metre
-constexpr double kShownMotion = 0.15;     // of the picture, at most, before it is rounded down
+constexpr double kShownMotion = 0.15;     // largest motion over the size of the picture, before rounding down
 
-/// A pose of the picture.
+/// A pose in the picture.
 struct RobotPose {
-  std::optional<std::size_t> pose;  ///< of the result; none: home
-  std::string why;                  ///< it is shown
+  std::optional<std::size_t> pose;  ///< position among the poses of the result; none: home
+  std::string why;                  ///< reason why it is shown
   Sketch sketch;
 };
 
-/// An error of the result in the picture.
+/// An error in the picture.
 struct RobotError {
-  std::size_t at;      ///< position among the result's
-  std::size_t factor;  ///< position among the model's
-  double share;        ///< NaN where there are none
+  std::size_t at;      ///< position among the errors of the result
+  std::size_t factor;  ///< position among the factors of the model
+  double share;        ///< NaN if there are no shares
 };
 
 bool finite(const Sketch& sketch) {
@@ -48,7 +48,7 @@ bool finite(const Sketch& sketch) {
          });
 }
 
-/// The position of the largest number, or by -1 of the smallest; none where no number is known.
+/// The position of the largest number, or with sign -1 of the smallest; none if no number is known.
 std::optional<std::size_t> extreme(std::span<const double> values, double sign) {
   std::optional<std::size_t> found;
   for (std::size_t m = 0; m < values.size(); ++m) {
@@ -57,7 +57,7 @@ std::optional<std::size_t> extreme(std::span<const double> values, double sign) 
   return found;
 }
 
-/// The poses that a reader wants to see, with the reason, each once.
+/// The poses that interest a reader, each once and with the reason.
 class PoseChoice {
  public:
   PoseChoice(const StoredResult& result, const Model& model) : result_(&result), model_(&model) {
@@ -78,7 +78,7 @@ class PoseChoice {
       same->why += "; " + why;
     } else if (list.size() < kMostPoses) {
       const std::span<const double> at = pose ? result_->poses[PoseIndex(*pose)] : std::span<const double>();
-      if (pose && model_->unreachable(at)) return;  // a stranger's file may name any pose
+      if (pose && model_->unreachable(at)) return;  // a file may name any pose
       std::optional<Sketch> sketch = model_->sketch(at);
       if (sketch && finite(*sketch)) list.push_back({pose, why, std::move(*sketch)});
     }
@@ -105,7 +105,7 @@ std::vector<RobotPose> poses_of(const StoredResult& result, const Model& model, 
   return std::move(choice.list);
 }
 
-/// The result's errors that the model knows, those with the largest share first.
+/// The errors of the result that the model has, those with the largest share first.
 std::vector<RobotError> errors_of(const StoredResult& result, const Model& model, const ErrorShares& shares) {
   const bool known = !shares.what.empty() && shares.values.size() == result.factors.size();
   std::vector<RobotError> list;
@@ -165,7 +165,7 @@ std::string error_words(const Sketch& sketch, const Factor& factor, std::size_t 
                      axis_words(sketch, error, factor.dimension));
 }
 
-/// What a screen reader says of a picture.
+/// The description of a picture for screen readers.
 std::string description(const Sketch& sketch, const PartShares& parts, const std::string& what) {
   constexpr std::size_t kMost = 3;
   std::vector<std::string> kinds;
@@ -192,7 +192,7 @@ std::string pose_title(const StoredResult& result, const RobotPose& pose) {
   return fmt::format("P{}: {}", place.substr(1), pose.why);
 }
 
-/// Numbers of all frames of a sketch, 12 each: origin (mm), x, y, z.
+/// Adds the numbers of all frames of a sketch, 12 each: origin (mm), x, y, z.
 void add_frames(const Sketch& sketch, std::vector<double>& to) {
   for (const auto& limb : sketch.frames) {
     for (const SketchedFrame& frame : limb) {
@@ -202,14 +202,14 @@ void add_frames(const Sketch& sketch, std::vector<double>& to) {
   }
 }
 
-/// The frame's place among those of all limbs.
+/// The position of the error's frame among the frames of all limbs.
 std::size_t frame_number(const Sketch& sketch, const SketchedError& error) {
   std::size_t number = error.frame;
   for (std::size_t i = 0; i < error.limb; ++i) number += sketch.frames[i].size();
   return number;
 }
 
-/// Of a motion: by how much it moves the platform's joints, its origin and the tool at most (m).
+/// The largest displacement (m) of the platform's joints, its origin and the tool by a motion.
 double displacement(const Sketch& sketch, const SketchTwist& motion) {
   std::vector<SketchVector> points = sketch.tool;
   points.push_back(sketch.platform);
@@ -223,7 +223,7 @@ double displacement(const Sketch& sketch, const SketchTwist& motion) {
   return largest;
 }
 
-/// Motions of the limbs' platforms by each error at one sigma, and by how much they are to be exaggerated.
+/// Adds the motions of the platform in each limb for errors of one sigma, and the factor by which they are exaggerated.
 void add_motions(const StoredResult& result, const std::vector<RobotPose>& poses, const std::vector<RobotError>& errors,
                  Robot& robot, ArrayPool& pool) {
   if (result.factor_sigma.size() != result.factors.size() || errors.size() > kMostErrors) return;
@@ -278,7 +278,7 @@ Robot robot_figure(const StoredResult& result, const Model& model, const std::ve
   return robot;
 }
 
-/// Rows of errors with their places, a share where there is one.
+/// A table of the errors with their places, and their shares if there are any.
 Table errors_table(const StoredResult& result, const Model& model, const Sketch& sketch,
                    std::span<const RobotError> errors, const ErrorShares& shares) {
   Table table{.name = "where_errors_are",
@@ -313,7 +313,7 @@ Table parts_table(const Sketch& sketch, const PartShares& parts, const ErrorShar
   return table;
 }
 
-/// The colours from no share to the largest.
+/// The legend of the colours, from no share to the largest.
 std::string legend(const PartShares& parts, const std::string& what) {
   if (!(parts.largest > 0.0)) return {};
   return fmt::format(
@@ -322,7 +322,7 @@ std::string legend(const PartShares& parts, const std::string& what) {
       escaped("Colour and thickness, " + what), escaped(percent_text(parts.largest)));
 }
 
-/// What is drawn as one SVG element. id: of the element, unique on the page.
+/// A picture as one SVG element. id: unique on the page.
 std::string picture(const std::string& id, const std::string& title, const std::string& description,
                     const std::string& drawn) {
   return fmt::format(
@@ -332,7 +332,7 @@ std::string picture(const std::string& id, const std::string& title, const std::
       element("desc", description, fmt::format("id=\"{}-desc\"", id)), drawn);
 }
 
-/// All poses, of which the first ones are seen without a script.
+/// The pictures of all poses; the first ones are visible without scripts.
 std::string pictures(const StoredResult& result, const std::vector<RobotPose>& poses,
                      const std::vector<RobotError>& errors, const SketchView& view, const PartShares& parts,
                      const std::string& what) {
@@ -389,7 +389,8 @@ void add_robot(const ReportedResult& reported, const ErrorShares& shares, Page& 
   if (reported.model == nullptr) return;
   const StoredResult& result = reported.stored;
   const Model& model = *reported.model;
-  if (model.description().pose_coordinates.size() != result.pose_coordinates.size()) return;  // a stranger's file
+  if (model.description().pose_coordinates.size() != result.pose_coordinates.size())
+    return;  // a file may state any coordinates
   const std::vector<RobotPose> poses = poses_of(result, model, shares);
   if (poses.empty() || poses.front().pose) return;
   const Sketch& home = poses.front().sketch;

@@ -9,7 +9,7 @@
 namespace poesy {
 namespace {
 
-/// A description as a sentence of its own.
+/// A description as a sentence.
 std::string sentence(const NamedUnit& thing) {
   std::string text = thing.description;
   if (text.empty()) return "-";
@@ -61,7 +61,7 @@ Table failures_table(const ReportedResult& result) {
   return table;
 }
 
-/// Of the rows that have any.
+/// Adds bars for the rows that have solves without convergence.
 void add_bars(const SolveTally& outcomes, Page& page, Section& section) {
   if (outcomes.names.size() < 2) return;
   const std::vector<double> shares = outcomes.shares_by_row();
@@ -90,7 +90,7 @@ void add_figures(const ReportKind& kind, const StoredResult& result, const Solve
                         "not-converged-where");
 }
 
-/// A fact about a run with its label; empty where it is not known or does not apply.
+/// A fact about a run with its label; empty if it is not known or does not apply.
 using RunFact = std::pair<std::string, std::string>;
 
 std::string setting(const StoredResult& result, std::string_view section, std::string_view key) {
@@ -116,7 +116,7 @@ std::string samples_text(const StoredResult& result, const StudyWords& words) {
                      setting(result, "analysis", "samples.max"), setting(result, "analysis", "samples.relative_error"));
 }
 
-/// How many of the errors are not drawn as the others of their unit are.
+/// The number of errors with another distribution than the others of their unit.
 std::string own_distributions_text(const StoredResult& result) {
   const auto own = std::ranges::count_if(result.factors, [&](const NamedUnit& factor) {
     return !setting(result, "errors.override", factor.name).empty();
@@ -131,7 +131,7 @@ std::string speed_text(const RunFacts& run) {
   return count_text(static_cast<std::uint64_t>(std::llround(speed)));
 }
 
-/// How and where the result came into being: the same labels in the same order for every result.
+/// How and where the result was made. Every result has the same labels in the same order.
 std::vector<RunFact> run_facts(const ReportKind& kind, const ReportedResult& reported) {
   const StoredResult& result = reported.stored;
   const RunFacts& run = result.facts;
@@ -172,7 +172,7 @@ std::vector<RunFact> run_facts(const ReportKind& kind, const ReportedResult& rep
   };
 }
 
-/// The facts of one result, or of two where they agree (same) or do not.
+/// The facts of one result, or those in which two agree (`same`) or differ.
 Table facts_table(const ReportKind& kind, std::span<const ReportedResult> results, bool same) {
   const bool two = results.size() == 2;
   Table table{.name = same ? "what_was_run_alike" : "what_was_run",

@@ -19,23 +19,24 @@
 namespace poesy {
 namespace {
 
-/// Numbers that a rank has ahead, for each of its threads: at first, and at most where it solves them quicker than
-/// messages come and go.
+/// The number of work units that a rank has in advance for each of its threads: at first, and at most. It grows if the
+/// rank solves them faster than messages are exchanged.
 constexpr std::size_t kAhead = 4;
 constexpr std::size_t kMostAhead = 128;
 constexpr std::chrono::milliseconds kQuick{3};
-/// Numbers handed out beyond the last one that was merged, at most. More ranks than it can serve are more than one
-/// writer can serve.
+/// The largest number of units that are handed out beyond the last one merged. Ranks that need more would be limited by
+/// the single writer anyway.
 constexpr std::size_t kMostSlots = 65536;
-/// Of outputs that wait for their turn.
+/// The largest number of bytes of outputs that wait for their turn.
 constexpr std::size_t kMostWaitingBytes = std::size_t{256} << 20U;
-/// Outputs are sent together, so many bytes or once in so long a time.
+/// Outputs are sent together: when they have this many bytes, or after this time.
 constexpr std::size_t kSendBytes = std::size_t{16} << 10U;
 constexpr std::chrono::microseconds kSendEvery{500};
 
-/// A pool of threads (run_in_slots) that works beside the calling thread, on numbers that it is given bit by bit.
+/// A pool of threads (run_in_slots) that works beside the calling thread, on numbers that arrive in parts.
 class RankPool {
-  /// The function, closing the pool when it throws, because oneTBB lets no thread go that waits for a number.
+  /// Wraps a function so that the pool closes if it throws, because oneTBB does not end a thread that waits for a
+  /// number.
   template <class Function>
   auto closing(Function function) {
     return [this, function = std::move(function)](auto... arguments) {
@@ -49,10 +50,10 @@ class RankPool {
   }
 
  public:
-  /// The slot of the next number n. Called from one thread at a time.
+  /// Returns the slot of the next number n. Called from one thread at a time.
   using SlotOf = std::function<std::size_t(std::size_t n)>;
 
-  /// Calls deliver(n, slot) after each work, one after another, on threads of the pool.
+  /// Calls deliver(n, slot) after each piece of work, one at a time, on threads of the pool.
   RankPool(const RunOptions& options, std::function<SlotJob()> make_work, SlotOf slot_of, SlotJob deliver)
       : slot_of_(std::move(slot_of)), low_(resolved_threads(options.threads)) {
     const auto make_closing = closing([this, make = std::move(make_work)] { return SlotJob(closing(make())); });
@@ -75,7 +76,7 @@ class RankPool {
   RankPool& operator=(const RankPool&) = delete;
   ~RankPool() { join(); }
 
-  /// Work with the numbers first, first + 1, ...
+  /// Adds work with the numbers first, first + 1, ...
   void give(std::size_t first, std::size_t count) {
     const std::lock_guard lock(mutex_);
     ranges_.push_back({first, first + count});
@@ -83,17 +84,17 @@ class RankPool {
     given_.notify_one();
   }
 
-  /// Returns at the end of that time, or when numbers have become few since the last call.
+  /// Returns after this time, or when few numbers are left.
   void wait(std::chrono::microseconds at_most) {
     std::unique_lock lock(mutex_);
     hungry_.wait_for(lock, at_most, [&] { return hungry_now_; });
     hungry_now_ = false;
   }
 
-  /// Whether something was thrown.
+  /// Whether an exception was thrown.
   bool failed() const { return failed_; }
 
-  /// Ends the pool: what is being worked on is delivered, no more is begun. Throws what was thrown in it.
+  /// Ends the pool: work that began is delivered, and no more begins. Throws the exception that was thrown in the pool.
   void finish() {
     join();
     if (problem_) std::rethrow_exception(std::exchange(problem_, nullptr));
@@ -127,20 +128,20 @@ class RankPool {
   }
 
   SlotOf slot_of_;
-  std::size_t low_;  ///< so many numbers are few
+  std::size_t low_;  ///< this many numbers, or fewer, are few
   std::mutex mutex_;
   std::condition_variable given_;
   std::condition_variable hungry_;
   std::deque<NumberRange> ranges_;
-  std::size_t left_ = 0;  ///< numbers in them
+  std::size_t left_ = 0;  ///< numbers left in the ranges
   bool hungry_now_ = false;
   bool closed_ = false;
   std::atomic<bool> failed_{false};
   std::exception_ptr problem_;
-  std::thread thread_;  ///< last, because it uses all others
+  std::thread thread_;  ///< last, because its thread uses all other members
 };
 
-/// Rank 0.
+/// The part of rank 0.
 class Leader {
  public:
   Leader(std::size_t count, const RunOptions& options, const SlotWork& work)
@@ -176,13 +177,13 @@ class Leader {
 
  private:
   struct Rank {
-    std::size_t threads = 0;  ///< 0 until it is ready
-    std::size_t given = 0;    ///< numbers that it has
+    std::size_t threads = 0;  ///< 0 until the rank is ready
+    std::size_t given = 0;    ///< numbers assigned and not yet returned
     std::size_t ahead = kAhead;
-    std::chrono::steady_clock::time_point given_at;  ///< the last ones
+    std::chrono::steady_clock::time_point given_at;  ///< time of the last assignment
   };
 
-  /// On a thread of the pool.
+  /// Called on a thread of the pool.
   void deliver(std::size_t n) {
     const std::lock_guard lock(mutex_);
     delivered_.push_back(n);
@@ -214,7 +215,7 @@ class Leader {
   }
 
   void welcome(std::size_t rank, ByteReader& from) {
-    if (from.number() != team_->stage()) return;  // it was late for an earlier one
+    if (from.number() != team_->stage()) return;  // the message belongs to an earlier stage
     ranks_[rank].threads = static_cast<std::size_t>(from.number());
     threads_ += ranks_[rank].threads;
   }
@@ -252,7 +253,7 @@ class Leader {
     }
   }
 
-  /// Towards the end a rank gets ever smaller parts, so that all end at about the same time.
+  /// Hands out numbers. Towards the end a rank gets smaller parts, so that all ranks end at about the same time.
   void hand_out(std::size_t to) {
     Rank& rank = ranks_[to];
     const std::size_t left = count_ - next_to_give_;
@@ -283,18 +284,18 @@ class Leader {
   std::size_t count_;
   std::size_t window_;
   std::vector<Rank> ranks_;
-  std::size_t threads_ = 0;  ///< of those that are ready
+  std::size_t threads_ = 0;  ///< threads of the ranks that are ready
   std::size_t next_to_give_ = 0;
   std::size_t next_to_merge_ = 0;
-  std::vector<std::uint8_t> done_;  ///< [slots] 1: there is an output
-  std::vector<std::size_t> bytes_;  ///< [slots] that it had, if it was sent
+  std::vector<std::uint8_t> done_;  ///< [slots] 1 if there is an output
+  std::vector<std::size_t> bytes_;  ///< [slots] bytes of an output that was sent
   std::size_t waiting_bytes_ = 0;
   std::mutex mutex_;
-  std::vector<std::size_t> delivered_;  ///< by the pool
-  RankPool pool_;                       ///< last, because it uses the others
+  std::vector<std::size_t> delivered_;  ///< numbers that the pool delivered
+  RankPool pool_;                       ///< last, because its threads use all other members
 };
 
-/// Every other rank.
+/// The part of the other ranks.
 class Follower {
  public:
   Follower(const RunOptions& options, const SlotWork& work)
@@ -329,7 +330,7 @@ class Follower {
   }
 
  private:
-  /// On a thread of the pool.
+  /// Called on a thread of the pool.
   void deliver(std::size_t n, std::size_t slot) {
     ByteWriter output;
     Archive archive(output);
@@ -365,7 +366,7 @@ class Follower {
     {
       const std::lock_guard lock(mutex_);
       const auto now = std::chrono::steady_clock::now();
-      // What is left may be all that rank 0 waits for.
+      // Rank 0 may be waiting for just these outputs.
       const bool few_left = 2 * (given_ - delivered_) <= resolved_threads(options_->threads);
       if (waiting_ == 0 || (waiting_bytes_ < kSendBytes && now < last_sent_ + kSendEvery && !few_left)) return;
       outputs = std::exchange(outputs_, Team::message(RankMessage::outputs));
@@ -379,16 +380,16 @@ class Follower {
   Team* team_;
   const RunOptions* options_;
   const SlotWork* work_;
-  std::size_t taken_ = 0;         ///< numbers that the pool took
-  std::optional<bool> complete_;  ///< what the end said
-  std::size_t given_ = 0;         ///< numbers from rank 0
+  std::size_t taken_ = 0;         ///< numbers that the pool has taken
+  std::optional<bool> complete_;  ///< content of the end message
+  std::size_t given_ = 0;         ///< numbers received from rank 0
   std::mutex mutex_;
   ByteWriter outputs_;
-  std::size_t waiting_ = 0;  ///< outputs in it
+  std::size_t waiting_ = 0;  ///< number of outputs in the message
   std::size_t waiting_bytes_ = 0;
   std::size_t delivered_ = 0;
   std::chrono::steady_clock::time_point last_sent_;
-  RankPool pool_;  ///< last, because it uses the others
+  RankPool pool_;  ///< last, because its threads use all other members
 };
 
 }  // namespace

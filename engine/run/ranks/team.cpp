@@ -126,7 +126,7 @@ void Team::pass_over_messages() {
     while (try_receive()) {
     }
   } catch (const std::bad_alloc&) {
-    // Long messages are about stages.
+    // Only messages of a stage are long.
   }
 }
 

@@ -14,10 +14,10 @@
 
 namespace poesy {
 
-/// The processes that work on one run, its ranks, as one of them sees them. None of its functions waits.
+/// The processes of one run, its ranks, from the view of one of them. No function waits.
 class Ranks {
  public:
-  /// What one rank sent to another.
+  /// A message from one rank to another.
   struct Message {
     std::size_t from;  ///< the rank that sent it
     Bytes bytes;       ///< its content
@@ -28,27 +28,28 @@ class Ranks {
   Ranks& operator=(const Ranks&) = delete;
   virtual ~Ranks() = default;
 
-  /// This process's number. Precondition of all members: called from one thread at a time.
+  /// The number of this process. Precondition of all members: called from one thread at a time.
   virtual std::size_t rank() const = 0;
-  /// How many there are.
+  /// The number of ranks.
   virtual std::size_t size() const = 0;
-  /// This process as a user would look for it: "rank 3 on node7".
+  /// The name by which a user would look for this process: "rank 3 on node7".
   virtual std::string name() const = 0;
-  /// Sends bytes to another rank and keeps them until they are on their way.
+  /// Sends bytes to another rank, and keeps them until they are sent.
   virtual void send(std::size_t to, std::shared_ptr<const Bytes> bytes) = 0;
-  /// The next message, if one has come. Those of one sender come in the order in which they were sent. Throws
-  /// std::bad_alloc when there is no room for it: then it is lost.
+  /// The next message, if one has arrived. Messages of one sender arrive in order. Throws std::bad_alloc if there is no
+  /// memory for it; it is then lost.
   virtual std::optional<Message> try_receive() = 0;
 };
 
-/// What a message between ranks is about: its first number. What follows, in the notation of engine/base/bytes.h:
+/// The type of a message between ranks, which is its first number. The content follows, in the notation of
+/// engine/base/bytes.h:
 enum class RankMessage : std::uint64_t {
-  study,      ///< rank 0 to all: text, what the study and the program are
+  study,      ///< rank 0 to all: text that describes the study and the program
   agreed,     ///< to rank 0: number of threads; this rank has the same study
   begin,      ///< rank 0 to all: number of the stage, its state as a block
   ready,      ///< to rank 0: number of the stage, number of threads
-  range,      ///< rank 0 to one: first number, how many of them; to be solved
-  outputs,    ///< to rank 0: until the end, a number and its output as a block
+  range,      ///< rank 0 to one: first number of the work, and how many numbers to solve
+  outputs,    ///< to rank 0: number and output as a block, repeated to the end
   end,        ///< rank 0 to all: 1 if the stage is complete, else 0; its state as a block
   leaving,    ///< to rank 0: reason, text; this rank cannot go on
   dismissed,  ///< rank 0 to all: exit code; the run is over
@@ -58,25 +59,25 @@ enum class RankMessage : std::uint64_t {
 /// Why a rank cannot go on.
 enum class LeaveReason : std::uint64_t { stopped, bad_input, file_trouble, internal };
 
-/// What a rank says when it cannot go on.
+/// The message of a rank that cannot go on.
 struct RankLeft {
-  LeaveReason reason;  ///< what kind of trouble it is
-  std::string text;    ///< names the rank and says what is wrong
+  LeaveReason reason;  ///< kind of the problem
+  std::string text;    ///< names the rank and describes the problem
 };
 
-/// Thrown on the ranks after rank 0 where they wait, when rank 0 ends the run.
+/// Thrown on the ranks after rank 0 while they wait, when rank 0 ends the run.
 struct Dismissed : std::exception {
-  /// With the exit code that rank 0 ends with.
+  /// exit_code: the exit code of rank 0.
   explicit Dismissed(int exit_code) : code(exit_code) {}
-  /// A clause.
+  /// A clause that describes the reason.
   const char* what() const noexcept override { return "rank 0 ended the run"; }
-  int code;  ///< the exit code that rank 0 ends with
+  int code;  ///< the exit code of rank 0
 };
 
-/// This process's part in a run on several ranks. Rank 0 leads: it alone knows the checkpoints, hands out the work,
-/// merges all outputs and writes the result. The others follow: they go through the same stages, solve what they are
-/// given, and take each stage's final state from rank 0, so that every rank has the whole of it. run_over_ranks has
-/// what happens within a stage, RankMessage the messages.
+/// The part of this process in a run on several ranks. Rank 0 leads: only it has the checkpoints; it hands out the
+/// work, merges all outputs and writes the result. The others follow: they go through the same stages, solve what they
+/// are assigned, and take the final state of each stage from rank 0. run_over_ranks() describes a stage, RankMessage
+/// the messages.
 class Team {
  public:
   /// Refers to the ranks.
@@ -84,64 +85,65 @@ class Team {
 
   /// Whether this is rank 0.
   bool leads() const { return ranks_->rank() == 0; }
-  /// How it reaches the others.
+  /// The connection to the other ranks.
   const Ranks& ranks() const { return *ranks_; }
-  /// Of all ranks together, known to rank 0 once they agreed.
+  /// The threads of all ranks together; known to rank 0 after agree().
   std::size_t threads() const { return threads_; }
 
-  /// The beginning on every rank: all must have the same study, described by its text, and so many threads each.
-  /// False on rank 0 when one left, or stop was set; false on another one whose study differs.
+  /// The first call on every rank: all must have the same study, described by its text. threads: of this rank. Returns
+  /// false on rank 0 if a rank left or stop was set, and on another rank if its study differs.
   bool agree(const std::string& study, std::size_t threads, const std::atomic<bool>* stop);
 
-  // Stages, in the same order on every rank.
+  // Stages, which all ranks go through in the same order.
 
-  /// Rank 0: the state that the stage begins with, empty at its beginning. Gives that of rank 0 on every rank.
+  /// Rank 0: state is the state with which the stage begins, empty for a new one. Returns the state of rank 0 on every
+  /// rank.
   Bytes begin(const Bytes& state);
   /// The stage that began last, counted from 1.
   std::size_t stage() const { return stage_; }
-  /// Rank 0: the stage ended with this state; needed only if it is complete.
+  /// Rank 0: ends the stage. state: needed only if the stage is complete.
   void end(bool complete, const Bytes& state);
-  /// The others: the state with which rank 0 ended the stage. Precondition: an end was received.
+  /// Other ranks: the final state of the stage on rank 0. Precondition: an end message was received.
   const Bytes& end_state() const { return end_state_; }
-  /// The others: what an end says; whether the stage is complete.
+  /// Other ranks: reads an end message; returns whether the stage is complete.
   bool take_end(ByteReader& message);
 
   // The end of the run.
 
-  /// The others: does what is to be done, and waits until rank 0 ends the run; its exit code. What the body throws is
-  /// told to rank 0, which is to report it. Nothing may be sent afterwards.
+  /// Other ranks: runs the body, waits until rank 0 ends the run, and returns its exit code. An exception of the body
+  /// is sent to rank 0, which reports it. Nothing may be sent afterwards.
   int follow(const std::function<void()>& body);
-  /// The others: this rank cannot go on, for a reason that rank 0 is to report.
+  /// Other ranks: tells rank 0 why this rank cannot go on.
   void leave(LeaveReason reason, const std::string& problem);
-  /// Rank 0: ends the run and waits for the others to be gone. False when they are not in time.
+  /// Rank 0: ends the run and waits for the other ranks to end. Returns false if they do not end in time.
   bool dismiss(int exit_code, std::chrono::milliseconds patience);
-  /// Rank 0: the first rank that left.
+  /// Rank 0: the message of the first rank that left.
   const std::optional<RankLeft>& left() const { return left_; }
 
   // Messages.
 
-  /// A message that begins with what it is about.
+  /// Begins a message of this type.
   static ByteWriter message(RankMessage about);
-  /// Sends what was written to another rank; leaves nothing.
+  /// Sends the bytes to another rank and empties them.
   void send(std::size_t to, ByteWriter& bytes);
   /// A message from another rank.
   struct Received {
     std::size_t from;   ///< the rank that sent it
     RankMessage about;  ///< its first number
-    Bytes bytes;        ///< of the whole message
-    /// Reads what follows the first number.
+    Bytes bytes;        ///< the whole message
+    /// Reads the content after the type.
     ByteReader reader() const;
   };
-  /// The next message but for those about leaving and dismissal, if one has come. Throws Dismissed.
+  /// The next message, if one has arrived. Messages of leaving and dismissal are handled here. Throws Dismissed.
   std::optional<Received> try_receive();
 
  private:
   void send_to_others(ByteWriter& bytes);
   int await_dismissal();
-  /// Takes what has come, when no more is to be done with it. What there is no room for is lost.
+  /// Receives and discards all messages that have arrived. Those without room in memory are lost.
   void pass_over_messages();
   void say_farewell();
-  /// Waits for a message; those about other things are passed over.
+  /// Waits for a message of this type; others are discarded.
   Received wait_for(RankMessage about);
 
   Ranks* ranks_;
@@ -152,12 +154,12 @@ class Team {
   std::optional<RankLeft> left_;
 };
 
-/// Sleeps between looks for messages, the longer the longer nothing came: cores are wanted for solves.
+/// Sleeps between checks for messages, longer the longer none has arrived, because solves need the cores.
 class LookPause {
  public:
   /// The length of the next sleep.
   std::chrono::microseconds next() { return length_ = length_ * 2 < kLongest ? length_ * 2 : kLongest; }
-  /// Something came.
+  /// Call it when a message has arrived.
   void reset() { length_ = kShortest; }
   /// Sleeps for next().
   void sleep();

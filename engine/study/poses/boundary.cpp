@@ -14,10 +14,10 @@
 namespace poesy {
 namespace {
 
-/// Scaled coordinates that differ by less are equal to rounding.
+/// Scaled coordinates that differ by less are equal up to rounding.
 constexpr double kRounding = 1e-12;
 
-/// Steps along a line in which a change of feasibility is looked for.
+/// The number of steps along a line in which feasibility may change.
 constexpr std::size_t kScanIntervals = 32;
 
 constexpr double kGoldenRatio = 0.6180339887498949;
@@ -28,12 +28,11 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// Number of uniforms that unit_vector() takes in n dimensions.
+/// The number of uniforms that unit_vector() needs in n dimensions.
 std::size_t uniforms_for(std::size_t n) { return n <= 3 ? n - 1 : n; }
 
-/// A vector uniform on the unit sphere, [n], from uniforms [uniforms_for(n)]; in one dimension always 1. As few
-/// uniforms as possible where there is a closed form, because a low-discrepancy sequence is more even in fewer
-/// dimensions.
+/// A uniform vector on the unit sphere, [n], from uniforms [uniforms_for(n)]; in one dimension always 1. It uses few
+/// uniforms if there is a closed form, because a low-discrepancy sequence is more even in fewer dimensions.
 void unit_vector(std::span<const double> uniforms, std::span<double> vector) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   if (vector.size() == 1) {
@@ -54,8 +53,8 @@ void unit_vector(std::span<const double> uniforms, std::span<double> vector) {
   }
 }
 
-/// Turns a vector across the last axis into one across this unit vector, by the reflection that exchanges both lines.
-/// Precondition: the vector's last entry is 0.
+/// Rotates a vector perpendicular to the last axis into one perpendicular to this unit vector, by the reflection that
+/// exchanges both directions. Precondition: the vector's last entry is 0.
 void reflect_last_axis_to(std::span<const double> unit, std::span<double> vector) {
   const double last = unit.back();
   const double factor = dot(unit, vector) / (1.0 + std::abs(last));
@@ -63,20 +62,20 @@ void reflect_last_axis_to(std::span<const double> unit, std::span<double> vector
   vector.back() -= (last < 0.0 ? -factor : factor);
 }
 
-/// A point of a line, and a unit vector along it.
+/// A line: a point of it, and a unit vector along it.
 struct Line {
   Vector point;
   Vector direction;
 };
 
-/// A line by the kinematic measure, from a point of the sequence: its direction is uniform, and its point nearest to
-/// the cube's centre is uniform in a ball across the direction that covers the cube.
+/// A line with the kinematic measure, from a point of the sequence. Its direction is uniform, and its point nearest to
+/// the cube's centre is uniform in a ball perpendicular to the direction that covers the cube.
 Line line_of(Vector uniforms, std::size_t coordinates) {
-  // A fixed irrational step in each dimension, modulo 1: the first points of the sequence lie symmetric to the middle,
-  // and such lines meet edges and corners.
+  // Adds a fixed irrational step in each dimension, modulo 1, because the first points of the sequence are symmetric
+  // about the middle, and their lines would meet edges and corners.
   const auto fraction = [](double value) { return value - std::floor(value); };
   double step = 0.0;
-  double share = 0.5;  // of the first dimension: half of the sphere, for a line has no sign
+  double share = 0.5;  // half of the sphere in the first dimension, because a line has no sign
   for (double& u : uniforms) {
     step = fraction(step + kGoldenRatio);
     u = share * fraction(u + step);
@@ -102,8 +101,8 @@ struct Chord {
   Line line;
   double enter = -std::numeric_limits<double>::infinity();
   double leave = std::numeric_limits<double>::infinity();
-  std::size_t enter_face = 0;  ///< the coordinate in which the line comes in
-  std::size_t leave_face = 0;  ///< likewise
+  std::size_t enter_face = 0;  ///< coordinate of the face through which the line enters
+  std::size_t leave_face = 0;  ///< coordinate of the face through which the line leaves
 
   /// The point at this position; at enter and leave exactly on the face.
   void at(double position, Vector& point) const {
@@ -115,7 +114,7 @@ struct Chord {
   }
 };
 
-/// Nothing when the line misses the cube.
+/// The chord; none if the line misses the cube.
 std::optional<Chord> chord_of(const Line& line) {
   Chord chord{line};
   for (std::size_t c = 0; c < line.point.size(); ++c) {
@@ -138,7 +137,7 @@ void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollecto
     chord.at(position, scaled);
     workspace.unscale(scaled, pose);
   };
-  // The last feasible position between a feasible and an infeasible one, to rounding.
+  // Bisects between a feasible and an infeasible position, and returns the last feasible one.
   const auto refined = [&](double feasible, double infeasible) {
     while (std::abs(infeasible - feasible) > std::numeric_limits<double>::epsilon()) {
       const double middle = std::midpoint(feasible, infeasible);
@@ -157,7 +156,7 @@ void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollecto
   };
   double before = chord.enter;
   bool inside = false;         // whether a feasible piece is open
-  double entry = chord.enter;  // where it begins
+  double entry = chord.enter;  // its beginning
   for (std::size_t k = 0; k <= kScanIntervals; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(kScanIntervals);
     const double position = std::lerp(chord.enter, chord.leave, share);
@@ -171,8 +170,8 @@ void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollecto
   if (inside) keep_piece(entry, chord.leave);
 }
 
-/// Whether two poses are equal to rounding in every scaled coordinate. Poses are sorted along a
-/// direction that is parallel to no face, so only near neighbours need to be compared.
+/// Whether two poses are equal up to rounding in every scaled coordinate. Poses are sorted along a direction that is
+/// not parallel to a face, so only near neighbours need to be compared.
 bool some_coincide(const Workspace& workspace, const PoseCollector& collector) {
   const std::size_t count = collector.kept();
   const std::size_t coordinates = workspace.coordinates();

@@ -13,7 +13,7 @@ constexpr const char* kSi = " (numbers in the file are SI: metres and radians, u
 
 using Function = std::function<double(double time)>;
 
-/// A modified Akima spline, or straight lines through the two or three points that make none.
+/// A modified Akima spline, or straight lines if there are only two or three points.
 Function interpolated(std::vector<double> time, std::vector<double> values) {
   constexpr std::size_t kSplinePoints = 4;
   if (time.size() >= kSplinePoints) {
@@ -26,7 +26,7 @@ Function interpolated(std::vector<double> time, std::vector<double> values) {
   };
 }
 
-/// What a trajectory is over time: points, [coordinates], SI.
+/// The points of a trajectory as a function of time, [coordinates], SI.
 std::function<std::vector<double>(double time)> path_of(const Trajectory& trajectory, const ModelDescription& model) {
   if (trajectory.curve) {
     return [&at = model.curves[*trajectory.curve].at, &origin = trajectory.origin](double time) {
@@ -49,7 +49,8 @@ std::function<std::vector<double>(double time)> path_of(const Trajectory& trajec
   };
 }
 
-/// "z = 0.5 m, beta = 20 rad = 1145.92 deg", as a file has them, or in the units in which people read them alone.
+/// A point as text: "z = 0.5 m, beta = 20 rad = 1145.92 deg" with the units of a file, or only in the units that people
+/// read.
 std::string point_text(std::span<const double> point, const std::vector<PoseCoordinate>& coordinates, bool as_in_file) {
   std::string text;
   for (std::size_t c = 0; c < point.size(); ++c) {
@@ -62,16 +63,17 @@ std::string point_text(std::span<const double> point, const std::vector<PoseCoor
   return text;
 }
 
-/// How points that the mechanism cannot take are refused.
+/// The message that refuses a point.
 struct PointRefusal {
   std::function<Place(std::size_t m)> place;        ///< of point m
-  std::function<std::string(std::size_t m)> point;  ///< what messages call it, from "pose 1 (...) " on
-  std::string if_unreachable;                       ///< what to do
-  std::string if_singular;                          ///< what to do
-  std::string note;                                 ///< behind what to do
+  std::function<std::string(std::size_t m)> point;  ///< name of point m in messages, such as "pose 1 (...)"
+  std::string if_unreachable;                       ///< advice for a point out of reach
+  std::string if_singular;                          ///< advice for a singular point
+  std::string note;                                 ///< text after the advice
 };
 
-/// The poses of all points of a table. Throws InputError for the first that the mechanism cannot take, SearchStopped.
+/// The poses of all points of a table. Throws InputError for the first point that the mechanism cannot reach or that is
+/// singular, and SearchStopped.
 SelectedPoses poses_of(const PoseTable& table, const PointRefusal& refusal, const Model& model, double max_condition,
                        const WatchSearch& watch) {
   SelectedPoses selected;

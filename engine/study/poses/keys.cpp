@@ -16,7 +16,7 @@ using Select = PoseSelection::Select;
 
 constexpr std::size_t kCurvePoints = 201;
 
-/// Two ends, the lower one first: of a range of values, or when a part of a curve starts and ends.
+/// Reads two ends, the lower one first: of a range of values, or of a part of a curve.
 Range read_range(const StudyValue& value, Dimension dimension) {
   const bool is_time = dimension == Dimension::time;
   const auto ends =
@@ -49,7 +49,7 @@ void read_limits(const StudyValue& value, Study& study, const Reading&) {
   });
 }
 
-/// A whole number, or for a grid a table with a number for every pose coordinate.
+/// Reads a whole number, or for a grid a table with a number for every pose coordinate.
 void read_count(const StudyValue& value, Study& study, const Reading&) {
   PoseSelection& selection = study.poses;
   selection.count_place = value.place();
@@ -71,7 +71,7 @@ void read_count(const StudyValue& value, Study& study, const Reading&) {
   selection.count = static_cast<std::size_t>(product);
 }
 
-/// For StudyUse::evaluate the file is not opened.
+/// Reads the name of a file of poses. With StudyUse::evaluate the file is not opened.
 void read_pose_file(const StudyValue& value, Study& study, const Reading& reading) {
   study.poses.file = value.text();
   if (reading.use == StudyUse::evaluate) return;
@@ -118,7 +118,7 @@ const InnerRows<Trajectory>& trajectory_keys() {
   return keys;
 }
 
-/// The part of `what` that the study asks for; the whole where it names none.
+/// The part of `what` that the study selects; the whole if it selects none.
 Range part_of(const StudySection& section, const Trajectory& trajectory, const Range& whole, const std::string& what) {
   const Range time = trajectory.time.value_or(whole);
   if (time.lower < whole.lower || time.upper > whole.upper) {
@@ -151,7 +151,7 @@ void read_curve(const StudySection& section, const StudyValue& value, const Mode
   trajectory.time = part_of(section, trajectory, {curve.start, curve.end}, "curve '" + curve.name + "'");
 }
 
-/// For StudyUse::evaluate the file is not opened.
+/// Reads the file of a curve. With StudyUse::evaluate the file is not opened.
 void read_curve_file(const StudySection& section, const ModelDescription& model, const Reading& reading,
                      Trajectory& trajectory) {
   section.refuse("origin", "a trajectory from a file, whose points are as they are");
@@ -198,7 +198,7 @@ std::string workspace_text(const std::vector<Range>& workspace, const ModelDescr
          "\n";
 }
 
-/// One that is not a whole file.
+/// A trajectory that is not a whole file, as TOML.
 std::string trajectory_text(const Trajectory& trajectory, const ModelDescription& model, ValueText value) {
   std::string text = "file = " + in_quotes(trajectory.file);
   if (trajectory.curve) {
@@ -244,7 +244,7 @@ std::string shown_count(const TemplateLines& lines, const Study& study) {
   return lines.usual("poses", "count") + "# count = " + grid + "\n";
 }
 
-/// The model's own.
+/// The workspace of the model.
 std::vector<Range> usual_workspace(const ModelDescription& model) {
   std::vector<Range> workspace;
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
@@ -263,7 +263,7 @@ std::string shown_workspace(const TemplateLines& lines, const Study& study) {
   return text + workspace_text(usual_workspace(model), model, readable_value);
 }
 
-/// The joints, and the range of one.
+/// The names of the joints, and an example of a range.
 std::string shown_limits(const TemplateLines& lines, const Study& study) {
   const std::vector<JointDisplacement>& joints = study.model().joints;
   if (joints.empty()) return {};

@@ -15,22 +15,24 @@
 
 namespace poesy {
 
-/// M poses of C coordinates each, SI, row-major [M x C].
+/// A set of M poses with C coordinates each, SI, row-major [M x C].
 class PoseSet {
  public:
   PoseSet() = default;
-  /// Values: [M x coordinates], row-major, SI.
+  /// values: [M x coordinates], row-major, SI.
   PoseSet(std::size_t coordinates, std::vector<double> values) : coordinates_(coordinates), values_(std::move(values)) {
     POESY_EXPECTS(coordinates_ > 0 && values_.size() % coordinates_ == 0);
   }
 
-  std::size_t size() const { return coordinates_ == 0 ? 0 : values_.size() / coordinates_; }  ///< M.
-  std::size_t coordinates() const { return coordinates_; }                                    ///< Numbers of a pose.
-  /// [coordinates], SI.
+  std::size_t size() const {
+    return coordinates_ == 0 ? 0 : values_.size() / coordinates_;
+  }                                                         ///< The number of poses, M.
+  std::size_t coordinates() const { return coordinates_; }  ///< The number of coordinates of a pose.
+  /// The coordinates of a pose, [coordinates], SI.
   std::span<const double> operator[](PoseIndex pose) const {
     return std::span(values_).subspan(pose.value * coordinates_, coordinates_);
   }
-  /// All values of one coordinate, [M].
+  /// [M] The values of one coordinate.
   std::vector<double> column(std::size_t coordinate) const {
     std::vector<double> values(size());
     for (std::size_t m = 0; m < values.size(); ++m) values[m] = values_[m * coordinates_ + coordinate];
@@ -43,7 +45,7 @@ class PoseSet {
   std::vector<double> values_;
 };
 
-/// The values from one end to the other, both included.
+/// A range of values that includes both ends.
 struct Range {
   double lower;  ///< SI
   double upper;  ///< SI
@@ -53,90 +55,91 @@ struct Range {
 struct PoseTable {
   std::optional<std::size_t> chart;    ///< position among the model's charts; none: the pose's own coordinates
   PoseSet points;                      ///< [M x coordinates], SI
-  std::vector<std::string> bare = {};  ///< columns of a file that name no unit, in the order of the coordinates
+  std::vector<std::string> bare = {};  ///< columns of a file without a unit, in the order of the coordinates
 };
 
-/// The coordinates of the pose, or of a chart.
+/// The coordinates of a chart, or of the pose if there is none.
 const std::vector<PoseCoordinate>& coordinates(const ModelDescription& model, std::optional<std::size_t> chart);
 
-/// Points run through in time.
+/// Points with the times at which they are passed.
 struct TimedPoints {
   std::vector<double> time;  ///< [M] s, strictly ascending
   PoseTable table;           ///< [M]
 };
 
-inline constexpr double kLatestTime = 1e9;  ///< s, from 0, before and after: 30 years, far from where times overflow
+inline constexpr double kLatestTime = 1e9;  ///< s, before and after 0: 30 years, far from overflow
 
-/// What a study says of a trajectory: a named curve of the model, or points of a file.
+/// A trajectory in a study: a named curve of the model, or points of a file.
 struct Trajectory {
-  std::optional<std::size_t> curve = {};  ///< position among the model's curves; none: of a file
-  std::vector<double> origin = {};        ///< where the curve's zero stands, [coordinates of its chart], SI
-  std::string file = {};                  ///< as written in the study; empty for a curve
-  TimedPoints from_file = {};             ///< at least two; empty where the file was not opened
-  std::size_t points = 0;                 ///< poses, evenly spaced in time; 0: those of the file as they are
-  std::optional<Range> time = {};         ///< s; none where points is 0, or where the file was not opened and sets it
-  Place first_row = {};                   ///< of the file (point m is m lines below)
+  std::optional<std::size_t> curve = {};  ///< position among the model's curves; none: points of a file
+  std::vector<double> origin = {};        ///< point at which the curve's zero is, [coordinates of its chart], SI
+  std::string file = {};                  ///< name in the study; empty for a curve
+  TimedPoints from_file = {};             ///< at least two points; empty if the file was not opened
+  std::size_t points = 0;                 ///< number of poses, evenly spaced in time; 0: the points of the file
+  std::optional<Range> time = {};         ///< s; none if points is 0, or if the file determines it and was not opened
+  Place first_row = {};                   ///< first point of the file (point m is m lines below)
 };
 
-/// The trajectory's points: of a curve at evenly spaced times, both ends included; those of the file as they are; or
-/// those of the file interpolated over time at evenly spaced times, each coordinate by itself: a modified Akima spline
-/// through four points or more, straight lines through two or three. Precondition: the file was opened, the times lie
-/// inside its range.
+/// The points of a trajectory: those of a curve at evenly spaced times, including both ends; those of the file; or
+/// those of the file interpolated at evenly spaced times. Each coordinate is interpolated alone: by a modified Akima
+/// spline through four or more points, by straight lines through two or three. Precondition: the file was opened, and
+/// the times are inside its range.
 TimedPoints sampled(const Trajectory& trajectory, const ModelDescription& model);
 
-/// The range that one joint's displacement from home must stay in, ends included.
+/// The range of one joint's displacement from home, including its ends.
 struct JointLimit {
   std::size_t joint;  ///< position among the model's joints
   Range range;        ///< SI
-  Place place;        ///< in the study, for messages
+  Place place;        ///< place in the study, for messages
 };
 
-/// Which poses of the platform.
+/// How the poses of the platform are selected.
 struct PoseSelection {
   /// How poses are chosen; see select_poses().
   enum class Select { interior, file, boundary, grid, trajectory };
 
-  Select select = Select::interior;      ///< decides which of the members below hold something
-  std::size_t count = 0;                 ///< with grid_counts their product; of a trajectory its points
+  Select select = Select::interior;  ///< how poses are chosen; it determines which members below are used
+  std::size_t count = 0;             ///< number of poses; with grid_counts their product; for a trajectory its points
   std::vector<std::size_t> grid_counts;  ///< for `grid`: one number per pose coordinate, or empty
-  std::vector<Range> workspace;          ///< one range per pose coordinate; for all that search a box
-  std::vector<JointLimit> limits;        ///< for all that search a box
-  double max_condition = 1e8;            ///< poses above it count as singular
-  std::string file;                      ///< as written in the study, for `file`
-  PoseTable from_file;                   ///< its poses
-  std::optional<Trajectory> trajectory;  ///< for `trajectory`; none in a study that is only evaluated and has none
-  Place place;        ///< of the workspace, of the file's first pose (pose m is m lines below), or of the trajectory
-  Place count_place;  ///< of the count, for messages
+  std::vector<Range> workspace;          ///< one range per pose coordinate, for selections that search a box
+  std::vector<JointLimit> limits;        ///< for selections that search a box
+  double max_condition = 1e8;            ///< poses with a larger condition number count as singular
+  std::string file;                      ///< for `file`: its name in the study
+  PoseTable from_file;                   ///< poses of that file
+  std::optional<Trajectory> trajectory;  ///< for `trajectory`; none if the study has none and is only evaluated
+  Place place;  ///< place of the workspace, of the file's first pose (pose m is m lines below), or of the trajectory
+  Place count_place;  ///< place of the count, for messages
 };
 
-/// How many poses were tried and refused for one reason.
+/// The number of poses that were refused for one reason.
 struct RejectedPoses {
   std::string reason;  ///< "q_1_3 above 80 mm"
-  std::size_t count;   ///< poses
+  std::size_t count;   ///< number of poses
 };
 
-/// What a selection comes to.
+/// The result of a selection.
 struct SelectedPoses {
   PoseSet poses;                        ///< [M]
   std::vector<double> condition;        ///< [M], see Model::condition
   std::vector<RejectedPoses> rejected;  ///< most frequent first
-  std::vector<double> time;             ///< [M] s, ascending, of a trajectory; else empty
+  std::vector<double> time;             ///< [M] s, ascending, for a trajectory; else empty
 };
 
-/// How far a search for poses is.
+/// The progress of a search for poses.
 struct PoseSearch {
   std::size_t found;       ///< poses so far
-  std::size_t wanted;      ///< poses
-  std::size_t candidates;  ///< poses that were looked at
+  std::size_t wanted;      ///< poses that are wanted
+  std::size_t candidates;  ///< poses that were examined
 };
 
-/// Called after each pose that a search looks at; false stops the search.
+/// Called after each pose that a search examines; false stops the search.
 using WatchSearch = std::function<bool(const PoseSearch&)>;
 
-/// The study's poses. Deterministic. A pose of the box is feasible when the model reaches it, every limited joint stays
-/// in its range, and its condition number is at most max_condition.
+/// Selects the study's poses, deterministically. A pose of the box is feasible if the model reaches it, every limited
+/// joint stays in its range, and its condition number is at most max_condition.
 ///
-/// - interior: Sobol' points in the box, in order; the first `count` feasible ones. Fewer poses are the first of more.
+/// - interior: the first `count` feasible points of the Sobol' sequence in the box. A smaller set is the beginning of a
+/// larger one.
 /// - boundary: points of the feasible set's boundary, uniform by area; see boundary_poses(). Fewer begin more.
 /// - grid: with grid_counts all feasible points of that grid, the last coordinate fastest. Ranges are divided evenly,
 ///   both ends included; 1 means the middle. Else the coarsest grid with equal numbers for all coordinates and at least
@@ -144,15 +147,15 @@ using WatchSearch = std::function<bool(const PoseSearch&)>;
 /// - file: the poses of the file, which may stand in the coordinates of a chart.
 /// - trajectory: the poses of sampled(), in the order of time.
 ///
-/// Throws InputError at the place of the limit that rejected most, or of the selection, when the box gives fewer poses
-/// than wanted: interior after max(100 000, 100 count) candidates, or 50 000 in a row of which none is feasible;
-/// boundary likewise, see boundary_poses(); grid when so many candidates are more than a grid may have, or when, after
-/// 100 000 in all grids, their feasible share would give less than a quarter of the poses there; at count_place when
-/// poses of the boundary coincide to rounding; for the first pose of a file or a trajectory that does not exist, is out
-/// of reach or above max_condition: at its line where the poses are a file's own, else at the study's trajectory.
+/// Throws InputError at the place of the limit that rejected most poses, or of the selection, if the box gives fewer
+/// poses than wanted. Interior: after max(100 000, 100 count) candidates, or 50 000 in a row of which none is feasible;
+/// boundary: see boundary_poses(). Grid: if the candidates would be more than a grid may have, or if, after 100 000 in
+/// all grids, their feasible share would give less than a quarter of the poses. At count_place, if poses of the
+/// boundary coincide up to rounding. For the first pose of a file or a trajectory that does not exist, is out of reach
+/// or exceeds max_condition: at its line if the poses are those of a file, else at the study's trajectory.
 SelectedPoses select_poses(const PoseSelection& selection, const Model& model);
 
-/// The same; none where the search was stopped. watch: may be empty.
+/// The same; none if the search was stopped. watch: may be empty.
 std::optional<SelectedPoses> select_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch);
 
 }  // namespace poesy
