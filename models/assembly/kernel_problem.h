@@ -17,7 +17,7 @@ struct KernelMotion {
 
 /// A constant motion that others are multiplied by.
 struct KernelConstant {
-  enum class Shape : std::uint8_t { identity, translation, any };
+  enum class Shape : std::uint8_t { identity, translation, any };  ///< What a motion may be.
   KernelMotion motion;  ///< all of it
   Shape shape;          ///< which parts of it are not those of the identity
 };

@@ -75,10 +75,10 @@ class Assembly {
   FirstOrder first_order_;
   NormalEquations equations_;
   Loops loops_;
-  std::vector<std::size_t> passive_;      ///< position of each passive joint among all joints
-  std::vector<double> delta_mu_;          ///< [6 x pairs] where the joints rest
-  std::vector<double> part_;              ///< [6 x pairs] r
-  std::vector<lie::Screw<double>> pull_;  ///< [limbs] scratch
+  std::vector<std::size_t> passive_;        ///< position of each passive joint among all joints
+  std::vector<double> delta_mu_;            ///< [6 x pairs] where the joints rest
+  std::vector<double> part_;                ///< [6 x pairs] r
+  std::vector<lie::Screw<double>> pull_;    ///< [limbs] scratch
   std::vector<lie::Screw<double>> slopes_;  ///< [frames] of ln det(J^T W J), if the perfect mechanism is regular
   std::unique_ptr<Descent> descent_;
 };

@@ -90,8 +90,8 @@ struct AnyShape {
 /// is carried along it to first order instead of being evaluated again.
 ///
 /// By a metric a root may be that of a machine that cannot be assembled. It is doubted where N - 2 C is not positive
-/// definite for the residual delta_mu, C = M - N, or was not on the way, and wherever the first pass did not find it. It
-/// has the status not_assembled for the time being, and Assembly decides.
+/// definite for the residual delta_mu, C = M - N, or was not on the way, and wherever the first pass did not find it.
+/// It has the status not_assembled for the time being, and Assembly decides.
 ///
 /// By a metric (Weighted) the equation is J^T W delta_mu = 0, f = J^T W delta_mu and N = J^T W J. The length s of a
 /// step is the largest distance by which one joint's part of it moves the platform's points, over the reach. The first

@@ -65,9 +65,9 @@ TEST(DeterminantSlopes, AreDifferencesOfTheLogarithm) {
         constexpr double kStep = 1e-4;
         const FrameEntry entry{frame, component};
         first_order.effect(entry, delta_mu, give);
-        const double expected = (log_with_error(chain, q, entry, kStep, give, W) -
-                                 log_with_error(chain, q, entry, -kStep, give, W)) /
-                                (2.0 * kStep);
+        const double expected =
+            (log_with_error(chain, q, entry, kStep, give, W) - log_with_error(chain, q, entry, -kStep, give, W)) /
+            (2.0 * kStep);
         EXPECT_NEAR(slopes[frame].dot(first_order.motion(entry)), expected, 1e-5 * (1.0 + std::abs(expected)));
       }
     }
