@@ -4,50 +4,22 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/model/forwarding_model.h"
 
 namespace poesy {
 namespace {
 
-class CalibratedModel final : public Model {
+class CalibratedModel final : public ForwardingModel {
  public:
-  explicit CalibratedModel(std::unique_ptr<Model> model) : model_(std::move(model)) {}
+  explicit CalibratedModel(std::unique_ptr<Model> model) : ForwardingModel(std::move(model)) {}
 
-  const ModelDescription& description() const override { return model_->description(); }
-  std::optional<std::string> unreachable(std::span<const double> pose) const override {
-    return model_->unreachable(pose);
-  }
-  std::vector<double> joint_displacements(std::span<const double> pose) const override {
-    return model_->joint_displacements(pose);
-  }
-  double condition(std::span<const double> pose) const override { return model_->condition(pose); }
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
-    return model_->calibrated_evaluator(options);
+    return calibrated_evaluator(options);
   }
-  std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
-    return model_->calibrated_evaluator(options);
+  std::optional<SolveTrace> trace(std::span<const double>, std::span<const double>,
+                                  const SolverOptions&) const override {
+    return std::nullopt;
   }
-  std::optional<std::vector<double>> pose_from_chart(std::size_t chart,
-                                                     std::span<const double> coordinates) const override {
-    return model_->pose_from_chart(chart, coordinates);
-  }
-  std::string no_pose_because(std::size_t chart, std::span<const double> coordinates) const override {
-    return model_->no_pose_because(chart, coordinates);
-  }
-  std::vector<double> norm_of_details(std::size_t response, std::span<const double> pose) const override {
-    return model_->norm_of_details(response, pose);
-  }
-  Separation separation(std::span<const double> pose) const override { return model_->separation(pose); }
-  double rounding(std::size_t response) const override { return model_->rounding(response); }
-  ErrorBound error_bound(FactorIndex factor) const override { return model_->error_bound(factor); }
-  std::vector<PlatformPoint> metric_points() const override { return model_->metric_points(); }
-  std::vector<std::string> mobility() const override { return model_->mobility(); }
-  std::optional<Sketch> sketch(std::span<const double> pose) const override { return model_->sketch(pose); }
-  std::vector<std::string> remarks() const override { return model_->remarks(); }
-
-  std::vector<std::string> unusual_geometry() const override { return model_->unusual_geometry(); }
-
- private:
-  std::unique_ptr<Model> model_;
 };
 
 }  // namespace

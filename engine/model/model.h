@@ -47,6 +47,10 @@ struct Response {
   double mean_square_bound = 1.0;
   /// The components, if the response is the norm of a vector of responses: their positions among the model's.
   std::vector<std::size_t> components = {};
+  bool has_no_sign = false;  ///< a norm of something else, or an energy
+
+  /// Whether it is never below zero.
+  bool is_magnitude() const { return has_no_sign || !components.empty(); }
 };
 
 /// A vector behind the responses, which is computed only if a caller wants it.

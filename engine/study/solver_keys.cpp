@@ -205,6 +205,7 @@ const StudyRows& file_keys() {
                         .reader = read_version},
                StudyRow{.name = "title", .value = text_at(&Study::title), .meaning = "Free text; the result keeps it."},
                table_row("mechanism", "add the section [mechanism] with the key model", "", "Which mechanism."),
+               response_row(),
                table_row("poses", "add the section [poses] with the key count", "", "At which poses of the platform."),
                table_row("errors", "", "as shown there", "How errors scatter."),
                table_row("analysis", "", "", "What is asked, of which errors."),

@@ -15,6 +15,7 @@
 #include "engine/base/error.h"
 #include "engine/base/index.h"
 #include "engine/model/model.h"
+#include "engine/model/own_responses.h"
 #include "engine/random/distribution.h"
 #include "engine/study/poses/pose_selection.h"
 
@@ -40,6 +41,9 @@ struct MechanismChoice {
   Place points_place = {};  ///< for messages about the points
   /// The file that describes the mechanism; none for a mechanism of the catalog.
   std::optional<MechanismText> file = std::nullopt;
+  std::vector<OwnResponse> responses = {};  ///< the study's own responses, which follow the mechanism's
+  /// The entry with these responses, to which `entry` points; null without any.
+  std::shared_ptr<const CatalogEntry> with_responses = nullptr;
   /// Whether responses are those that remain after the best correction of the actuators (Model::calibrated_evaluator).
   bool calibrated = false;
   Place calibrated_place = {};  ///< for messages about the calibration

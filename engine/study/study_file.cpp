@@ -94,6 +94,7 @@ Study study_from(const Reading& reading) {
   read_keys(file_keys(), root, study, reading, Extent::partial);
   read_mechanism(study, reading);
   read_solver(study, reading);
+  read_responses(study, reading);
   read_poses_section(study, reading);
   read_errors_section(study, reading);
   read_analysis(study, reading);
@@ -124,7 +125,7 @@ StudyKinds study_kinds_of(std::vector<const StudyKind*> all, std::span<const std
   const auto analysis = std::ranges::find(kinds.tables.front().keys, "analysis", &StudyKey::name);
   analysis->usual = "a " + std::string(kinds.all.front()->name) + " study";
   for (const StudyTables& more :
-       {mechanism_tables(), poses_tables(), errors_tables(), analysis_tables(kinds.all, order),
+       {mechanism_tables(), response_tables(), poses_tables(), errors_tables(), analysis_tables(kinds.all, order),
         StudyTables{described(solver_keys()), described(run_keys())}}) {
     kinds.tables.insert(kinds.tables.end(), more.begin(), more.end());
   }

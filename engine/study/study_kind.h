@@ -143,6 +143,7 @@ const StudyRows& run_keys();
 /// The same with their inner tables, for the reference.
 /// @{
 StudyTables mechanism_tables();
+StudyTables response_tables();
 StudyTables poses_tables();
 StudyTables errors_tables();
 StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<const std::string_view> order);
@@ -154,11 +155,15 @@ StudyRow shared_analysis_row(std::string_view name);
 /// Each of these functions reads a part of a study file. Throws InputError for the first problem.
 /// @{
 void read_mechanism(Study& study, const Reading& reading);
+void read_responses(Study& study, const Reading& reading);  ///< After the solver, whose metric they are of.
 void read_poses_section(Study& study, const Reading& reading);
 void read_errors_section(Study& study, const Reading& reading);
 void read_analysis(Study& study, const Reading& reading);
 void read_solver(Study& study, const Reading& reading);
 /// @}
+
+/// The key [[response]].
+StudyRow response_row();
 
 /// The distribution of errors of this dimension that have none of their own.
 Distribution usual_distribution(const Reading& reading, Dimension dimension);

@@ -20,6 +20,12 @@ class Rows {
     list.push_back({std::move(name), dimension, std::move(description)});
   }
 
+  /// What has no sign.
+  void add_magnitude(std::string name, Dimension dimension, std::string description) {
+    add(std::move(name), dimension, std::move(description));
+    list.back().has_no_sign = true;
+  }
+
   /// Three components.
   void add_vector(const std::string& name, Dimension dimension, const std::string& description) {
     for (const std::string_view axis : kAxes) {
@@ -45,11 +51,12 @@ void add_motion(Rows& rows, const std::string& prefix, const std::string& whose)
 }
 
 void add_forces(Rows& rows, const Assembly& assembly, const Report& report) {
-  rows.add("strain_energy", Dimension::energy, "elastic energy of all limbs");
+  rows.add_magnitude("strain_energy", Dimension::energy, "elastic energy of all limbs");
   for (const Limb& limb : assembly.limbs) {
-    rows.add("force_" + limb.label, kForce, "norm of the force that limb " + limb.label + " exerts");
-    rows.add("moment_" + limb.label, kMoment,
-             "norm of the moment that limb " + limb.label + " exerts, about the point of its last moving joint");
+    rows.add_magnitude("force_" + limb.label, kForce, "norm of the force that limb " + limb.label + " exerts");
+    rows.add_magnitude(
+        "moment_" + limb.label, kMoment,
+        "norm of the moment that limb " + limb.label + " exerts, about the point of its last moving joint");
   }
   const auto of = [&](const ReportedJoint& joint) { return joint.name + "_" + assembly.limbs[joint.limb].label; };
   for (const ReportedJoint& drive : report.drives) {
@@ -168,12 +175,13 @@ Outcome outcome_of(const Assembly& assembly, const Nominal& pose, const Balance&
 std::vector<Response> responses_of(const Assembly& assembly, const Report& report, bool deforms) {
   Rows rows;
   if (deforms) {
-    rows.add("gap", kLength,
-             "how far the limbs would have their ends apart from the bodies that they hold: root mean square over the "
-             "platform's points and the independent loops");
-    rows.add("angular_deformation", kAngle, "mismatch of angle, root mean square over the independent loops");
-    rows.add("linear_deformation", kLength,
-             "mismatch of position at the platform's origin, root mean square over the independent loops");
+    rows.add_magnitude(
+        "gap", kLength,
+        "how far the limbs would have their ends apart from the bodies that they hold: root mean square over the "
+        "platform's points and the independent loops");
+    rows.add_magnitude("angular_deformation", kAngle, "mismatch of angle, root mean square over the independent loops");
+    rows.add_magnitude("linear_deformation", kLength,
+                       "mismatch of position at the platform's origin, root mean square over the independent loops");
   }
   add_motion(rows, "", "the platform");
   if (assembly.tool) {

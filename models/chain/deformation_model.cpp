@@ -175,30 +175,51 @@ std::vector<Response> deformation_responses() {
   constexpr double kMeanOfSides = 3.0 / 2.0;
   constexpr double kLargestSide = 2.0;
   return {
-      {"angular_deformation", Dimension::angle,
+      {"angular_deformation",
+       Dimension::angle,
        "mean mismatch of angle between pairs of limbs, whose errors keep them from holding one rigid platform (Du et "
        "al. "
        "2022, Eq. 49)",
-       kMeanOfSides},
-      {"linear_deformation", Dimension::length,
+       kMeanOfSides,
+       {},
+       true},
+      {"linear_deformation",
+       Dimension::length,
        "mean mismatch of position, at the base's origin, between pairs of limbs, whose errors keep them from holding "
        "one "
        "rigid platform (Du et al. 2022, Eq. 50)",
-       kMeanOfSides},
-      {"deformation_max", Dimension::number,
+       kMeanOfSides,
+       {},
+       true},
+      {"deformation_max",
+       Dimension::number,
        "largest mismatch of a pair of limbs: the norm of angle and position together, rad and m mixed (Du et al. 2022, "
        "Eq. 45)",
-       kLargestSide}};
+       kLargestSide,
+       {},
+       true}};
 }
 
 std::vector<Response> responses_by_metric() {
-  return {{"gap", Dimension::length,
+  return {{"gap",
+           Dimension::length,
            "how far apart the limbs hold the platform's points: root mean square over the points and the pairs of "
-           "limbs, whose errors keep them from holding one rigid platform"},
-          {"angular_deformation", Dimension::angle,
-           "mismatch of angle between pairs of limbs, root mean square over the pairs"},
-          {"linear_deformation", Dimension::length,
-           "mismatch of position at the platform's origin between pairs of limbs, root mean square over the pairs"}};
+           "limbs, whose errors keep them from holding one rigid platform",
+           1.0,
+           {},
+           true},
+          {"angular_deformation",
+           Dimension::angle,
+           "mismatch of angle between pairs of limbs, root mean square over the pairs",
+           1.0,
+           {},
+           true},
+          {"linear_deformation",
+           Dimension::length,
+           "mismatch of position at the platform's origin between pairs of limbs, root mean square over the pairs",
+           1.0,
+           {},
+           true}};
 }
 
 std::vector<Response> platform_responses(const PlatformReport& report, std::size_t first) {

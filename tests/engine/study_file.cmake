@@ -6,3 +6,4 @@ poesy_test(allocation_keys_test LABELS unit
            SOURCES engine/kinds/allocation/drawn_part_test.cpp engine/kinds/allocation/it_grade_test.cpp
                    engine/kinds/allocation/keys_test.cpp
            LINKS poesy_kinds poesy_models)
+poesy_test(own_responses_test LABELS unit SOURCES engine/study/own_responses_test.cpp LINKS poesy_kinds poesy_models)
