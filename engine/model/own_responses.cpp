@@ -51,7 +51,9 @@ ModelDescription described(ModelDescription model, const std::vector<OwnResponse
   std::vector<Response> made;
   for (const OwnResponse& one : own) made.push_back(response_of(one, model));
   model.responses.insert(model.responses.end(), made.begin(), made.end());
-  if (!model.headline.empty()) model.headline.insert(model.headline.begin(), first.begin(), first.end());
+  for (std::vector<std::size_t>* shown : {&model.headline, &model.signed_headline}) {
+    if (!shown->empty()) shown->insert(shown->begin(), first.begin(), first.end());
+  }
   return model;
 }
 

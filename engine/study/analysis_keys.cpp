@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/base/name_pattern.h"
 #include "engine/base/text.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
@@ -144,10 +145,11 @@ const InnerRows<Background>& background_keys() {
   static const InnerRows<Background> keys{
       .paths = {"analysis.background"},
       .meaning = "Errors held constant.",
-      .rows = {InnerRow<Background>{.name = "factors",
-                                    .value = {.type = "text or list of texts"},
-                                    .missing = "write a factor set or a list of factors",
-                                    .meaning = "The errors that are held: a factor set, all, or a list of factors."},
+      .rows = {InnerRow<Background>{
+                   .name = "factors",
+                   .value = {.type = "text or list of texts"},
+                   .missing = "write a factor set or a list of factors",
+                   .meaning = "The errors that are held: a factor set, all, or a list of factors and patterns."},
                InnerRow<Background>{.name = "linear",
                                     .value = quantity_at(Dimension::length, &Background::linear),
                                     .usual = "the standard deviation of linear in [errors]",
@@ -234,7 +236,9 @@ std::vector<StudyRow> shared_rows() {
                .value = {.type = "text or list of texts"},
                .usual = "all",
                .may_stay = true,
-               .meaning = "The errors that vary or are tried: a factor set, all, or a list of factors.",
+               .meaning =
+                   "The errors that vary or are tried: a factor set, all, or a list of factors and of patterns such as "
+                   "\"rod_*\".",
                .reader = read_studied_factors,
                .lines = factors_line,
                .shown = shown_factors},
@@ -272,8 +276,8 @@ std::vector<StudyRow> shared_rows() {
           .value = {.type = "table"},
           .usual = "none",
           .meaning =
-              "Errors held constant while others vary. One that varies may not be named, and is left out of a set; "
-              "what a case sets is not held.",
+              "Errors held constant while others vary. An error that varies must not be named here; in a set it is "
+              "ignored. Errors that a case sets are not held.",
           .reader = read_background,
           .lines = background_lines,
           .late = 2,
@@ -331,10 +335,29 @@ std::string usual_factors_text(std::span<const StudyKind* const> kinds) {
 
 }  // namespace
 
+namespace {
+
+/// Adds the factors whose names match a pattern, those that are not there yet.
+void add_matching(const StudyValue& pattern, const ModelDescription& model, std::vector<FactorIndex>& factors) {
+  bool any = false;
+  for (std::size_t f = 0; f < model.factors.size(); ++f) {
+    if (!matches(pattern.text(), model.factors[f].name)) continue;
+    any = true;
+    if (std::ranges::find(factors, FactorIndex(f)) == factors.end()) factors.emplace_back(f);
+  }
+  if (!any) pattern.fail("matches no error of the mechanism", "'poesy models " + model.name + "' lists them");
+}
+
+}  // namespace
+
 std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescription& model) {
   if (value.is_text()) return factors_of_set(value, model);
   std::vector<FactorIndex> factors;
   for (const StudyValue& element : value.list()) {
+    if (element.is_text() && is_pattern(element.text())) {
+      add_matching(element, model, factors);
+      continue;
+    }
     const FactorIndex factor(element.word(names(model.factors)));
     if (std::find(factors.begin(), factors.end(), factor) != factors.end()) {
       element.fail("names '" + model.factors[factor.value].name + "' a second time, but factors must differ",

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
+#include "engine/base/name_pattern.h"
 #include "engine/base/text.h"
 #include "engine/study/bare_numbers.h"
 #include "engine/study/study_kind.h"
@@ -205,12 +208,41 @@ void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
   }
 }
 
+/// What [errors.override] says of a factor: the last key in the file that is its name or a pattern of it.
+std::optional<StudyValue> override_of(const StudySection& overrides, const std::string& factor) {
+  const auto place = [](const StudyValue& value) { return std::pair(value.place().line, value.place().column); };
+  std::optional<StudyValue> last;
+  for (const std::string& key : overrides.keys()) {
+    if (key != factor && !(is_pattern(key) && matches(key, factor))) continue;
+    StudyValue own = overrides.require(key);
+    if (!last || place(own) > place(*last)) last = std::move(own);
+  }
+  return last;
+}
+
+/// Throws for a key that is the name of no factor, and for a pattern that none matches.
+void check_override(const StudySection& overrides, const ModelDescription& model) {
+  const std::vector<std::string> keys = overrides.keys();
+  std::vector<std::string_view> known = names(model.factors);
+  for (const std::string& key : keys) {
+    if (!is_pattern(key)) continue;
+    known.push_back(key);
+    if (std::ranges::any_of(model.factors, [&](const Factor& factor) { return matches(key, factor.name); })) continue;
+    overrides.require(key).fail("matches no error of the mechanism", "'poesy models " + model.name + "' lists them");
+  }
+  overrides.allow(known, "factor");
+}
+
 void read_override(const StudyValue& value, Study& study, const Reading& reading) {
-  const std::vector<Factor>& factors = study.model().factors;
-  read_named(value.section(), factors, "factor", [&](std::size_t f, const StudyValue& own) {
-    study.errors.by_factor[f] =
-        read_distribution(own, factors[f].dimension, reading.use, study.errors.by_factor[f], study.doubts);
-  });
+  const StudySection overrides = value.section();
+  check_override(overrides, study.model());
+  for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
+    const Factor& factor = study.model().factors[f];
+    Distribution& distribution = study.errors.by_factor[f];
+    if (const auto own = override_of(overrides, factor.name)) {
+      distribution = read_distribution(*own, factor.dimension, reading.use, distribution, study.doubts);
+    }
+  }
 }
 
 /// The values as a TOML list over several lines, to keep lines of a study file short.
@@ -299,7 +331,7 @@ StudyRow usual_row(std::string_view meaning) {
 [[noreturn]] void refuse_distribution(const StudySection& root, const Factor& factor, const std::string& problem,
                                       std::span<const std::string_view> keys) {
   const StudySection errors = root.section("errors");
-  const auto own = errors.section("override").find(factor.name);
+  const auto own = override_of(errors.section("override"), factor.name);
   const auto value = own ? own : errors.find(error_kind(factor.dimension));
   if (!value) refuse_error(errors, error_kind(factor.dimension), problem);
   const StudySection distribution = value->section();
@@ -337,7 +369,7 @@ const StudyRows& errors_keys() {
                                        StudyRow{.name = "override",
                                                 .value = {.type = "table"},
                                                 .usual = "none",
-                                                .meaning = "Single errors with a distribution of their own.",
+                                                .meaning = "Errors with a distribution of their own.",
                                                 .reader = read_override,
                                                 .lines = override_lines,
                                                 .shown = shown_override},
@@ -352,7 +384,8 @@ StudyTables errors_tables() {
            .keys = {{.name = "FACTOR",
                      .type = "table",
                      .usual = "that of its dimension",
-                     .meaning = "Distribution of this error."}}},
+                     .meaning = "Distribution of this error, or of all whose names match \"rod_*\", with '*' for any "
+                                "letters and '?' for one; the last key of the file that fits an error counts."}}},
           described(distribution_keys()),
           correlated_table()};
 }

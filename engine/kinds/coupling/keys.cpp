@@ -281,13 +281,13 @@ std::vector<StudyRow> coupling_key_rows() {
       StudyRow{.name = "linear",
                .value = sizes_at(Dimension::length, &CouplingStudy::linear),
                .meaning =
-                   "Sizes of lengths: each is a run of its own, in which every error is at once as large as that. "
-                   "Required where a source has lengths; as many as of angular, if there are both.",
+                   "Sizes of lengths. Each gives a run of its own, in which all lengths have this size. Required where "
+                   "a source has lengths; as many as of angular, if there are both.",
                .lines = sizes_line<Dimension::length>,
                .shown = shown_sizes<Dimension::length>},
       StudyRow{.name = "angular",
                .value = sizes_at(Dimension::angle, &CouplingStudy::angular),
-               .meaning = "Sizes of angles, in the same way.",
+               .meaning = "Sizes of angles, likewise.",
                .lines = sizes_line<Dimension::angle>,
                .shown = shown_sizes<Dimension::angle>},
       StudyRow{.name = "limbs",
@@ -302,15 +302,16 @@ std::vector<StudyRow> coupling_key_rows() {
                    "all: every component of an error, together; a list such as [\"x\", \"z\"]: those and scalars; "
                    "independent: each component of each error on its own, as for limbs.",
                .reader = read_components},
-      StudyRow{.name = "worst_case",
-               .value = asked_value(word_at<UnknownSigns>(
-                   {{UnknownSigns::search,
-                     "the largest value that is found: the signs of the first-order sum solved, then flipped one by "
-                     "one until no flip is worse; for each pose, size and subset some solves for each error and "
-                     "response"},
-                    {UnknownSigns::sum, "none, only the sum of what each error does alone, which takes no solves"}},
-                   &CouplingStudy::worst_case)),
-               .meaning = "What is found where signs are not known."},
+      StudyRow{
+          .name = "worst_case",
+          .value = asked_value(word_at<UnknownSigns>(
+              {{UnknownSigns::search,
+                "the largest value that a search finds: it begins with the signs of the first-order sum, and flips "
+                "them one by one until no flip is worse; some solves for each error and response at each pose, "
+                "size and subset"},
+               {UnknownSigns::sum, "no worst case, only the first-order sum, which takes no solves"}},
+              &CouplingStudy::worst_case)),
+          .meaning = "How the worst case is found where signs are not known."},
       StudyRow{.name = "sources",
                .value = {.type = "list of tables"},
                .usual = "those of the literature, where the model has them",

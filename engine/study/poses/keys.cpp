@@ -89,7 +89,7 @@ void read_time(const StudyValue& value, Trajectory& trajectory) {
 const InnerRows<Trajectory>& trajectory_keys() {
   static const InnerRows<Trajectory> keys{
       .paths = {"poses.trajectory"},
-      .meaning = "Exactly one of curve and file.",
+      .meaning = "A trajectory is a curve or a file.",
       .rows = {
           InnerRow<Trajectory>{
               .name = "curve", .value = {.type = "text"}, .meaning = "Name of one of the model's curves."},
@@ -310,8 +310,8 @@ std::vector<StudyRow> poses_rows() {
                .missing = "write how many poses, e.g. {}",
                .example = "158",
                .only_for = of_box,
-               .meaning = "How many poses; of a grid so many of its points, or all points with a number for every pose "
-                          "coordinate.",
+               .meaning = "Number of poses. Of a grid: a number takes that many of its points, a table with a number "
+                          "for each pose coordinate takes all points.",
                .reader = read_count,
                .lines = count_line,
                .shown = shown_count},

@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include "engine/kinds/study_file.h"
+#include "tests/support/fake_model.h"
+#include "tests/support/input_error.h"
+#include "tests/support/kinds.h"
+
+// Patterns in the place of the names of errors. The mechanism has delta_1, epsilon_1 and delta_2.
+namespace poesy {
+namespace {
+
+const Catalog kCatalog = test::fake_catalog();
+
+std::string study_text(const std::string& rest) {
+  return "format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"fake\" }\nposes = { count = 3 }\n" + rest;
+}
+
+Study read(const std::string& rest) { return study_of_text(study_text(rest), "study.toml", kCatalog, StudyUse::run); }
+
+double sigma(const Study& study, std::size_t factor) { return study.errors.by_factor[factor].standard_deviation(); }
+
+TEST(Patterns, OverrideAllErrorsThatMatch) {
+  const Study study = read("[errors.override]\n\"delta_?\" = { distribution = \"normal\", sigma = \"2 mm\" }\n");
+  EXPECT_DOUBLE_EQ(sigma(study, 0), 2e-3);
+  EXPECT_DOUBLE_EQ(sigma(study, 1), sigma(read(""), 1));
+  EXPECT_DOUBLE_EQ(sigma(study, 2), 2e-3);
+  const std::string text = resolved_text(study);
+  EXPECT_EQ(resolved_text(study_of_text(text, "again.toml", kCatalog, StudyUse::run)), text);
+}
+
+TEST(Patterns, YieldToWhatComesLater) {
+  const std::string pattern = "\"*_2\" = { distribution = \"normal\", sigma = \"3 mm\" }\n";
+  const std::string name = "delta_2 = { distribution = \"normal\", sigma = \"4 mm\" }\n";
+  EXPECT_DOUBLE_EQ(sigma(read("[errors.override]\n" + pattern + name), 2), 4e-3);
+  EXPECT_DOUBLE_EQ(sigma(read("[errors.override]\n" + name + pattern), 2), 3e-3);
+}
+
+TEST(Patterns, NameTheErrorsThatVary) {
+  using Positions = std::vector<FactorIndex>;
+  EXPECT_EQ(read("analysis = { factors = [\"*_1\"] }\n").analysis.factors, (Positions{FactorIndex(0), FactorIndex(1)}));
+  EXPECT_EQ(read("analysis = { factors = [\"delta_2\", \"delta_*\"] }\n").analysis.factors,
+            (Positions{FactorIndex(2), FactorIndex(0)}));
+}
+
+TEST(Patterns, AreRefusedWhereTheyMatchNothing) {
+  const auto refused = [](const std::string& marked, const std::vector<std::string>& words) {
+    SCOPED_TRACE(marked);
+    const test::Marked text(study_text(marked));
+    test::expect_input_error([&] { study_of_text(text.text, "study.toml", kCatalog, StudyUse::run); },
+                             {"study.toml", text.line, text.column}, words);
+  };
+  refused("[errors.override]\n\"rod_*\" = ^{ distribution = \"normal\", sigma = \"1 mm\" }\n",
+          {"errors.override.rod_* matches no error of the mechanism", "'poesy models fake'"});
+  refused("[errors.override]\n^delta_3 = { distribution = \"normal\", sigma = \"1 mm\" }\n",
+          {"unknown factor 'delta_3'"});
+  refused("[errors.override]\n\"*_1\" = { distribution = \"normal\", sigma = ^\"1 mm\" }\n",
+          {"errors.override.*_1.sigma", "angle"});
+  refused("analysis = { factors = [^\"rod_*\"] }\n", {"analysis.factors[0] matches no error", "'poesy models fake'"});
+  refused("analysis = { factors = [\"delta_*\", ^\"delta_1\"] }\n", {"a second time"});
+}
+
+}  // namespace
+}  // namespace poesy
