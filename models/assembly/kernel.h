@@ -31,7 +31,7 @@ class AssemblyKernel {
 
   void solve_batch(std::size_t at) {
     state_.begin(at);
-    before_ = {T(1.0), T(1e300)};
+    before_ = {.places = T(1.0), .wrenches = T(1e300)};
     Mask active = T(0.0) < T(1.0);
     Mask left = active;
     T iterations(0.0);
@@ -59,7 +59,7 @@ class AssemblyKernel {
     if (problem_.wants_wrenches) {
       T whole(0.0);
       for (const T& wrench : state_.wrenches) whole = madd(wrench, wrench, whole);
-      settled = settled & rests(change.wrenches, before_.wrenches, T(kWrenches) * whole, T(kShort * kWrenches) * whole);
+      settled = settled & rests(change.wrenches, before_.wrenches, T(kWrenches) * whole, T(kShortWrenches) * whole);
     }
     return settled & (change.places < T(kFarthest));
   }
@@ -74,9 +74,10 @@ class AssemblyKernel {
     }
   }
 
-  static constexpr double kWrenches = 1e-24;  ///< square of the share of all wrenches that is rounding
+  static constexpr double kWrenches = 1e-24;       ///< square of the share of all wrenches that is rounding
+  static constexpr double kShortWrenches = 1e-14;  ///< square of such a share up to which the next one is foreseen
   static constexpr double kNext = 1e-2;       ///< square of the share of the tolerance that a next round may change
-  static constexpr double kShort = 1e10;      ///< square of a change over the tolerance up to which it is foreseen
+  static constexpr double kShort = 1e12;      ///< square of a change over the tolerance up to which it is foreseen
   static constexpr double kFarthest = 100.0;  ///< square of a move beyond which a lane has diverged
 
   const KernelProblem& problem_;

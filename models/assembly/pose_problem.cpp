@@ -287,17 +287,21 @@ void PoseProblem::read_values(const SampleBlock& samples, std::vector<double>& v
   for (std::size_t f = 0; f < entry_.size(); ++f) {
     if (!varies[f]) entries_[entry_[f]].constant += scale_[f] * samples.errors[f];
   }
-  values.clear();
+  values.resize(samples.varied.size() * stride);
+  int rows = 0;
   for (std::size_t v = 0; v < samples.varied.size(); ++v) {
     const std::size_t f = samples.varied[v].value;
     Entry& entry = entries_[entry_[f]];
-    if (entry.row < 0) {
-      entry.row = static_cast<int>(values.size() / stride);
-      values.insert(values.end(), stride, entry.constant);
-    }
+    const bool is_first = entry.row < 0;
+    if (is_first) entry.row = rows++;
     double* to = values.data() + static_cast<std::size_t>(entry.row) * stride;
     const double* from = samples.values.data() + v * samples.count;
-    for (std::size_t b = 0; b < samples.count; ++b) to[b] += scale_[f] * from[b];
+    if (is_first) {
+      for (std::size_t b = 0; b < samples.count; ++b) to[b] = entry.constant + scale_[f] * from[b];
+      std::fill(to + samples.count, to + stride, entry.constant);
+    } else {
+      for (std::size_t b = 0; b < samples.count; ++b) to[b] += scale_[f] * from[b];
+    }
   }
 }
 
