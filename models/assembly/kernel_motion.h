@@ -116,6 +116,27 @@ template <class T>
   return made;
 }
 
+/// simd::rotation_log with shorter series for the lanes in which tan(theta/2)^2 is below 1e-3, as it is in mismatches.
+template <class T>
+[[gnu::always_inline]] inline simd::RotationLog<T> mismatch_log(const T* r) {
+  static constexpr double kAtan[] = {1.0, -1.0 / 3.0, 1.0 / 5.0, -1.0 / 7.0, 1.0 / 9.0, -1.0 / 11.0};
+  static constexpr double kCot[] = {1.0 / 12.0, 1.0 / 720.0, 1.0 / 30240.0, 1.0 / 1209600.0, 1.0 / 47900160.0};
+  const T half(0.5);
+  const T a[3] = {half * (r[7] - r[5]), half * (r[2] - r[6]), half * (r[3] - r[1])};
+  const T sine2 = simd::dot3(a, a);
+  const T denominator = T(1.0) / madd(half, r[0] + r[4] + r[8], half);  // 1 / (1 + cosine)
+  const T tan2 = sine2 * denominator * denominator;
+  const T factor = (denominator + denominator) * simd::polynomial(tan2, kAtan);
+  simd::RotationLog<T> made{{factor * a[0], factor * a[1], factor * a[2]},
+                            simd::polynomial(factor * factor * sine2, kCot)};
+  const auto wide = !(tan2 < T(1e-3));
+  if (!any(wide)) return made;
+  const simd::RotationLog<T> full = simd::rotation_log(r);
+  for (int k = 0; k < 3; ++k) made.w[k] = select(wide, full.w[k], made.w[k]);
+  made.bend = select(wide, full.bend, made.bend);
+  return made;
+}
+
 /// log(a b^-1) as [w; v].
 template <class T>
 [[gnu::always_inline]] inline void log_of(const LaneMotion<T>& a, const LaneMotion<T>& b, T* twist) {
@@ -127,7 +148,7 @@ template <class T>
   for (int row = 0; row < 3; ++row) {
     for (int n = 0; n < 3; ++n) c.p[row] = nmadd(c.r[3 * row + n], b.p[n], c.p[row]);
   }
-  const auto turn = simd::rotation_log(c.r);
+  const auto turn = mismatch_log(c.r);
   T once[3];
   T twice[3];
   simd::cross(turn.w, c.p, once);

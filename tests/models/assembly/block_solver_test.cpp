@@ -177,6 +177,25 @@ TEST_P(AssemblyKernel, IsTheSameAtAnyPlace) {
   });
 }
 
+TEST(AssemblyKernels, HaveTheSameBitsByAllSetsWithFusedMultiplyAdd) {
+  if (!test::machine_has("avx2") || !test::machine_has("avx512"))
+    GTEST_SKIP() << "this machine has one of them at most";
+  for_each_sample(21, [](const AssemblyModel& model, PoseProblem& problem, Samples& samples) {
+    for (const How how : {How::solve, How::map}) {
+      std::vector<Block> blocks;
+      for (const char* isa : {"avx2", "avx512"}) {
+        const test::ForcedIsa forced(isa);
+        blocks.push_back(block_of(model, problem, how, samples));
+      }
+      EXPECT_EQ(blocks[0].iterations, blocks[1].iterations);
+      for (std::size_t k = 0; k < blocks[0].responses.size(); ++k) {
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(blocks[0].responses[k]),
+                  std::bit_cast<std::uint64_t>(blocks[1].responses[k]));
+      }
+    }
+  });
+}
+
 INSTANTIATE_TEST_SUITE_P(Isa, AssemblyKernel, testing::ValuesIn(test::kEveryIsa), test::isa_name);
 
 }  // namespace
