@@ -25,7 +25,7 @@ LaneMotion<T> in_lanes(const KernelMotion& motion) {
 
 /// a b
 template <class T>
-LaneMotion<T> product(const LaneMotion<T>& a, const LaneMotion<T>& b) {
+[[gnu::always_inline]] inline LaneMotion<T> product(const LaneMotion<T>& a, const LaneMotion<T>& b) {
   LaneMotion<T> c;
   for (int row = 0; row < 3; ++row) {
     const T* of_a = a.r + 3 * row;
@@ -39,7 +39,7 @@ LaneMotion<T> product(const LaneMotion<T>& a, const LaneMotion<T>& b) {
 
 /// g <- g * translation by t
 template <class T>
-void shift(LaneMotion<T>& g, const T* t) {
+[[gnu::always_inline]] inline void shift(LaneMotion<T>& g, const T* t) {
   for (int row = 0; row < 3; ++row) {
     const T* of = g.r + 3 * row;
     g.p[row] = madd(of[2], t[2], madd(of[1], t[1], madd(of[0], t[0], g.p[row])));
@@ -48,7 +48,7 @@ void shift(LaneMotion<T>& g, const T* t) {
 
 /// g <- g * constant
 template <class T>
-void append(LaneMotion<T>& g, const KernelConstant& constant) {
+[[gnu::always_inline]] inline void append(LaneMotion<T>& g, const KernelConstant& constant) {
   if (constant.shape == KernelConstant::Shape::identity) return;
   const LaneMotion<T> other = in_lanes<T>(constant.motion);
   if (constant.shape == KernelConstant::Shape::translation) {
@@ -60,7 +60,7 @@ void append(LaneMotion<T>& g, const KernelConstant& constant) {
 
 /// g <- g * the joint's motion
 template <class T>
-void move(const KernelJoint& joint, T displacement, LaneMotion<T>& g) {
+[[gnu::always_inline]] inline void move(const KernelJoint& joint, T displacement, LaneMotion<T>& g) {
   if (joint.slides || joint.advance != 0.0) {
     const T way = joint.slides ? displacement : T(joint.advance) * displacement;
     for (int row = 0; row < 3; ++row) g.p[row] = madd(g.r[3 * row + 2], way, g.p[row]);
@@ -77,7 +77,7 @@ void move(const KernelJoint& joint, T displacement, LaneMotion<T>& g) {
 
 /// The joint's twist [w; v] where its frame is g: a column of J.
 template <class T>
-void twist_of(const KernelJoint& joint, const LaneMotion<T>& g, T* twist) {
+[[gnu::always_inline]] inline void twist_of(const KernelJoint& joint, const LaneMotion<T>& g, T* twist) {
   const T axis[3] = {g.r[2], g.r[5], g.r[8]};
   if (joint.slides) {
     for (int k = 0; k < 3; ++k) {
@@ -94,13 +94,13 @@ void twist_of(const KernelJoint& joint, const LaneMotion<T>& g, T* twist) {
 
 /// A twist times a wrench.
 template <class T>
-T dot6(const T* a, const T* b) {
+[[gnu::always_inline]] inline T dot6(const T* a, const T* b) {
   return simd::dot3(a, b) + simd::dot3(a + 3, b + 3);
 }
 
 /// exp of the twist [w; v].
 template <class T>
-LaneMotion<T> motion_of(const T* twist) {
+[[gnu::always_inline]] inline LaneMotion<T> motion_of(const T* twist) {
   const T* w = twist;
   const T* v = twist + 3;
   const T x = simd::dot3(w, w);
@@ -116,9 +116,30 @@ LaneMotion<T> motion_of(const T* twist) {
   return made;
 }
 
+/// simd::rotation_log with shorter series for the lanes in which tan(theta/2)^2 is below 1e-3, as it is in mismatches.
+template <class T>
+[[gnu::always_inline]] inline simd::RotationLog<T> mismatch_log(const T* r) {
+  static constexpr double kAtan[] = {1.0, -1.0 / 3.0, 1.0 / 5.0, -1.0 / 7.0, 1.0 / 9.0, -1.0 / 11.0};
+  static constexpr double kCot[] = {1.0 / 12.0, 1.0 / 720.0, 1.0 / 30240.0, 1.0 / 1209600.0, 1.0 / 47900160.0};
+  const T half(0.5);
+  const T a[3] = {half * (r[7] - r[5]), half * (r[2] - r[6]), half * (r[3] - r[1])};
+  const T sine2 = simd::dot3(a, a);
+  const T denominator = T(1.0) / madd(half, r[0] + r[4] + r[8], half);  // 1 / (1 + cosine)
+  const T tan2 = sine2 * denominator * denominator;
+  const T factor = (denominator + denominator) * simd::polynomial(tan2, kAtan);
+  simd::RotationLog<T> made{{factor * a[0], factor * a[1], factor * a[2]},
+                            simd::polynomial(factor * factor * sine2, kCot)};
+  const auto wide = !(tan2 < T(1e-3));
+  if (!any(wide)) return made;
+  const simd::RotationLog<T> full = simd::rotation_log(r);
+  for (int k = 0; k < 3; ++k) made.w[k] = select(wide, full.w[k], made.w[k]);
+  made.bend = select(wide, full.bend, made.bend);
+  return made;
+}
+
 /// log(a b^-1) as [w; v].
 template <class T>
-void log_of(const LaneMotion<T>& a, const LaneMotion<T>& b, T* twist) {
+[[gnu::always_inline]] inline void log_of(const LaneMotion<T>& a, const LaneMotion<T>& b, T* twist) {
   LaneMotion<T> c;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) c.r[3 * row + column] = simd::dot3(a.r + 3 * row, b.r + 3 * column);
@@ -127,7 +148,7 @@ void log_of(const LaneMotion<T>& a, const LaneMotion<T>& b, T* twist) {
   for (int row = 0; row < 3; ++row) {
     for (int n = 0; n < 3; ++n) c.p[row] = nmadd(c.r[3 * row + n], b.p[n], c.p[row]);
   }
-  const auto turn = simd::rotation_log(c.r);
+  const auto turn = mismatch_log(c.r);
   T once[3];
   T twice[3];
   simd::cross(turn.w, c.p, once);

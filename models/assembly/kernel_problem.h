@@ -52,6 +52,9 @@ struct KernelJoint {
   double displacement;  ///< nominal
 };
 
+/// Passive joints of a limb in a matrix of its own.
+inline constexpr std::size_t kMostOwnJoints = 6;
+
 /// A limb from one body to another, and what its linear equations are made of; see Equilibrium.
 struct KernelLimb {
   std::size_t from;                     ///< body
@@ -65,6 +68,9 @@ struct KernelLimb {
   std::vector<double> carry;            ///< [6 x carried] N, row by row
   std::vector<double> give;             ///< [passive x 6] dq of least norm from a twist
   double compliance[36];                ///< C
+  double stiffness[36];                 ///< C^-1, where limbs have matrices of their own
+  bool is_diagonal;                     ///< whether C^-1 is
+  std::vector<double> idle;             ///< [passive squared] what keeps freedoms that move nothing where they are
 };
 
 /// A joint's frame in the report.
@@ -118,9 +124,10 @@ struct KernelProblem {
   std::vector<KernelLimb> limbs;     ///< in the order of the file
   std::size_t joints;                ///< that are passive, of all limbs
   std::size_t size;                  ///< of the linear equations: all lambda, then 6 for each body but the base
-  std::vector<double> inverse;       ///< [size x size] of their matrix, row by row
+  std::vector<double> inverse;       ///< [size x size] of their nominal matrix, row by row
   std::vector<double> load;          ///< [6 x bodies]
   bool carries;                      ///< whether there are wrenches: limbs deform each other, or a load acts
+  bool has_own_matrices;             ///< whether each sample gets its own matrix instead of the inverse
   bool wants_wrenches;               ///< whether wrenches must have settled too
   double tolerance;                  ///< of a body's move
   int most_rounds;                   ///< then a sample is left to another solver

@@ -15,6 +15,9 @@ using Shape = KernelConstant::Shape;
 /// Rounds of the kernel; a sample that needs more has its own matrices made.
 constexpr int kMostRounds = 30;
 
+/// A limb whose smallest compliance is below this share of its largest is rigid there, for rounding.
+constexpr double kRigid = 1e-9;
+
 Index index(std::size_t value) { return static_cast<Index>(value); }
 
 /// Rotation by rows, lengths in this unit.
@@ -89,6 +92,7 @@ PoseProblem::PoseProblem(const AssemblyModel& model, Nominal pose, const SolverO
   set_report();
   solve_first_order(equations);
   problem_.carries = problem_.map.stresses > 0 || std::ranges::any_of(problem_.load, [](double x) { return x != 0.0; });
+  set_own_matrices(equations);
   problem_.wants_wrenches = assembly.metric == Metric::stiffness;
   problem_.tolerance = options.tolerance;
   problem_.most_rounds = std::min(kMostRounds, options.max_iterations);
@@ -153,6 +157,29 @@ void PoseProblem::set_limb(const Equilibrium& equations, std::size_t e) {
   }
   problem_.joints += made.passive;
   problem_.limbs.push_back(std::move(made));
+}
+
+/// What samples need for matrices of their own, if they get them: limbs have wrenches, and none of them is rigid in any
+/// direction.
+void PoseProblem::set_own_matrices(const Equilibrium& equations) {
+  problem_.has_own_matrices = problem_.carries;
+  for (std::size_t e = 0; e < problem_.limbs.size(); ++e) {
+    KernelLimb& limb = problem_.limbs[e];
+    const Matrix6& C = equations.compliance(e);
+    const Eigen::VectorXd softness = linalg::eigenvalues(C);
+    const bool is_soft = softness[0] > kRigid * softness[5];
+    problem_.has_own_matrices = problem_.has_own_matrices && is_soft && limb.passive <= kMostOwnJoints;
+    if (!problem_.has_own_matrices) return;
+    limb.is_diagonal = model_->assembly.metric == Metric::platform;
+    const Matrix stiffness = linalg::inverse(C);
+    for (Index k = 0; k < 36; ++k) limb.stiffness[k] = stiffness(k / 6, k % 6);
+    const Matrix& give = equations.give(e);
+    const Matrix columns = equations.twists_in_units() * pose_.limbs[e].passive;
+    const Matrix idle = Matrix::Identity(give.rows(), give.rows()) - give * columns;  // onto what moves nothing
+    const double size = (columns.transpose() * stiffness * columns).trace() / static_cast<double>(give.rows());
+    const bool has_idle = equations.carry(e).cols() + give.rows() > 6;
+    copy_rows(has_idle ? Matrix(size * idle) : Matrix::Zero(give.rows(), give.rows()), limb.idle);
+  }
 }
 
 void PoseProblem::set_report() {
@@ -260,17 +287,21 @@ void PoseProblem::read_values(const SampleBlock& samples, std::vector<double>& v
   for (std::size_t f = 0; f < entry_.size(); ++f) {
     if (!varies[f]) entries_[entry_[f]].constant += scale_[f] * samples.errors[f];
   }
-  values.clear();
+  values.resize(samples.varied.size() * stride);
+  int rows = 0;
   for (std::size_t v = 0; v < samples.varied.size(); ++v) {
     const std::size_t f = samples.varied[v].value;
     Entry& entry = entries_[entry_[f]];
-    if (entry.row < 0) {
-      entry.row = static_cast<int>(values.size() / stride);
-      values.insert(values.end(), stride, entry.constant);
-    }
+    const bool is_first = entry.row < 0;
+    if (is_first) entry.row = rows++;
     double* to = values.data() + static_cast<std::size_t>(entry.row) * stride;
     const double* from = samples.values.data() + v * samples.count;
-    for (std::size_t b = 0; b < samples.count; ++b) to[b] += scale_[f] * from[b];
+    if (is_first) {
+      for (std::size_t b = 0; b < samples.count; ++b) to[b] = entry.constant + scale_[f] * from[b];
+      std::fill(to + samples.count, to + stride, entry.constant);
+    } else {
+      for (std::size_t b = 0; b < samples.count; ++b) to[b] += scale_[f] * from[b];
+    }
   }
 }
 

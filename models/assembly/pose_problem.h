@@ -54,6 +54,7 @@ class PoseProblem {
   KernelMark kernel_mark(const JointPlace& place) const;
   void set_limb(const Equilibrium& equations, std::size_t e);
   void set_report();
+  void set_own_matrices(const Equilibrium& equations);
   void solve_first_order(const Equilibrium& equations);
   Eigen::MatrixXd twists_of_entries(const Equilibrium& equations) const;
   void read_values(const SampleBlock& samples, std::vector<double>& values);

@@ -114,12 +114,17 @@ TEST_P(AssemblyKernel, AgreesWithPlainNewton) {
     for (std::size_t b = 0; b < samples.errors.size(); ++b) {
       SCOPED_TRACE("sample " + std::to_string(b));
       const Nominal& pose = problem.pose();
-      const Solution wanted = solution_of(model, pose, samples.errors[b]);
-      EXPECT_EQ(found.status[b], wanted.status);
+      Solution wanted = solution_of(model, pose, samples.errors[b]);
+      // Plain Newton leaves out how joints turn under wrenches, and then takes many small steps where these are large.
+      const bool is_hard = solved(found.status[b]) && !solved(wanted.status);
+      if (is_hard) wanted = solution_of(model, pose, samples.errors[b], 100 * kOptions.max_iterations);
+      EXPECT_EQ(found.status[b], is_hard ? SolveStatus::converged : wanted.status);
+      EXPECT_EQ(solved(found.status[b]), solved(wanted.status));
       if (!solved(found.status[b]) || !solved(wanted.status)) continue;
       const Outcome outcome = outcome_of(model.assembly, pose, wanted);
       expect_same_responses(model, found.of(b),
-                            response_values(model.assembly, model.report, model.deforms, pose, outcome), 2e-12, 1e-9);
+                            response_values(model.assembly, model.report, model.deforms, pose, outcome),
+                            is_hard ? 1e-10 : 2e-12, 1e-9);
     }
   });
 }
@@ -169,6 +174,25 @@ TEST_P(AssemblyKernel, IsTheSameAtAnyPlace) {
   for_each_sample(37, [](const AssemblyModel& model, PoseProblem& problem, Samples& samples) {
     expect_same_at_any_place(model, problem, How::solve, samples);
     expect_same_at_any_place(model, problem, How::map, samples);
+  });
+}
+
+TEST(AssemblyKernels, HaveTheSameBitsByAllSetsWithFusedMultiplyAdd) {
+  if (!test::machine_has("avx2") || !test::machine_has("avx512"))
+    GTEST_SKIP() << "this machine has one of them at most";
+  for_each_sample(21, [](const AssemblyModel& model, PoseProblem& problem, Samples& samples) {
+    for (const How how : {How::solve, How::map}) {
+      std::vector<Block> blocks;
+      for (const char* isa : {"avx2", "avx512"}) {
+        const test::ForcedIsa forced(isa);
+        blocks.push_back(block_of(model, problem, how, samples));
+      }
+      EXPECT_EQ(blocks[0].iterations, blocks[1].iterations);
+      for (std::size_t k = 0; k < blocks[0].responses.size(); ++k) {
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(blocks[0].responses[k]),
+                  std::bit_cast<std::uint64_t>(blocks[1].responses[k]));
+      }
+    }
   });
 }
 

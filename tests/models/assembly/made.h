@@ -141,9 +141,12 @@ inline std::size_t expect_same(const Answers& found, const Answers& wanted, doub
   return compared;
 }
 
-/// By Newton's method in plain double arithmetic.
-inline Solution solution_of(const AssemblyModel& model, const Nominal& pose, const std::vector<double>& errors) {
-  Solver solver(model.assembly, model.ranks, kOptions);
+/// By Newton's method in plain double arithmetic, with so many iterations at most.
+inline Solution solution_of(const AssemblyModel& model, const Nominal& pose, const std::vector<double>& errors,
+                            int iterations = kOptions.max_iterations) {
+  SolverOptions options = kOptions;
+  options.max_iterations = iterations;
+  Solver solver(model.assembly, model.ranks, options);
   solver.prepare(pose);
   ErrorFrames frames(model);
   return solver.solve(frames.with(errors));

@@ -1,0 +1,365 @@
+#pragma once
+
+// Included only by kernels.cpp, which is compiled once for each instruction set.
+
+#include <type_traits>
+
+#include "models/assembly/kernel_blocks.h"
+#include "models/assembly/kernel_state.h"
+
+namespace poesy::assembly {
+
+/// Calls work(number of passive joints) with a constant.
+template <class Work>
+void with_passive(std::size_t passive, Work work) {
+  switch (passive) {
+    case 0:
+      return work(std::integral_constant<std::size_t, 0>());
+    case 1:
+      return work(std::integral_constant<std::size_t, 1>());
+    case 2:
+      return work(std::integral_constant<std::size_t, 2>());
+    case 3:
+      return work(std::integral_constant<std::size_t, 3>());
+    case 4:
+      return work(std::integral_constant<std::size_t, 4>());
+    case 5:
+      return work(std::integral_constant<std::size_t, 5>());
+    default:
+      return work(std::integral_constant<std::size_t, kMostOwnJoints>());
+  }
+}
+
+/// Rounds of Newton's method: with the matrix of each sample's own, made in the first and then in every fourth round.
+/// Limbs have regular C. With S the columns of J, ad xi for the bracket with the
+/// mismatch, the logarithm's differential E(x) = 1 + x/2 + x^2/12 and D = E(-ad xi) S the equations of one limb,
+///
+///     p + dp = C^-1 (xi + D dq + E(-ad xi) V_a - E(ad xi) V_b)
+///     S_j^T (p + dp) + sum over k < j of [S_k, S_j]^T p dq_k + [V_a, S_j]^T p = 0,
+///
+/// are solved for dq, a matrix as large as the limb has passive joints; what is left of all limbs are six equations
+/// for each body. Freedoms that move nothing make the limb's matrix singular: constant terms of rank one keep them
+/// where they are. A lane is refused where a pivot is not safely positive, for then no stable equilibrium is near.
+template <class T>
+class OwnStep {
+ public:
+  using Mask = typename T::MaskType;  ///< a truth value for each lane
+
+  /// It must outlive this.
+  explicit OwnStep(const KernelProblem& problem)
+      : problem_(problem),
+        present_(problem.limbs.size()),
+        limbs_(problem.limbs.size()),
+        matrix_(problem),
+        twists_(6 * problem.bodies.size(), T(0.0)) {}
+
+  /// Moves the lanes that go on.
+  LaneChange<T> round(LaneAssembly<T>& state, Mask active, int number) {
+    const bool is_new = number % kMatrixRounds == 0;
+    if (is_new) {
+      matrix_.clear();
+      safe_ = T(0.0) < T(1.0);
+    }
+    for (std::size_t k = 6; k < twists_.size(); ++k) twists_[k] = T(problem_.load[k]);
+    for (std::size_t e = 0; e < limbs_.size(); ++e) {
+      with_passive(problem_.limbs[e].passive, [&](auto n) { visit<n>(state, e, is_new); });
+    }
+    if (is_new) safe_ = safe_ & matrix_.factor();
+    matrix_.solve(twists_);
+    LaneChange<T> change;
+    for (std::size_t e = 0; e < limbs_.size(); ++e) {
+      with_passive(problem_.limbs[e].passive, [&](auto n) { step<n>(state, e, active, change); });
+    }
+    change.places = max(change.places, state.move_bodies(twists_, active));
+    change.refused = !safe_;
+    return change;
+  }
+
+ private:
+  using Motion = LaneMotion<T>;
+  static constexpr int kMatrixRounds = 4;
+
+  /// A limb at the present state. Rows of joints have six entries.
+  struct Present {
+    T columns[6 * kMostOwnJoints];  ///< S
+    T open[6];                      ///< xi
+    T rest[6];                      ///< C^-1 xi - p
+    T alone[kMostOwnJoints];        ///< dq if no body moves
+  };
+
+  /// What belongs to a limb's matrix, at the state for which it was made.
+  struct Limb {
+    T xi[6];                                     ///< xi
+    T columns[6 * kMostOwnJoints];               ///< S
+    T turned[6 * kMostOwnJoints];                ///< D
+    T inverse[kMostOwnJoints * kMostOwnJoints];  ///< of the matrix
+    T by_to[6 * kMostOwnJoints];                 ///< dq by V_b
+    T by_from[6 * kMostOwnJoints];               ///< dq by V_a
+  };
+
+  /// C^-1 times a twist.
+  static void stiffness_times(const KernelLimb& limb, const T* twist, T* wrench) {
+    if (limb.is_diagonal) {
+      for (int k = 0; k < 6; ++k) wrench[k] = T(limb.stiffness[7 * k]) * twist[k];
+      return;
+    }
+    for (int row = 0; row < 6; ++row) {
+      const double* of = &limb.stiffness[static_cast<std::size_t>(6 * row)];
+      T sum = T(of[0]) * twist[0];
+      for (int k = 1; k < 6; ++k) sum = madd(T(of[k]), twist[k], sum);
+      wrench[row] = sum;
+    }
+  }
+
+  /// [a, b] of two twists.
+  static void bracket(const T* a, const T* b, T* made) {
+    simd::cross(a, b, made);
+    simd::cross(a, b + 3, made + 3);
+    simd::add_cross(a + 3, b, made + 3);
+  }
+
+  /// E(-ad xi) x
+  static void bend(const T* xi, const T* x, T* made) {
+    T once[6];
+    T twice[6];
+    bracket(xi, x, once);
+    bracket(xi, once, twice);
+    for (int k = 0; k < 6; ++k) made[k] = madd(T(1.0 / 12.0), twice[k], nmadd(T(0.5), once[k], x[k]));
+  }
+
+  /// The h with h^T x = p^T [a, x] for every twist x.
+  static void bracket_transposed(const T* a, const T* p, T* h) {
+    simd::cross(p, a, h);
+    simd::add_cross(p + 3, a + 3, h);
+    simd::cross(p + 3, a, h + 3);
+  }
+
+  /// Mismatch of a limb at the present state, its part of the matrix if that is new, and of the right side.
+  template <std::size_t n>
+  void visit(const LaneAssembly<T>& state, std::size_t e, bool is_new) {
+    const KernelLimb& limb = problem_.limbs[e];
+    Present& now = present_[e];
+    const T* p = &state.wrenches[6 * e];
+    const Motion end = state.walk(e, [&](const KernelJoint& joint, const Motion& g) {
+      if (joint.passive >= 0) twist_of(joint, g, now.columns + 6 * joint.passive);
+    });
+    log_of(end, state.bodies[limb.to], now.open);
+    T pull[6];
+    stiffness_times(limb, now.open, pull);
+    for (int k = 0; k < 6; ++k) now.rest[k] = pull[k] - p[k];
+    Limb& of = limbs_[e];
+    if (is_new) safe_ = safe_ & set_matrix<n>(limb, now, p, of);
+    T felt[kMostOwnJoints];
+    for (std::size_t j = 0; j < n; ++j) {
+      felt[j] = -(dot6(now.columns + 6 * j, p) + dot6(of.columns + 6 * j, now.rest));
+    }
+    T moved[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
+    for (std::size_t j = 0; j < n; ++j) {
+      T dq = of.inverse[n * j] * felt[0];
+      for (std::size_t k = 1; k < n; ++k) dq = madd(of.inverse[n * j + k], felt[k], dq);
+      now.alone[j] = dq;
+      for (std::size_t k = 0; k < 6; ++k) moved[k] = madd(of.turned[6 * j + k], dq, moved[k]);
+    }
+    T by_joints[6];
+    stiffness_times(limb, moved, by_joints);
+    for (std::size_t k = 0; k < 6; ++k) pull[k] = pull[k] + by_joints[k];
+    for (std::size_t k = 0; k < 6; ++k) {
+      if (limb.to != 0) twists_[6 * limb.to + k] = twists_[6 * limb.to + k] + pull[k];
+      if (limb.from != 0) twists_[6 * limb.from + k] = twists_[6 * limb.from + k] - pull[k];
+    }
+  }
+
+  /// The limb's matrix in the lanes that are stale, and what it gives to that of the bodies. Returns where its pivots
+  /// are safe.
+  template <std::size_t n>
+  Mask set_matrix(const KernelLimb& limb, const Present& now, const T* p, Limb& of) {
+    for (int k = 0; k < 6; ++k) of.xi[k] = now.open[k];
+    for (std::size_t k = 0; k < 6 * n; ++k) of.columns[k] = now.columns[k];
+    T stiff[6 * kMostOwnJoints];    // C^-1 S
+    T turning[6 * kMostOwnJoints];  // h_j, by which a joint's column turns
+    for (std::size_t j = 0; j < n; ++j) {
+      const T* column = now.columns + 6 * j;
+      bend(of.xi, column, of.turned + 6 * j);
+      stiffness_times(limb, column, stiff + 6 * j);
+      bracket_transposed(column, p, turning + 6 * j);
+    }
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t k = 0; k < n; ++k) {
+        T sum = T(limb.idle[n * j + k]) + dot6(stiff + 6 * j, of.turned + 6 * k);
+        if (k < j) sum = sum - dot6(now.columns + 6 * k, turning + 6 * j);
+        of.inverse[n * j + k] = sum;
+      }
+    }
+    const Mask safe = invert<n>(of.inverse);
+    T to[6 * kMostOwnJoints];
+    T from[6 * kMostOwnJoints];
+    felt_by_bodies<n>(of.xi, stiff, turning, to, from);
+    if (limb.to != 0) add_body<n>(limb, limb.to, of, to, of.by_to);
+    if (limb.from != 0) add_body<n>(limb, limb.from, of, from, of.by_from);
+    return safe;
+  }
+
+  /// dq by a body's twist, and what the limb's wrench by it gives to the matrix of the bodies. felt: what joints feel
+  /// of the twist [n x 6].
+  template <std::size_t n>
+  void add_body(const KernelLimb& limb, std::size_t body, const Limb& of, const T* felt, T* dq) {
+    multiply<n>(of.inverse, felt, dq);
+    T block[36];
+    pull_by<n>(limb, of, dq, body == limb.to ? -1.0 : 1.0, block);
+    if (limb.to != 0) matrix_.add(limb.to, body, block, -1.0);
+    if (limb.from != 0) matrix_.add(limb.from, body, block, 1.0);
+  }
+
+  /// The inverse of a matrix [n x n] in its place, without exchange of rows. Returns where pivots are safe.
+  template <std::size_t n>
+  static Mask invert(T* matrix) {
+    Mask safe = T(0.0) < T(1.0);
+    T diagonal[kMostOwnJoints];
+    for (std::size_t k = 0; k < n; ++k) diagonal[k] = matrix[(n + 1) * k];
+    for (std::size_t k = 0; k < n; ++k) {
+      T* of_k = matrix + n * k;
+      safe = safe & (of_k[k] > T(kSafePivot) * diagonal[k]) & (diagonal[k] > T(0.0));
+      const T pivot = T(1.0) / of_k[k];
+      of_k[k] = T(1.0);
+      for (std::size_t j = 0; j < n; ++j) of_k[j] = of_k[j] * pivot;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (i == k) continue;
+        T* row = matrix + n * i;
+        const T factor = row[k];
+        row[k] = T(0.0);
+        for (std::size_t j = 0; j < n; ++j) row[j] = nmadd(factor, of_k[j], row[j]);
+      }
+    }
+    return safe;
+  }
+
+  /// What joints feel of the twists of the limb's bodies, [n x 6] each. stiff: C^-1 S; turning: by which columns turn.
+  template <std::size_t n>
+  static void felt_by_bodies(const T* xi, const T* stiff, const T* turning, T* to, T* from) {
+    for (std::size_t j = 0; j < 6 * n; j += 6) {
+      T once[6];
+      T twice[6];
+      bracket_transposed(xi, stiff + j, once);
+      bracket_transposed(xi, once, twice);
+      for (std::size_t k = 0; k < 6; ++k) {
+        const T even = madd(T(1.0 / 12.0), twice[k], stiff[j + k]);
+        to[j + k] = madd(T(0.5), once[k], even);
+        from[j + k] = turning[j + k] - nmadd(T(0.5), once[k], even);
+      }
+    }
+  }
+
+  /// [n x n] times [n x 6]
+  template <std::size_t n>
+  static void multiply(const T* a, const T* b, T* made) {
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        T sum = a[n * j] * b[k];
+        for (std::size_t m = 1; m < n; ++m) sum = madd(a[n * j + m], b[6 * m + k], sum);
+        made[6 * j + k] = sum;
+      }
+    }
+  }
+
+  /// sign E(-sign ad xi), [6 x 6]
+  static void bent_unit(const T* xi, double sign, T* made) {
+    const T* w = xi;
+    const T* v = xi + 3;
+    const T share(sign / 12.0);
+    const T across = nmadd(share, simd::dot3(w, w), T(sign));
+    const T along = T(-2.0) * share * simd::dot3(w, v);
+    for (int row = 0; row < 3; ++row) {
+      for (int k = 0; k < 3; ++k) {
+        const T same = share * w[row] * w[k];
+        const T mixed = share * madd(w[row], v[k], v[row] * w[k]);
+        made[6 * row + k] = row == k ? across + same : same;
+        made[6 * (row + 3) + k] = row == k ? along + mixed : mixed;
+        made[6 * row + k + 3] = T(0.0);
+      }
+    }
+    subtract_half_cross(w, made);
+    subtract_half_cross(v, made + 18);
+    for (int row = 0; row < 3; ++row) {
+      for (int k = 0; k < 3; ++k) made[6 * (row + 3) + k + 3] = made[6 * row + k];
+    }
+  }
+
+  /// Subtracts 1/2 hat(w) from a block of rows of six.
+  static void subtract_half_cross(const T* w, T* block) {
+    const T half(0.5);
+    block[1] = madd(half, w[2], block[1]);
+    block[2] = nmadd(half, w[1], block[2]);
+    block[6] = nmadd(half, w[2], block[6]);
+    block[8] = madd(half, w[0], block[8]);
+    block[12] = madd(half, w[1], block[12]);
+    block[13] = nmadd(half, w[0], block[13]);
+  }
+
+  /// The limb's wrench by the twist of one of its bodies, [6 x 6]: C^-1 (D by_body + E of the body).
+  template <std::size_t n>
+  static void pull_by(const KernelLimb& limb, const Limb& of, const T* by_body, double sign, T* block) {
+    T moved[36];
+    bent_unit(of.xi, sign, moved);
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t row = 0; row < 6; ++row) {
+        for (std::size_t k = 0; k < 6; ++k) {
+          moved[6 * row + k] = madd(of.turned[6 * j + row], by_body[6 * j + k], moved[6 * row + k]);
+        }
+      }
+    }
+    if (limb.is_diagonal) {
+      for (int k = 0; k < 36; ++k) block[k] = T(limb.stiffness[k / 6 * 7]) * moved[k];
+      return;
+    }
+    for (int row = 0; row < 6; ++row) {
+      for (int k = 0; k < 6; ++k) {
+        T sum = T(limb.stiffness[6 * row]) * moved[k];
+        for (int m = 1; m < 6; ++m) sum = madd(T(limb.stiffness[6 * row + m]), moved[6 * m + k], sum);
+        block[6 * row + k] = sum;
+      }
+    }
+  }
+
+  /// Moves wrench and joints of a limb in the lanes that go on.
+  template <std::size_t n>
+  void step(LaneAssembly<T>& state, std::size_t e, Mask active, LaneChange<T>& change) {
+    const KernelLimb& limb = problem_.limbs[e];
+    const Limb& of = limbs_[e];
+    const Present& now = present_[e];
+    const T* to = &twists_[6 * limb.to];
+    const T* from = &twists_[6 * limb.from];
+    T apart[6];
+    T moved[6];
+    T turned[6];
+    for (int k = 0; k < 6; ++k) apart[k] = from[k] - to[k];
+    bend(of.xi, apart, moved);
+    bracket(of.xi, to, turned);
+    for (int k = 0; k < 6; ++k) moved[k] = moved[k] - turned[k];
+    for (std::size_t j = 0; j < n; ++j) {
+      T dq = now.alone[j];
+      if (limb.to != 0) dq = dq + dot6(of.by_to + 6 * j, to);
+      if (limb.from != 0) dq = dq + dot6(of.by_from + 6 * j, from);
+      for (std::size_t k = 0; k < 6; ++k) moved[k] = madd(of.turned[6 * j + k], dq, moved[k]);
+      T& q = state.displacements[limb.first_joint + j];
+      q = select(active, q + dq, q);
+      change.places = max(change.places, dq * dq);
+    }
+    T pull[6];
+    stiffness_times(limb, moved, pull);
+    T* p = &state.wrenches[6 * e];
+    for (int k = 0; k < 6; ++k) {
+      const T dp = now.rest[k] + pull[k];
+      change.wrenches = madd(dp, dp, change.wrenches);
+      p[k] = select(active, p[k] + dp, p[k]);
+    }
+  }
+
+  const KernelProblem& problem_;
+  std::vector<Present> present_;  ///< [limbs]
+  std::vector<Limb> limbs_;       ///< [limbs]
+  BodyMatrix<T> matrix_;
+  std::vector<T> twists_;  ///< [6 x bodies] right side, then the bodies' twists; the base's is 0
+  Mask safe_;              ///< where the last matrix is
+};
+
+}  // namespace poesy::assembly

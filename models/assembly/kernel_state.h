@@ -1,0 +1,143 @@
+#pragma once
+
+// Included only by kernels.cpp, which is compiled once for each instruction set.
+
+#include "models/assembly/kernel_map.h"
+
+namespace poesy::assembly {
+
+/// An assembly with errors in each lane: where its bodies and joints are, and the wrenches of its limbs.
+template <class T>
+class LaneAssembly {
+ public:
+  using Mask = typename T::MaskType;
+  using Motion = LaneMotion<T>;
+
+  /// Both must outlive it.
+  LaneAssembly(const KernelProblem& problem, const KernelBlock& block)
+      : bodies(problem.bodies.size()),
+        displacements(problem.joints),
+        wrenches(6 * problem.limbs.size(), T(0.0)),
+        problem_(problem),
+        block_(block),
+        mapper_(problem, block, KernelMapper<T>::kAllRows) {
+    std::size_t segments = 0;
+    for (const KernelLimb& limb : problem.limbs) {
+      first_segment_.push_back(segments);
+      segments += limb.segments.size();
+    }
+    segments_.resize(segments);
+    bodies[0] = in_lanes<T>(problem.bodies[0]);
+  }
+
+  /// With the errors of the lanes from sample `at` on, where first order leads.
+  void begin(std::size_t at) {
+    const T* coordinates = mapper_.coordinates(at);
+    for (std::size_t b = 1; b < bodies.size(); ++b) {
+      bodies[b] = product(motion_of(coordinates + 6 * (b - 1)), in_lanes<T>(problem_.bodies[b]));
+    }
+    if (problem_.carries) mapper_.wrenches(coordinates, wrenches.data());
+    const LaneErrors<T> errors(block_, at);
+    const T* dq = coordinates + mapper_.first_joint();
+    std::size_t segment = 0;
+    std::size_t joint = 0;
+    for (const KernelLimb& limb : problem_.limbs) {
+      for (const KernelSegment& one : limb.segments) segments_[segment++] = errors.segment(one);
+      for (const KernelJoint& one : limb.joints) {
+        if (one.passive < 0) continue;
+        displacements[joint] = T(one.displacement) + dq[joint];
+        ++joint;
+      }
+    }
+  }
+
+  /// Where the limb's end would be without forces. at_joint(joint, frame): called for each joint before its motion.
+  template <class AtJoint>
+  Motion walk(std::size_t e, AtJoint at_joint) const {
+    const KernelLimb& limb = problem_.limbs[e];
+    const Motion* segment = &segments_[first_segment_[e]];
+    Motion g = limb.from == 0 ? *segment : product(bodies[limb.from], *segment);
+    for (const KernelJoint& joint : limb.joints) {
+      at_joint(joint, g);
+      const bool moves = joint.passive >= 0;
+      const T displacement =
+          moves ? displacements[limb.first_joint + static_cast<std::size_t>(joint.passive)] : T(joint.displacement);
+      move(joint, displacement, g);
+      g = product(g, *++segment);
+    }
+    return g;
+  }
+
+  /// Moves the bodies by twists [6 x bodies] in the lanes that go on. Returns the largest square of a twist.
+  T move_bodies(const std::vector<T>& twists, Mask active) {
+    T largest(0.0);
+    for (std::size_t b = 1; b < bodies.size(); ++b) {
+      const T* twist = &twists[6 * b];
+      largest = max(largest, dot6(twist, twist));
+      const Motion moved = product(motion_of(twist), bodies[b]);
+      for (int k = 0; k < 9; ++k) bodies[b].r[k] = select(active, moved.r[k], bodies[b].r[k]);
+      for (int k = 0; k < 3; ++k) bodies[b].p[k] = select(active, moved.p[k], bodies[b].p[k]);
+    }
+    return largest;
+  }
+
+  /// What is reported of it.
+  void report(LaneOutcome<T>& outcome) const {
+    for (std::size_t b = 1; b < bodies.size(); ++b) displaced(b, outcome.bodies[b]);
+    if (problem_.report.has_tool) displace_tool(outcome);
+    outcome.wrenches = wrenches;
+    for (std::size_t e = 0; problem_.report.has_forces && e < problem_.limbs.size(); ++e) {
+      walk(e, [&](const KernelJoint& joint, const Motion& g) {
+        if (joint.mark >= 0) outcome.marks[static_cast<std::size_t>(joint.mark)] = g;
+      });
+    }
+  }
+
+  std::vector<Motion> bodies;    ///< [bodies]
+  std::vector<T> displacements;  ///< of passive joints
+  std::vector<T> wrenches;       ///< [6 x limbs] p
+
+ private:
+  void displaced(std::size_t b, LaneDisplacement<T>& made) const {
+    const Motion nominal = in_lanes<T>(problem_.bodies[b]);
+    const Motion& body = bodies[b];
+    T turned[9];
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        turned[3 * row + column] = simd::dot3(body.r + 3 * row, nominal.r + 3 * column);
+      }
+      made.moved[row] = body.p[row] - nominal.p[row];
+    }
+    const auto turn = simd::rotation_log(turned);
+    for (int k = 0; k < 3; ++k) made.theta[k] = turn.w[k];
+  }
+
+  /// The displacement of the tool's point by that of the platform.
+  void displace_tool(LaneOutcome<T>& outcome) const {
+    const LaneDisplacement<T>& platform = outcome.bodies[1];
+    const auto turn = simd::exp_coefficients(simd::dot3(platform.theta, platform.theta));
+    const double* of = problem_.report.arm;
+    const T arm[3] = {T(of[0]), T(of[1]), T(of[2])};
+    T once[3];
+    T twice[3];
+    simd::cross(platform.theta, arm, once);
+    simd::cross(platform.theta, once, twice);
+    for (int k = 0; k < 3; ++k) outcome.tool[k] = madd(turn.b, twice[k], madd(turn.a, once[k], platform.moved[k]));
+  }
+
+  const KernelProblem& problem_;
+  const KernelBlock& block_;
+  KernelMapper<T> mapper_;
+  std::vector<std::size_t> first_segment_;  ///< [limbs] among all
+  std::vector<Motion> segments_;            ///< of all limbs, with errors
+};
+
+/// What a round changed, and where it must not be trusted.
+template <class T>
+struct LaneChange {
+  T places{0.0};                                   ///< square of the largest change of a body or joint
+  T wrenches{0.0};                                 ///< sum of squares of the wrenches' changes
+  typename T::MaskType refused = T(1.0) < T(0.0);  ///< where the equations are not those of a stable equilibrium
+};
+
+}  // namespace poesy::assembly
