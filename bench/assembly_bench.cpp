@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "bench/instruction_sets.h"
+#include "models/assembly/model.h"
+#include "models/file/branched_model.h"
 #include "models/registry.h"
 
 namespace {
@@ -16,42 +18,77 @@ using namespace poesy;
 
 constexpr std::size_t kSamples = 1000;
 
-/// How the linear Delta with 48 errors is solved.
-struct Case {
-  std::string metric;  ///< "stiffness": with forces and load
-  double size;         ///< standard deviation, mm and mrad
-  std::string isa;     ///< instruction set
+/// A mechanism of tests/data/mechanisms at a pose.
+struct Mechanism {
+  std::string file;          ///< its name, without ".toml"
+  std::string metric;        ///< by which it is solved
+  std::vector<double> pose;  ///< SI
 };
 
-std::unique_ptr<Model> linear_delta(const std::string& metric) {
-  std::ifstream file(POESY_LINEAR_DELTA);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const CatalogEntry entry = registry().from_text(text, POESY_LINEAR_DELTA);
+/// By which code.
+enum class Code {
+  product,     ///< that which a study takes
+  assembly,    ///< limbs against bodies, also where the product compares limbs in pairs
+  first_order  ///< limbs against bodies, to first order
+};
+
+/// What is measured.
+struct Case {
+  Mechanism mechanism;
+  Code code;
+  double size;      ///< standard deviation of errors, mm and deg
+  std::string isa;  ///< instruction set
+};
+
+std::string text_of(const Mechanism& mechanism) {
+  std::ifstream file(POESY_MECHANISMS "/" + mechanism.file + ".toml");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The product's model.
+std::unique_ptr<Model> built(const Mechanism& mechanism) {
+  const CatalogEntry entry = registry().from_text(text_of(mechanism), mechanism.file);
   std::vector<double> geometry;
   for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
-  return by_metric(entry, metric).build(geometry, 0);
+  return by_metric(entry, mechanism.metric).build(geometry, 0);
+}
+
+assembly::AssemblyModel assembly_of(const Mechanism& mechanism) {
+  const file::MechanismFile read = file::read_mechanism_file(text_of(mechanism), mechanism.file);
+  const file::Checked found =
+      file::checked(file::mechanism(read, file::default_geometry(read)), file::Workspace::as_it_is);
+  return file::assembly_model(
+      found.mechanism, std::make_shared<const file::Tracker>(found.mechanism), found.home,
+      mechanism.metric == "stiffness" ? assembly::Metric::stiffness : assembly::Metric::platform);
 }
 
 /// A block of normal errors at one pose, solved again and again.
 void solves(benchmark::State& state, const Case& which) {
-  const std::unique_ptr<Model> model = linear_delta(which.metric);
-  const ModelDescription& description = model->description();
-  const std::size_t errors = description.factors.size();
+  const std::unique_ptr<Model> model = built(which.mechanism);
+  const assembly::AssemblyModel limbs = assembly_of(which.mechanism);
+  const SolverOptions options{.tolerance = model->description().tolerance};
+  const std::size_t errors = model->description().factors.size();
   std::mt19937_64 engine(1);
-  std::normal_distribution<double> normal(0.0, 1e-3 * which.size);
-  std::vector<double> values(errors * kSamples);
-  for (double& value : values) value = normal(engine);
+  std::normal_distribution<double> normal;
+  std::vector<double> values;
   std::vector<FactorIndex> varied;
-  for (std::size_t f = 0; f < errors; ++f) varied.emplace_back(f);
-  const std::vector<double> pose{0.03, -0.02, 0.2};
+  for (const Factor& factor : model->description().factors) {
+    varied.emplace_back(varied.size());
+    const double unit = factor.dimension == Dimension::length ? 1e-3 : 1.7453292519943295e-2;
+    for (std::size_t b = 0; b < kSamples; ++b) values.push_back(which.size * unit * normal(engine));
+  }
   const std::vector<double> none(errors, 0.0);
-  std::vector<double> responses(description.responses.size() * kSamples);
+  const bool of_product = which.code == Code::product;
+  const std::size_t rows = of_product ? model->description().responses.size() : assembly::responses_of(limbs).size();
+  std::vector<double> responses(rows * kSamples);
   std::vector<SolveStatus> status(kSamples);
   std::vector<std::uint32_t> iterations(kSamples);
-  const SolverOptions options{.tolerance = description.tolerance};
-  const std::unique_ptr<Evaluator> evaluator = bench::evaluator_with(which.isa, *model, options);
+  bench::choose_instruction_set(which.isa);
+  const auto fidelity = which.code == Code::first_order ? chain::Fidelity::first_order : chain::Fidelity::exact;
+  const std::unique_ptr<Evaluator> evaluator =
+      of_product ? model->evaluator(options) : assembly::assembly_evaluator(limbs, options, fidelity);
   for (auto _ : state) {
-    evaluator->evaluate({pose, none, varied, values, kSamples}, {responses, status, iterations, {}});
+    evaluator->evaluate({which.mechanism.pose, none, varied, values, kSamples}, {responses, status, iterations, {}});
     benchmark::DoNotOptimize(responses.data());
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSamples));
@@ -59,15 +96,27 @@ void solves(benchmark::State& state, const Case& which) {
   state.counters["rounds"] = rounds / static_cast<double>(kSamples);
 }
 
+const std::vector<Mechanism> kMechanisms{{"linear-delta", "platform", {0.03, -0.02, 0.2}},
+                                         {"linear-delta", "stiffness", {0.03, -0.02, 0.2}},
+                                         {"delta-parallelogram", "platform", {-0.03, 0.04, 0.16}},
+                                         {"upr2-rpu-beams", "stiffness", {-0.25, 0.2, -0.15}},
+                                         {"upr2-rpu", "platform", {-0.25, 0.2, -0.15}}};
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (const char* metric : {"platform", "stiffness"}) {
-    for (const double size : {0.1, 1.0}) {
-      for (const std::string& isa : bench::instruction_sets()) {
-        const std::string name = std::string(metric) + "/" + (size < 1.0 ? "0.1" : "1") + "/" + isa;
-        benchmark::RegisterBenchmark(name.c_str(), solves, Case{metric, size, isa});
-      }
+  const auto add = [](const Case& one, const std::string& what) {
+    const std::string name = one.mechanism.file + "/" + one.mechanism.metric + "/" + what + "/" + one.isa;
+    benchmark::RegisterBenchmark(name.c_str(), solves, one);
+  };
+  for (const Mechanism& mechanism : kMechanisms) {
+    for (const std::string& isa : bench::instruction_sets()) {
+      add({mechanism, Code::assembly, 0.1, isa}, "0.1");
+      add({mechanism, Code::assembly, 1.0, isa}, "1");
+      add({mechanism, Code::first_order, 0.1, isa}, "first-order");
+      if (mechanism.file != "upr2-rpu") continue;
+      add({mechanism, Code::product, 0.1, isa}, "0.1/pairs");
+      add({mechanism, Code::product, 1.0, isa}, "1/pairs");
     }
   }
   benchmark::Initialize(&argc, argv);

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "engine/model/model.h"
-#include "models/assembly/closure.h"
-#include "models/assembly/kernel_problem.h"
+#include "models/assembly/kernels.h"
 #include "models/assembly/model.h"
+#include "models/assembly/pose_problem.h"
+#include "models/assembly/solver.h"
 
 namespace poesy::assembly {
 
@@ -26,44 +26,33 @@ class ErrorFrames {
 };
 
 /// Solves blocks of samples with the fastest kernel that this machine has, and by Solver those that it leaves: the same
-/// equations, with the matrix of each state. Closure decides which of those that Solver leaves are not_assembled. Owns
-/// the scratch of one thread.
+/// equations, with the matrix of each state. Closure decides which samples are not_assembled, of those that Solver
+/// leaves and where limbs deform each other of those whose errors bring loops near their end. Owns the scratch of one
+/// thread.
 class BlockSolver {
  public:
   BlockSolver(const AssemblyModel& model, const SolverOptions& options);  ///< The model must outlive it.
 
-  /// Forgets for which pose it has equations.
-  void forget() { pose_ = nullptr; }
-
-  /// Calls found(sample, solution) for each sample in order. pose: where they are; must live until the next call, or
-  /// until forget().
-  void solve(const Nominal& pose, const SampleBlock& samples,
-             const std::function<void(std::size_t, const Solution&)>& found);
+  /// The model's responses, status and iterations of samples at the problem's pose.
+  /// @{
+  void solve(PoseProblem& problem, const SampleBlock& samples, const OutcomeBlock& outcomes);  ///< Exactly.
+  void map(PoseProblem& problem, const SampleBlock& samples, const OutcomeBlock& outcomes);    ///< To first order.
+                                                                                               /// @}
 
  private:
-  void prepare(const Nominal& pose, const SampleBlock& samples);
-  void prepare_pose(const Nominal& pose);
-  void prepare_limbs(const Nominal& pose);
-  void prepare_errors(const SampleBlock& samples);
-  void run(std::size_t count);
-  void check_closed(const Nominal& pose, Solution& found) const;
-  Solution solve_one(const Nominal& pose, std::span<const double> errors);
-  const Solution& read(const Nominal& pose, std::span<const double> errors, std::size_t sample);
+  void run(KernelWork work, PoseProblem& problem, const SampleBlock& samples, const OutcomeBlock& outcomes);
+  void solve_one(PoseProblem& problem, std::span<const std::vector<Transform>> frames, std::size_t sample,
+                 const OutcomeBlock& outcomes);
 
   const AssemblyModel* model_;
-  SolverOptions options_;
-  KernelSolve kernel_;
+  Kernels kernels_;
   Solver solver_;
-  Closure closure_;
   ErrorFrames frames_;
-  const Nominal* pose_ = nullptr;          ///< for which the equations are
   std::vector<double> values_;             ///< [entries x stride]
-  std::vector<double> rows_;               ///< [KernelProblem::rows() x stride]
+  std::vector<double> responses_;          ///< [responses x stride]
   std::vector<KernelEnd> ends_;            ///< [stride]
+  std::vector<double> nearing_;            ///< [count] see Closure
   std::vector<std::uint32_t> iterations_;  ///< [stride]
-  std::optional<Equilibrium> equations_;
-  KernelProblem problem_;
-  Solution solution_;
 };
 
 }  // namespace poesy::assembly

@@ -1,6 +1,8 @@
 #include "models/assembly/closure.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "engine/base/nan.h"
@@ -13,7 +15,7 @@ namespace {
 using Eigen::Index;
 
 constexpr double kRest = 1e-10;   ///< a step that moves bodies by less, over the reach, is rest
-constexpr double kClosed = 1e-8;  ///< a mismatch up to this, over the reach, is closed
+constexpr double kClosed = 1e-8;  ///< a mismatch up to this, over the reach, is rounding
 
 /// Where bodies and joints are, and what is left open there.
 struct Configuration {
@@ -22,6 +24,9 @@ struct Configuration {
   std::vector<LimbState> limbs;
   Eigen::VectorXd open;  ///< [6 limbs] W^(1/2) xi
 };
+
+/// Whether a symmetric matrix is positive definite.
+bool is_positive(const Eigen::MatrixXd& matrix) { return matrix.allFinite() && linalg::eigenvalues(matrix)[0] > 0.0; }
 
 /// See linalg::comes_to_rest().
 class Descent {
@@ -36,6 +41,19 @@ class Descent {
   double sum_of_squares() const { return here_.open.squaredNorm(); }
   double tried_sum_of_squares() const { return tried_.open.squaredNorm(); }
   void take_step() { here_ = tried_; }
+
+  /// Whether N - 2 C(r) is not positive definite here.
+  bool bends_away(const Loops& loops) const {
+    const Eigen::VectorXd part = loops.taken_away(here_.open);
+    std::vector<Screw> r;
+    const Matrix6 inverse = linalg::inverse(root_);
+    for (std::size_t e = 0; e < here_.limbs.size(); ++e) {
+      r.emplace_back(inverse * part.segment<6>(6 * static_cast<Index>(e)));
+    }
+    const Eigen::MatrixXd weighed = motion_columns(assembly_, here_.limbs, root_) * loops.motions();
+    const Eigen::MatrixXd C = bend(assembly_, here_.limbs, r, root_.transpose() * root_);
+    return !is_positive(weighed.transpose() * weighed - 2.0 * loops.motions().transpose() * C * loops.motions());
+  }
 
   double try_step(double damping) {
     const Eigen::MatrixXd B = motion_columns(assembly_, here_.limbs, root_);
@@ -86,15 +104,44 @@ class Descent {
 
 }  // namespace
 
-bool Closure::is_open(const Nominal& pose, std::span<const Screw> mismatch) const {
-  double sum = 0.0;
-  for (const Screw& xi : mismatch) sum += xi.dot(pose.W * xi);
-  return std::sqrt(sum) > kClosed * assembly_->reach;
+/// From then on slopes are known at this pose.
+bool Closure::is_regular() {
+  if (loops_) return loops_->is_regular();
+  loops_.emplace(model_->assembly, *pose_, model_->idle);
+  if (!loops_->is_regular()) return false;
+  const std::vector<std::vector<Screw>> slopes = loops_->determinant_slopes();
+  const Eigen::MatrixXd twists = error_twists(*model_, *pose_);
+  for (std::size_t f = 0; f < model_->slots.size(); ++f) {
+    const chain::ErrorSlot& slot = model_->slots[f];
+    const auto row = 6 * static_cast<Index>(slot.limb);
+    nearing_.push_back(slopes[slot.limb][slot.frame].dot(twists.block<6, 1>(row, static_cast<Index>(f))));
+  }
+  return true;
 }
 
-bool Closure::is_impossible(const Nominal& pose, std::span<const std::vector<Transform>> frames) const {
-  Descent descent(*assembly_, pose, frames);
-  return linalg::comes_to_rest(descent, kRest) && std::sqrt(descent.sum_of_squares()) > kClosed * assembly_->reach;
+void Closure::find_nearing(const SampleBlock& samples, std::span<double> nearing) {
+  std::ranges::fill(nearing, 0.0);
+  if (!is_regular()) return;
+  std::vector<double> constant(samples.errors.begin(), samples.errors.end());
+  for (const FactorIndex factor : samples.varied) constant[factor.value] = 0.0;
+  std::ranges::fill(nearing, std::inner_product(constant.begin(), constant.end(), nearing_.begin(), 0.0));
+  for (std::size_t v = 0; v < samples.varied.size(); ++v) {
+    const double slope = nearing_[samples.varied[v].value];
+    const std::span<const double> values = samples.values.subspan(v * samples.count, samples.count);
+    for (std::size_t b = 0; b < samples.count; ++b) nearing[b] += slope * values[b];
+  }
+}
+
+bool Closure::is_open(std::span<const Screw> mismatch) const {
+  double sum = 0.0;
+  for (const Screw& xi : mismatch) sum += xi.dot(pose_->W * xi);
+  return std::sqrt(sum) > kClosed * model_->assembly.reach;
+}
+
+bool Closure::is_impossible(std::span<const std::vector<Transform>> frames) {
+  if (!is_regular()) return false;
+  Descent descent(model_->assembly, *pose_, frames);
+  return linalg::comes_to_rest(descent, kRest) && descent.bends_away(*loops_);
 }
 
 }  // namespace poesy::assembly

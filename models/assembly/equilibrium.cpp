@@ -15,8 +15,11 @@ Index index(std::size_t value) { return static_cast<Index>(value); }
 }  // namespace
 
 Equilibrium::Equilibrium(const Assembly& assembly, const Nominal& pose)
+    : Equilibrium(assembly, pose, Transform{lie::Matrix3<double>::Identity(), pose.bodies[kPlatform].p}) {}
+
+Equilibrium::Equilibrium(const Assembly& assembly, const Nominal& pose, const Transform& frame)
     : assembly_(&assembly),
-      to_unit_(twists_in_units(pose.bodies[kPlatform].p, assembly.reach)),
+      to_unit_(assembly::twists_in_units(frame, assembly.reach)),
       from_unit_(linalg::inverse(to_unit_)),
       unit_(0.0) {
   for (const Matrix6& compliance : pose.compliance) {

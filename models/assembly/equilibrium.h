@@ -21,12 +21,15 @@ struct Balance {
 ///
 ///     N^T C N lambda + N^T (V_b - V_a) = N^T xi,    sum of N lambda into b less that from b = -load_b.
 ///
-/// Written with C and not with its inverse, so that a limb may be rigid. Inside, lengths are in units of the reach
-/// about the platform's origin, and compliances in units of the largest.
+/// Written with C and not with its inverse, so that a limb may be rigid. Inside, lengths are in units of the reach,
+/// and compliances in units of the largest.
 class Equilibrium {
  public:
-  /// The assembly and the pose must outlive it.
+  /// Inside, about the platform's origin. The assembly must outlive it.
   Equilibrium(const Assembly& assembly, const Nominal& pose);
+
+  /// Inside, about the origin of this frame and along its axes (base_T_frame).
+  Equilibrium(const Assembly& assembly, const Nominal& pose, const Transform& frame);
 
   /// The equations with these columns [limbs] of the passive joints. ranks: of them, [limbs].
   void set(std::span<const LimbState> limbs, std::span<const std::size_t> ranks);
@@ -50,13 +53,12 @@ class Equilibrium {
   const Eigen::MatrixXd& give(std::size_t limb) const { return give_[limb]; }      ///< to dq [n x 6], in units
   const Matrix6& compliance(std::size_t limb) const { return compliance_[limb]; }  ///< C in units
 
-  /// To units and back.
+  /// To units.
   /// @{
-  Screw twist_in_units(const Screw& twist) const { return to_unit_ * twist; }
-  Screw twist_from_units(const Screw& twist) const { return from_unit_ * twist; }
+  const Matrix6& twists_in_units() const { return to_unit_; }
   Screw wrench_in_units(const Screw& wrench) const { return unit_ * (from_unit_.transpose() * wrench); }
-  Screw wrench_from_units(const Screw& wrench) const { return to_unit_.transpose() * wrench / unit_; }
   /// @}
+  double compliance_unit() const { return unit_; }  ///< the moment's unit (N m) is its inverse
 
  private:
   const Assembly* assembly_;

@@ -2,10 +2,7 @@
 
 // Included only by kernels.cpp, which is compiled once for each instruction set.
 
-#include <vector>
-
-#include "models/assembly/kernel_problem.h"
-#include "models/simd/rotation.h"
+#include "models/assembly/kernel_map.h"
 
 namespace poesy::assembly {
 
@@ -14,7 +11,8 @@ namespace poesy::assembly {
 ///     [ C  B0 ; B0^T  0 ] [ dp ; x ] = [ xi - C p ; -load - sum of p ; -J^T p ],
 ///
 /// in which p is carried as an unknown: in its place C^-1 xi would turn rounding into force, and converge for small
-/// errors alone. A lane depends on its own sample only: one that has settled stays where it is.
+/// errors alone. Where limbs do not deform each other and no load acts, p is 0 and is left out. A lane depends on its
+/// own sample only: one that has settled stays where it is. The start is where first order leads.
 template <class T>
 class AssemblyKernel {
  public:
@@ -22,15 +20,23 @@ class AssemblyKernel {
   AssemblyKernel(const KernelProblem& problem, const KernelBlock& block)
       : problem_(problem),
         block_(block),
+        mapper_(problem, block, KernelMapper<T>::kAllRows),
+        reporter_(problem, block),
+        outcome_(problem),
         bodies_(problem.bodies.size()),
         displacements_(problem.joints),
-        wrenches_(6 * problem.limbs.size()),
+        wrenches_(6 * problem.limbs.size(), T(0.0)),
         mismatch_(wrenches_.size()),
-        particular_(wrenches_.size()),
+        particular_(wrenches_.size(), T(0.0)),
         right_(problem.size),
         found_(problem.size),
-        twists_(6 * problem.bodies.size()) {
-    for (const KernelLimb& limb : problem.limbs) frames_.resize(frames_.size() + limb.frames.size());
+        twists_(6 * problem.bodies.size(), T(0.0)) {
+    std::size_t segments = 0;
+    for (const KernelLimb& limb : problem.limbs) {
+      first_segment_.push_back(segments);
+      segments += limb.segments.size();
+    }
+    segments_.resize(segments);
   }
 
   void solve() {  ///< Writes what every sample gives.
@@ -39,136 +45,89 @@ class AssemblyKernel {
 
  private:
   using Mask = typename T::MaskType;
+  using Motion = LaneMotion<T>;
 
-  struct Motion {
-    T r[9];
-    T p[3];
+  /// Squares of what a round changed.
+  struct Change {
+    T places;    ///< of a body or joint, the largest
+    T wrenches;  ///< of all
   };
 
-  static Motion constant(const KernelMotion& motion) {
-    Motion made;
-    for (int k = 0; k < 9; ++k) made.r[k] = T(motion.r[k]);
-    for (int k = 0; k < 3; ++k) made.p[k] = T(motion.p[k]);
-    return made;
+  void solve_batch(std::size_t at) {
+    begin(at);
+    before_ = {T(1.0), T(1e300)};
+    Mask active = T(0.0) < T(1.0);
+    T iterations(0.0);
+    for (int n = 0; n < problem_.most_rounds && any(active); ++n) {
+      iterations = select(active, iterations + T(1.0), iterations);
+      active = active & !round(active);
+    }
+    end(at, active, iterations);
   }
 
-  static Motion product(const Motion& a, const Motion& b) {
-    Motion c;
-    for (int row = 0; row < 3; ++row) {
-      const T* of_a = a.r + 3 * row;
-      for (int column = 0; column < 3; ++column) {
-        c.r[3 * row + column] = madd(of_a[2], b.r[6 + column], madd(of_a[1], b.r[3 + column], of_a[0] * b.r[column]));
+  /// Where first order leads.
+  void begin(std::size_t at) {
+    const T* coordinates = mapper_.coordinates(at);
+    for (std::size_t b = 1; b < bodies_.size(); ++b) {
+      bodies_[b] = product(motion_of(coordinates + 6 * (b - 1)), in_lanes<T>(problem_.bodies[b]));
+    }
+    if (problem_.carries) mapper_.wrenches(coordinates, wrenches_.data());
+    const LaneErrors<T> errors(block_, at);
+    const T* dq = coordinates + mapper_.first_joint();
+    std::size_t segment = 0;
+    std::size_t joint = 0;
+    for (const KernelLimb& limb : problem_.limbs) {
+      for (const KernelSegment& one : limb.segments) segments_[segment++] = errors.segment(one);
+      for (const KernelJoint& one : limb.joints) {
+        if (one.passive < 0) continue;
+        displacements_[joint] = T(one.displacement) + dq[joint];
+        ++joint;
       }
-      c.p[row] = madd(of_a[2], b.p[2], madd(of_a[1], b.p[1], madd(of_a[0], b.p[0], a.p[row])));
     }
-    return c;
   }
 
-  /// exp of the twist [w; v].
-  static Motion motion_of(const T* twist) {
-    const T* w = twist;
-    const T* v = twist + 3;
-    const T x = simd::dot3(w, w);
-    const auto turn = simd::exp_coefficients(x);
-    const auto left = simd::left_jacobian_coefficients(x);
-    Motion made;
-    simd::rotation_matrix(w, x, turn, made.r);
-    T once[3];
-    T twice[3];
-    simd::cross(w, v, once);
-    simd::cross(w, once, twice);
-    for (int k = 0; k < 3; ++k) made.p[k] = madd(left.c, twice[k], madd(left.b, once[k], v[k]));
-    return made;
-  }
-
-  // ---- frames with errors
-
-  T entry(const KernelFrame& frame, int n, std::size_t at) const {
-    const int row = frame.varied[n];
-    if (row < 0) return T(frame.constant[n]);
-    return T::load(block_.values + static_cast<std::size_t>(row) * block_.stride + at);
-  }
-
-  Motion frame_at(const KernelFrame& frame, std::size_t at) const {
-    const Motion before = constant(frame.before);
-    if (!frame.has_error) return before;
-    T e[6];
-    for (int n = 0; n < 6; ++n) e[n] = entry(frame, n, at);
-    Motion error;
-    if (frame.turns) {
-      const T x = simd::dot3(e, e);
-      auto turn = simd::exp_coefficients(x);
-      if (frame.inverted) turn.a = -turn.a;
-      simd::rotation_matrix(e, x, turn, error.r);
-    } else {
-      for (int k = 0; k < 9; ++k) error.r[k] = T(k % 4 == 0 ? 1.0 : 0.0);
+  /// Where the limb's end would be without forces. at_joint(joint, frame): called for each joint before its motion.
+  template <class AtJoint>
+  Motion walk(std::size_t e, AtJoint at_joint) const {
+    const KernelLimb& limb = problem_.limbs[e];
+    const Motion* segment = &segments_[first_segment_[e]];
+    Motion g = limb.from == 0 ? *segment : product(bodies_[limb.from], *segment);
+    for (const KernelJoint& joint : limb.joints) {
+      at_joint(joint, g);
+      const bool moves = joint.passive >= 0;
+      const T displacement =
+          moves ? displacements_[limb.first_joint + static_cast<std::size_t>(joint.passive)] : T(joint.displacement);
+      move(joint, displacement, g);
+      g = product(g, *++segment);
     }
-    for (int row = 0; row < 3; ++row) {
-      error.p[row] = frame.inverted ? -simd::dot3(error.r + 3 * row, e + 3) : e[3 + row];
-    }
-    return product(product(before, error), constant(frame.behind));
+    return g;
   }
 
   // ---- one round
 
-  void move(const KernelJoint& joint, T displacement, Motion& g) const {
-    if (joint.slides || joint.advance != 0.0) {
-      const T way = joint.slides ? displacement : T(joint.advance) * displacement;
-      for (int row = 0; row < 3; ++row) g.p[row] = madd(g.r[3 * row + 2], way, g.p[row]);
-    }
-    if (joint.slides) return;
-    const auto [sine, cosine] = simd::sin_cos(displacement);
-    for (int row = 0; row < 3; ++row) {
-      T* of = g.r + 3 * row;
-      const T x = of[0];
-      of[0] = madd(sine, of[1], cosine * x);
-      of[1] = nmadd(sine, x, cosine * of[1]);
-    }
-  }
-
-  /// The column of a passive joint times p: what it would do.
-  static T work(const KernelJoint& joint, const Motion& g, const T* p) {
-    const T axis[3] = {g.r[2], g.r[5], g.r[8]};
-    if (joint.slides) return simd::dot3(axis, p + 3);
-    T moment[3];
-    simd::cross(g.p, axis, moment);
-    T sum = simd::dot3(axis, p) + simd::dot3(moment, p + 3);
-    if (joint.advance != 0.0) sum = madd(T(joint.advance), simd::dot3(axis, p + 3), sum);
-    return sum;
-  }
-
-  /// Mismatch of the lanes that go on, and what is left of the limb's equations: its part of the right side, and the
-  /// wrench that takes away what its passive joints feel.
-  void visit(std::size_t e, const Motion* frames, Mask active) {
+  /// Mismatch of a limb, and what is left of its equations.
+  void visit(std::size_t e) {
     const KernelLimb& limb = problem_.limbs[e];
     const T* p = &wrenches_[6 * e];
     T* rest = &particular_[6 * e];
-    for (int k = 0; k < 6; ++k) rest[k] = T(0.0);
-    Motion g = product(bodies_[limb.from], frames[0]);
-    for (std::size_t j = 0; j < limb.joints.size(); ++j) {
-      const KernelJoint& joint = limb.joints[j];
-      if (joint.passive >= 0) {
-        const T felt = -work(joint, g, p);
-        const double* give = &limb.give[6 * static_cast<std::size_t>(joint.passive)];
-        for (int k = 0; k < 6; ++k) rest[k] = madd(T(give[k]), felt, rest[k]);
-      }
-      move(joint, displacements_[limb.first_joint + j], g);
-      g = product(g, frames[j + 1]);
+    T* xi = &mismatch_[6 * e];
+    if (!problem_.carries) {
+      log_of(walk(e, [](const KernelJoint&, const Motion&) {}), bodies_[limb.to], xi);
+      set_right(limb, xi);
+      return;
     }
-    T open[6];
-    log_of(g, bodies_[limb.to], open);
-    for (std::size_t k = 0; k < 6; ++k) mismatch_[6 * e + k] = select(active, open[k], mismatch_[6 * e + k]);
+    for (int k = 0; k < 6; ++k) rest[k] = T(0.0);
+    const Motion end = walk(e, [&](const KernelJoint& joint, const Motion& g) {
+      if (joint.passive >= 0) add_felt(limb, joint, g, p, rest);
+    });
+    log_of(end, bodies_[limb.to], xi);
     T left[6];
     for (int k = 0; k < 6; ++k) {
-      T sum = mismatch_[6 * e + static_cast<std::size_t>(k)];
+      T sum = xi[k];
       for (int n = 0; n < 6; ++n) sum = nmadd(T(limb.compliance[6 * k + n]), p[n] + rest[n], sum);
       left[k] = sum;
     }
-    for (std::size_t m = 0; m < limb.carried; ++m) {
-      T sum = T(limb.carry[m]) * left[0];
-      for (std::size_t k = 1; k < 6; ++k) sum = madd(T(limb.carry[k * limb.carried + m]), left[k], sum);
-      right_[limb.first_wrench + m] = sum;
-    }
+    set_right(limb, left);
     for (std::size_t k = 0; k < 6; ++k) {
       const T all = p[k] + rest[k];
       add_to_body(limb.to, k, -all);
@@ -176,106 +135,95 @@ class AssemblyKernel {
     }
   }
 
+  /// Adds the wrench that takes away what a passive joint feels of p.
+  static void add_felt(const KernelLimb& limb, const KernelJoint& joint, const Motion& g, const T* p, T* rest) {
+    T twist[6];
+    twist_of(joint, g, twist);
+    const T felt = dot6(twist, p);
+    const double* give = &limb.give[6 * static_cast<std::size_t>(joint.passive)];
+    for (int k = 0; k < 6; ++k) rest[k] = nmadd(T(give[k]), felt, rest[k]);
+  }
+
+  /// The limb's part of the right side: what is left, along the wrenches that it can carry.
+  void set_right(const KernelLimb& limb, const T* left) {
+    for (std::size_t m = 0; m < limb.carried; ++m) {
+      T sum = T(limb.carry[m]) * left[0];
+      for (std::size_t k = 1; k < 6; ++k) sum = madd(T(limb.carry[k * limb.carried + m]), left[k], sum);
+      right_[limb.first_wrench + m] = sum;
+    }
+  }
+
   void add_to_body(std::size_t body, std::size_t k, T value) {
     if (body == 0) return;
-    T& row = right_[problem_.size - 6 * (bodies_.size() - body) + k];
+    T& row = right_[first_body_row() + 6 * (body - 1) + k];
     row = row + value;
   }
 
-  /// log(a b^-1) as [w; v].
-  static void log_of(const Motion& a, const Motion& b, T* twist) {
-    Motion c;
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) c.r[3 * row + column] = simd::dot3(a.r + 3 * row, b.r + 3 * column);
-      c.p[row] = a.p[row];
-    }
-    for (int row = 0; row < 3; ++row) {
-      for (int n = 0; n < 3; ++n) c.p[row] = nmadd(c.r[3 * row + n], b.p[n], c.p[row]);
-    }
-    const auto turn = simd::rotation_log(c.r);
-    T once[3];
-    T twice[3];
-    simd::cross(turn.w, c.p, once);
-    simd::cross(turn.w, once, twice);
-    for (int k = 0; k < 3; ++k) {
-      twist[k] = turn.w[k];
-      twist[3 + k] = madd(turn.bend, twice[k], nmadd(T(0.5), once[k], c.p[k]));
-    }
-  }
+  std::size_t first_body_row() const { return problem_.size - 6 * (bodies_.size() - 1); }
 
+  /// Without wrenches the rows of bodies are 0, and nobody asks for lambda.
   void solve_linear() {
-    const std::size_t size = problem_.size;
-    for (std::size_t row = 0; row < size; ++row) {
-      const double* of = &problem_.inverse[row * size];
-      T even = T(of[0]) * right_[0];
-      T odd = size > 1 ? T(of[1]) * right_[1] : T(0.0);
-      std::size_t k = 2;
-      for (; k + 1 < size; k += 2) {
+    const std::size_t columns = problem_.carries ? problem_.size : first_body_row();
+    for (std::size_t row = problem_.carries ? 0 : first_body_row(); row < problem_.size; ++row) {
+      const double* of = &problem_.inverse[row * problem_.size];
+      T even(0.0);
+      T odd(0.0);
+      std::size_t k = 0;
+      for (; k + 1 < columns; k += 2) {
         even = madd(T(of[k]), right_[k], even);
         odd = madd(T(of[k + 1]), right_[k + 1], odd);
       }
-      if (k < size) even = madd(T(of[k]), right_[k], even);
+      if (k < columns) even = madd(T(of[k]), right_[k], even);
       found_[row] = even + odd;
     }
   }
 
-  /// Moves wrench and joints of a limb in the lanes that go on. Returns the square of the wrench's change.
-  T step(std::size_t e, Mask active) {
+  /// Moves the limb's wrench in the lanes that go on. Returns the square of its change.
+  T step_wrench(std::size_t e, Mask active, T* wanted) {
     const KernelLimb& limb = problem_.limbs[e];
     T* p = &wrenches_[6 * e];
-    T change[6];
     T square(0.0);
+    T made[6];
     for (std::size_t k = 0; k < 6; ++k) {
-      T sum = particular_[6 * e + k];
+      T change = particular_[6 * e + k];
       for (std::size_t m = 0; m < limb.carried; ++m) {
-        sum = madd(T(limb.carry[k * limb.carried + m]), found_[limb.first_wrench + m], sum);
+        change = madd(T(limb.carry[k * limb.carried + m]), found_[limb.first_wrench + m], change);
       }
-      change[k] = sum;
-      square = madd(sum, sum, square);
+      square = madd(change, change, square);
+      made[k] = p[k] + change;
     }
-    T wanted[6];
     for (std::size_t k = 0; k < 6; ++k) {
-      T sum = twists_[6 * limb.to + k] - twists_[6 * limb.from + k] - mismatch_[6 * e + k];
-      for (std::size_t n = 0; n < 6; ++n) sum = madd(T(limb.compliance[6 * k + n]), p[n] + change[n], sum);
-      wanted[k] = sum;
-    }
-    for (std::size_t k = 0; k < 6; ++k) p[k] = select(active, p[k] + change[k], p[k]);
-    for (std::size_t j = 0; j < limb.joints.size(); ++j) {
-      if (limb.joints[j].passive < 0) continue;
-      const double* give = &limb.give[6 * static_cast<std::size_t>(limb.joints[j].passive)];
-      T dq = T(give[0]) * wanted[0];
-      for (int k = 1; k < 6; ++k) dq = madd(T(give[k]), wanted[k], dq);
-      T& q = displacements_[limb.first_joint + j];
-      q = select(active, q + dq, q);
+      for (std::size_t n = 0; n < 6; ++n) wanted[k] = madd(T(limb.compliance[6 * k + n]), made[n], wanted[k]);
+      p[k] = select(active, made[k], p[k]);
     }
     return square;
   }
 
-  /// Moves the bodies in the lanes that go on. Returns the largest square of a move.
-  T move_bodies(Mask active) {
-    T largest(0.0);
+  /// Moves wrench and joints of a limb in the lanes that go on.
+  void step(std::size_t e, Mask active, Change& change) {
+    const KernelLimb& limb = problem_.limbs[e];
+    T wanted[6];
+    for (std::size_t k = 0; k < 6; ++k) {
+      wanted[k] = twists_[6 * limb.to + k] - twists_[6 * limb.from + k] - mismatch_[6 * e + k];
+    }
+    if (problem_.carries) change.wrenches = change.wrenches + step_wrench(e, active, wanted);
+    for (std::size_t j = 0; j < limb.passive; ++j) {
+      T& q = displacements_[limb.first_joint + j];
+      T dq = T(limb.give[6 * j]) * wanted[0];
+      for (std::size_t k = 1; k < 6; ++k) dq = madd(T(limb.give[6 * j + k]), wanted[k], dq);
+      q = select(active, q + dq, q);
+      change.places = max(change.places, dq * dq);
+    }
+  }
+
+  /// Moves the bodies in the lanes that go on.
+  void move_bodies(Mask active, Change& change) {
     for (std::size_t b = 1; b < bodies_.size(); ++b) {
       const T* twist = &twists_[6 * b];
-      T square(0.0);
-      for (int k = 0; k < 6; ++k) square = madd(twist[k], twist[k], square);
-      largest = max(largest, square);
+      change.places = max(change.places, dot6(twist, twist));
       const Motion moved = product(motion_of(twist), bodies_[b]);
       for (int k = 0; k < 9; ++k) bodies_[b].r[k] = select(active, moved.r[k], bodies_[b].r[k]);
       for (int k = 0; k < 3; ++k) bodies_[b].p[k] = select(active, moved.p[k], bodies_[b].p[k]);
-    }
-    return largest;
-  }
-
-  void begin(std::size_t at) {
-    for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b] = constant(problem_.bodies[b]);
-    for (T& wrench : wrenches_) wrench = T(0.0);
-    for (T& open : mismatch_) open = T(0.0);
-    std::size_t frame = 0;
-    for (const KernelLimb& limb : problem_.limbs) {
-      for (std::size_t j = 0; j < limb.joints.size(); ++j) {
-        displacements_[limb.first_joint + j] = T(limb.joints[j].displacement);
-      }
-      for (const KernelFrame& one : limb.frames) frames_[frame++] = frame_at(one, at);
     }
   }
 
@@ -285,51 +233,72 @@ class AssemblyKernel {
     for (std::size_t b = 1; b < bodies_.size(); ++b) {
       for (std::size_t k = 0; k < 6; ++k) add_to_body(b, k, T(-problem_.load[6 * b + k]));
     }
-    std::size_t frame = 0;
-    for (std::size_t e = 0; e < problem_.limbs.size(); ++e) {
-      visit(e, &frames_[frame], active);
-      frame += problem_.limbs[e].frames.size();
-    }
+    for (std::size_t e = 0; e < problem_.limbs.size(); ++e) visit(e);
     solve_linear();
-    const std::size_t first = problem_.size - 6 * (bodies_.size() - 1);
-    for (std::size_t k = 0; k < 6; ++k) twists_[k] = T(0.0);
-    for (std::size_t k = 6; k < twists_.size(); ++k) twists_[k] = found_[first + k - 6];
-    T change(0.0);
-    T whole(0.0);
-    for (std::size_t e = 0; e < problem_.limbs.size(); ++e) change = change + step(e, active);
-    const T moved = move_bodies(active);
-    Mask settled = !(moved > T(problem_.tolerance * problem_.tolerance));
-    if (problem_.wants_wrenches) {
-      for (const T& wrench : wrenches_) whole = madd(wrench, wrench, whole);
-      settled = settled & !(change > T(kWrenches * kWrenches) * whole);
-    }
-    return settled & (moved < T(kFarthest));
+    for (std::size_t k = 6; k < twists_.size(); ++k) twists_[k] = found_[first_body_row() + k - 6];
+    Change change{T(0.0), T(0.0)};
+    for (std::size_t e = 0; e < problem_.limbs.size(); ++e) step(e, active, change);
+    move_bodies(active, change);
+    const Mask settled = has_settled(change);
+    before_ = change;
+    return settled;
   }
 
-  void solve_batch(std::size_t at) {
-    begin(at);
-    Mask active = T(0.0) < T(1.0);
-    T iterations(0.0);
-    for (int n = 0; n < problem_.most_rounds && any(active); ++n) {
-      iterations = select(active, iterations + T(1.0), iterations);
-      active = active & !round(active);
-    }
-    write(at, active, iterations);
-  }
-
-  void write(std::size_t at, Mask left, T iterations) {
-    double* row = block_.rows + at;
-    const auto put = [&](T value) {
-      value.store(row);
-      row += block_.stride;
+  /// Whether the next round would change no more than rounding: by this one's change, or where that is small enough to
+  /// shrink on as it did in this round.
+  Mask has_settled(const Change& change) const {
+    const T tolerance(problem_.tolerance * problem_.tolerance);
+    const auto rests = [](T now, T before, T limit, T small) {
+      return (!(now > limit)) | ((now * now < T(kNext) * limit * before) & (now < small));
     };
-    for (const Motion& body : bodies_) {
-      for (const T& value : body.r) put(value);
-      for (const T& value : body.p) put(value);
+    Mask settled = rests(change.places, before_.places, tolerance, T(kShort) * tolerance);
+    if (problem_.wants_wrenches) {
+      T whole(0.0);
+      for (const T& wrench : wrenches_) whole = madd(wrench, wrench, whole);
+      settled = settled & rests(change.wrenches, before_.wrenches, T(kWrenches) * whole, T(kShort * kWrenches) * whole);
     }
-    for (const T& value : displacements_) put(value);
-    for (const T& value : wrenches_) put(value);
-    for (const T& value : mismatch_) put(value);
+    return settled & (change.places < T(kFarthest));
+  }
+
+  // ---- what comes of it
+
+  void displaced(std::size_t b, LaneDisplacement<T>& made) const {
+    const Motion nominal = in_lanes<T>(problem_.bodies[b]);
+    const Motion& body = bodies_[b];
+    T turned[9];
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        turned[3 * row + column] = simd::dot3(body.r + 3 * row, nominal.r + 3 * column);
+      }
+      made.moved[row] = body.p[row] - nominal.p[row];
+    }
+    const auto turn = simd::rotation_log(turned);
+    for (int k = 0; k < 3; ++k) made.theta[k] = turn.w[k];
+  }
+
+  /// The displacement of the tool's point by that of the platform.
+  void displace_tool() {
+    const LaneDisplacement<T>& platform = outcome_.bodies[1];
+    const auto turn = simd::exp_coefficients(simd::dot3(platform.theta, platform.theta));
+    const double* of = problem_.report.arm;
+    const T arm[3] = {T(of[0]), T(of[1]), T(of[2])};
+    T once[3];
+    T twice[3];
+    simd::cross(platform.theta, arm, once);
+    simd::cross(platform.theta, once, twice);
+    for (int k = 0; k < 3; ++k) outcome_.tool[k] = madd(turn.b, twice[k], madd(turn.a, once[k], platform.moved[k]));
+  }
+
+  void end(std::size_t at, Mask left, T iterations) {
+    for (std::size_t b = 1; b < bodies_.size(); ++b) displaced(b, outcome_.bodies[b]);
+    if (problem_.report.has_tool) displace_tool();
+    outcome_.wrenches = wrenches_;
+    for (std::size_t e = 0; problem_.report.has_forces && e < problem_.limbs.size(); ++e) {
+      walk(e, [&](const KernelJoint& joint, const Motion& g) {
+        if (joint.mark >= 0) outcome_.marks[static_cast<std::size_t>(joint.mark)] = g;
+      });
+    }
+    reporter_.write(outcome_, at);
     const unsigned lanes = bits(left);
     double counted[T::kLanes];
     iterations.store(counted);
@@ -339,20 +308,27 @@ class AssemblyKernel {
     }
   }
 
-  static constexpr double kWrenches = 1e-12;  ///< a change of all wrenches by this share is rounding
+  static constexpr double kWrenches = 1e-24;  ///< square of the share of all wrenches that is rounding
+  static constexpr double kNext = 1e-2;       ///< square of the share of the tolerance that a next round may change
+  static constexpr double kShort = 1e10;      ///< square of a change over the tolerance up to which it is foreseen
   static constexpr double kFarthest = 100.0;  ///< square of a move beyond which a lane has diverged
 
   const KernelProblem& problem_;
   const KernelBlock& block_;
-  std::vector<Motion> frames_;  ///< of all limbs, with errors
+  KernelMapper<T> mapper_;
+  KernelReporter<T> reporter_;
+  LaneOutcome<T> outcome_;
+  std::vector<std::size_t> first_segment_;  ///< [limbs] among all
+  std::vector<Motion> segments_;            ///< of all limbs, with errors
   std::vector<Motion> bodies_;
-  std::vector<T> displacements_;
-  std::vector<T> wrenches_;    ///< [6 x limbs] p
-  std::vector<T> mismatch_;    ///< [6 x limbs] xi
-  std::vector<T> particular_;  ///< [6 x limbs] the part of dp that answers what passive joints feel
+  std::vector<T> displacements_;  ///< of passive joints
+  std::vector<T> wrenches_;       ///< [6 x limbs] p
+  std::vector<T> mismatch_;       ///< [6 x limbs] xi
+  std::vector<T> particular_;     ///< [6 x limbs] the part of dp that answers what passive joints feel
   std::vector<T> right_;
   std::vector<T> found_;
   std::vector<T> twists_;  ///< [6 x bodies]
+  Change before_;          ///< of the last round
 };
 
 /// Solves a block with batches of T.

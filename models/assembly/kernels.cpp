@@ -7,8 +7,8 @@
 namespace poesy::assembly {
 
 template <>
-KernelSolve kernel<simd::Isa::POESY_KERNEL_ISA>() {
-  return solve_assemblies<simd::Lanes>;
+Kernels kernels<simd::Isa::POESY_KERNEL_ISA>() {
+  return {solve_assemblies<simd::Lanes>, map_assemblies<simd::Lanes>};
 }
 
 }  // namespace poesy::assembly

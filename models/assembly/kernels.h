@@ -5,20 +5,20 @@
 
 namespace poesy::assembly {
 
-/// The kernel of one instruction set. Each is a translation unit of its own, kernels.cpp compiled for that set; see
+/// The kernels of one instruction set. Each is a translation unit of its own, kernels.cpp compiled for that set; see
 /// simd::for_selected_isa().
 template <simd::Isa isa>
-KernelSolve kernel();
+Kernels kernels();
 /// Specialisations.
 /// @{
 template <>
-KernelSolve kernel<simd::Isa::plain>();
+Kernels kernels<simd::Isa::plain>();
 template <>
-KernelSolve kernel<simd::Isa::avx2>();
+Kernels kernels<simd::Isa::avx2>();
 template <>
-KernelSolve kernel<simd::Isa::avx512>();
+Kernels kernels<simd::Isa::avx512>();
 template <>
-KernelSolve kernel<simd::Isa::neon>();
+Kernels kernels<simd::Isa::neon>();
 /// @}
 
 }  // namespace poesy::assembly

@@ -53,15 +53,24 @@ std::vector<std::size_t> limbs_in_a_row(const Assembly& assembly) {
   return counts;
 }
 
-Matrix6 twists_in_units(const Vector3& origin, double length) {
-  Matrix6 made = Matrix6::Identity();
-  made.bottomLeftCorner<3, 3>() = -lie::hat<double>(origin) / length;
-  made.bottomRightCorner<3, 3>() /= length;
+Matrix6 twists_in_units(const Transform& frame, double length) {
+  Matrix6 made = lie::adjoint(frame.inverse());
+  made.bottomRows<3>() /= length;
   return made;
 }
 
+Transform frame_of_metric(const Matrix6& W) {
+  Transform frame;
+  frame.p = -Vector3(W(5, 1), W(3, 2), W(4, 0));  // -hat(middle) is the block of [v, omega]
+  const Matrix6 back = lie::adjoint(frame);
+  frame.R = linalg::eigen_decomposition((back.transpose() * W * back).topLeftCorner<3, 3>()).vectors;
+  if (frame.R.determinant() < 0.0) frame.R.col(2) *= -1.0;
+  return frame;
+}
+
 std::vector<std::size_t> passive_ranks(const Assembly& assembly, const Nominal& pose, double threshold) {
-  const Matrix6 units = twists_in_units(pose.bodies[kPlatform].p, assembly.reach);
+  const Matrix6 units =
+      twists_in_units(Transform{lie::Matrix3<double>::Identity(), pose.bodies[kPlatform].p}, assembly.reach);
   std::vector<std::size_t> ranks;
   for (const LimbState& limb : pose.limbs) ranks.push_back(linalg::rank(units * limb.passive, threshold));
   return ranks;

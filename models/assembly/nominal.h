@@ -28,8 +28,11 @@ std::vector<std::size_t> limbs_in_a_row(const Assembly& assembly);
 /// origin, singular values below the threshold times the largest count as 0.
 std::vector<std::size_t> passive_ranks(const Assembly& assembly, const Nominal& pose, double threshold);
 
-/// Twists about a point instead of the base's origin, with lengths in this unit (m): to those from twists about the
-/// origin in m.
-Matrix6 twists_in_units(const Vector3& origin, double length);
+/// Twists about the origin of a frame and along its axes, with lengths in this unit (m): to those from twists in the
+/// base frame in m. frame: base_T_frame.
+Matrix6 twists_in_units(const Transform& frame, double length);
+
+/// base_T_frame of the frame in which a metric of points is diagonal: in their middle.
+Transform frame_of_metric(const Matrix6& W);
 
 }  // namespace poesy::assembly

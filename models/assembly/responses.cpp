@@ -64,13 +64,6 @@ void add_forces(Rows& rows, const Assembly& assembly, const Report& report) {
   }
 }
 
-/// The limb's last joint that moves; its last joint where none does.
-std::size_t last_moving(const Limb& limb) {
-  std::size_t j = limb.chain.joints.size() - 1;
-  while (j > 0 && limb.chain.joints[j].fixed) --j;
-  return limb.chain.joints[j].fixed ? limb.chain.joints.size() - 1 : j;
-}
-
 /// The moment of a wrench about a point.
 Vector3 moment_about(const Vector3& point, const Screw& wrench) {
   return wrench.head<3>() - point.cross(Vector3(wrench.tail<3>()));
@@ -131,6 +124,12 @@ void add_deformation(Values& values, const Assembly& assembly, const Nominal& po
 }
 
 }  // namespace
+
+std::size_t last_moving(const Limb& limb) {
+  std::size_t j = limb.chain.joints.size() - 1;
+  while (j > 0 && limb.chain.joints[j].fixed) --j;
+  return limb.chain.joints[j].fixed ? limb.chain.joints.size() - 1 : j;
+}
 
 Outcome outcome_of(const Assembly& assembly, const Nominal& pose, const Solution& solution) {
   Outcome made{.bodies = std::vector<Outcome::Motion>(pose.bodies.size()),

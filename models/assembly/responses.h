@@ -37,6 +37,9 @@ struct Outcome {
   std::span<const LimbState> limbs = {};  ///< [limbs] where forces are taken
 };
 
+/// The limb's last joint that moves; its last joint where none does: about its point the limb's moment is taken.
+std::size_t last_moving(const Limb& limb);
+
 /// Of an exact solution, which must outlive it.
 Outcome outcome_of(const Assembly& assembly, const Nominal& pose, const Solution& solution);
 

@@ -63,6 +63,7 @@ Solution Solver::attempt(std::span<const std::vector<Transform>> frames, double 
       at.wrenches[e] = part(step.wrenches, e);
       const Screw given = part(step.twists, limb.to) - part(step.twists, limb.from) - at.mismatch[e] +
                           pose_->compliance[e] * at.wrenches[e];
+      moved = std::max(moved, damping * equations.size(given));  // an error across a rod turns it and moves no body
       const Eigen::VectorXd dq = damping * equations.displacements(e, given);
       Eigen::Index k = 0;
       for (const chain::Joint& one : limb.chain.joints) {

@@ -17,7 +17,7 @@ struct Solution {
   std::vector<Screw> wrenches;                  ///< [limbs] p
   SolveStatus status = SolveStatus::converged;  ///< how the solve ended
   std::uint32_t iterations = 0;                 ///< that it took
-  std::vector<double> steps;                    ///< [iterations] of each, the largest move of a body over the reach
+  std::vector<double> steps;  ///< [iterations] of each, the largest move of a body or joint over the reach
 };
 
 /// Newton's method on
@@ -34,8 +34,8 @@ class Solver {
   /// At this pose, which must outlive what follows.
   void prepare(const Nominal& pose);
 
-  /// frames: of each limb with errors, [limbs][n + 1]. Converged when no point of a body moves by more than the
-  /// tolerance times the reach. Where full steps come to no end, steps of a quarter are tried once.
+  /// frames: of each limb with errors, [limbs][n + 1]. Converged when no body and no joint moves a point by more
+  /// than the tolerance times the reach. Where full steps come to no end, steps of a quarter are tried once.
   Solution solve(std::span<const std::vector<Transform>> frames) const;
 
  private:

@@ -95,22 +95,36 @@ Assembly::Assembly(const ParallelChain& chain)
       delta_mu_(6 * chain.pairs.size()),
       part_(delta_mu_.size()),
       pull_(chain.limbs.size()),
+      slopes_(chain.frames()),
       descent_(std::make_unique<Descent>(*this)) {}
 
 Assembly::~Assembly() = default;
 
 void Assembly::prepare(std::span<const double> displacements, const Metric* metric) {
   POESY_EXPECTS(displacements.size() == chain_->joints());
+  const lie::Matrix6<double> W = metric == nullptr ? lie::Matrix6<double>(lie::Matrix6<double>::Identity()) : metric->W;
+  if (std::ranges::equal(displacements, nominal_) && W == W_) return;
   nominal_.assign(displacements.begin(), displacements.end());
-  W_ = metric == nullptr ? lie::Matrix6<double>(lie::Matrix6<double>::Identity()) : metric->W;
+  W_ = W;
   reach_ = metric == nullptr ? 1.0 : metric->reach;
   is_asked_ = false;
 }
 
-bool Assembly::is_impossible(std::span<const lie::Transform<double>> frames) {
-  if (!is_asked_) is_singular_ = !first_order_.prepare(nominal_, &W_);
+/// Whether the perfect mechanism is not singular; from then on first_order_ and slopes_ are known.
+bool Assembly::is_regular() {
+  if (is_asked_) return !is_singular_;
   is_asked_ = true;
-  if (is_singular_) return false;
+  is_singular_ = !first_order_.prepare(nominal_, &W_);
+  if (!is_singular_) first_order_.determinant_slopes(slopes_);
+  return !is_singular_;
+}
+
+double Assembly::nearing(const FrameEntry& entry) {
+  return is_regular() ? slopes_[entry.frame].dot(first_order_.motion(entry)) : 0.0;
+}
+
+bool Assembly::is_impossible(std::span<const lie::Transform<double>> frames) {
+  if (!is_regular()) return false;
   descent_->begin(frames);
   return linalg::comes_to_rest(*descent_, kRest) && is_open(frames, descent_->displacements());
 }

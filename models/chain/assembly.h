@@ -17,6 +17,9 @@ namespace poesy::chain {
 /// Gauss-Newton by a metric that takes more iterations contracts too slowly for its end not to be doubted.
 inline constexpr std::uint32_t kSlowIterations = 16;
 
+/// Half of what it takes to open a machine's loops, see Assembly::nearing().
+inline constexpr double kNearing = -0.5;
+
 /// Whether the loops of a machine with errors can be closed at all. Where limbs are over-constrained the equation
 /// J^T W delta_mu = 0 has a solution also for a machine that nobody can put together: the passive joints come to rest
 /// where the mismatch is least.
@@ -46,6 +49,11 @@ class Assembly {
   /// the limbs hold the platform, however the solver weighs: whether parts fit together depends on no unit.
   void prepare(std::span<const double> displacements, const Metric* metric);
 
+  /// By how much a unit of an entry of a frame's error changes ln det(J^T W J) to first order. Machines of which the
+  /// errors sum up to less than kNearing may be ones that cannot be assembled: the loops of one with a single weak
+  /// direction bend away from each other from -1 on. 0 where the perfect mechanism is singular.
+  double nearing(const FrameEntry& entry);
+
   /// Whether the limbs of these fixed frames [chain.frames()] cannot be assembled, by where the passive joints come to
   /// rest if they go downhill from nominal displacements. False where they do not come to rest, and where the perfect
   /// mechanism is singular.
@@ -54,12 +62,13 @@ class Assembly {
  private:
   class Descent;
 
+  bool is_regular();
   bool is_open(std::span<const lie::Transform<double>> frames, std::span<const double> displacements);
   Eigen::MatrixXd bend(std::span<const double> delta_mu);
 
   const ParallelChain* chain_;
   std::vector<double> nominal_;  ///< [all joints]
-  lie::Matrix6<double> W_;
+  lie::Matrix6<double> W_ = lie::Matrix6<double>::Zero();
   double reach_ = 1.0;        ///< of the metric (m); without one 1, for lengths in m beside angles
   bool is_asked_ = false;     ///< since it was prepared
   bool is_singular_ = false;  ///< the perfect mechanism, if asked
@@ -70,6 +79,7 @@ class Assembly {
   std::vector<double> delta_mu_;          ///< [6 x pairs] where the joints rest
   std::vector<double> part_;              ///< [6 x pairs] r
   std::vector<lie::Screw<double>> pull_;  ///< [limbs] scratch
+  std::vector<lie::Screw<double>> slopes_;  ///< [frames] of ln det(J^T W J), if the perfect mechanism is regular
   std::unique_ptr<Descent> descent_;
 };
 

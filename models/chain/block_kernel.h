@@ -1,6 +1,5 @@
 #pragma once
 
-#include "models/chain/block_kernel_doubt.h"
 #include "models/chain/block_kernel_meeting.h"
 #include "models/chain/block_kernel_metric.h"
 #include "models/chain/block_kernel_passes.h"

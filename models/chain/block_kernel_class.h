@@ -89,11 +89,9 @@ struct AnyShape {
 /// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
 /// is carried along it to first order instead of being evaluated again.
 ///
-/// A root may be that of a machine that cannot be assembled. It is doubted where N - 2 C is not positive definite for
-/// the residual delta_mu, C = M - N; as published, where residuals are large, only if N - 4 C is not either for the
-/// part of it that joints could take away at nominal displacements; by a metric also where N - 2 C was not on the way,
-/// and wherever the first pass did not find it. It has the status not_assembled for the time being, and Assembly
-/// decides.
+/// By a metric a root may be that of a machine that cannot be assembled. It is doubted where N - 2 C is not positive
+/// definite for the residual delta_mu, C = M - N, or was not on the way, and wherever the first pass did not find it. It
+/// has the status not_assembled for the time being, and Assembly decides.
 ///
 /// By a metric (Weighted) the equation is J^T W delta_mu = 0, f = J^T W delta_mu and N = J^T W J. The length s of a
 /// step is the largest distance by which one joint's part of it moves the platform's points, over the reach. The first
@@ -230,16 +228,12 @@ class BlockKernel {
   template <KernelPass pass>
   Verdict careful_by_metric(std::size_t at);
   Verdict gauss_newton_by_metric(std::size_t at, std::uint32_t round);
+  unsigned doubted(unsigned converged) const;
   void judge_by_metric(std::size_t at);
   Screw weighted(const Screw& screw) const;
   void weigh();
   template <class Diagonal>
   T step_length(const T* x, Diagonal diagonal) const;
-
-  // block_kernel_doubt.h: which roots are doubted.
-  void part_of_joints();
-  typename T::MaskType closes();
-  unsigned doubted(unsigned converged);
 
   // block_kernel_meeting.h: solves of limbs that can meet.
   struct Meeting {
@@ -316,7 +310,6 @@ class BlockKernel {
   Screw* row_;   ///< W times each column, which as published is the column itself; of limbs that meet: measured()
   Screw* rows_;  ///< of limbs that meet: L^-1 C^T
   Screw* mu_;
-  Screw* kept_;  ///< the residual, while mu_ is a part of it
   Screw* pull_;
   T* joint_;
   T* f_;

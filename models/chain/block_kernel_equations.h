@@ -164,6 +164,7 @@ typename T::MaskType BlockKernel<T, Shape, Measure>::is_positive(double of_n, do
 /// is nearly everywhere.
 template <class T, class Shape, class Measure>
 typename T::MaskType BlockKernel<T, Shape, Measure>::contracts() {
+  if constexpr (!Measure::kWeighted) return is_positive(2.0, 1.0);
   const auto clear = is_positive(3.0, 2.0);
   clear_ &= bits(clear);
   return bits(clear) == kAllLanes ? clear : clear | is_positive(2.0, 1.0);

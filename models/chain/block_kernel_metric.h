@@ -66,6 +66,13 @@ unsigned BlockKernel<T, Shape, Measure>::iterate(std::size_t at, unsigned open, 
   return left;
 }
 
+/// Which of these lanes, that have converged, are doubted. Of the nodes of a fit it is enough that Gauss-Newton
+/// contracts.
+template <class T, class Shape, class Measure>
+unsigned BlockKernel<T, Shape, Measure>::doubted(unsigned converged) const {
+  return options_.method == KernelMethod::newton_direct ? 0 : converged & ~clear_;
+}
+
 /// Where a pass starts: the first one from a fit, or in proportion to the errors; the others, as Gauss-Newton, from
 /// nominal displacements.
 template <class T, class Shape, class Measure>

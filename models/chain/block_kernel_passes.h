@@ -26,7 +26,6 @@ BlockKernel<T, Shape, Measure>::BlockKernel(const KernelChain& chain, const Kern
   row_ = Measure::kWeighted ? reinterpret_cast<Screw*>(take_lanes(6 * chain.joints)) : column_;
   rows_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.joints));
   mu_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.pairs));
-  kept_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.pairs));
   pull_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.limbs));
   joint_ = reinterpret_cast<T*>(take_lanes(chain.joints));
   f_ = reinterpret_cast<T*>(take_lanes(chain.joints));
@@ -390,7 +389,6 @@ auto BlockKernel<T, Shape, Measure>::newton_round(std::size_t at, std::uint32_t 
   }
   newton_matrix();
   auto safe = near & finite;
-  clear_ = kAllLanes;
   if constexpr (pass == KernelPass::direct) {
     // A first step from a fit is small, on the branch of the fit's nodes, which were all safe.
     const auto fitted = T::load(flat_ + at) * T(round == 0 ? 1.0 : 0.0) < T(0.0);
@@ -423,7 +421,6 @@ auto BlockKernel<T, Shape, Measure>::newton_round(std::size_t at, std::uint32_t 
   }
   take_step(at, step_);
   if (any(converged)) carry_residual(step_, converged);
-  verdict.doubted = doubted(verdict.converged);
   return verdict;
 }
 

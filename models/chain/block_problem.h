@@ -96,7 +96,6 @@ struct KernelStart {
   const double* inverse;   ///< [joints x joints]
   const double* diagonal;  ///< [joints], of N itself
   /// @}
-  const double* columns;  ///< [joints x 6] of J there, for what joints could take away of a residual; null if singular
 };
 
 /// Rows of a map are a multiple of this, the last ones zero.
@@ -168,7 +167,7 @@ static constexpr std::size_t kernel_memory(const KernelChain& chain) {
 static constexpr std::size_t kernel_scratch(const KernelChain& chain, const KernelSamples& samples) {
   const std::size_t rows = samples.varied + chain.joints + kernel_memory(chain) + 2 + 1;
   const std::size_t motions = 12 * (chain.segments + chain.limbs);
-  const std::size_t screws = 6 * (3 * chain.joints + 2 * chain.pairs + chain.limbs);
+  const std::size_t screws = 6 * (3 * chain.joints + chain.pairs + chain.limbs);
   const std::size_t equations = 3 * chain.joints * chain.joints + 6 * chain.joints;
   return rows * kernel_capacity(samples.count) + (motions + screws + equations) * kMostLanes;
 }

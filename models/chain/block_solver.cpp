@@ -104,6 +104,7 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   }
   find_segments(displacements, errors, varied);
   assembly_.prepare(displacements, held == nullptr ? metric : held);
+  find_nearing(errors, varied);
   errors_.assign(errors.begin(), errors.end());
   entries_.assign(varied.begin(), varied.end());
   if (metric != nullptr) find_spread(metric->W);
@@ -213,15 +214,11 @@ void for_each_constant(std::span<const FrameError<double>> errors, std::span<con
   }
 }
 
-/// The matrix and the columns at nominal displacements.
+/// The matrix at nominal displacements.
 void BlockSolver::find_nominal() {
   inverse_.resize(joints_.size() * joints_.size());
   diagonal_.resize(joints_.size());
   first_order_.matrix(inverse_, diagonal_);
-  columns_.resize(6 * joints_.size());
-  for (std::size_t a = 0; a < joints_.size(); ++a) {
-    std::copy_n(first_order_.column(a).data(), 6, columns_.begin() + static_cast<std::ptrdiff_t>(6 * a));
-  }
 }
 
 /// By how much joints give way to each varied entry to first order, where solves by a metric start; constant errors
@@ -352,14 +349,38 @@ void BlockSolver::solve(std::span<const double> values, std::size_t count, bool 
   move_platform(chain, samples, nullptr, make_room(chain, samples));
 }
 
-/// Of samples that are not solved, doubted, or solved slowly by Gauss-Newton, those that cannot be assembled.
+/// A solve that weighs radians against metres may open loops that cannot be closed: its root tells nothing.
+void BlockSolver::find_nearing(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied) {
+  nearing_.clear();
+  nearing_constant_ = 0.0;
+  if (metric_ != nullptr || chain_->meets) return;
+  for (const FrameEntry& entry : varied) nearing_.push_back(assembly_.nearing(entry));
+  for_each_constant(errors, varied, [&](const FrameEntry& entry, double error) {
+    nearing_constant_ += error * assembly_.nearing(entry);
+  });
+}
+
+void BlockSolver::find_near(std::span<const double> values) {
+  nearing_of_.clear();
+  if (metric_ != nullptr || chain_->meets) return;
+  nearing_of_.assign(count_, nearing_constant_);
+  for (std::size_t v = 0; v < nearing_.size(); ++v) {
+    const double* of_one = values.data() + v * count_;
+    for (std::size_t b = 0; b < count_; ++b) nearing_of_[b] += nearing_[v] * of_one[b];
+  }
+}
+
+/// Of samples that are not solved, doubted, near by the published rule, or solved slowly by Gauss-Newton, those that
+/// cannot be assembled.
 void BlockSolver::review(std::span<const double> values) {
+  find_near(values);
   const bool may_be_slow = options_.method == KernelMethod::gauss_newton && metric_ != nullptr && !chain_->meets;
   for (std::size_t b = 0; b < count_; ++b) {
     using enum SolveStatus;
     SolveStatus& status = status_[b];
     const bool is_slow = may_be_slow && iterations_[b] > kSlowIterations;
-    if (status == non_finite || (solved(status) && !is_slow)) continue;
+    const bool is_near = !nearing_of_.empty() && nearing_of_[b] < kNearing;
+    if (status == non_finite || (solved(status) && !is_slow && !is_near)) continue;
     set_frames(values, b);
     if (assembly_.is_impossible(frames_)) {
       status = not_assembled;
@@ -418,12 +439,11 @@ void BlockSolver::run(std::span<const double> values, std::size_t count, const K
   const KernelChain chain = kernel_chain();
   const KernelSamples samples{values.data(), varied_, count, count};
   double* scratch = make_room(chain, samples);
-  KernelStart start{fits_.data(), fits_.size(), nullptr, nullptr, nullptr, nullptr};
+  KernelStart start{fits_.data(), fits_.size(), nullptr, nullptr, nullptr};
   if (!is_singular_) {
     if (metric_ != nullptr || chain_->meets) start.slopes = slopes_.data();
     start.inverse = inverse_.data();
     start.diagonal = diagonal_.data();
-    start.columns = columns_.data();
   }
   kernels_.solve(chain, samples, start, options, outcome(displacements), scratch);
   if ((metric_ == nullptr && !chain_->meets) || !is_singular_) return;

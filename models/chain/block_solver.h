@@ -71,6 +71,8 @@ class BlockSolver {
   void predict_starts(double center, double half_width, int splits_left);
   double fit_starts(double center, double half_width);
   void run(std::span<const double> values, std::size_t count, const KernelOptions& options, double* displacements);
+  void find_nearing(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied);
+  void find_near(std::span<const double> values);
   void review(std::span<const double> values);
   void set_frames(std::span<const double> values, std::size_t sample);
   void map(std::span<const double> values, std::size_t count, bool wants_residuals);
@@ -91,6 +93,9 @@ class BlockSolver {
   std::vector<FrameError<double>> errors_;      ///< [frames] constant, then of one sample
   std::vector<FrameEntry> entries_;             ///< that vary
   std::vector<lie::Transform<double>> frames_;  ///< [frames] of one sample
+  std::vector<double> nearing_;                 ///< [varied] see Assembly::nearing(); empty by a metric
+  double nearing_constant_ = 0.0;               ///< of constant errors
+  std::vector<double> nearing_of_;              ///< [count] of each sample; empty by a metric
   const Metric* metric_ = nullptr;
   std::array<double, 3> middle_{};  ///< of the metric's points; see KernelChain
   std::array<double, 6> spread_{};  ///< about it
@@ -98,7 +103,6 @@ class BlockSolver {
   std::vector<double> slopes_;      ///< [varied x joints]
   std::vector<double> inverse_;     ///< [joints x joints] of J^T W J at nominal displacements
   std::vector<double> diagonal_;    ///< [joints], of J^T W J itself
-  std::vector<double> columns_;     ///< [joints x 6] of J there
   std::vector<double> effect_;      ///< [6 pairs], of one error
   std::vector<double> slope_;       ///< [joints], of one error
   const PlatformPoints* platform_ = nullptr;

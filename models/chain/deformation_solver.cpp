@@ -48,8 +48,8 @@ Deformation DeformationSolver::solve(std::span<const lie::Transform<double>> fra
   POESY_EXPECTS(delta_mu.size() == previous_.size());
   const std::vector<double> nominal(displacements.begin(), displacements.end());
   Deformation end = iterate(frames, displacements, delta_mu, metric, observe);
-  const bool is_slow = metric != nullptr && end.iterations > kSlowIterations;
-  if (end.status == SolveStatus::non_finite || (solved(end.status) && !is_slow)) return end;
+  const bool is_sure = metric != nullptr && solved(end.status) && end.iterations <= kSlowIterations;
+  if (end.status == SolveStatus::non_finite || is_sure) return end;
   assembly_.prepare(nominal, held == nullptr ? metric : held);
   if (assembly_.is_impossible(frames)) end.status = SolveStatus::not_assembled;
   return end;

@@ -7,7 +7,7 @@
 namespace poesy::chain {
 
 FirstOrder::FirstOrder(const ParallelChain& chain)
-    : chain_(&chain), no_mismatch_(6 * chain.pairs.size(), 0.0), equations_(chain) {
+    : chain_(&chain), no_mismatch_(6 * chain.pairs.size(), 0.0), pull_(chain.limbs.size()), equations_(chain) {
   for (std::size_t i = 0; i < chain.limbs.size(); ++i) {
     limb_of_frame_.insert(limb_of_frame_.end(), chain.limbs[i].frames(), i);
     limb_of_joint_.insert(limb_of_joint_.end(), chain.limbs[i].passive_joints(), i);
@@ -79,6 +79,50 @@ void FirstOrder::matrix(std::span<double> inverse, std::span<double> diagonal) {
     unit_[a] = 0.0;
     diagonal[a] = meetings_[a] * columns_[a].dot(W_ * columns_[a]);
   }
+}
+
+/// Leaves in pull_ the sums of W delta_mu over the pairs of each limb, for the mismatch that these displacements make.
+void FirstOrder::pull_of(std::span<const double> displacements) {
+  mismatch_.assign(no_mismatch_.size(), 0.0);
+  for (std::size_t a = 0; a < columns_.size(); ++a) {
+    add_motion(limb_of_joint_[a], displacements[a] * columns_[a], mismatch_);
+  }
+  std::ranges::fill(pull_, lie::Screw<double>::Zero());
+  for (std::size_t n = 0; n < chain_->pairs.size(); ++n) {
+    const lie::Screw<double> weighed = W_ * Eigen::Map<const lie::Screw<double>>(mismatch_.data() + 6 * n);
+    pull_[chain_->pairs[n].k] += weighed;
+    pull_[chain_->pairs[n].i] -= weighed;
+  }
+}
+
+/// d ln det N = trace(N^-1 dN) = 2 sum over a of D_a . dc_a, with D_a the pull of N^-1's column a on its limb. Motion m
+/// of what is in front of a joint changes its column c by [m, c].
+void FirstOrder::determinant_slopes(std::span<lie::Screw<double>> slopes) {
+  using Screw = lie::Screw<double>;
+  POESY_EXPECTS(slopes.size() == limb_of_frame_.size());
+  std::ranges::fill(slopes, Screw::Zero());
+  std::vector<double> by_joint(columns_.size());
+  std::size_t a = columns_.size();
+  unit_.assign(a, 0.0);
+  for (std::size_t i = chain_->limbs.size(); i-- > 0;) {
+    const Limb& limb = chain_->limbs[i];
+    Screw behind = Screw::Zero();
+    for (std::size_t j = limb.joints.size(); j-- > 0;) {
+      if (!limb.joints[j].actuated) {
+        --a;
+        by_joint[a] = behind.dot(columns_[a]);
+        unit_[a] = 1.0;
+        equations_.solve_for(unit_);
+        unit_[a] = 0.0;
+        pull_of(equations_.solution());
+        behind += 2.0 * lie::wrench_of_bracket(pull_[i], columns_[a]);
+      }
+      slopes[chain_->first_frame(i) + j] = behind;
+    }
+  }
+  equations_.solve_for(by_joint);
+  pull_of(equations_.solution());
+  for (std::size_t f = 0; f < slopes.size(); ++f) slopes[f] -= pull_[limb_of_frame_[f]];
 }
 
 /// Adds the motion of a limb's platform to the pairs in which the limb is k, and takes it from those in which it is i.

@@ -43,6 +43,10 @@ class FirstOrder {
   /// J (J^T W J)^-1 J^T W delta_mu. Precondition: as above.
   void taken_away(std::span<const double> delta_mu, std::span<double> part);
 
+  /// Of each frame, [frames], the screw whose product with motion() of an entry is by how much a unit of that entry
+  /// changes ln det(J^T W J) to first order, while the passive joints give way. Precondition: as above.
+  void determinant_slopes(std::span<lie::Screw<double>> slopes);
+
   /// See NormalEquations::idle().
   std::span<const double> idle() const { return equations_.idle(); }
 
@@ -52,6 +56,7 @@ class FirstOrder {
 
  private:
   void add_motion(std::size_t limb, const lie::Screw<double>& motion, std::span<double> delta_mu) const;
+  void pull_of(std::span<const double> displacements);
 
   const ParallelChain* chain_;
   std::vector<std::size_t> limb_of_frame_;
@@ -61,6 +66,8 @@ class FirstOrder {
   std::vector<double> meetings_;                  ///< of each passive joint: pairs in which its limb takes part
   std::vector<double> no_mismatch_;               ///< [6 x pairs] zeros
   std::vector<double> unit_;                      ///< [passive joints] a column of 1
+  std::vector<double> mismatch_;                  ///< [6 x pairs] scratch
+  std::vector<lie::Screw<double>> pull_;          ///< [limbs] scratch
   lie::Matrix6<double> W_;
   NormalEquations equations_;
 };

@@ -196,8 +196,11 @@ std::string structure_text(const Mechanism& mechanism) {
       "  Frame i_j is that of joint j of limb i, with z about or along the joint and x towards the next joint's\n"
       "  point, made perpendicular to z; S is three R, of which the first lies along the line from the joint "
       "before.\n";
-  text += fmt::format("  An error of frame i_j (j = 0 .. n) moves frame i_(j+1), or the {}, against frame i_j.\n",
-                      mechanism.is_branched() ? "body at the limb's end" : "platform");
+  const char* end = mechanism.is_branched() ? "body at the limb's end" : "platform";
+  text += fmt::format(
+      "  An error of frame i_j moves frame i_(j+1) against frame i_j. One of the last frame moves it against "
+      "the\n  {}, in the axes there: the {} goes the other way.\n",
+      end, end);
   text += fmt::format("  Angles of a limb's first and last frame turn about the {}.\n",
                       mechanism.errors_at_joints ? "points of its first and last joint"
                       : mechanism.is_branched()  ? "origins of the bodies there"

@@ -64,6 +64,17 @@ Screw<T> bracket(const Screw<T>& a, const Screw<T>& b) {
   return c;
 }
 
+/// The wrench whose product with each twist a is that of the wrench [moment; force] with the bracket [a, b].
+template <class T>
+Screw<T> wrench_of_bracket(const Screw<T>& wrench, const Screw<T>& b) {
+  const Vector3<T> moment = wrench.template head<3>(), force = wrench.template tail<3>();
+  const Vector3<T> wb = b.template head<3>(), vb = b.template tail<3>();
+  Screw<T> c;
+  c.template head<3>() = wb.cross(moment) + vb.cross(force);
+  c.template tail<3>() = wb.cross(force);
+  return c;
+}
+
 enum class Axis { x, y, z };
 
 /// Rot(axis, angle): rotation about a coordinate axis.

@@ -1,5 +1,5 @@
 poesy_test(lie_test LABELS property SOURCES models/lie/so3_test.cpp models/lie/se3_test.cpp LINKS poesy_models)
-poesy_test(chain_test LABELS property SOURCES models/chain/limb_test.cpp models/chain/deformation_solver_test.cpp
+poesy_test(chain_test LABELS property SOURCES models/chain/limb_test.cpp models/chain/deformation_solver_test.cpp models/chain/first_order_test.cpp
            models/chain/passive_condition_test.cpp models/chain/separation_test.cpp
            LINKS poesy_models)
 poesy_test(trace_test LABELS unit SOURCES models/trace_test.cpp LINKS poesy_models)
@@ -33,6 +33,7 @@ poesy_test(assembly_oracle_test LABELS unit SOURCES models/assembly/closure_test
 poesy_test(assembly_properties_test LABELS property
            SOURCES models/assembly/balance_test.cpp models/assembly/block_solver_test.cpp
                    models/assembly/closed_forms_test.cpp models/assembly/cuts_test.cpp
+                   models/assembly/loops_test.cpp
                    models/assembly/properties_test.cpp
            LINKS poesy_models DATA)
 poesy_test(branched_file_test LABELS property SOURCES models/file/branched_file_test.cpp LINKS poesy_models DATA)

@@ -9,12 +9,12 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from own_kinematics import MECHANISMS, FiveBar, FlatDelta, ThreeRpr
+from own_kinematics import MECHANISMS, FiveBar, FiveBarWithArm, FlatDelta, ThreeRpr
 from poesy_program import ProgramTest, main
 
 DATA = Path(os.environ["POESY_DATA"]) / "mechanisms"
 CONVERGED, STAGNATED, CAP, NOT_ASSEMBLED = 0, 1, 2, 5
-SIZES = {FiveBar: 5e-5, ThreeRpr: 1.2e-3, FlatDelta: 8e-5}  # m, with which a few to thirty per cent cannot be assembled
+SIZES = {FiveBar: 5e-5, FiveBarWithArm: 5e-5, ThreeRpr: 1.2e-3, FlatDelta: 8e-5}  # m, with which a few to thirty per cent cannot be assembled
 
 MONTE_CARLO = """\
 format = "poesy-study"
@@ -94,7 +94,8 @@ class Assembly(ProgramTest):
 
     def test_at_the_border(self):
         """One error alone, from just possible to just not: 1e-9 of the reach on either side."""
-        for mechanism, name in ((FiveBar(), "distal"), (FlatDelta(), "rod_1"), (ThreeRpr(), "leg_1")):
+        for mechanism, name in ((FiveBar(), "distal"), (FiveBarWithArm(), "distal"), (FlatDelta(), "rod_1"),
+                                (ThreeRpr(), "leg_1")):
             low, high = 0.0, -0.05
             for _ in range(80):
                 middle = 0.5 * (low + high)
@@ -104,22 +105,39 @@ class Assembly(ProgramTest):
             status, _, _ = self.evaluated(mechanism, {name: low + 0.1 * steps})
             np.testing.assert_array_equal(status == NOT_ASSEMBLED, steps < 0.0, mechanism.file)
 
+    def check_out_of_the_plane(self, mechanism, limbs, axes, share, solvers):
+        """Errors out of the plane leave a mismatch that no joint takes away, and move the border by their square alone."""
+        size = share * SIZES[type(mechanism)]
+        errors = drawn(mechanism, 2000, SIZES[type(mechanism)])
+        generator = np.random.default_rng(9)
+        for limb in limbs:
+            errors[f"lift_{limb}"] = size * generator.standard_normal(2000)
+            for axis in axes:
+                errors[f"tilt_{axis}_{limb}"] = size / 0.1 * generator.standard_normal(2000)
+        margins = mechanism.margins(errors, 2000)
+        clear = np.abs(margins) > 60.0 * size ** 2 / 0.1
+        self.assertGreater(clear.mean(), 0.8)
+        self.assertGreater((margins[clear] < 0.0).sum(), 20)
+        for solver in solvers:
+            status, _, _ = self.evaluated(mechanism, errors, solver)
+            np.testing.assert_array_equal((status == NOT_ASSEMBLED)[clear], margins[clear] < 0.0,
+                                          f"{mechanism.file} {share} {solver}")
+
     def test_errors_out_of_the_plane(self):
-        """They leave a mismatch that no joint takes away, and move the border by their square alone."""
-        for mechanism, limbs, axes in ((FiveBar(), (1, 2), "xy"), (ThreeRpr(), (1, 2, 3), "xz")):
-            size = SIZES[type(mechanism)]
-            errors = drawn(mechanism, 2000, size)
-            generator = np.random.default_rng(9)
-            for limb in limbs:
-                errors[f"lift_{limb}"] = size * generator.standard_normal(2000)
-                for axis in axes:
-                    errors[f"tilt_{axis}_{limb}"] = size / 0.1 * generator.standard_normal(2000)
-            margins = mechanism.margins(errors, 2000)
-            status, _, _ = self.evaluated(mechanism, errors)
-            clear = np.abs(margins) > 60.0 * size ** 2 / 0.1
-            self.assertGreater(clear.mean(), 0.85)
-            np.testing.assert_array_equal((status == NOT_ASSEMBLED)[clear], margins[clear] < 0.0, mechanism.file)
-            self.assertGreater((margins[clear] < 0.0).sum(), 20)
+        """However a solve weighs radians against metres."""
+        solvers = ("", 'metric = "published"', 'metric = "published"\nmethod = "gauss-newton"')
+        for share in (0.1, 1.0, 4.0):
+            self.check_out_of_the_plane(FiveBar(), (1, 2), "xy", share, solvers)
+        for share in (0.1, 0.3):
+            self.check_out_of_the_plane(ThreeRpr(), (1, 2, 3), "xz", share, solvers)
+
+    def test_bodies_between_limbs(self):
+        """Where limbs deform each other through a body, by the platform's metric and with stiffness."""
+        solvers = ('metric = "platform"', 'metric = "stiffness"')
+        for solver in solvers:
+            self.check(FiveBarWithArm(), drawn(FiveBarWithArm(), 2000, SIZES[FiveBarWithArm]), solver)
+        for share in (0.1, 1.0, 4.0):
+            self.check_out_of_the_plane(FiveBarWithArm(), (1, 2), "xy", share, solvers)
 
     def run_study(self, mechanism, samples=4000, limit=1.0, solver="", arguments=(), code=0):
         self.prepare(mechanism)

@@ -1,6 +1,6 @@
-"""Which machines can be put together: kinematics of their own for three mechanisms of tests/data/mechanisms, at one pose.
-Errors are arrays [N] by name; those that are not named are zero. `margins` are positive where a machine can be put
-together, and count by how much (m). SI throughout."""
+"""Kinematics of their own for mechanisms of tests/data/mechanisms. Errors are arrays [N] by name; those that are not
+named are zero. `margins` of a mechanism say which machines can be put together at its pose: they are positive, and count by
+how much (m). `displacement` says where others are, at M poses: [M x N x 6]. SI throughout."""
 
 import numpy as np
 
@@ -37,6 +37,12 @@ class FiveBar:
             elbows.append(elbow + plane_vectors(errors, "motor", limb, count) + stretch)
         reach = 2.0 * np.hypot(0.08, 0.002) + of(errors, "distal", count)
         return reach - np.linalg.norm(elbows[1] - elbows[0], axis=-1)
+
+
+class FiveBarWithArm(FiveBar):
+    """The same with the link behind an elbow as a body between two limbs, and a bearing that gives way."""
+
+    file = "five-bar-arm.toml"
 
 
 class ThreeRpr:
@@ -102,3 +108,131 @@ class FlatDelta:
 
 
 MECHANISMS = [FiveBar(), ThreeRpr(), FlatDelta()]
+
+
+def rotations(vectors):
+    """Of rotation vectors [... x 3]: [... x 3 x 3]."""
+    angle = np.linalg.norm(vectors, axis=-1)[..., None, None]
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    zero = np.zeros_like(x)
+    hat = np.moveaxis(np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]), (0, 1), (-2, -1))
+    return np.eye(3) + np.sinc(angle / np.pi) * hat + 0.5 * np.sinc(angle / (2.0 * np.pi)) ** 2 * hat @ hat
+
+
+def rotation_vectors(matrices):
+    """Of rotations by less than a right angle [... x 3 x 3]: [... x 3]."""
+    sines = 0.5 * np.stack([matrices[..., 2, 1] - matrices[..., 1, 2], matrices[..., 0, 2] - matrices[..., 2, 0],
+                            matrices[..., 1, 0] - matrices[..., 0, 1]], -1)
+    sine = np.linalg.norm(sines, axis=-1, keepdims=True)
+    large = sine > 1e-8
+    return sines * np.where(large, np.arcsin(np.minimum(sine, 1.0)) / np.where(large, sine, 1.0), 1.0)
+
+
+def error_vectors(errors, names, count):
+    """Of names [rows][components]: [N x rows x components]."""
+    return np.moveaxis(np.array([[of(errors, name, count) for name in row] for row in names]), -1, 0)
+
+
+class SixRods:
+    """printer.toml: the effector is where its six balls are as far from those of the carriages as the rods are long. The
+    first three rods are those on the left of the three carriages, the others those on the right."""
+
+    rod, reach, radius, width = 0.217, 0.095, 0.030, 0.046
+    sides, towers = ("left",) * 3 + ("right",) * 3, (1, 2, 3, 1, 2, 3)
+    names = ([f"{name}_{axis}_{k}" for name in ("tower", "lean") for k in (1, 2, 3) for axis in "xy"]
+             + [f"endstop_{k}" for k in (1, 2, 3)] + [f"rod_{side}_{k}" for side, k in zip(sides, towers)]
+             + [f"ball_{side}_{axis}_{k}" for side, k in zip(sides, towers) for axis in "xyz"])
+
+    def __init__(self):
+        across = np.repeat([0.5, -0.5], 3) * self.width
+        turns = np.tile(2.0 * np.pi * np.arange(3) / 3.0, 2)
+
+        def around(radius):
+            x, y = turned(turns, np.stack([np.full(6, radius), across], -1)).T
+            return np.stack([x, y, np.zeros(6)], -1)
+
+        self.up, self.down = around(self.reach + self.radius), around(self.radius)
+        self.axes = np.stack([*turned(turns[:3], np.array([self.reach + self.radius, 0.0])).T, np.zeros(3)], -1)
+
+    def heights(self, places):
+        """Of the three carriages where the drives put them [M x 3]."""
+        across = np.linalg.norm((self.up - self.down - places[:, None])[..., :2], axis=-1)[:, :3]
+        return places[:, 2:] + np.sqrt(self.rod ** 2 - across ** 2)
+
+    def put(self, errors, count, points, towers, heights):
+        """Points on carriages at `heights` [M x points], with the errors of their towers: points [M x N x points x 3], and
+        how the towers lean [N x points x 3 x 3]."""
+        place = points + np.array([0.0, 0.0, 1.0]) * heights[:, None, :, None]
+        raised = place + error_vectors(errors, [["", "", f"endstop_{k}"] for k in towers], count)
+        leaning = rotations(error_vectors(errors, [[f"lean_x_{k}", f"lean_y_{k}", ""] for k in towers], count))
+        moved = error_vectors(errors, [[f"tower_x_{k}", f"tower_y_{k}", ""] for k in towers], count)
+        return (leaning @ raised[..., None])[..., 0] + moved, leaning
+
+    def carriages(self, errors, places):
+        """How far their origins have moved [M x N x 3 x 3], and how they are turned [N x 3 x 3], as vectors."""
+        count = len(next(iter(errors.values())))
+        heights = self.heights(places)
+        there, leaning = self.put(errors, count, self.axes, (1, 2, 3), heights)
+        nominal, _ = self.put({}, 1, self.axes, (1, 2, 3), heights)
+        return there - nominal, rotation_vectors(leaning)
+
+    def displacement(self, errors, places):
+        """Of the effector, x y z and its rotation vector: [M x N x 6]."""
+        count = len(next(iter(errors.values())))
+        ends, _ = self.put(errors, count, self.up, self.towers, np.tile(self.heights(places), 2))
+        ends = ends.reshape(-1, 6, 3)
+        pairs = list(zip(self.sides, self.towers))
+        rods = self.rod + error_vectors(errors, [[f"rod_{side}_{k}" for side, k in pairs]], count)[:, 0]
+        seats = error_vectors(errors, [[f"ball_{side}_{axis}_{k}" for axis in "xyz"] for side, k in pairs], count)
+        rods, balls = np.tile(rods, (len(places), 1)), np.tile(self.down + seats, (len(places), 1, 1))
+        position, rotation = np.repeat(places, count, axis=0), np.tile(np.eye(3), (len(ends), 1, 1))
+        for _ in range(6):
+            arms = np.einsum("nij,nkj->nki", rotation, balls)
+            legs = arms + position[:, None] - ends
+            lengths = np.linalg.norm(legs, axis=-1)
+            along = legs / lengths[..., None]
+            jacobian = np.concatenate([np.cross(arms, along), along], -1)
+            step = np.linalg.solve(jacobian, (rods - lengths)[..., None])[..., 0]
+            rotation, position = rotations(step[:, :3]) @ rotation, position + step[:, 3:]
+        assert np.abs(step).max() < 1e-12
+        moved = np.concatenate([position - np.repeat(places, count, axis=0), rotation_vectors(rotation)], -1)
+        return moved.reshape(len(places), count, 6)
+
+
+class BellCrank:
+    """bell-crank.toml: crank and effector are where circles about the rods' ends meet. Complex numbers are points."""
+
+    names = ["arm_x", "arm_y", "forearm", "lower_rod", "lower_across", "upper_rod", "upper_across", "pin_x", "pin_y"]
+    arm, forearm, short = 0.040, 0.060, 0.010
+    low, high = 0.010 * np.exp(1j * np.radians(195.0)), 0.010 * np.exp(1j * np.radians(75.0))  # the crank's pins at home
+
+    def wrist(self, angles):
+        point = self.arm * np.exp(1j * angles[:, 0]) + self.forearm * np.exp(1j * angles[:, 1])
+        return np.stack([point.real, point.imag], -1)
+
+    @staticmethod
+    def angle(pin, centre, end, rod, near):
+        """How a part on `centre` is turned whose `pin` a rod holds at a distance from `end`: the one near `near`."""
+        towards = end - centre
+        reach, radius = np.abs(towards), np.abs(pin)
+        opening = np.arccos((radius ** 2 + reach ** 2 - rod ** 2) / (2.0 * radius * reach))
+        ways = [np.angle(towards / pin * np.exp(1j * (side * opening - near))) for side in (1.0, -1.0)]
+        return near + np.where(np.abs(ways[0]) < np.abs(ways[1]), ways[0], ways[1])
+
+    def displacement(self, errors, angles):
+        """[M x N x 6]"""
+        count = len(next(iter(errors.values())))
+        e = {name: of(errors, name, count) for name in self.names}
+        found = []
+        for first, second in angles:
+            elbow = (self.arm + e["arm_x"] + 1j * e["arm_y"]) * np.exp(1j * first)
+            # The forearm's drive holds its angle with the arm.
+            wrist = elbow + (self.forearm + e["forearm"]) * np.exp(1j * second)
+            pin = self.low + e["pin_x"] + 1j * e["pin_y"]
+            crank = self.angle(pin, elbow, self.low, np.hypot(self.arm + e["lower_rod"], e["lower_across"]), 0.0)
+            effector = self.angle(self.high, wrist, elbow + self.high * np.exp(1j * crank),
+                                  np.hypot(self.forearm + e["upper_rod"], e["upper_across"]), crank)
+            moved = wrist - self.arm * np.exp(1j * first) - self.forearm * np.exp(1j * second)
+            zero = np.zeros(count)
+            found.append(np.stack([moved.real, moved.imag, zero, zero, zero, effector], -1))
+        return np.array(found)

@@ -233,7 +233,7 @@ def _responses(sections: Mapping[str, list[str]]) -> tuple[tuple[Named, ...], di
             continue
         if match["metric"]:
             by_metric[match["metric"]] = _named(lines)
-        if match["usual"] or not (match["metric"] or usual):
+        if match["usual"] or not usual:  # a mechanism with one metric alone does not say which is usual
             usual = _named(lines)
     return usual, by_metric
 

@@ -78,18 +78,6 @@ TEST(AssemblyBalance, ExactForcesBalance) {
   });
 }
 
-TEST(AssemblyBalance, KernelForcesBalance) {
-  for_each_case([](const AssemblyModel& model, const Nominal& pose) {
-    BlockSolver solver(model, kOptions);
-    const std::vector<double> errors = random_errors(model, 0.1, 5);
-    const std::vector<double> coordinates;
-    solver.solve(pose, {coordinates, errors, {}, {}, 1}, [&](std::size_t, const Solution& solution) {
-      ASSERT_TRUE(solved(solution.status));
-      expect_balance(model, pose, solution.limbs, solution.wrenches);
-    });
-  });
-}
-
 TEST(AssemblyBalance, FirstOrderForcesBalance) {
   for_each_case([](const AssemblyModel& model, const Nominal& pose) {
     const FirstOrder first_order(model.assembly, pose, model.ranks);

@@ -5,10 +5,12 @@
 #include <bit>
 #include <numeric>
 
+#include "models/assembly/first_order.h"
 #include "tests/models/assembly/made.h"
 #include "tests/support/isa.h"
 
-// The kernel against plain Newton, and against itself: a sample does not depend on its neighbours.
+// The kernel against plain Newton and the plain first order, and against itself: a sample does not depend on its
+// neighbours.
 namespace poesy::assembly {
 namespace {
 
@@ -37,86 +39,137 @@ Samples drawn(const AssemblyModel& model, double size, std::size_t count) {
   return samples;
 }
 
-/// All that a solution says: bodies, displacements, wrenches.
-std::vector<double> numbers_of(const Solution& solution) {
-  std::vector<double> all;
-  for (const Transform& body : solution.bodies) {
-    all.insert(all.end(), body.R.data(), body.R.data() + 9);
-    all.insert(all.end(), body.p.begin(), body.p.end());
+/// With all components of each limb's wrench among the responses.
+AssemblyModel with_reactions(const Case& one, Metric metric) {
+  AssemblyModel model = made(one.text(), metric);
+  model.report.reactions.clear();
+  for (std::size_t e = 0; e < model.assembly.limbs.size(); ++e) model.report.reactions.push_back({e, 0, "first"});
+  return model;
+}
+
+/// What a block gives.
+struct Block {
+  std::vector<double> responses;  ///< [R x count]
+  std::vector<SolveStatus> status;
+  std::vector<std::uint32_t> iterations;
+
+  /// Of one sample.
+  std::vector<double> of(std::size_t b) const {
+    std::vector<double> values;
+    for (std::size_t at = b; at < responses.size(); at += status.size()) values.push_back(responses[at]);
+    return values;
   }
-  all.insert(all.end(), solution.displacements.begin(), solution.displacements.end());
-  for (const Screw& wrench : solution.wrenches) all.insert(all.end(), wrench.begin(), wrench.end());
-  for (const Screw& xi : solution.mismatch) all.insert(all.end(), xi.begin(), xi.end());
-  return all;
+};
+
+enum class How { solve, map };
+
+Block block_of(const AssemblyModel& model, PoseProblem& problem, How how, Samples& samples) {
+  const std::size_t count = samples.errors.size();
+  Block made{std::vector<double>(responses_of(model).size() * count), std::vector<SolveStatus>(count),
+             std::vector<std::uint32_t>(count)};
+  BlockSolver solver(model, kOptions);
+  const OutcomeBlock outcomes{made.responses, made.status, made.iterations, {}};
+  how == How::solve ? solver.solve(problem, samples.block(), outcomes) : solver.map(problem, samples.block(), outcomes);
+  return made;
+}
+
+/// Responses of one sample agree: displacements to a share of the reach, forces to a share of the largest.
+void expect_same_responses(const AssemblyModel& model, const std::vector<double>& found,
+                           const std::vector<double>& wanted, double of_reach, double of_forces) {
+  const std::vector<Response> responses = responses_of(model);
+  ASSERT_EQ(found.size(), responses.size());
+  Answers all{responses, wanted, model.assembly.reach};
+  const std::map<Dimension, double> largest = largest_of(all);
+  const auto tolerance = [&](Dimension dimension) {
+    if (dimension == Dimension::length) return of_reach * model.assembly.reach;
+    if (dimension == Dimension::angle) return of_reach;
+    return of_forces * largest.at(dimension);
+  };
+  for (std::size_t r = 0; r < found.size(); ++r) {
+    EXPECT_NEAR(found[r], wanted[r], tolerance(responses[r].dimension)) << responses[r].name;
+  }
 }
 
 class AssemblyKernel : public test::WithIsa {};
 
-TEST_P(AssemblyKernel, AgreesWithPlainNewton) {
+template <class Check>
+void for_each_sample(std::size_t count, Check check) {
   for (const Case& one : cases()) {
     for (const Metric metric : kMetrics) {
-      const AssemblyModel model = made(one.text(), metric);
-      const Nominal pose = model.at(one.pose);
-      const double reach = model.assembly.reach;
-      BlockSolver solver(model, kOptions);
+      const AssemblyModel model = with_reactions(one, metric);
+      PoseProblem problem(model, model.at(one.pose), kOptions);
       for (const double size : {0.1, 1.0}) {
-        Samples samples = drawn(model, size, 40);
-        solver.solve(pose, samples.block(), [&](std::size_t b, const Solution& found) {
-          SCOPED_TRACE(std::string(one.name) + (metric == Metric::stiffness ? ", stiffness" : ", platform") +
-                       ", size " + std::to_string(size) + ", sample " + std::to_string(b));
-          const Solution wanted = solution_of(model, pose, samples.errors[b]);
-          EXPECT_EQ(found.status, wanted.status);
-          if (!solved(found.status) || !solved(wanted.status)) return;
-          for (std::size_t k = kPlatform; k < pose.bodies.size(); ++k) {
-            EXPECT_LE((found.bodies[k].p - wanted.bodies[k].p).norm(), 1e-12 * reach);
-            EXPECT_LE((found.bodies[k].R - wanted.bodies[k].R).norm(), 1e-12);
-          }
-          if (metric != Metric::stiffness) return;
-          double most = 0.0;
-          for (const Screw& wrench : wanted.wrenches) {
-            most = std::max({most, wrench.tail<3>().norm(), wrench.head<3>().norm() / reach});
-          }
-          for (std::size_t e = 0; e < wanted.wrenches.size(); ++e) {
-            const Screw apart = found.wrenches[e] - wanted.wrenches[e];
-            EXPECT_LE(apart.tail<3>().norm(), 1e-9 * most);
-            EXPECT_LE(apart.head<3>().norm(), 1e-9 * most * reach);
-          }
-        });
+        Samples samples = drawn(model, size, count);
+        SCOPED_TRACE(std::string(one.name) + (metric == Metric::stiffness ? ", stiffness" : ", platform") + ", size " +
+                     std::to_string(size));
+        check(model, problem, samples);
+      }
+    }
+  }
+}
+
+TEST_P(AssemblyKernel, AgreesWithPlainNewton) {
+  for_each_sample(40, [](const AssemblyModel& model, PoseProblem& problem, Samples& samples) {
+    const Block found = block_of(model, problem, How::solve, samples);
+    for (std::size_t b = 0; b < samples.errors.size(); ++b) {
+      SCOPED_TRACE("sample " + std::to_string(b));
+      const Nominal& pose = problem.pose();
+      const Solution wanted = solution_of(model, pose, samples.errors[b]);
+      EXPECT_EQ(found.status[b], wanted.status);
+      if (!solved(found.status[b]) || !solved(wanted.status)) continue;
+      const Outcome outcome = outcome_of(model.assembly, pose, wanted);
+      expect_same_responses(model, found.of(b),
+                            response_values(model.assembly, model.report, model.deforms, pose, outcome), 2e-12, 1e-9);
+    }
+  });
+}
+
+TEST_P(AssemblyKernel, MapsAsThePlainFirstOrder) {
+  for_each_sample(13, [](const AssemblyModel& model, PoseProblem& problem, Samples& samples) {
+    const Block found = block_of(model, problem, How::map, samples);
+    const Nominal& pose = problem.pose();
+    const FirstOrder first_order(model.assembly, pose, model.ranks);
+    const Eigen::MatrixXd twists = error_twists(model, pose);
+    for (std::size_t b = 0; b < samples.errors.size(); ++b) {
+      SCOPED_TRACE("sample " + std::to_string(b));
+      const Eigen::Map<const Eigen::VectorXd> errors(samples.errors[b].data(), twists.cols());
+      Balance wanted = first_order.effect(twists * errors);
+      wanted.twists += first_order.by_load().twists;
+      wanted.wrenches += first_order.by_load().wrenches;
+      const Outcome outcome = outcome_of(model.assembly, pose, wanted, 0);
+      expect_same_responses(model, found.of(b),
+                            response_values(model.assembly, model.report, model.deforms, pose, outcome), 1e-13, 1e-10);
+    }
+  });
+}
+
+/// Samples in other orders, in blocks of other sizes.
+void expect_same_at_any_place(const AssemblyModel& model, PoseProblem& problem, How how, Samples& samples) {
+  const Block wanted = block_of(model, problem, how, samples);
+  std::vector<std::size_t> order(samples.errors.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    std::ranges::shuffle(order, std::mt19937(seed));
+    Samples others;
+    for (std::size_t k = 0; k < order.size() - 5 * seed; ++k) others.errors.push_back(samples.errors[order[k]]);
+    const Block found = block_of(model, problem, how, others);
+    for (std::size_t k = 0; k < others.errors.size(); ++k) {
+      EXPECT_EQ(found.iterations[k], wanted.iterations[order[k]]);
+      const std::vector<double> values = found.of(k);
+      const std::vector<double> same = wanted.of(order[k]);
+      for (std::size_t n = 0; n < values.size(); ++n) {
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(values[n]), std::bit_cast<std::uint64_t>(same[n]))
+            << "sample " << order[k] << " at " << k << ", response " << n;
       }
     }
   }
 }
 
 TEST_P(AssemblyKernel, IsTheSameAtAnyPlace) {
-  constexpr std::size_t kCount = 37;
-  for (const Case& one : cases()) {
-    const AssemblyModel model = made(one.text(), Metric::stiffness);
-    const Nominal pose = model.at(one.pose);
-    BlockSolver solver(model, kOptions);
-    Samples samples = drawn(model, 1.0, kCount);
-    std::vector<std::vector<double>> wanted(kCount);
-    std::vector<std::uint32_t> rounds(kCount);
-    solver.solve(pose, samples.block(), [&](std::size_t b, const Solution& found) {
-      wanted[b] = numbers_of(found);
-      rounds[b] = found.iterations;
-    });
-    std::vector<std::size_t> order(kCount);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    for (const unsigned seed : {1u, 2u, 3u}) {
-      std::ranges::shuffle(order, std::mt19937(seed));
-      const std::size_t count = kCount - 5 * seed;  // blocks of other sizes, too
-      Samples others;
-      for (std::size_t k = 0; k < count; ++k) others.errors.push_back(samples.errors[order[k]]);
-      solver.solve(pose, others.block(), [&](std::size_t k, const Solution& found) {
-        EXPECT_EQ(found.iterations, rounds[order[k]]);
-        const std::vector<double> numbers = numbers_of(found);
-        for (std::size_t n = 0; n < numbers.size(); ++n) {
-          ASSERT_EQ(std::bit_cast<std::uint64_t>(numbers[n]), std::bit_cast<std::uint64_t>(wanted[order[k]][n]))
-              << one.name << ", sample " << order[k] << " at " << k << ", number " << n;
-        }
-      });
-    }
-  }
+  for_each_sample(37, [](const AssemblyModel& model, PoseProblem& problem, Samples& samples) {
+    expect_same_at_any_place(model, problem, How::solve, samples);
+    expect_same_at_any_place(model, problem, How::map, samples);
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(Isa, AssemblyKernel, testing::ValuesIn(test::kEveryIsa), test::isa_name);

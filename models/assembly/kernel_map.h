@@ -1,0 +1,102 @@
+#pragma once
+
+// Included only by kernels.cpp, which is compiled once for each instruction set.
+
+#include <algorithm>
+
+#include "models/assembly/kernel_report.h"
+
+namespace poesy::assembly {
+
+/// The first order of batches of samples.
+template <class T>
+class KernelMapper {
+ public:
+  static constexpr std::size_t kAllRows = static_cast<std::size_t>(-1);  ///< all coordinates
+
+  /// Both must outlive it. rows: coordinates that are wanted.
+  KernelMapper(const KernelProblem& problem, const KernelBlock& block, std::size_t rows)
+      : problem_(problem),
+        map_(problem.map),
+        block_(block),
+        blocks_((std::min(rows, first_joint() + problem.joints) + kRows - 1) / kRows),
+        coordinates_(blocks_ * kRows) {}
+
+  /// Of the lanes from sample `at` on, until the next call.
+  const T* coordinates(std::size_t at) {
+    for (std::size_t n = 0; n < blocks_; ++n) multiply(n, at);
+    return coordinates_.data();
+  }
+
+  /// The limbs' wrenches [6 x limbs] at coordinates.
+  void wrenches(const T* coordinates, T* made) const {
+    const T* stress = coordinates + first_stress();
+    const double* of = map_.wrenches.data();
+    for (std::size_t row = 0; row < map_.by_load.size(); ++row, of += map_.stresses) {
+      T sum(map_.by_load[row]);
+      for (std::size_t k = 0; k < map_.stresses; ++k) sum = madd(T(of[k]), stress[k], sum);
+      made[row] = sum;
+    }
+  }
+
+  std::size_t first_stress() const { return 6 * (problem_.bodies.size() - 1); }  ///< among coordinates
+  std::size_t first_joint() const { return first_stress() + map_.stresses; }     ///< among coordinates
+
+ private:
+  static constexpr std::size_t kRows = KernelMap::kRows;
+
+  /// Eight rows at once, so that each value is read once for them.
+  void multiply(std::size_t n, std::size_t at) {
+    T sum[kRows];
+    for (std::size_t k = 0; k < kRows; ++k) sum[k] = T(map_.offset[n * kRows + k]);
+    const double* of = map_.matrix.data() + n * kRows * map_.entries;
+    const double* value = block_.values + at;
+    for (std::size_t v = 0; v < map_.entries; ++v, of += kRows, value += block_.stride) {
+      const T x = T::load(value);
+      for (std::size_t k = 0; k < kRows; ++k) sum[k] = madd(T(of[k]), x, sum[k]);
+    }
+    for (std::size_t k = 0; k < kRows; ++k) coordinates_[n * kRows + k] = sum[k];
+  }
+
+  const KernelProblem& problem_;
+  const KernelMap& map_;
+  const KernelBlock& block_;
+  std::size_t blocks_;
+  std::vector<T> coordinates_;
+};
+
+/// How a twist displaces a point, to first order.
+template <class T>
+void displace(const T* twist, const double* point, T* moved) {
+  const T p[3] = {T(point[0]), T(point[1]), T(point[2])};
+  for (int k = 0; k < 3; ++k) moved[k] = twist[3 + k];
+  simd::add_cross(twist, p, moved);
+}
+
+/// A block to first order, with batches of T.
+template <class T>
+void map_assemblies(const KernelProblem& problem, const KernelBlock& block) {
+  KernelMapper<T> mapper(problem, block, 6 * (problem.bodies.size() - 1) + problem.map.stresses);
+  KernelReporter<T> reporter(problem, block);
+  LaneOutcome<T> outcome(problem);
+  for (std::size_t k = 0; k < problem.report.marks; ++k) {
+    outcome.marks[k] = in_lanes<T>(problem.report.nominal_marks[k]);
+  }
+  for (std::size_t at = 0; at < block.count; at += T::kLanes) {
+    const T* coordinates = mapper.coordinates(at);
+    for (std::size_t b = 1; b < problem.bodies.size(); ++b) {
+      const T* twist = coordinates + 6 * (b - 1);
+      displace(twist, problem.bodies[b].p, outcome.bodies[b].moved);
+      for (int k = 0; k < 3; ++k) outcome.bodies[b].theta[k] = twist[k];
+    }
+    if (problem.report.has_tool) {
+      double tool[3];
+      for (int k = 0; k < 3; ++k) tool[k] = problem.bodies[1].p[k] + problem.report.arm[k];
+      displace(coordinates, tool, outcome.tool);
+    }
+    mapper.wrenches(coordinates, outcome.wrenches.data());
+    reporter.write(outcome, at);
+  }
+}
+
+}  // namespace poesy::assembly

@@ -1,0 +1,190 @@
+#pragma once
+
+// Included only by kernels.cpp, which is compiled once for each instruction set.
+
+#include "models/assembly/kernel_problem.h"
+#include "models/simd/rotation.h"
+
+namespace poesy::assembly {
+
+/// A rigid motion in each lane: rotation by rows, then translation.
+template <class T>
+struct LaneMotion {
+  T r[9];  ///< rotation
+  T p[3];  ///< translation
+};
+
+/// The same motion in every lane.
+template <class T>
+LaneMotion<T> in_lanes(const KernelMotion& motion) {
+  LaneMotion<T> made;
+  for (int k = 0; k < 9; ++k) made.r[k] = T(motion.r[k]);
+  for (int k = 0; k < 3; ++k) made.p[k] = T(motion.p[k]);
+  return made;
+}
+
+/// a b
+template <class T>
+LaneMotion<T> product(const LaneMotion<T>& a, const LaneMotion<T>& b) {
+  LaneMotion<T> c;
+  for (int row = 0; row < 3; ++row) {
+    const T* of_a = a.r + 3 * row;
+    for (int column = 0; column < 3; ++column) {
+      c.r[3 * row + column] = madd(of_a[2], b.r[6 + column], madd(of_a[1], b.r[3 + column], of_a[0] * b.r[column]));
+    }
+    c.p[row] = madd(of_a[2], b.p[2], madd(of_a[1], b.p[1], madd(of_a[0], b.p[0], a.p[row])));
+  }
+  return c;
+}
+
+/// g <- g * translation by t
+template <class T>
+void shift(LaneMotion<T>& g, const T* t) {
+  for (int row = 0; row < 3; ++row) {
+    const T* of = g.r + 3 * row;
+    g.p[row] = madd(of[2], t[2], madd(of[1], t[1], madd(of[0], t[0], g.p[row])));
+  }
+}
+
+/// g <- g * constant
+template <class T>
+void append(LaneMotion<T>& g, const KernelConstant& constant) {
+  if (constant.shape == KernelConstant::Shape::identity) return;
+  const LaneMotion<T> other = in_lanes<T>(constant.motion);
+  if (constant.shape == KernelConstant::Shape::translation) {
+    shift(g, other.p);
+  } else {
+    g = product(g, other);
+  }
+}
+
+/// g <- g * the joint's motion
+template <class T>
+void move(const KernelJoint& joint, T displacement, LaneMotion<T>& g) {
+  if (joint.slides || joint.advance != 0.0) {
+    const T way = joint.slides ? displacement : T(joint.advance) * displacement;
+    for (int row = 0; row < 3; ++row) g.p[row] = madd(g.r[3 * row + 2], way, g.p[row]);
+  }
+  if (joint.slides) return;
+  const auto [sine, cosine] = simd::sin_cos(displacement);
+  for (int row = 0; row < 3; ++row) {
+    T* of = g.r + 3 * row;
+    const T x = of[0];
+    of[0] = madd(sine, of[1], cosine * x);
+    of[1] = nmadd(sine, x, cosine * of[1]);
+  }
+}
+
+/// The joint's twist [w; v] where its frame is g: a column of J.
+template <class T>
+void twist_of(const KernelJoint& joint, const LaneMotion<T>& g, T* twist) {
+  const T axis[3] = {g.r[2], g.r[5], g.r[8]};
+  if (joint.slides) {
+    for (int k = 0; k < 3; ++k) {
+      twist[k] = T(0.0);
+      twist[3 + k] = axis[k];
+    }
+    return;
+  }
+  for (int k = 0; k < 3; ++k) twist[k] = axis[k];
+  simd::cross(g.p, axis, twist + 3);
+  if (joint.advance == 0.0) return;
+  for (int k = 0; k < 3; ++k) twist[3 + k] = madd(T(joint.advance), axis[k], twist[3 + k]);
+}
+
+/// A twist times a wrench.
+template <class T>
+T dot6(const T* a, const T* b) {
+  return simd::dot3(a, b) + simd::dot3(a + 3, b + 3);
+}
+
+/// exp of the twist [w; v].
+template <class T>
+LaneMotion<T> motion_of(const T* twist) {
+  const T* w = twist;
+  const T* v = twist + 3;
+  const T x = simd::dot3(w, w);
+  const auto turn = simd::exp_coefficients(x);
+  const auto left = simd::left_jacobian_coefficients(x);
+  LaneMotion<T> made;
+  simd::rotation_matrix(w, x, turn, made.r);
+  T once[3];
+  T twice[3];
+  simd::cross(w, v, once);
+  simd::cross(w, once, twice);
+  for (int k = 0; k < 3; ++k) made.p[k] = madd(left.c, twice[k], madd(left.b, once[k], v[k]));
+  return made;
+}
+
+/// log(a b^-1) as [w; v].
+template <class T>
+void log_of(const LaneMotion<T>& a, const LaneMotion<T>& b, T* twist) {
+  LaneMotion<T> c;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) c.r[3 * row + column] = simd::dot3(a.r + 3 * row, b.r + 3 * column);
+    c.p[row] = a.p[row];
+  }
+  for (int row = 0; row < 3; ++row) {
+    for (int n = 0; n < 3; ++n) c.p[row] = nmadd(c.r[3 * row + n], b.p[n], c.p[row]);
+  }
+  const auto turn = simd::rotation_log(c.r);
+  T once[3];
+  T twice[3];
+  simd::cross(turn.w, c.p, once);
+  simd::cross(turn.w, once, twice);
+  for (int k = 0; k < 3; ++k) {
+    twist[k] = turn.w[k];
+    twist[3 + k] = madd(turn.bend, twice[k], nmadd(T(0.5), once[k], c.p[k]));
+  }
+}
+
+/// Errors of a block as motions in the lanes from one sample on.
+template <class T>
+class LaneErrors {
+ public:
+  /// at: the first sample of the lanes.
+  LaneErrors(const KernelBlock& block, std::size_t at) : values_(block.values + at), stride_(block.stride) {}
+
+  /// What is between two joints.
+  LaneMotion<T> segment(const KernelSegment& segment) const {
+    if (segment.pieces.empty()) return in_lanes<T>(segment.behind.motion);
+    LaneMotion<T> g = in_lanes<T>(segment.pieces.front().before.motion);
+    for (const KernelPiece& piece : segment.pieces) {
+      if (&piece != &segment.pieces.front()) append(g, piece.before);
+      add(piece.error, g);
+    }
+    append(g, segment.behind);
+    return g;
+  }
+
+ private:
+  T entry(const KernelError& error, int n) const {
+    const int row = error.varied[n];
+    return row < 0 ? T(error.constant[n]) : T::load(values_ + static_cast<std::size_t>(row) * stride_);
+  }
+
+  /// g <- g * error
+  void add(const KernelError& error, LaneMotion<T>& g) const {
+    T e[6];
+    for (int n = 0; n < 6; ++n) e[n] = entry(error, n);
+    if (!error.turns) {
+      for (int k = 3; k < 6; ++k) e[k] = error.inverted ? -e[k] : e[k];
+      shift(g, e + 3);
+      return;
+    }
+    LaneMotion<T> made;
+    const T x = simd::dot3(e, e);
+    auto turn = simd::exp_coefficients(x);
+    if (error.inverted) turn.a = -turn.a;
+    simd::rotation_matrix(e, x, turn, made.r);
+    for (int row = 0; row < 3; ++row) {
+      made.p[row] = error.inverted ? -simd::dot3(made.r + 3 * row, e + 3) : e[3 + row];
+    }
+    g = product(g, made);
+  }
+
+  const double* values_;
+  std::size_t stride_;
+};
+
+}  // namespace poesy::assembly
