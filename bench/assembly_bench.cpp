@@ -4,6 +4,7 @@
 #include <iterator>
 #include <numeric>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,9 @@ struct Case {
 
 std::string text_of(const Mechanism& mechanism) {
   std::ifstream file(POESY_MECHANISMS "/" + mechanism.file + ".toml");
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
 }
 
 /// The product's model.

@@ -12,8 +12,8 @@
 namespace poesy::chain {
 namespace {
 
-/// A step below this, as the largest distance by which one joint alone moves the platform's points over the reach (as
-/// published in rad and m), is rest.
+/// A step shorter than this counts as rest. The length of a step is the largest distance by which one joint alone moves
+/// the platform's points, divided by the reach; without a metric, the largest component in rad and m.
 constexpr double kRest = 1e-9;
 
 /// Sum of |delta_mu|_W^2 over the pairs.
@@ -26,7 +26,7 @@ double sum_of_squares(std::span<const double> delta_mu, const lie::Matrix6<doubl
   return sum;
 }
 
-/// Whether a symmetric matrix is positive definite once its diagonal is brought to the scale of this one.
+/// Whether the first matrix is positive definite after both are scaled by the diagonal of the second argument.
 bool is_positive(Eigen::MatrixXd matrix, const Eigen::VectorXd& diagonal) {
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
   matrix = scale.asDiagonal() * matrix * scale.asDiagonal();
@@ -35,13 +35,13 @@ bool is_positive(Eigen::MatrixXd matrix, const Eigen::VectorXd& diagonal) {
 
 }  // namespace
 
-/// The way of the passive joints to where the mismatch of a machine is least; see linalg::comes_to_rest().
+/// The descent of the passive joints to the least mismatch of a machine; see linalg::comes_to_rest().
 class Assembly::Descent {
  public:
   explicit Descent(Assembly& assembly)
       : assembly_(&assembly), delta_mu_(assembly.delta_mu_.size()), tried_delta_mu_(delta_mu_.size()) {}
 
-  /// From nominal displacements, for these fixed frames.
+  /// Starts from nominal displacements, for these fixed frames.
   void begin(std::span<const lie::Transform<double>> frames) {
     Assembly& of = *assembly_;
     frames_ = frames;
@@ -110,7 +110,7 @@ void Assembly::prepare(std::span<const double> displacements, const Metric* metr
   is_asked_ = false;
 }
 
-/// Whether the perfect mechanism is not singular; from then on first_order_ and slopes_ are known.
+/// Whether the perfect mechanism is regular (not singular). If so, this sets first_order_ and slopes_.
 bool Assembly::is_regular() {
   if (is_asked_) return !is_singular_;
   is_asked_ = true;

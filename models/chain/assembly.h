@@ -14,29 +14,29 @@
 
 namespace poesy::chain {
 
-/// Gauss-Newton by a metric that takes more iterations contracts too slowly for its end not to be doubted.
+/// If Gauss-Newton by a metric takes more iterations than this, it contracts so slowly that its result is doubted.
 inline constexpr std::uint32_t kSlowIterations = 16;
 
-/// Half of what it takes to open a machine's loops, see Assembly::nearing().
+/// Half of the change that opens a machine's loops; see Assembly::nearing().
 inline constexpr double kNearing = -0.5;
 
-/// Whether the loops of a machine with errors can be closed at all. Where limbs are over-constrained the equation
-/// J^T W delta_mu = 0 has a solution also for a machine that nobody can put together: the passive joints come to rest
+/// Decides whether the loops of a machine with errors can be closed at all. Where limbs over-constrain the platform,
+/// the equation J^T W delta_mu = 0 has a solution even for a machine that nobody can assemble: its passive joints rest
 /// where the mismatch is least.
 ///
-/// What limbs may disagree by is what no passive joint of the perfect mechanism takes away. Of the mismatch where the
-/// joints rest that is all but
+/// The limbs may keep a mismatch that no passive joint of the perfect mechanism can remove. The other part of the
+/// mismatch delta_mu at rest is
 ///     r = J0 (J0^T W J0)^-1 J0^T W delta_mu,   J0 at nominal displacements without errors.
-/// In a machine that can be assembled r is of the order of the mismatch times the errors. In one that cannot, J has
-/// lost a direction x that J0 has: the loops, closed as far as they go, bend away from each other, so that N x nearly
-/// vanishes while r does not. With C(r) what a residual r adds to N = J^T W J in Newton's matrix M = N + C
-/// (BlockKernel), a machine cannot be assembled where
+/// In a machine that can be assembled, r is of the order of the mismatch times the errors. In one that cannot, J has
+/// lost a direction x that J0 has: the loops, closed as far as possible, bend away from each other, so that N x nearly
+/// vanishes while r does not. Newton's matrix is M = N + C (BlockKernel) with N = J^T W J; C(r) is its second part for
+/// a residual r. A machine cannot be assembled where
 ///     N - 2 C(r)
-/// is not positive definite. No unit and no size enters, and the border is where the loops just close (theory.md,
-/// "Machines that cannot be assembled").
+/// is not positive definite. This criterion depends on no unit and no size, and the boundary is where the loops just
+/// close (theory.md, "Machines that cannot be assembled").
 ///
-/// Plain double arithmetic, for samples that a solver did not solve or doubts: the one place that decides. Owns the
-/// scratch of one thread.
+/// Plain double arithmetic, for samples that a solver did not solve or doubts. No other code makes this decision. Owns
+/// the scratch of one thread.
 class Assembly {
  public:
   /// The chain must outlive it.
@@ -45,18 +45,19 @@ class Assembly {
   Assembly(const Assembly&) = delete;
   Assembly& operator=(const Assembly&) = delete;
 
-  /// At these nominal displacements [all joints] (rad, m), by this metric (null: W = 1), best that of the points where
-  /// the limbs hold the platform, however the solver weighs: whether parts fit together depends on no unit.
+  /// Sets the nominal displacements [all joints] (rad, m) and the metric (null: W = 1). The metric should be that of
+  /// the points where the limbs hold the platform, also when the solver uses another one, because it depends on no
+  /// unit.
   void prepare(std::span<const double> displacements, const Metric* metric);
 
-  /// By how much a unit of an entry of a frame's error changes ln det(J^T W J) to first order. Machines of which the
-  /// errors sum up to less than kNearing may be ones that cannot be assembled: the loops of one with a single weak
-  /// direction bend away from each other from -1 on. 0 where the perfect mechanism is singular.
+  /// The change of ln det(J^T W J) per unit of an entry of a frame's error, to first order (1/rad, 1/m). A machine
+  /// whose errors add up to less than kNearing may be one that cannot be assembled: with a single weak direction its
+  /// loops open at -1. 0 where the perfect mechanism is singular.
   double nearing(const FrameEntry& entry);
 
-  /// Whether the limbs of these fixed frames [chain.frames()] cannot be assembled, by where the passive joints come to
-  /// rest if they go downhill from nominal displacements. False where they do not come to rest, and where the perfect
-  /// mechanism is singular.
+  /// Whether limbs with these fixed frames [chain.frames()] cannot be assembled. The passive joints descend from
+  /// nominal displacements until they rest. False where they do not come to rest, and where the perfect mechanism is
+  /// singular.
   bool is_impossible(std::span<const lie::Transform<double>> frames);
 
  private:
@@ -69,17 +70,17 @@ class Assembly {
   const ParallelChain* chain_;
   std::vector<double> nominal_;  ///< [all joints]
   lie::Matrix6<double> W_ = lie::Matrix6<double>::Zero();
-  double reach_ = 1.0;        ///< of the metric (m); without one 1, for lengths in m beside angles
-  bool is_asked_ = false;     ///< since it was prepared
-  bool is_singular_ = false;  ///< the perfect mechanism, if asked
+  double reach_ = 1.0;        ///< reach of the metric (m); without a metric 1, for lengths in m next to angles
+  bool is_asked_ = false;     ///< whether is_regular() has been called since prepare()
+  bool is_singular_ = false;  ///< whether the perfect mechanism is singular; valid if is_asked_
   FirstOrder first_order_;
   NormalEquations equations_;
   Loops loops_;
   std::vector<std::size_t> passive_;        ///< position of each passive joint among all joints
   std::vector<double> delta_mu_;            ///< [6 x pairs] where the joints rest
-  std::vector<double> part_;                ///< [6 x pairs] r
+  std::vector<double> part_;                ///< [6 x pairs] r, see above
   std::vector<lie::Screw<double>> pull_;    ///< [limbs] scratch
-  std::vector<lie::Screw<double>> slopes_;  ///< [frames] of ln det(J^T W J), if the perfect mechanism is regular
+  std::vector<lie::Screw<double>> slopes_;  ///< [frames] slopes of ln det(J^T W J), if the perfect mechanism is regular
   std::unique_ptr<Descent> descent_;
 };
 

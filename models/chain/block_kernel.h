@@ -7,7 +7,7 @@
 
 namespace poesy::chain {
 
-/// Calls work(kernel class) with the one that fits the chain best.
+/// Calls work with the KernelClass that is specialised most for this chain.
 template <class T, class Work>
 void with_kernel(const KernelChain& chain, Work work) {
   const bool is_fixed = ThreeLimbs<3>::fits(chain);
@@ -20,7 +20,7 @@ void with_kernel(const KernelChain& chain, Work work) {
   }
 }
 
-/// Solves a block.
+/// Solves a block; see KernelSolve.
 template <class T>
 void solve_block(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
                  const KernelOptions& options, const KernelOutcome& outcome, double* scratch) {
@@ -29,7 +29,7 @@ void solve_block(const KernelChain& chain, const KernelSamples& samples, const K
   });
 }
 
-/// Maps a block to first order.
+/// Maps a block to first order; see KernelMapBlock.
 template <class T>
 void map_block(const KernelChain& chain, const KernelSamples& samples, const KernelMap& map,
                const KernelOutcome& outcome, double* scratch) {
@@ -37,7 +37,7 @@ void map_block(const KernelChain& chain, const KernelSamples& samples, const Ker
       chain, [&](auto kernel) { typename decltype(kernel)::Type(chain, samples, {}, {}, outcome, scratch).map(map); });
 }
 
-/// Finds how the platform moves in a block.
+/// Finds the motion of the platform in a block; see KernelMovePlatform.
 template <class T>
 void move_platform_block(const KernelChain& chain, const KernelSamples& samples, const KernelPlatform& platform,
                          const KernelOutcome& outcome, double* scratch) {

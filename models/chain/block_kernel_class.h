@@ -9,22 +9,22 @@
 
 namespace poesy::chain {
 
-/// What one sample's solve is about to do. See BlockKernel.
+/// The stages of a sample's solve. See BlockKernel.
 enum class KernelPass {
   published,  ///< Gauss-Newton with the published stopping rule
-  direct,     ///< Newton, given up at the first step that is not safe
+  direct,     ///< Newton; stops at the first step that is not safe
   follow,     ///< Gauss-Newton, with Newton steps once they are small and safe
-  rescue      ///< Newton wherever its matrix is positive, else half a Gauss-Newton step
+  rescue      ///< Newton wherever its matrix is positive definite, else half a Gauss-Newton step
 };
 
-/// Three limbs, each paired with each other one, of equally many passive joints: known when the kernel is compiled, so
-/// that its loops unroll.
+/// Three limbs, paired with each other, with equal numbers of passive joints. These numbers are compile-time constants,
+/// so that loops unroll.
 template <std::size_t joints_per_limb>
 struct ThreeLimbs {
   static constexpr bool kFixed = true;  ///< the numbers of limbs, joints and pairs are constants
-  /// No two limbs meet in two pairs, and all limbs meet: each off-diagonal block of N belongs to one pair.
+  /// Every two limbs form exactly one pair, so each off-diagonal block of N belongs to one pair.
   static constexpr bool kEveryPairOnce = true;
-  /// What the kernel is compiled for.
+  /// The numbers for which the kernel is compiled.
   /// @{
   static constexpr std::size_t kLimbs = 3;
   static constexpr std::size_t kJoints = joints_per_limb;
@@ -43,13 +43,13 @@ struct ThreeLimbs {
   }
 };
 
-/// How residuals are weighed: as published, W = 1 in radians and metres at the base's origin.
+/// The published weight of residuals: W = 1 in radians and metres at the base's origin.
 struct Published {
-  static constexpr bool kWeighted = false;  ///< W is not looked at
+  static constexpr bool kWeighted = false;  ///< W is not read
 };
-/// By the chain's metric.
+/// The weight of residuals by the chain's metric.
 struct Weighted {
-  static constexpr bool kWeighted = true;  ///< W is the chain's
+  static constexpr bool kWeighted = true;  ///< W is KernelChain::metric
 };
 
 /// Passes the type of a kernel as a value.
@@ -58,9 +58,9 @@ struct KernelClass {
   using Type = Kernel;  ///< the kernel
 };
 
-/// Any number of limbs, joints and pairs.
+/// Chains of any number of limbs, joints and pairs.
 struct AnyShape {
-  /// Nothing is known when the kernel is compiled.
+  /// No number is known at compile time.
   /// @{
   static constexpr bool kFixed = false;
   static constexpr bool kEveryPairOnce = false;
@@ -68,54 +68,55 @@ struct AnyShape {
 };
 
 /// Solves blocks of samples of a parallel chain for J(q)^T delta_mu(q) = 0 (Du et al. 2022, Eqs. 40-44), T::kLanes
-/// samples at a time, T being simd::Number or a SIMD batch (models/simd), for chains of a Shape and by a Measure.
-/// Samples are independent: no operation mixes lanes. As published each sample is iterated until it is done, and those
-/// that are not done close ranks after every round; by a metric a batch is iterated until its last sample is done.
+/// samples at a time. T is simd::Number or a SIMD batch (models/simd); Shape and Measure select the chains and the
+/// weight of residuals. Samples are independent: no operation mixes lanes. With the published weight each sample is
+/// iterated until it is done, and the remaining ones are packed together after every round; by a metric a batch is
+/// iterated until its last sample is done.
 ///
 /// published: x = N^-1 f with f = J^T delta_mu and N = J^T J, stopping rule as in DeformationSolver.
 ///
 /// Newton: x = M^-1 f with M the negative derivative of f, exact to fourth order in the residual's angle. Beyond N it
-/// holds how the columns of J turn (the bracket of an earlier column with a later one) and how the logarithm bends
-/// (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe when the pivots of M are at least 1e-5 of the diagonal of N, and
-/// 2 N - M is positive definite too: then Gauss-Newton contracts to the root that Newton is about to find, and both
-/// methods mean the same root. A sample goes through up to three passes:
-///   direct   Newton from the start; refused at a step that is not safe or larger than the options allow;
-///   follow   Gauss-Newton from nominal displacements, up to 8 max_iterations, and Newton as soon as its step is
-///            safe and below 1e-3, Gauss-Newton's below 2e-3: the root, if any, that Gauss-Newton finds. Given up
-///            where the displacements come back to those of an earlier iteration;
-///   rescue   Newton from nominal displacements with positive pivots, else half a Gauss-Newton step, up to
-///            max_iterations: a root with positive derivative where Gauss-Newton finds none. Roots more than 0.5
-///            (rad, m) away from nominal displacements are other ways to assemble the chain, and do not count.
-/// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
-/// is carried along it to first order instead of being evaluated again.
-///
-/// By a metric a root may be that of a machine that cannot be assembled. It is doubted where N - 2 C is not positive
-/// definite for the residual delta_mu, C = M - N, or was not on the way, and wherever the first pass did not find it.
-/// It has the status not_assembled for the time being, and Assembly decides.
+/// contains the rotation of the columns of J (the bracket of an earlier column with a later one) and the curvature of
+/// the logarithm (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe when the pivots of M are at least 1e-5 of the
+/// diagonal of N, and 2 N - M is positive definite too: then Gauss-Newton contracts to the root that Newton is about to
+/// find, so both methods give the same root. A sample goes through up to three passes:
+///     direct   Newton from the start; refused at a step that is not safe or larger than the options allow;
+///     follow   Gauss-Newton from nominal displacements, up to 8 max_iterations, and Newton as soon as its step is
+///              safe and below 1e-3, and Gauss-Newton's below 2e-3: finds the root of Gauss-Newton, if there is one.
+///              Given up where the displacements return to those of an earlier iteration;
+///     rescue   Newton from nominal displacements with positive pivots, else half a Gauss-Newton step, up to
+///              max_iterations: finds a root with positive derivative where Gauss-Newton finds none. Roots more than
+///              0.5 (rad, m) away from nominal displacements are other assembly modes of the chain and are refused.
+/// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual is
+/// updated to first order instead of being evaluated again.
 ///
 /// By a metric (Weighted) the equation is J^T W delta_mu = 0, f = J^T W delta_mu and N = J^T W J. The length s of a
-/// step is the largest distance by which one joint's part of it moves the platform's points, over the reach. The first
-/// pass solves nearly every sample:
-///   direct   Newton from a start in proportion to the errors, or from a fit, where a step with N at nominal
-///            displacements comes first and is the last one if s < 10 tolerance. Newton's matrix is made in every
-///            fourth round and used in four; a lane is refused where one is not safe, and after 12 rounds;
-///   follow   as above, with s for the size of steps, from the start of Gauss-Newton; where that rests though Newton
-///            is not safe, it has found a root by itself;
-///   rescue   as above, with 0.5 of the reach for 0.5 (rad, m).
-/// A Newton step is the last one where s < sqrt(tolerance) / 100, but at least 1e-10, with a new matrix, or where s is
-/// below 1000 tolerance and s^2 over the step before below tolerance / 10.
+/// step is the largest distance by which one joint's part of it moves the platform's points, divided by the reach. The
+/// first pass solves nearly every sample:
+///     direct   Newton from a start in proportion to the errors, or from a fit. From a fit a step with N at nominal
+///              displacements comes first and is the last one if s < 10 tolerance. Newton's matrix is computed in
+///              every fourth round and used in four; a lane is refused where a matrix is not safe, and after 12 rounds;
+///     follow   as above, with s as the size of steps, from the start of Gauss-Newton. Where Gauss-Newton converges
+///              although Newton is not safe, its own root is taken;
+///     rescue   as above, with 0.5 of the reach instead of 0.5 (rad, m).
+/// A Newton step is the last one where s < max(sqrt(tolerance) / 100, 1e-10) with a new matrix, or where s is below
+/// 1000 tolerance and s^2 divided by the previous step is below tolerance / 10.
+///
+/// By a metric a root may belong to a machine that cannot be assembled. A root is doubted where N - 2 C, C = M - N, is
+/// not positive definite at it or was not on the way, and wherever the first pass did not find it. A doubted sample
+/// gets the status not_assembled until Assembly decides.
 template <class T, class Shape, class Measure>
 class BlockKernel {
  public:
-  /// Refers to all of it. scratch: as the kernel's caller provides it.
+  /// Keeps references to all arguments. scratch: [kernel_scratch()], aligned to 64 bytes.
   BlockKernel(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
               const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
 
-  /// All samples of the block.
+  /// Solves all samples of the block.
   void solve();
-  /// All samples to first order.
+  /// Maps all samples to first order.
   void map(const KernelMap& map);
-  /// How the platform moves, for all samples.
+  /// Finds the motion of the platform for all samples.
   void move_platform(const KernelPlatform& platform);
 
  private:
@@ -127,9 +128,9 @@ class BlockKernel {
   static constexpr double kRestingStep = 1e-12;
   static constexpr double kSameBranch = 0.5;
   static constexpr double kSamePlace = 1e-9;
-  static constexpr double kMet = 1e-9;         ///< limbs meet that are closer, relative to the reach
-  static constexpr double kShortLength = 1e3;  ///< times the tolerance
-  static constexpr double kShortStart = 3e-4;  ///< a first step below this is short
+  static constexpr double kMet = 1e-9;         ///< limbs closer than this, relative to the reach, have met
+  static constexpr double kShortLength = 1e3;  ///< in units of the tolerance
+  static constexpr double kShortStart = 3e-4;  ///< a shorter first step counts as short
   static constexpr std::uint32_t kFirstMemory = 16;
   static constexpr std::uint32_t kDirectIterations = 12;
   static constexpr std::uint32_t kFollowFactor = 8;
@@ -163,14 +164,14 @@ class BlockKernel {
     T w[3];
     T v[3];
   };
-  /// What a round says of its lanes, a bit each.
+  /// The results of a round, one bit for each lane.
   struct Verdict {
     unsigned converged = 0;
     unsigned stagnated = 0;
     unsigned singular = 0;
     unsigned non_finite = 0;
     unsigned refused = 0;
-    unsigned doubted = 0;  ///< of those that have converged
+    unsigned doubted = 0;  ///< lanes that have converged and are doubted
 
     bool solved(std::size_t lane) const { return ((converged | stagnated) >> lane & 1u) != 0; }
     bool ended(std::size_t lane) const {
@@ -237,9 +238,9 @@ class BlockKernel {
 
   // block_kernel_meeting.h: solves of limbs that can meet.
   struct Meeting {
-    T matrix[6][6];  ///< lower triangle of the sum of P_i, then its factor
+    T matrix[6][6];  ///< lower triangle of the sum of P_i, later its factor
     T pivot[6];      ///< 1 / diagonal of the factor
-    T margin;        ///< by how much the smallest pivot is above rounding
+    T margin;        ///< smallest pivot minus its rounding error
     T length;        ///< of the last step
   };
   void solve_meeting();
@@ -270,7 +271,7 @@ class BlockKernel {
   template <bool with_columns = true>
   void limb_pose(std::size_t i, Motion& pose);
   void residuals();
-  // In line, for the residuals are a tenth of a solve's time, and a call costs a third of that.
+  // Inlined, because residuals take a tenth of the time of a solve and a call would cost a third of that.
   [[gnu::always_inline]] static inline Screw log(const Motion& g);
 
   // block_kernel_equations.h: matrices and steps.
@@ -294,20 +295,20 @@ class BlockKernel {
   const std::size_t capacity_;
 
   // Rows of capacity_ with a value for each sample.
-  double* value_;  ///< varied errors, except of the first in_place_ samples
+  double* value_;  ///< [varied] varied errors, except of the first in_place_ samples
   double* q_;
   double*
-      memory_;  ///< published: residual of the last round; follow: displacements of an earlier one; map: coordinates
+      memory_;  ///< published: residual of the last round; follow: displacements of an earlier round; map: coordinates
   double* smallest_;      ///< published: smallest change so far
-  double* flat_;          ///< published: rounds since then; direct: -1 where the start is a fit's
-  std::uint32_t* index_;  ///< which sample this is
-  std::uint32_t* left_;   ///< samples to solve, then those that a pass did not solve
+  double* flat_;          ///< published: rounds since the smallest change; direct: -1 where the start comes from a fit
+  std::uint32_t* index_;  ///< position of the sample in the block
+  std::uint32_t* left_;   ///< samples to solve; after a pass, those that it did not solve
 
-  // Of the lanes at hand.
+  // Values of the current lanes.
   Motion* segment_;
   Motion* pose_;
   Screw* column_;
-  Screw* row_;   ///< W times each column, which as published is the column itself; of limbs that meet: measured()
+  Screw* row_;   ///< W times each column (published: the column itself); of limbs that meet: measured()
   Screw* rows_;  ///< of limbs that meet: L^-1 C^T
   Screw* mu_;
   Screw* pull_;
@@ -321,7 +322,7 @@ class BlockKernel {
   T* pivot_;  ///< 1 / pivot of Newton's matrix
   std::size_t in_place_ = 0;
   std::uint32_t spent_ = 0;  ///< iterations of earlier passes
-  unsigned clear_ = 0;       ///< lanes where N - 2 C has been positive definite whenever contracts() was asked
+  unsigned clear_ = 0;       ///< lanes where N - 2 C was positive definite at every call of contracts()
 };
 
 }  // namespace poesy::chain

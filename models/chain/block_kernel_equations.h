@@ -4,7 +4,7 @@
 
 namespace poesy::chain {
 
-/// f = J^T W delta_mu, from each limb's signed sum of the residuals it takes part in.
+/// f = J^T W delta_mu, from the signed sum of each limb's residuals.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::gradient() {
   for (std::size_t i = 0; i < limbs(); ++i) {
@@ -30,7 +30,7 @@ void BlockKernel<T, Shape, Measure>::gradient() {
   }
 }
 
-/// N = J^T W J, all of it.
+/// The whole matrix N = J^T W J.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::gauss_newton_matrix() {
   const std::size_t size = joints();
@@ -67,7 +67,7 @@ void BlockKernel<T, Shape, Measure>::gauss_newton_matrix() {
   }
 }
 
-/// M = N + how the logarithm bends - how the columns turn.
+/// M = N + curvature of the logarithm - rotation of the columns.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::newton_matrix() {
   const std::size_t size = joints();
@@ -76,7 +76,7 @@ void BlockKernel<T, Shape, Measure>::newton_matrix() {
   const Screw* column = column_;
   const Screw* row = row_;
   const Screw* __restrict mu = mu_;
-  // Where each entry is changed once, it is read from N and written to M; else M starts as a copy.
+  // Where each entry changes once, it is read from N and written to M; otherwise M starts as a copy of N.
   const T* __restrict source = symmetric;
   if constexpr (!Shape::kEveryPairOnce) {
     for (std::size_t n = 0; n < size * size; ++n) matrix[n] = symmetric[n];
@@ -118,8 +118,9 @@ void BlockKernel<T, Shape, Measure>::newton_matrix() {
   }
 }
 
-/// L D L^T of a symmetric matrix whose entry (a, b), b <= a, is entry(a, b). Leaves L D below the diagonal of work_,
-/// L^T above it and 1 / D behind it; returns the smallest of pivot - ratio x diagonal entry.
+/// L D L^T factors of a symmetric matrix whose entry (a, b), b <= a, is entry(a, b). Stores L D below the diagonal of
+/// work_, L^T above it and 1 / D behind the matrix. Returns the smallest difference of a pivot and ratio x its diagonal
+/// entry.
 template <class T, class Shape, class Measure>
 template <class Entry>
 T BlockKernel<T, Shape, Measure>::factor(Entry entry, double ratio) {
@@ -150,7 +151,7 @@ T BlockKernel<T, Shape, Measure>::factor(Entry entry, double ratio) {
   return margin;
 }
 
-/// Where of_n N - of_m M is positive definite.
+/// The lanes where of_n N - of_m M is positive definite.
 template <class T, class Shape, class Measure>
 typename T::MaskType BlockKernel<T, Shape, Measure>::is_positive(double of_n, double of_m) {
   const std::size_t size = joints();
@@ -160,8 +161,8 @@ typename T::MaskType BlockKernel<T, Shape, Measure>::is_positive(double of_n, do
   return factor(entry, 0.0) > T(0.0);
 }
 
-/// Where 2 N - M is positive definite, so that Gauss-Newton contracts here. It is where 3 N - 2 M = N - 2 C is, which
-/// is nearly everywhere.
+/// The lanes where 2 N - M is positive definite, so that Gauss-Newton contracts. Tests 3 N - 2 M = N - 2 C first, whose
+/// positive definiteness implies it and holds in nearly every lane.
 template <class T, class Shape, class Measure>
 typename T::MaskType BlockKernel<T, Shape, Measure>::contracts() {
   if constexpr (!Measure::kWeighted) return is_positive(2.0, 1.0);
@@ -170,7 +171,7 @@ typename T::MaskType BlockKernel<T, Shape, Measure>::contracts() {
   return bits(clear) == kAllLanes ? clear : clear | is_positive(2.0, 1.0);
 }
 
-/// Solves N x = f; lanes are true where no pivot falls to rounding.
+/// Solves N x = f. Returns the lanes where all pivots are above rounding.
 template <class T, class Shape, class Measure>
 typename T::MaskType BlockKernel<T, Shape, Measure>::gauss_newton_step(T* __restrict x) {
   const std::size_t size = joints();
@@ -191,8 +192,8 @@ typename T::MaskType BlockKernel<T, Shape, Measure>::gauss_newton_step(T* __rest
   return margin > T(0.0);
 }
 
-/// Solves M x = f by elimination without pivoting; M becomes its factors. Lanes are true where all pivots are safely
-/// positive.
+/// Solves M x = f by elimination without pivoting and overwrites M with its factors. Returns the lanes where all pivots
+/// are safely positive.
 template <class T, class Shape, class Measure>
 typename T::MaskType BlockKernel<T, Shape, Measure>::newton_step(T* __restrict x) {
   const std::size_t size = joints();
@@ -229,7 +230,7 @@ void BlockKernel<T, Shape, Measure>::newton_step_again(T* __restrict x) const {
   for (std::size_t a = 0; a < size; ++a) {
     T value = f_[a];
     for (std::size_t k = 0; k < a; ++k) value = nmadd(m_[a * size + k], x[k], value);
-    x[a] = value * pivot_[a];  // as all rows below need it
+    x[a] = value * pivot_[a];  // all rows below use this quotient
   }
   for (std::size_t a = size; a-- > 0;) {
     T sum(0.0);
@@ -238,8 +239,8 @@ void BlockKernel<T, Shape, Measure>::newton_step_again(T* __restrict x) const {
   }
 }
 
-/// The residual of these lanes after the step x, to first order: V_k - V_i - ad/2 (V_k + V_i) + ad^2/12 (V_k - V_i),
-/// with V the limbs' motions.
+/// Updates the residual of these lanes for the step x, to first order: V_k - V_i - ad/2 (V_k + V_i) + ad^2/12 (V_k -
+/// V_i), where V are the motions of the limbs.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::carry_residual(const T* x, typename T::MaskType lanes) {
   for (std::size_t i = 0; i < limbs(); ++i) {

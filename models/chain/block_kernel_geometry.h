@@ -107,7 +107,8 @@ auto BlockKernel<T, Shape, Measure>::constant_motion(const KernelPiece& piece) -
   return g;
 }
 
-/// The product of its pieces. Errors that turn nothing only shift what stands before and behind them.
+/// The motion of a segment: the product of its pieces. An error without a rotation only shifts the pieces before and
+/// behind it.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::vary_segment(const KernelSegment& segment, std::size_t at, Motion& product) const {
   T shift[3] = {T(0.0), T(0.0), T(0.0)};
@@ -135,7 +136,7 @@ void BlockKernel<T, Shape, Measure>::vary_segment(const KernelSegment& segment, 
   }
 }
 
-/// The segments before `end` that are not constant.
+/// Computes the segments before `end` that are not constant.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::vary_segments(std::size_t at, std::size_t end) {
   for (std::size_t s = 0; s < end; ++s) {
@@ -156,7 +157,7 @@ bool BlockKernel<T, Shape, Measure>::is_constant(const KernelSegment& segment) c
   return segment.pieces == 1 && !chain_.piece[segment.first_piece].is_error;
 }
 
-/// A spatial Jacobian column of Eqs. 32-39: the screw of a joint about or along this axis through this point.
+/// The spatial Jacobian column of Eqs. 32-39: the screw of a joint about or along this axis through this point.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::set_column(const KernelJoint& joint, const T* axis, const T* point,
                                                 Screw& column) const {
@@ -173,11 +174,12 @@ void BlockKernel<T, Shape, Measure>::set_column(const KernelJoint& joint, const 
   for (int k = 0; k < 3; ++k) column.v[k] = madd(T(joint.advance), axis[k], column.v[k]);
 }
 
-/// Eq. 28, with the spatial Jacobian columns on the way, if wanted. A joint touches two columns of R, or p.
+/// The platform pose of a limb by Eq. 28; also its spatial Jacobian columns, if wanted. A joint changes two columns of
+/// R, or p.
 template <class T, class Shape, class Measure>
 template <bool with_columns>
 void BlockKernel<T, Shape, Measure>::limb_pose(std::size_t i, Motion& pose) {
-  // Each limb before this one has a segment more than joints.
+  // Each limb has one segment more than joints.
   const Motion* segment = segment_ + i;
   Motion g = segment[first_joint(i)];
   for (std::size_t j = first_joint(i); j < first_joint(i + 1); ++j) {

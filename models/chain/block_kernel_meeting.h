@@ -4,12 +4,13 @@
 
 namespace poesy::chain {
 
-/// Where every limb's platform can be in one place, so that errors move the platform and deform nothing. With xi_i the
-/// motion from the first limb's platform to that of limb i, a step x and the platform's motion X minimise
+/// Solves a chain whose limbs can all hold the platform in one pose, so that errors move the platform and deform
+/// nothing. With xi_i the motion from the first limb's platform to that of limb i, a step x and the platform's motion X
+/// minimise
 ///     sum |xi_i + C_i x_i - X|^2,   C_i the columns of limb i's passive joints,
-/// by a projection P_i = 1 - C_i (C_i^T C_i)^-1 C_i^T for each limb, and 6 equations sum P_i X = sum P_i xi_i: screws
-/// are measured by how they move the platform's points (see measured()). At the solution nothing is left, so that steps
-/// converge quadratically with new projections. These are made in every fourth round and used in four.
+/// by a projection P_i = 1 - C_i (C_i^T C_i)^-1 C_i^T for each limb, and 6 equations sum P_i X = sum P_i xi_i. Screws
+/// are measured by the motion of the platform's points (see measured()). At the solution the minimum is zero, so that
+/// steps converge quadratically with new projections. Projections are computed in every fourth round and used in four.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::solve_meeting() {
   load_all();
@@ -31,7 +32,7 @@ void BlockKernel<T, Shape, Measure>::solve_meeting() {
   }
 }
 
-/// One step of all limbs, into step_, with new projections or those at hand.
+/// Writes one step of all limbs to step_, with new projections or with those of an earlier round.
 template <class T, class Shape, class Measure>
 template <bool is_new>
 auto BlockKernel<T, Shape, Measure>::meeting_round(Meeting& meeting) -> Verdict {
@@ -70,8 +71,8 @@ auto BlockKernel<T, Shape, Measure>::meeting_round(Meeting& meeting) -> Verdict 
   return verdict;
 }
 
-/// Adds the limb's projection. Leaves its factors: C measured in row_, L of C^T C = L L^T in m_, with 1 / diagonal in
-/// pivot_, the rows y = L^-1 C^T in rows_ and the diagonal of C^T C in gauss_newton_.
+/// Adds the limb's projection. Stores its factors: C, measured, in row_; L of C^T C = L L^T in m_, with 1 / diagonal in
+/// pivot_; the rows y = L^-1 C^T in rows_; and the diagonal of C^T C in gauss_newton_.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::project_limb(std::size_t i, Meeting& meeting) {
   const std::size_t size = joints();
@@ -112,7 +113,7 @@ void BlockKernel<T, Shape, Measure>::project_limb(std::size_t i, Meeting& meetin
   }
 }
 
-/// Where the limb's L is in m_, by rows.
+/// The place of the limb's factor L in m_, by rows.
 template <class T, class Shape, class Measure>
 T* BlockKernel<T, Shape, Measure>::limb_factor(std::size_t i) const {
   std::size_t before = 0;
@@ -121,7 +122,7 @@ T* BlockKernel<T, Shape, Measure>::limb_factor(std::size_t i) const {
   return m_ + before;
 }
 
-/// Adds P_i xi_i.
+/// Adds P_i xi_i to pull.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::add_pull(std::size_t i, T* pull) const {
   Screw rest = pull_[i];
@@ -134,7 +135,7 @@ void BlockKernel<T, Shape, Measure>::add_pull(std::size_t i, T* pull) const {
   }
 }
 
-/// The sum of P_i = L L^T, in its place.
+/// Replaces the sum of P_i by its factor L, L L^T.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::factor_platform(Meeting& meeting) const {
   constexpr double kRounding = 1e-13;
@@ -154,7 +155,7 @@ void BlockKernel<T, Shape, Measure>::factor_platform(Meeting& meeting) const {
   }
 }
 
-/// The platform's motion X, measured.
+/// Solves for the platform's motion X, measured.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::solve_platform(const Meeting& meeting, const T* pull, Screw& motion) const {
   T x[6];
@@ -174,7 +175,8 @@ void BlockKernel<T, Shape, Measure>::solve_platform(const Meeting& meeting, cons
   }
 }
 
-/// The limb's step; the square of what it leaves, added, and of its length.
+/// Computes the step of a limb. Adds the square of the remaining residual to left2; raises length2 to the square of the
+/// step's length.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::step_limb(std::size_t i, const Screw& motion, T& left2, T& length2) {
   const std::size_t first = first_joint(i), end = first_joint(i + 1);
@@ -200,8 +202,9 @@ void BlockKernel<T, Shape, Measure>::step_limb(std::size_t i, const Screw& motio
   }
 }
 
-/// A screw by how it moves the platform's points, so that its square is x^T W x: the displacement of their middle, and
-/// the rotation times U, with U^T U their moment about the middle. As published, the screw itself.
+/// A screw in coordinates with the square x^T W x: the displacement of the middle of the platform's points, and the
+/// rotation times U, where U^T U is the moment of the points about the middle. With the published weight, the screw
+/// itself.
 template <class T, class Shape, class Measure>
 auto BlockKernel<T, Shape, Measure>::measured(const Screw& screw) const -> Screw {
   if constexpr (!Measure::kWeighted) return screw;

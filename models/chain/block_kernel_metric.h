@@ -24,8 +24,8 @@ void BlockKernel<T, Shape, Measure>::solve_by_metric() {
   }
 }
 
-/// Iterates these lanes of a batch, each until it is done; the others go on beside them, and what becomes of them is
-/// not kept. Finishes lanes that are solved, the last pass all of them; returns those that are left.
+/// Iterates these lanes of a batch until each is done. Lanes that are done run on with the others, but their results
+/// are not kept. Stores the results of solved lanes, in the last pass of all lanes; returns the lanes that are left.
 template <class T, class Shape, class Measure>
 template <KernelPass pass>
 unsigned BlockKernel<T, Shape, Measure>::iterate(std::size_t at, unsigned open, std::uint32_t rounds) {
@@ -34,7 +34,7 @@ unsigned BlockKernel<T, Shape, Measure>::iterate(std::size_t at, unsigned open, 
   start<pass>(at);
   clear_ = pass == KernelPass::direct ? kAllLanes : 0;
   if (pass == KernelPass::direct && start_.fits > 0 && start_.inverse != nullptr) open = finish_fitted(at, open);
-  // Gauss-Newton looks at the residual after the last step, too.
+  // Gauss-Newton also evaluates the residual after the last step.
   const std::uint32_t evaluations = newton ? rounds : rounds + 1;
   unsigned left = 0;
   T before(0.0);
@@ -66,15 +66,14 @@ unsigned BlockKernel<T, Shape, Measure>::iterate(std::size_t at, unsigned open, 
   return left;
 }
 
-/// Which of these lanes, that have converged, are doubted. Of the nodes of a fit it is enough that Gauss-Newton
-/// contracts.
+/// The converged lanes that are doubted. For the nodes of a fit, contraction of Gauss-Newton is enough.
 template <class T, class Shape, class Measure>
 unsigned BlockKernel<T, Shape, Measure>::doubted(unsigned converged) const {
   return options_.method == KernelMethod::newton_direct ? 0 : converged & ~clear_;
 }
 
-/// Where a pass starts: the first one from a fit, or in proportion to the errors; the others, as Gauss-Newton, from
-/// nominal displacements.
+/// Sets the start of a pass: the first pass starts from a fit, or in proportion to the errors; the others, like
+/// Gauss-Newton, from nominal displacements.
 template <class T, class Shape, class Measure>
 template <KernelPass pass>
 void BlockKernel<T, Shape, Measure>::start(std::size_t at) {
@@ -88,7 +87,7 @@ void BlockKernel<T, Shape, Measure>::start(std::size_t at) {
 }
 
 /// Finishes the lanes whose fit is exact to rounding, and returns the others. One step with the matrix at nominal
-/// displacements shows which they are.
+/// displacements tells them apart.
 template <class T, class Shape, class Measure>
 unsigned BlockKernel<T, Shape, Measure>::finish_fitted(std::size_t at, unsigned open) {
   residuals();
@@ -105,7 +104,7 @@ unsigned BlockKernel<T, Shape, Measure>::finish_fitted(std::size_t at, unsigned 
   return open & ~ended;
 }
 
-/// The step with the matrix at nominal displacements. Gives its length.
+/// Computes the step with the matrix at nominal displacements. Returns its length.
 template <class T, class Shape, class Measure>
 T BlockKernel<T, Shape, Measure>::nominal_step(T* x) const {
   for (std::size_t a = 0; a < joints(); ++a) {
@@ -116,7 +115,7 @@ T BlockKernel<T, Shape, Measure>::nominal_step(T* x) const {
   return step_length(x, [&](std::size_t a) { return T(start_.diagonal[a]); });
 }
 
-/// A Newton step with matrices of this place. Gives the lanes where it is safe, and Gauss-Newton contracts.
+/// Computes a Newton step with new matrices. Returns the lanes where it is safe and Gauss-Newton contracts.
 template <class T, class Shape, class Measure>
 typename T::MaskType BlockKernel<T, Shape, Measure>::new_newton_step(T* x) {
   weigh();
@@ -126,9 +125,9 @@ typename T::MaskType BlockKernel<T, Shape, Measure>::new_newton_step(T* x) {
   return safe & newton_step(x);
 }
 
-/// The first round of a start in proportion to the errors, which is off by about their square: where that is little,
-/// the nominal matrix takes most of it away, and Newton's is made in the next round, where it then serves to the end.
-/// Elsewhere a Newton step. Gives the lanes that are refused.
+/// The first round from a start in proportion to the errors. The error of this start is about the square of the errors:
+/// where it is small, the nominal matrix removes most of it, and Newton's matrix of the next round serves to the end.
+/// Otherwise this is a Newton step. Returns the refused lanes.
 template <class T, class Shape, class Measure>
 unsigned BlockKernel<T, Shape, Measure>::first_step(T& length) {
   length = nominal_step(step_);
@@ -141,8 +140,8 @@ unsigned BlockKernel<T, Shape, Measure>::first_step(T& length) {
   return bits((!safe) & (!is_short));
 }
 
-/// One round of the first pass. before: the length of the last step; safe: where the matrix at hand is. Both are of
-/// this batch.
+/// One round of the first pass. before: the length of the last step; safe: the lanes where the current matrix is safe.
+/// Both are of this batch.
 template <class T, class Shape, class Measure>
 auto BlockKernel<T, Shape, Measure>::newton_by_metric(std::size_t at, std::uint32_t round, T& before,
                                                       typename T::MaskType& safe) -> Verdict {
@@ -174,7 +173,7 @@ auto BlockKernel<T, Shape, Measure>::newton_by_metric(std::size_t at, std::uint3
   return verdict;
 }
 
-/// One round with a matrix of its own. follow: Gauss-Newton's steps, and Newton's where they are short and safe and
+/// One round with a new matrix. follow: Gauss-Newton's steps, and Newton's where they are short and safe and
 /// Gauss-Newton contracts; rescue: Newton's wherever its matrix is safely positive, else half of Gauss-Newton's.
 template <class T, class Shape, class Measure>
 template <KernelPass pass>
@@ -197,7 +196,7 @@ auto BlockKernel<T, Shape, Measure>::careful_by_metric(std::size_t at) -> Verdic
   auto converged = safe & (newton_length < T(options_.last_step));
   Verdict verdict;
   if constexpr (follows) {
-    // Where Gauss-Newton rests though Newton is not safe: by the change of the residual that it is about to make.
+    // Gauss-Newton has converged although Newton is not safe if the coming change of the residual is small.
     T change2(0.0);
     for (std::size_t j = 0; j < joints(); ++j) change2 = madd(gauss_newton_[j], f_[j], change2);
     const T change = sqrt(change2 * T(1.0 / static_cast<double>(pairs()))) * T(1.0 / chain_.reach);
@@ -247,7 +246,8 @@ auto BlockKernel<T, Shape, Measure>::gauss_newton_by_metric(std::size_t at, std:
   return verdict;
 }
 
-/// Root mean squares over the pairs: of |delta_mu|_W, of the angle, and of the displacement at the platform's origin.
+/// Responses: root mean squares over the pairs of |delta_mu|_W, of the angle, and of the displacement at the platform's
+/// origin.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::judge_by_metric(std::size_t at) {
   const T origin[3] = {T(chain_.origin[0]), T(chain_.origin[1]), T(chain_.origin[2])};
@@ -298,7 +298,7 @@ void BlockKernel<T, Shape, Measure>::weigh() {
   for (std::size_t a = 0; a < joints(); ++a) row_[a] = weighted(column_[a]);
 }
 
-/// The largest |x_a column_a|_W over the reach; diagonal(a): of N.
+/// The length of a step: the largest |x_a column_a|_W, divided by the reach. diagonal(a): the entry of N.
 template <class T, class Shape, class Measure>
 template <class Diagonal>
 T BlockKernel<T, Shape, Measure>::step_length(const T* x, Diagonal diagonal) const {

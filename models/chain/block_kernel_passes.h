@@ -65,7 +65,7 @@ void BlockKernel<T, Shape, Measure>::solve() {
   for (std::size_t at = 0; !chain_.meets && at < samples_.count; at += kLanes) judge(at);
 }
 
-/// The rows of a map, of all samples, into memory_.
+/// Computes the rows of a map, of all samples, into memory_.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::map_rows(const KernelMap& map) {
   load_all();
@@ -89,8 +89,8 @@ void BlockKernel<T, Shape, Measure>::map(const KernelMap& map) {
   }
 }
 
-/// Adds to these rows of all samples what some of the errors do, from the v-th on. Reads few rows of samples at a time,
-/// so that the processor fetches them ahead by itself.
+/// Adds the effects of `errors` errors, from the v-th on, to these rows of all samples. Reads few rows of samples at a
+/// time, so that the hardware prefetcher can follow them.
 template <class T, class Shape, class Measure>
 template <std::size_t errors>
 void BlockKernel<T, Shape, Measure>::add_mapped(const KernelMap& map, std::size_t first, std::size_t v) {
@@ -114,8 +114,8 @@ void BlockKernel<T, Shape, Measure>::add_mapped(const KernelMap& map, std::size_
   if (at < samples_.count) add(value_ + v * capacity_ + at, capacity_, at);
 }
 
-/// Residuals, where they are wanted, responses and status of one batch, from its coordinates. known_rows: 0 if not
-/// known.
+/// Computes residuals, if wanted, responses and status of one batch from its coordinates. known_rows: number of rows if
+/// known at compile time, else 0.
 template <class T, class Shape, class Measure>
 template <std::size_t known_rows>
 void BlockKernel<T, Shape, Measure>::finish_mapped(const KernelMap& map, std::size_t at) {
@@ -147,8 +147,8 @@ void BlockKernel<T, Shape, Measure>::finish_mapped(const KernelMap& map, std::si
   }
 }
 
-/// By a metric see judge_by_metric(). As published Eqs. 45-50: mean of the angular and of the linear norms over the
-/// pairs, and the largest norm of both together.
+/// Responses of a batch. By a metric see judge_by_metric(). As published (Eqs. 45-50): the mean of the angular and of
+/// the linear norms over the pairs, and the largest norm of both together.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::judge(std::size_t at) {
   if constexpr (Measure::kWeighted) return judge_by_metric(at);
@@ -168,7 +168,8 @@ void BlockKernel<T, Shape, Measure>::judge(std::size_t at) {
   sqrt(largest).store(outcome_.responses + 2 * outcome_.stride + at);
 }
 
-/// Solves the samples named in left_[0 .. count); leaves there those that it did not solve, and says how many.
+/// Solves the samples listed in left_[0 .. count), replaces them by those that it did not solve, and returns the number
+/// of these.
 template <class T, class Shape, class Measure>
 template <KernelPass pass>
 std::size_t BlockKernel<T, Shape, Measure>::run(std::size_t count, std::uint32_t rounds) {
@@ -178,7 +179,7 @@ std::size_t BlockKernel<T, Shape, Measure>::run(std::size_t count, std::uint32_t
   begin(count, pass == KernelPass::direct);
   std::size_t left = 0;
   std::size_t active = count;
-  // The published rule looks at the residual after the last step, too.
+  // The published rule also evaluates the residual after the last step.
   const std::uint32_t evaluations = published ? rounds + 1 : rounds;
   for (std::uint32_t round = 0; round < evaluations && active > 0; ++round) {
     const bool last_round = round + 1 == evaluations;
@@ -208,7 +209,7 @@ std::size_t BlockKernel<T, Shape, Measure>::run(std::size_t count, std::uint32_t
   return left;
 }
 
-/// Takes all samples in their order: whole batches are read where they are; the last lanes are copies of the last one.
+/// Takes all samples in their order. Whole batches are read in place; the last lanes are copies of the last sample.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::load_all() {
   const std::size_t count = samples_.count;
@@ -222,7 +223,7 @@ void BlockKernel<T, Shape, Measure>::load_all() {
   for (std::size_t b = 0; b < count; ++b) index_[b] = static_cast<std::uint32_t>(b);
 }
 
-/// What these lanes have of the v-th error that varies.
+/// The values of the v-th varied error in these lanes.
 template <class T, class Shape, class Measure>
 T BlockKernel<T, Shape, Measure>::value(std::size_t v, std::size_t at) const {
   return at < in_place_ ? T::load(samples_.values + v * samples_.stride + at) : T::load(value_ + v * capacity_ + at);
@@ -249,7 +250,7 @@ void BlockKernel<T, Shape, Measure>::begin(std::size_t count, bool predicted) {
   }
 }
 
-/// Starts of some joints, from the first of these on, in proportion to the errors where slopes are known.
+/// Sets the starts of `count` joints, from the given one on: in proportion to the errors where slopes are known.
 template <class T, class Shape, class Measure>
 template <std::size_t count>
 void BlockKernel<T, Shape, Measure>::follow_slopes(std::size_t at, std::size_t first) {
@@ -263,8 +264,8 @@ void BlockKernel<T, Shape, Measure>::follow_slopes(std::size_t at, std::size_t f
   for (std::size_t j = 0; j < count; ++j) joint_[first + j] = q[j];
 }
 
-/// In proportion to the errors where slopes are known; the Chebyshev series of the fit that a sample lies in, summed by
-/// Clenshaw's recurrence.
+/// Sets the starts of a batch: in proportion to the errors where slopes are known; by the Chebyshev series of the fit
+/// in whose range a sample lies, summed by Clenshaw's recurrence.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::predict(std::size_t at) {
   std::size_t done = 0;
@@ -291,12 +292,12 @@ void BlockKernel<T, Shape, Measure>::predict(std::size_t at) {
   for (std::size_t j = 0; j < joints(); ++j) joint_[j].store(q_ + j * capacity_ + at);
 }
 
-/// Fills the lanes behind the last sample with copies of it: they are solved and forgotten.
+/// Fills the lanes behind the last sample with copies of it, whose results are not used.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::pad(std::size_t count) {
   const std::size_t rows = samples_.varied + joints() + kernel_memory(chain_) + 2;
   for (std::size_t b = count; b % kLanes != 0; ++b) {
-    // value_, q_, memory_, smallest_ and flat_ lie behind each other.
+    // value_, q_, memory_, smallest_ and flat_ are contiguous.
     for (std::size_t row = 0; row < rows; ++row) value_[row * capacity_ + b] = value_[row * capacity_ + count - 1];
   }
 }
@@ -331,7 +332,7 @@ void BlockKernel<T, Shape, Measure>::take_step(std::size_t at, const T* x) {
   for (std::size_t j = 0; j < joints(); ++j) (joint_[j] + x[j]).store(q_ + j * capacity_ + at);
 }
 
-/// The step of a batch whose joints go on where they are.
+/// Adds the step of a batch to its displacements.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::advance(std::size_t at) {
   take_step(at, step_);
@@ -382,7 +383,7 @@ auto BlockKernel<T, Shape, Measure>::newton_round(std::size_t at, std::uint32_t 
     verdict.stagnated = bits(size < T(kRestingStep));
     near = size < T(kNearStep);
     if (!any(near)) {
-      // Far from a root, Newton's equations would be solved in vain.
+      // Far from a root Newton's equations would not be used.
       take_step(at, gauss_newton_);
       return verdict;
     }
@@ -390,7 +391,7 @@ auto BlockKernel<T, Shape, Measure>::newton_round(std::size_t at, std::uint32_t 
   newton_matrix();
   auto safe = near & finite;
   if constexpr (pass == KernelPass::direct) {
-    // A first step from a fit is small, on the branch of the fit's nodes, which were all safe.
+    // The first step from a fit is small and stays on the branch of the fit's nodes, all of which were safe.
     const auto fitted = T::load(flat_ + at) * T(round == 0 ? 1.0 : 0.0) < T(0.0);
     if (any(!fitted)) safe = safe & (fitted | contracts());
   } else if constexpr (pass == KernelPass::follow) {
@@ -424,7 +425,7 @@ auto BlockKernel<T, Shape, Measure>::newton_round(std::size_t at, std::uint32_t 
   return verdict;
 }
 
-/// Lanes that are back where they were at the last power of two of rounds: Gauss-Newton goes round for ever.
+/// The lanes that have returned to their displacements at the last power of two of rounds: Gauss-Newton cycles.
 template <class T, class Shape, class Measure>
 typename T::MaskType BlockKernel<T, Shape, Measure>::cycles(std::size_t at, std::uint32_t round) {
   const bool remember = (round & (round - 1)) == 0;
@@ -455,7 +456,7 @@ void BlockKernel<T, Shape, Measure>::finish(std::size_t at, std::size_t lane, So
   outcome_.iterations[sample] = iterations;
 }
 
-/// Samples that go on close ranks.
+/// Moves the samples that are not done together.
 template <class T, class Shape, class Measure>
 template <KernelPass pass>
 void BlockKernel<T, Shape, Measure>::move(std::size_t from, std::size_t to) {

@@ -32,7 +32,7 @@ auto BlockKernel<T, Shape, Measure>::platform_motion(const KernelPlatform& platf
   for (int k = 0; k < 9; ++k) nominal.r[k] = T(platform.nominal[k]);
   for (int k = 0; k < 3; ++k) nominal.p[k] = T(platform.nominal[9 + k]);
   for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T::load(platform.displacements + j * outcome_.stride + at);
-  // Limbs that meet move the platform as the first one does.
+  // Limbs that meet all move the platform as the first one does.
   const std::size_t count = chain_.meets ? 1 : limbs();
   vary_segments(at, first_joint(count) + count);
   for (int k = 0; k < 3; ++k) sum.w[k] = sum.v[k] = T(0.0);
@@ -52,8 +52,8 @@ auto BlockKernel<T, Shape, Measure>::platform_motion(const KernelPlatform& platf
   return sum;
 }
 
-/// D p - p = V (w x p + v), with V = 1 + b hat(w) + c hat(w)^2 the left Jacobian, 1 to first order; and its length.
-/// rows: where x of this batch goes, with y and z behind it by a stride.
+/// The displacement D p - p = V (w x p + v) of a point and its length; V = 1 + b hat(w) + c hat(w)^2 is the left
+/// Jacobian, 1 to first order. rows: the place of x for this batch; y and z follow at the distance of a stride.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::displace(const Screw& motion, const double* point, bool is_linear, double* rows,
                                               double* length) const {

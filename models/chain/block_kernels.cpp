@@ -1,4 +1,4 @@
-// Compiled once for each instruction set.
+// This file is compiled once for each instruction set.
 #include "models/chain/block_kernels.h"
 
 #include "models/chain/block_kernel.h"

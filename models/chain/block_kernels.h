@@ -5,15 +5,15 @@
 
 namespace poesy::chain {
 
-/// What there is for an instruction set.
+/// The kernels of one instruction set.
 struct Kernels {
-  KernelSolve solve;                 ///< of a block
-  KernelMapBlock map;                ///< of a block
-  KernelMovePlatform move_platform;  ///< of a block
+  KernelSolve solve;                 ///< solves a block of samples
+  KernelMapBlock map;                ///< maps a block to first order
+  KernelMovePlatform move_platform;  ///< finds the platform's motion in a block
 };
 
-/// Of one instruction set. Each is a translation unit of its own, block_kernels.cpp compiled for that set; see
-/// simd::for_selected_isa().
+/// The kernels of one instruction set. Each set has its own translation unit: block_kernels.cpp, compiled for that set;
+/// see simd::for_selected_isa().
 template <simd::Isa isa>
 Kernels kernels();
 template <>

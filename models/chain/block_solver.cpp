@@ -16,15 +16,15 @@
 namespace poesy::chain {
 namespace {
 
-/// Largest Newton step (rad, m) from a start. From further away Newton may come to another root than Gauss-Newton.
+/// Largest Newton step (rad, m) from a start. A larger step may lead to another root than that of Gauss-Newton.
 constexpr double kLargestStep = 0.15;
-/// The same for the nodes of a fit, whose roots must lie on one smooth branch to be used.
+/// Largest Newton step (rad, m) for the nodes of a fit. A fit is used only if its roots lie on one smooth branch.
 constexpr double kLargestNodeStep = 0.4;
-/// A fit whose last coefficients (rad, m) are below this puts nearly every start within one step of its root.
+/// If the last coefficients (rad, m) of a fit are below this, nearly every start is within one step of its root.
 constexpr double kGoodTail = 1e-6;
-/// A fit whose last coefficients are larger is not used: the displacements are not smooth over its range.
+/// A fit with larger last coefficients (rad, m) is not used, because displacements are not smooth over its range.
 constexpr double kTrustedTail = 1e-4;
-/// How often a range may be halved for better fits.
+/// The number of times that a range may be halved for better fits.
 constexpr int kSplits = 2;
 constexpr std::size_t kMostFits = (std::size_t{2} << kSplits) - 1;
 
@@ -109,8 +109,8 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   entries_.assign(varied.begin(), varied.end());
   if (metric != nullptr) find_spread(metric->W);
   options_.rounding_level = metric == nullptr ? rounding_level(*chain_) : kRelativeRounding;
-  // The error that a Newton step leaves is about its square; rounding alone makes steps of about 1e-14. By a metric the
-  // bound is lower, because near a singular pose a step may leave a thousand times its square.
+  // The error after a Newton step is about the square of the step; rounding alone makes steps of about 1e-14. By a
+  // metric the bound is lower, because near a singular pose the error may be a thousand times that square.
   const double last = metric == nullptr ? std::sqrt(options_.tolerance / 10.0) : std::sqrt(options_.tolerance) / 100.0;
   options_.last_step = std::max(last, 1e-10);
   if (!is_singular_) find_nominal();
@@ -122,8 +122,8 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   }
 }
 
-/// The motions between the passive joints, which are displaced from where they are without errors: by little, so that
-/// their sines and cosines are quick.
+/// Computes the motions between the passive joints, whose displacements count from their positions without errors: they
+/// are small, so that sines and cosines are fast.
 void BlockSolver::find_segments(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                                 std::span<const FrameEntry> varied) {
   joints_.clear();
@@ -149,7 +149,8 @@ void BlockSolver::find_segments(std::span<const double> displacements, std::span
   }
 }
 
-/// From W, whose blocks are the moment of the points about the base's origin and the cross product with their middle.
+/// Sets middle_ and spread_ from W, whose blocks are the moment of the points about the base's origin and the cross
+/// product with their middle.
 void BlockSolver::find_spread(const lie::Matrix6<double>& W) {
   const lie::Vector3<double> middle(W(2, 4), W(0, 5), W(1, 3));
   const lie::Matrix3<double> cross = lie::hat<double>(middle);
@@ -158,7 +159,7 @@ void BlockSolver::find_spread(const lie::Matrix6<double>& W) {
   spread_ = {U(0, 0), U(0, 1), U(0, 2), U(1, 1), U(1, 2), U(2, 2)};
 }
 
-/// Constant motions that follow each other become one.
+/// Adds a constant motion, multiplied to the preceding piece if that is constant too.
 void BlockSolver::add_piece(const lie::Transform<double>& motion) {
   lie::Transform<double> product = motion;
   if (pieces_.size() > first_piece_ && !pieces_.back().is_error) {
@@ -214,15 +215,15 @@ void for_each_constant(std::span<const FrameError<double>> errors, std::span<con
   }
 }
 
-/// The matrix at nominal displacements.
+/// Computes inverse and diagonal of the matrix at nominal displacements.
 void BlockSolver::find_nominal() {
   inverse_.resize(joints_.size() * joints_.size());
   diagonal_.resize(joints_.size());
   first_order_.matrix(inverse_, diagonal_);
 }
 
-/// By how much joints give way to each varied entry to first order, where solves by a metric start; constant errors
-/// move their nominal displacements.
+/// Computes the first-order displacement of the joints per unit of each varied entry, for the starts of solves by a
+/// metric. Adds the displacement by constant errors to the nominal ones.
 void BlockSolver::find_slopes(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied) {
   effect_.resize(6 * pairs_.size());
   slope_.resize(joints_.size());
@@ -236,8 +237,8 @@ void BlockSolver::find_slopes(std::span<const FrameError<double>> errors, std::s
   });
 }
 
-/// The same errors in coordinates of the residuals, padded to whole groups of rows; with what rounded numbers of
-/// perfect limbs leave.
+/// Computes the first-order effects in coordinates of the residual space, padded to whole groups of rows, with the
+/// mismatch that rounded numbers of perfect limbs leave.
 void BlockSolver::find_map(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                            std::span<const FrameEntry> varied) {
   residual_space_.prepare(first_order_, metric_);
@@ -271,7 +272,7 @@ void BlockSolver::find_map(std::span<const double> displacements, std::span<cons
   for (std::size_t r = 0; r < 3; ++r) copy(residual_space_.norms()[r], map_norms_, r * rows * rows);
 }
 
-/// Adds how the platform moves, the mean of its limbs', under this much of an error to first order.
+/// Adds the first-order motion of the platform under an error of this size: the mean of its limbs' motions.
 void BlockSolver::add_platform_motion(const FrameEntry& entry, double error, std::span<double> xi) {
   first_order_.effect(entry, effect_, slope_);
   lie::Screw<double> sum = first_order_.motion(entry);
@@ -293,11 +294,11 @@ void BlockSolver::find_platform_map(std::span<const FrameError<double>> errors, 
   });
 }
 
-/// Fits a range of the varied error; where the fit is not as good as it should be, fits its halves.
+/// Fits a range of the varied error. If the fit is not good enough, fits both halves.
 void BlockSolver::predict_starts(double center, double half_width, int splits_left) {
   const double tail = fit_starts(center, half_width);
   if (tail < kGoodTail || (splits_left == 0 && tail < kTrustedTail)) return;
-  // The halves' nodes start from this fit, if it is any good; their own fits replace it.
+  // The nodes of the halves start from this fit if it is usable; their own fits then replace it.
   const bool useful = tail < kTrustedTail;
   if (!useful) fits_.pop_back();
   if (splits_left == 0) return;
@@ -307,8 +308,8 @@ void BlockSolver::predict_starts(double center, double half_width, int splits_le
   if (useful) fits_.erase(fits_.begin() + static_cast<std::ptrdiff_t>(parent) - 1);
 }
 
-/// Interpolates the displacements at Chebyshev nodes. Returns the largest of the last coefficients (rad, m): infinite
-/// where a node is not solved.
+/// Interpolates the displacements at Chebyshev nodes. Returns the largest of the last coefficients (rad, m), infinity
+/// if a node is not solved.
 double BlockSolver::fit_starts(double center, double half_width) {
   std::array<double, kStartTerms> nodes;
   for (std::size_t k = 0; k < kStartTerms; ++k) nodes[k] = center + half_width * cosines_[kStartTerms + k];
@@ -349,7 +350,8 @@ void BlockSolver::solve(std::span<const double> values, std::size_t count, bool 
   move_platform(chain, samples, nullptr, make_room(chain, samples));
 }
 
-/// A solve that weighs radians against metres may open loops that cannot be closed: its root tells nothing.
+/// Computes nearing_. A solve that weighs radians against metres may open loops that cannot be closed, so that its root
+/// cannot decide.
 void BlockSolver::find_nearing(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied) {
   nearing_.clear();
   nearing_constant_ = 0.0;
@@ -370,8 +372,8 @@ void BlockSolver::find_near(std::span<const double> values) {
   }
 }
 
-/// Of samples that are not solved, doubted, near by the published rule, or solved slowly by Gauss-Newton, those that
-/// cannot be assembled.
+/// Finds the samples that cannot be assembled among those that are not solved, doubted, near by the published rule, or
+/// solved slowly by Gauss-Newton.
 void BlockSolver::review(std::span<const double> values) {
   find_near(values);
   const bool may_be_slow = options_.method == KernelMethod::gauss_newton && metric_ != nullptr && !chain_->meets;
@@ -390,7 +392,7 @@ void BlockSolver::review(std::span<const double> values) {
   }
 }
 
-/// The fixed frames of a sample, with its errors.
+/// Sets the fixed frames of a sample, with its errors.
 void BlockSolver::set_frames(std::span<const double> values, std::size_t sample) {
   for (std::size_t v = 0; v < entries_.size(); ++v) {
     errors_[entries_[v].frame][static_cast<Eigen::Index>(entries_[v].component)] = values[v * count_ + sample];
@@ -447,15 +449,15 @@ void BlockSolver::run(std::span<const double> values, std::size_t count, const K
   }
   kernels_.solve(chain, samples, start, options, outcome(displacements), scratch);
   if ((metric_ == nullptr && !chain_->meets) || !is_singular_) return;
-  // Errors make an equation that is singular without them regular, but not meaningful.
+  // Errors make an equation regular that is singular without them, but its solution is not meaningful.
   std::ranges::replace_if(
       status_, [](SolveStatus status) { return status != SolveStatus::non_finite; }, SolveStatus::singular);
 }
 
-/// For these samples; returns scratch.
+/// Resizes the buffers for these samples; returns scratch.
 double* BlockSolver::make_room(const KernelChain& chain, const KernelSamples& samples) {
   const std::size_t stride = kernel_capacity(samples.count);
-  // One alignment's worth more than needed, so that an aligned start fits.
+  // One alignment more than needed, so that an aligned start fits.
   scratch_.resize(std::max(scratch_.size(), kernel_scratch(chain, samples) + kMostLanes));
   delta_mu_.resize(6 * chain.pairs * stride);
   responses_.resize(3 * stride);

@@ -14,43 +14,43 @@
 
 namespace poesy::chain {
 
-/// In the order of ModelDescription::fidelities.
+/// Levels of accuracy, in the order of ModelDescription::fidelities.
 enum class Fidelity : std::size_t {
-  exact,       ///< solved
+  exact,       ///< the equations are solved
   first_order  ///< linear in the errors, in closed form; see FirstOrder
 };
 
-/// Solves blocks of samples with the fastest kernel this machine has. Owns the scratch of one thread.
-/// The methods and their guarantees are those of BlockKernel; gauss_newton is Scheme I as DeformationSolver states it,
-/// as published from nominal displacements, by a metric from those to which constant errors push the joints. Of samples
-/// that a kernel does not solve, or doubts, Assembly decides which are not_assembled.
+/// Solves blocks of samples with the fastest kernel that this machine supports. Owns the scratch of one thread.
+/// BlockKernel states the methods and their guarantees. gauss_newton is Scheme I as in DeformationSolver; it starts
+/// from nominal displacements as published, by a metric from those to which constant errors push the joints. Assembly
+/// decides which of the samples that a kernel does not solve or doubts are not_assembled.
 class BlockSolver {
  public:
   /// The chain must outlive the solver.
   BlockSolver(const ParallelChain& chain, const SolverOptions& options, Fidelity fidelity = Fidelity::exact);
 
-  /// Fixes what the samples of the next calls have in common: nominal displacements of all joints (rad, m), constant
-  /// errors [frames], the entries that vary, by which metric (null: as published; it must outlive the solves), and what
-  /// is reported of the platform's motion (null: nothing; likewise).
-  /// Newton's starts are predicted with one varied entry and a range, and by a metric always. held: by which metric
-  /// machines that cannot be assembled are told (null: that of the solves); it must outlive them.
+  /// Sets what the samples of the next calls share: nominal displacements of all joints (rad, m), constant errors
+  /// [frames], the entries that vary, the metric (null: the published weight), and the reported points of the platform
+  /// (null: none). range: that of the one varied entry; starts of Newton are predicted if it is given, and by a metric
+  /// always. held: the metric by which machines that cannot be assembled are found (null: that of the solves). All
+  /// pointers must outlive the solves.
   void prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                std::span<const FrameEntry> varied, double range, const Metric* metric = nullptr,
                const PlatformPoints* platform = nullptr, const Metric* held = nullptr);
 
-  /// values: [varied x count], row-major. To first order a singular pose makes every sample singular, and by a metric
-  /// there are residuals only where they are wanted.
+  /// Solves `count` samples. values: [varied x count], row-major, SI. To first order a singular pose makes every sample
+  /// singular. By a metric residuals exist only if wanted.
   void solve(std::span<const double> values, std::size_t count, bool wants_residuals = true);
 
-  /// Row n of the last block's residuals, [6 x pairs], of [count].
+  /// Row n of the last block's residuals [6 x pairs], for each sample [count].
   std::span<const double> delta_mu(std::size_t row) const { return row_of(delta_mu_, row); }
-  /// A row of the last block's responses: angular, linear, max; by a metric gap, angular, linear.
+  /// A row of the last block's responses [count]: angular, linear, max; by a metric gap, angular, linear.
   std::span<const double> response(std::size_t row) const { return row_of(responses_, row); }
-  /// A row of the platform's motion in the last block; see platform_rows().
+  /// A row of the platform's motion in the last block [count]; see platform_rows().
   std::span<const double> platform(std::size_t row) const { return row_of(platform_responses_, row); }
-  /// Of the last block, for each sample.
+  /// The status of each sample of the last block.
   std::span<const SolveStatus> status() const { return std::span(status_).first(count_); }
-  /// Of the last block, for each sample.
+  /// The iterations of each sample of the last block.
   std::span<const std::uint32_t> iterations() const { return std::span(iterations_).first(count_); }
 
  private:
@@ -90,16 +90,16 @@ class BlockSolver {
   FirstOrder first_order_;
   ResidualSpace residual_space_;
   Assembly assembly_;
-  std::vector<FrameError<double>> errors_;      ///< [frames] constant, then of one sample
-  std::vector<FrameEntry> entries_;             ///< that vary
+  std::vector<FrameError<double>> errors_;      ///< [frames] constant errors, later those of one sample
+  std::vector<FrameEntry> entries_;             ///< entries that vary
   std::vector<lie::Transform<double>> frames_;  ///< [frames] of one sample
-  std::vector<double> nearing_;                 ///< [varied] see Assembly::nearing(); empty by a metric
-  double nearing_constant_ = 0.0;               ///< of constant errors
-  std::vector<double> nearing_of_;              ///< [count] of each sample; empty by a metric
+  std::vector<double> nearing_;                 ///< [varied] see Assembly::nearing(); empty with a metric
+  double nearing_constant_ = 0.0;               ///< sum over the constant errors
+  std::vector<double> nearing_of_;              ///< [count] of each sample; empty with a metric
   const Metric* metric_ = nullptr;
   std::array<double, 3> middle_{};  ///< of the metric's points; see KernelChain
-  std::array<double, 6> spread_{};  ///< about it
-  bool is_singular_ = false;        ///< the first order does not exist
+  std::array<double, 6> spread_{};  ///< see KernelChain
+  bool is_singular_ = false;        ///< whether the first order does not exist
   std::vector<double> slopes_;      ///< [varied x joints]
   std::vector<double> inverse_;     ///< [joints x joints] of J^T W J at nominal displacements
   std::vector<double> diagonal_;    ///< [joints], of J^T W J itself
@@ -110,7 +110,7 @@ class BlockSolver {
   std::vector<double> platform_constant_;       ///< [6]
   std::vector<double> platform_displacements_;  ///< [joints x stride]
   std::vector<double> platform_responses_;      ///< [platform rows x stride]
-  // To first order, in coordinates of the residual space; see KernelMap.
+  // First order, in coordinates of the residual space; see KernelMap.
   std::vector<double> map_effects_;   ///< [varied x rows]
   std::vector<double> map_constant_;  ///< [rows], of constant errors
   std::vector<double> map_delta_mu_;  ///< [6 pairs x rows]
@@ -125,7 +125,7 @@ class BlockSolver {
   std::vector<double> cosines_;  ///< Chebyshev polynomial n at node k
   std::vector<KernelFit> fits_;
   std::size_t fits_made_ = 0;
-  std::vector<double> coefficients_;  ///< of all fits that may be, one behind the other
+  std::vector<double> coefficients_;  ///< of all possible fits, one after the other
   std::vector<double> node_displacements_;
   std::vector<double> scratch_;
   std::vector<double> delta_mu_;

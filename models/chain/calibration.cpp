@@ -34,7 +34,7 @@ class CalibratedEvaluator final : public Evaluator {
   }
 
  private:
-  /// Rows as in platform_responses().
+  /// Corrects the platform's responses of one sample. Rows as in platform_responses().
   void correct(const lie::Matrix6<double>& left, const PlatformPoints& points, std::size_t sample,
                const OutcomeBlock& outcomes) const {
     const auto count = static_cast<Eigen::Index>(outcomes.status.size());
@@ -60,7 +60,7 @@ class CalibratedEvaluator final : public Evaluator {
   const DeformationModel& model_;
   Fidelity fidelity_;
   std::unique_ptr<Evaluator> uncorrected_;
-  Eigen::Index first_row_;  ///< of the platform's responses
+  Eigen::Index first_row_;  ///< position of the platform's first response
 };
 
 }  // namespace

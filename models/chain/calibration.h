@@ -7,12 +7,12 @@
 
 namespace poesy::chain {
 
-/// As deformation_evaluator(), with what the best correction of the drives leaves of the platform's displacement
-/// (Model::calibrated_evaluator, left_by_drives). Rotation and displacement of the platform's origin as the evaluator
-/// gives them are projected; the tool's point and the norms are those of the rest, with rotations of finite size where
-/// the fidelity is exact. Responses of the deformation and details stay as they are, because corrections leave them so.
-/// Where passive joints are in a singular configuration every sample is singular. The model must outlive it.
-/// Precondition: platform->points are at least three, on no line.
+/// An evaluator like deformation_evaluator() whose displacement of the platform is what remains after the best
+/// correction of the drives (Model::calibrated_evaluator, left_by_drives). Rotation and displacement of the platform's
+/// origin are projected; the tool's displacement and the norms follow from the projected motion, with finite rotations
+/// if the fidelity is exact. Responses of the deformation and details are unchanged, because corrections do not affect
+/// them. Where passive joints are in a singular configuration every sample is singular. The model must outlive the
+/// evaluator. Precondition: platform->points are at least three, not all on a line.
 std::unique_ptr<Evaluator> calibrated_evaluator(const DeformationModel& model, const SolverOptions& options,
                                                 Fidelity fidelity);
 

@@ -17,20 +17,20 @@ namespace {
 
 constexpr std::size_t kResponses = 3;
 
-/// What a pose is without errors.
+/// A pose without errors.
 struct Nominal {
   std::vector<double> displacements;       ///< [all joints]
-  std::optional<Metric> metric;            ///< there
-  std::optional<Metric> held;              ///< there
-  std::optional<PlatformPoints> platform;  ///< there
+  std::optional<Metric> metric;            ///< at these displacements
+  std::optional<Metric> held;              ///< at these displacements
+  std::optional<PlatformPoints> platform;  ///< at these displacements
 };
 
-/// What a solver was prepared for: many blocks of samples may be alike.
+/// Arguments of the last preparation of a solver, which many blocks of samples may share.
 struct Prepared {
   const Nominal* nominal = nullptr;        ///< of the pose
-  std::vector<FrameError<double>> errors;  ///< [frames] that stay
+  std::vector<FrameError<double>> errors;  ///< [frames] constant errors
   std::vector<FrameEntry> varied;          ///< entries that vary
-  double range = 0.0;                      ///< of the one that varies
+  double range = 0.0;                      ///< range of the one varied entry
 
   bool operator==(const Prepared&) const = default;
 };
@@ -61,7 +61,7 @@ class DeformationEvaluator final : public Evaluator {
   }
 
  private:
-  /// Poses that are remembered: inverse kinematics may be iterative, and samples come back to a pose.
+  /// The number of remembered poses: inverse kinematics may be iterative, and samples return to a pose.
   static constexpr std::size_t kMostPoses = 1024;
 
   const Nominal& nominal_at(std::span<const double> pose) {
@@ -81,8 +81,8 @@ class DeformationEvaluator final : public Evaluator {
     return errors_[entries_[factor].frame][static_cast<Eigen::Index>(entries_[factor].component)];
   }
 
-  /// Prepares the solver; returns the values of the entries that vary: those of the samples, unless several factors
-  /// add to an entry, or are scaled.
+  /// Prepares the solver. Returns the values of the varied entries [varied entries x B]: those of the samples, unless
+  /// several factors add to an entry, or a factor is scaled.
   std::span<const double> prepare(const Nominal& nominal, const SampleBlock& samples) {
     varies_.assign(entries_.size(), false);
     for (const FactorIndex factor : samples.varied) varies_[factor.value] = true;
@@ -108,10 +108,11 @@ class DeformationEvaluator final : public Evaluator {
     return values;
   }
 
-  /// Of each entry that varies: what is constant, and what every factor adds.
+  /// The values of the varied entries [varied entries x B]: the constant part of each, and the contributions of all
+  /// factors.
   std::span<const double> combined(const SampleBlock& samples) {
     values_.resize(varied_.size() * samples.count);
-    std::size_t begun = 0;  // rows come in the order in which factors ask for them
+    std::size_t begun = 0;  // rows follow the order in which factors first use an entry
     for (std::size_t v = 0; v < samples.varied.size(); ++v) {
       const std::size_t factor = samples.varied[v].value;
       const auto row = static_cast<std::size_t>(std::ranges::find(varied_, entries_[factor]) - varied_.begin());
@@ -131,7 +132,7 @@ class DeformationEvaluator final : public Evaluator {
   BlockSolver solver_;
   Prepared prepared_;
   std::map<std::vector<double>, Nominal> nominal_;  ///< by pose
-  std::vector<FrameEntry> entries_;                 ///< [F] of each factor
+  std::vector<FrameEntry> entries_;                 ///< [F] entry of each factor
   std::vector<bool> varies_;                        ///< [F]
   std::vector<FrameError<double>> errors_;
   std::vector<FrameEntry> varied_;
@@ -140,8 +141,8 @@ class DeformationEvaluator final : public Evaluator {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The matrix [k x 6] whose product with the mismatch [omega; v] of one pair has the norm that a response judges.
-/// metric: none: as published, where linear mismatch is at the base's origin.
+/// The matrix [k x 6] whose product with the mismatch [omega; v] of one pair has the norm that defines a response.
+/// metric: none for the published weight, where linear mismatch is at the base's origin.
 RowMatrix judged_of_pair(const std::optional<Metric>& metric, std::size_t response) {
   const bool is_angular = response == (metric ? 1 : 0);
   const bool is_linear = response == (metric ? 2 : 1);
@@ -161,7 +162,8 @@ std::vector<double> norm_of_details(const DeformationModel& model, std::size_t r
       model.points.empty() ? std::nullopt : model.metric(model.joint_displacements(pose));
   const RowMatrix one = judged_of_pair(metric, response);
   const auto pairs = static_cast<Eigen::Index>(model.chain.pairs.size());
-  // Root mean squares over the pairs. As published a mean of norms and the largest one, which are about as large.
+  // By a metric responses are root mean squares over the pairs. As published they are a mean of norms or the largest
+  // one, which are about as large.
   const bool is_largest = !metric && response == 2;
   const double share = is_largest ? 1.0 / std::numbers::sqrt2 : 1.0 / std::sqrt(static_cast<double>(pairs));
   RowMatrix all = RowMatrix::Zero(pairs * one.rows(), 6 * pairs);
@@ -170,8 +172,8 @@ std::vector<double> norm_of_details(const DeformationModel& model, std::size_t r
 }
 
 std::vector<Response> deformation_responses() {
-  // The sum Q of the three n^2 adds over independent errors. In a triangle 2 Q <= (sum of n)^2 <= 3 Q, so the square of
-  // the mean lies between 2 Q / 9 and 3 Q / 9; and Q / 3 <= (largest n)^2 <= 2 Q / 3.
+  // The sum Q of the three n^2 is additive over independent errors. In a triangle 2 Q <= (sum of n)^2 <= 3 Q, so the
+  // square of the mean is between 2 Q / 9 and 3 Q / 9; and Q / 3 <= (largest n)^2 <= 2 Q / 3.
   constexpr double kMeanOfSides = 3.0 / 2.0;
   constexpr double kLargestSide = 2.0;
   return {

@@ -89,13 +89,13 @@ double DeformationSolver::largest_change(std::span<const double> delta_mu) const
   double largest = 0.0;
   for (std::size_t k = 0; k < delta_mu.size(); ++k) {
     const double change = std::abs(delta_mu[k] - previous_[k]);
-    // Written so that NaN, which compares false with everything, is kept.
+    // NaN compares false with everything; this form keeps it.
     if (!(change <= largest)) largest = change;
   }
   return largest;
 }
 
-/// Overwrites what is kept of the last iterate.
+/// The change of the residual since the last iteration, relative to the reach. Overwrites the stored residual.
 double DeformationSolver::relative_change(const Metric& metric, std::span<const double> delta_mu) {
   for (std::size_t k = 0; k < delta_mu.size(); ++k) previous_[k] = delta_mu[k] - previous_[k];
   return gap(metric, previous_) / metric.reach;

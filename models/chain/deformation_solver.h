@@ -15,45 +15,45 @@
 
 namespace poesy::chain {
 
-/// How a deformation solve ended.
+/// The end of a deformation solve.
 struct Deformation {
-  SolveStatus status;        ///< how the solve ended
-  std::uint32_t iterations;  ///< that it took
+  SolveStatus status;        ///< why the solve ended
+  std::uint32_t iterations;  ///< number of iterations
 };
 
-/// What one iteration did.
+/// The results of one iteration.
 struct DeformationIteration {
-  std::span<const double> step;      ///< [passive joints] that the displacements moved (rad, m)
+  std::span<const double> step;      ///< [passive joints] change of the displacements (rad, m)
   std::span<const double> delta_mu;  ///< [6 x pairs] the residual after the step
-  double change;                     ///< c_j of the stopping rule (rad and m, or 1 by a metric)
+  double change;                     ///< c_j of the stopping rule (rad and m; by a metric dimensionless)
 };
 /// Called after each iteration.
 using DeformationObserver = std::function<void(const DeformationIteration&)>;
 
-/// Changes of the residual below this may be rounding: 64 eps x max(1, reach in m): rounding errors of positions scale
-/// with the reach.
+/// Smaller changes of the residual (rad, m) may be rounding: 64 eps x max(1, reach in m), because rounding errors of
+/// positions scale with the reach.
 double rounding_level(const ParallelChain& chain);
 
-/// By a metric, changes relative to the reach below this may be rounding.
+/// By a metric, smaller changes relative to the reach may be rounding.
 inline constexpr double kRelativeRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 /// Root mean square over the pairs of |delta_mu|_W (m). delta_mu: [6 x pairs].
 double gap(const Metric& metric, std::span<const double> delta_mu);
 
 /// Scheme I of Du et al. 2022 (Eqs. 40-44): moves the passive joints so that the poses of the limbs agree as well as
-/// they can, by Gauss-Newton on J(q)^T delta_mu(q) = 0. What disagreement is left is the limbs' deformation.
+/// possible, by Gauss-Newton on J(q)^T delta_mu(q) = 0. The remaining disagreement is the deformation of the limbs.
 ///
 /// Stopping rule. With c_j the largest component of |delta_mu^j - delta_mu^(j-1)|, iteration j ends the solve as
-///   converged      when c_j is below the tolerance;
-///   stagnated      when c_j is at rounding_level(chain), and three iterations in a row did not lower the smallest
-///                  c so far: the iterate then moves by rounding only;
-///   iteration_cap  when j is the allowed number of iterations;
-///   singular       when a pivot of J^T J falls to rounding relative to its diagonal entry;
-///   non_finite     when delta_mu^j is not finite.
+///     converged      when c_j is below the tolerance;
+///     stagnated      when c_j is at rounding_level(chain), and three iterations in a row did not lower the smallest
+///                    c so far: only rounding moves the iterate;
+///     iteration_cap  when j is the allowed number of iterations;
+///     singular       when a pivot of J^T J falls to rounding relative to its diagonal entry;
+///     non_finite     when delta_mu^j is not finite.
 /// A solve that ends at the cap or as singular, or by a metric after more than kSlowIterations, is not_assembled
-/// instead where no solution exists (Assembly). By a metric the equation is J^T W delta_mu = 0, c_j is the gap() of
-/// delta_mu^j - delta_mu^(j-1) over the reach, and a c_j up to kRelativeRounding ends the solve as stagnated where it
-/// is not below the tolerance.
+/// instead if no solution exists (Assembly). By a metric the equation is J^T W delta_mu = 0, c_j is the gap() of
+/// delta_mu^j - delta_mu^(j-1) divided by the reach, and a c_j up to kRelativeRounding that is not below the tolerance
+/// ends the solve as stagnated.
 ///
 /// Plain double arithmetic, one sample at a time: the reference for BlockSolver. Owns the scratch of one thread.
 class DeformationSolver {
@@ -61,10 +61,10 @@ class DeformationSolver {
   /// The chain must outlive the solver.
   DeformationSolver(const ParallelChain& chain, const SolverOptions& options);
 
-  /// frames [chain.frames()]: fixed frames with errors, limb by limb. displacements [chain.joints()] (rad, m): the
-  /// nominal ones on entry, from which a solve starts, the last iterate on return; actuated entries stay. delta_mu [6 x
-  /// pairs]: the residual at the last iterate, [omega; v] in the base frame (rad, m), Eq. 41. metric: null for the
-  /// published equation, W = 1 in rad and m. observe: may be empty. held: as for BlockSolver::prepare().
+  /// Solves one sample. frames [chain.frames()]: fixed frames with errors, limb by limb. displacements [chain.joints()]
+  /// (rad, m): nominal on entry, where the solve starts; the last iterate on return, with unchanged actuated entries.
+  /// delta_mu [6 x pairs]: the residual at the last iterate, [omega; v] in the base frame (rad, m), Eq. 41. metric:
+  /// null for the published equation, W = 1 in rad and m. observe: may be empty. held: as for BlockSolver::prepare().
   Deformation solve(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
                     std::span<double> delta_mu, const Metric* metric = nullptr, const DeformationObserver& observe = {},
                     const Metric* held = nullptr);

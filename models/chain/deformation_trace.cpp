@@ -54,7 +54,7 @@ double largest_step(const std::vector<JointType>& types, JointType type, std::sp
   return most;
 }
 
-/// NaN where an iterate is no number.
+/// Condition number of the passive joints; NaN if the iterate is not finite.
 double condition(const ParallelChain& chain, std::span<const double> displacements, const Metric* metric) {
   const bool is_finite = std::ranges::all_of(displacements, [](double value) { return std::isfinite(value); });
   return is_finite ? passive_condition(chain, displacements, metric) : std::numeric_limits<double>::quiet_NaN();
@@ -72,7 +72,7 @@ std::vector<double> responses_by(const Metric& metric, std::span<const double> d
   return {gap(metric, delta_mu), std::sqrt(angular / pairs), std::sqrt(linear / pairs)};
 }
 
-/// Eqs. 49, 50 and 45.
+/// The published responses: Eqs. 49, 50 and 45.
 std::vector<double> responses_of(std::span<const double> delta_mu) {
   const std::size_t pairs = delta_mu.size() / 6;
   std::vector<double> responses(3, 0.0);
@@ -85,7 +85,7 @@ std::vector<double> responses_of(std::span<const double> delta_mu) {
   return responses;
 }
 
-/// Those that the model has.
+/// The model's deformation responses, by its metric or as published.
 std::vector<double> deformations(const DeformationModel& model, const Metric* metric,
                                  std::span<const double> delta_mu) {
   if (model.chain.meets) return {};

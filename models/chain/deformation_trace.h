@@ -6,12 +6,12 @@
 
 namespace poesy::chain {
 
-/// A solve by DeformationSolver, Gauss-Newton as published, from nominal displacements, whatever the options' method.
-/// pose: reachable; errors: [F], SI.
+/// A solve by DeformationSolver: published Gauss-Newton from nominal displacements, whatever the options' method. pose:
+/// reachable; errors: [F], SI.
 SolveTrace deformation_trace(const DeformationModel& model, std::span<const double> pose,
                              std::span<const double> errors, const SolverOptions& options);
 
-/// The same to first order, which iterates nothing: the closed form, error by error.
+/// The first-order closed form, which does not iterate. pose: reachable; errors: [F], SI.
 SolveTrace first_order_trace(const DeformationModel& model, std::span<const double> pose,
                              std::span<const double> errors);
 

@@ -33,7 +33,7 @@ bool FirstOrder::prepare(std::span<const double> displacements, const lie::Matri
       if (!limb.joints[j].actuated) columns_[column++] = spatial_column(limb.joints[j], g);
       move_joint(limb.joints[j], displacements[joint], g);
     }
-    // The last frame's error is inverted, and behind most of the frame.
+    // The last frame's error is inverted, and most of the frame precedes it.
     from_error_[frame++] = -lie::adjoint(g * limb.before_error(limb.joints.size()));
   }
   W_ = W == nullptr ? lie::Matrix6<double>(lie::Matrix6<double>::Identity()) : *W;
@@ -81,7 +81,7 @@ void FirstOrder::matrix(std::span<double> inverse, std::span<double> diagonal) {
   }
 }
 
-/// Leaves in pull_ the sums of W delta_mu over the pairs of each limb, for the mismatch that these displacements make.
+/// Computes pull_, the sum of W delta_mu over the pairs of each limb, for the mismatch by these displacements.
 void FirstOrder::pull_of(std::span<const double> displacements) {
   mismatch_.assign(no_mismatch_.size(), 0.0);
   for (std::size_t a = 0; a < columns_.size(); ++a) {
@@ -95,8 +95,8 @@ void FirstOrder::pull_of(std::span<const double> displacements) {
   }
 }
 
-/// d ln det N = trace(N^-1 dN) = 2 sum over a of D_a . dc_a, with D_a the pull of N^-1's column a on its limb. Motion m
-/// of what is in front of a joint changes its column c by [m, c].
+/// d ln det N = trace(N^-1 dN) = 2 sum over a of D_a . dc_a, with D_a the sum of W delta_mu on the limb of joint a for
+/// column a of N^-1. A motion m of the part before a joint changes the joint's column c by [m, c].
 void FirstOrder::determinant_slopes(std::span<lie::Screw<double>> slopes) {
   using Screw = lie::Screw<double>;
   POESY_EXPECTS(slopes.size() == limb_of_frame_.size());
@@ -125,7 +125,8 @@ void FirstOrder::determinant_slopes(std::span<lie::Screw<double>> slopes) {
   for (std::size_t f = 0; f < slopes.size(); ++f) slopes[f] -= pull_[limb_of_frame_[f]];
 }
 
-/// Adds the motion of a limb's platform to the pairs in which the limb is k, and takes it from those in which it is i.
+/// Adds the motion of a limb's platform to the pairs in which the limb is k, and subtracts it from those in which it is
+/// i.
 void FirstOrder::add_motion(std::size_t limb, const lie::Screw<double>& motion, std::span<double> delta_mu) const {
   for (std::size_t n = 0; n < chain_->pairs.size(); ++n) {
     Eigen::Map<lie::Screw<double>> mu(delta_mu.data() + 6 * n);

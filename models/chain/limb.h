@@ -15,12 +15,12 @@ enum class JointType {
 
 /// A joint with one degree of freedom.
 struct Joint {
-  JointType type;        ///< how it moves
-  bool actuated;         ///< else passive: it gives way to errors
-  double advance = 0.0;  ///< of a revolute joint: m per rad along its axis; not zero in a helical joint
-  bool fixed = false;    ///< actuated, but by no drive: a frame between parts that do not move against each other
-  /// Of an actuated joint: those of one number, in any limbs, have one drive, which moves all by the same displacement;
-  /// 0: a drive of its own.
+  JointType type;        ///< revolute or prismatic
+  bool actuated;         ///< false: passive, reacts to errors
+  double advance = 0.0;  ///< pitch of a revolute joint, m per rad along its axis; nonzero in a helical joint
+  bool fixed = false;    ///< actuated without a drive: a frame between parts that do not move relative to each other
+  /// Number of the drive of an actuated joint. Joints with the same number, in any limbs, share one drive, which moves
+  /// all of them by the same displacement; 0: the joint has its own drive.
   std::size_t drive = 0;
 };
 
@@ -30,80 +30,82 @@ struct Joint {
 struct Limb {
   std::vector<Joint> joints;                 ///< [n], base to platform
   std::vector<lie::Transform<double>> home;  ///< [n + 1]
-  /// Where an angle of the first and of the last frame's error turns: about the first and the last joint's point, or,
-  /// as published, about the origins of base and platform. The axes are the base's and the platform's in any case.
+  /// The point about which an angular error of the first and of the last frame turns: true: the point of the first and
+  /// of the last joint; false, as published: the origins of base and platform. The axes are always those of base and
+  /// platform.
   bool errors_at_joints = false;
 
-  /// N + 1.
+  /// Number of fixed frames, n + 1.
   std::size_t frames() const { return home.size(); }
-  /// Those that are not actuated.
+  /// Number of joints that are not actuated.
   std::size_t passive_joints() const;
-  /// Fixed frame j as before * Delta g * behind, or before * Delta g^-1 * behind for the last one: what is before the
-  /// error, and what is behind.
+  /// Factors of fixed frame j, before and behind its error: the frame is before * Delta g * behind, or before * Delta
+  /// g^-1 * behind if it is the last one.
   /// @{
   lie::Transform<double> before_error(std::size_t j) const;
   lie::Transform<double> behind_error(std::size_t j) const;
   /// @}
 };
 
-/// Two limbs whose platform poses are compared: residual log(g_k g_i^-1) (Eq. 30). Positions count from 0.
+/// Two limbs whose platform poses are compared by the residual log(g_k g_i^-1) (Eq. 30). Positions count from 0.
 struct LimbPair {
-  std::size_t k;  ///< the limb that is compared, g_k
-  std::size_t i;  ///< the limb it is compared with, g_i
+  std::size_t k;  ///< limb with pose g_k
+  std::size_t i;  ///< limb with pose g_i
 };
 
-/// Which limbs are compared: those in turn, (2,1), (3,2), (1,3), of two or three limbs, as published; every two of
-/// more, so that the order of the limbs does not matter.
+/// The pairs of limbs that are compared. For two or three limbs the published cycle (2,1), (3,2), (1,3); for more limbs
+/// every pair, so that the order of the limbs does not matter.
 std::vector<LimbPair> pairs_of(std::size_t limbs);
 
 /// Limbs that hold one platform, and the pairs in which their poses are compared.
 struct ParallelChain {
-  std::vector<Limb> limbs;      ///< in the order in which displacements stand
-  std::vector<LimbPair> pairs;  ///< in the order in which residuals stand
-  /// Freedoms of passive joints that move no platform, as the spin of a leg between two spherical joints.
+  std::vector<Limb> limbs;      ///< in the order of displacements
+  std::vector<LimbPair> pairs;  ///< in the order of residuals
+  /// Number of freedoms of passive joints that do not move the platform, such as the spin of a leg between two
+  /// spherical joints.
   std::size_t idle = 0;
-  /// Whether errors move the platform and deform nothing: as many passive joints, but for idle freedoms, as the limbs
-  /// have ways to disagree.
+  /// Whether errors move the platform and deform nothing. True if the passive joints, without idle freedoms, are as
+  /// many as the equations 6 (limbs - 1) of the loops.
   bool meets = false;
-  /// Whether perfect limbs keep a mismatch, because their numbers are rounded; see nominal.h.
+  /// Whether perfect limbs have a mismatch because their numbers are rounded; see nominal.h.
   bool rounded = false;
 
-  /// Of all limbs together.
+  /// Sums over all limbs.
   /// @{
   std::size_t joints() const;
   std::size_t passive_joints() const;
   std::size_t frames() const;
   /// @}
-  /// Where the limb's frames begin among those of all limbs.
+  /// Position of the limb's first frame among the frames of all limbs.
   std::size_t first_frame(std::size_t limb) const;
-  /// The longest a limb is, in m, summed over its fixed frames.
+  /// Length of the longest limb (m), summed over its fixed frames.
   double reach() const;
 };
 
-/// Error of one fixed frame: [omega; v] with omega the angular and v the linear errors (Eqs. 24-25).
+/// Error of one fixed frame, [omega; v] with angular errors omega (rad) and linear errors v (m) (Eqs. 24-25).
 template <class T>
 using FrameError = lie::Screw<T>;
 
 /// An entry of a fixed frame's error.
 struct FrameEntry {
-  std::size_t frame;      ///< among all frames, limb by limb
-  std::size_t component;  ///< of [omega; v]
+  std::size_t frame;      ///< position among all frames, limb by limb
+  std::size_t component;  ///< position in [omega; v]
 
   /// Whether they are the same entry.
   bool operator==(const FrameEntry&) const = default;
 };
 
-/// Delta g of Eq. 26: rotation exp(omega) and translation v as they stand, which is not the exponential of a screw.
+/// Delta g of Eq. 26: rotation exp(omega) and translation v, which is not the exponential of a screw.
 template <class T>
 lie::Transform<T> error_transform(const FrameError<T>& error) {
   const lie::Vector3<T> omega = error.template head<3>();
   return {lie::exp(omega), error.template tail<3>()};
 }
 
-/// Fixed frame j of the limb with its error, g_ij^ge of Eqs. 27-28: the error multiplies from the left, but for the
-/// last frame, where its inverse multiplies from the right; with errors_at_joints between the translation to the first
-/// joint and the rest, and between the rotation of the last frame and the rest. Where it stands is all one for an error
-/// without an angle, which then has the same bits.
+/// Fixed frame j of the limb with its error, g_ij^ge of Eqs. 27-28. The error multiplies from the left; in the last
+/// frame its inverse multiplies from the right. With errors_at_joints the error of the first frame is between the
+/// translation to the first joint and the rest, and that of the last frame between its rotation and the rest. An error
+/// without an angle gives the same bits with either rule.
 template <class T>
 lie::Transform<T> frame_with_error(const Limb& limb, std::size_t j, const FrameError<T>& error) {
   const auto cast = [](const lie::Transform<double>& g) {
@@ -119,7 +121,7 @@ lie::Transform<T> frame_with_error(const Limb& limb, std::size_t j, const FrameE
   return is_last ? home * delta.inverse() : delta * home;
 }
 
-/// g * exp(zeta q) for a joint about or along z (Eq. 14): touches two columns of R, or p.
+/// Multiplies g by exp(zeta q) of a joint about or along z (Eq. 14). Changes two columns of R, or p.
 template <class T>
 void move_joint(const Joint& joint, T displacement, lie::Transform<T>& g) {
   using std::cos;
@@ -136,8 +138,8 @@ void move_joint(const Joint& joint, T displacement, lie::Transform<T>& g) {
   g.R.col(1) = c * g.R.col(1) - s * x;
 }
 
-/// The joint's screw in the base frame when g is its own frame: Ad(g) zeta (Eqs. 35-39), a column of the spatial
-/// Jacobian.
+/// The joint's screw [omega; v] in the base frame, Ad(g) zeta (Eqs. 35-39): a column of the spatial Jacobian. g:
+/// base_T_joint.
 template <class T>
 lie::Screw<T> spatial_column(const Joint& joint, const lie::Transform<T>& g) {
   const lie::Vector3<T> axis = g.R.col(2);
@@ -150,7 +152,7 @@ lie::Screw<T> spatial_column(const Joint& joint, const lie::Transform<T>& g) {
   return column;
 }
 
-/// Platform pose by the limb (Eq. 28). frames: [n + 1], with or without errors; displacements: [n] (rad, m).
+/// Pose base_T_platform of the limb (Eq. 28). frames: [n + 1], with or without errors; displacements: [n] (rad, m).
 /// on_passive(k, column) receives the spatial Jacobian column of the limb's k-th passive joint.
 template <class T, class OnPassive>
 lie::Transform<T> forward_kinematics(const Limb& limb, std::span<const lie::Transform<T>> frames,

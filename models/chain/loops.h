@@ -7,19 +7,19 @@
 
 namespace poesy::chain {
 
-/// How the limbs of a chain disagree, and how its passive joints move them. Plain double arithmetic, one sample at a
-/// time. Owns the scratch of one thread.
+/// The mismatch of the limbs of a chain, and the Jacobian columns of its passive joints. Plain double arithmetic, one
+/// sample at a time. Owns the scratch of one thread.
 class Loops {
  public:
   /// The chain must outlive it.
   explicit Loops(const ParallelChain& chain);
 
-  /// frames [chain.frames()]: fixed frames with errors, limb by limb; displacements [chain.joints()] (rad, m). delta_mu
-  /// [6 x pairs]: the residual there, [omega; v] in the base frame (rad, m), Eq. 41.
+  /// Computes delta_mu [6 x pairs], the residual [omega; v] in the base frame (rad, m), Eq. 41. frames
+  /// [chain.frames()]: fixed frames with errors, limb by limb; displacements [chain.joints()] (rad, m).
   void evaluate(std::span<const lie::Transform<double>> frames, std::span<const double> displacements,
                 std::span<double> delta_mu);
 
-  /// Spatial Jacobian column of each passive joint [passive joints], where the loops were evaluated.
+  /// Spatial Jacobian columns [passive joints] at the arguments of the last evaluate().
   std::span<const lie::Screw<double>> columns() const { return columns_; }
 
  private:

@@ -13,7 +13,8 @@ namespace {
 using Vector3 = lie::Vector3<double>;
 using Matrix3 = lie::Matrix3<double>;
 
-/// A point is on a line when it is nearer to it than this share of the farthest point from the middle.
+/// A point counts as on a line if its distance from the line is below this share of the largest distance from the
+/// middle.
 constexpr double kOnLine = 1e-6;
 
 Vector3 middle_of(std::span<const Vector3> points) {

@@ -12,9 +12,9 @@ namespace {
 
 using Transform = lie::Transform<double>;
 
-/// The metric moves with the platform, so that the second solve has that of the first one's end.
+/// The metric moves with the platform, so the second solve uses the metric at the end of the first one.
 constexpr int kSolves = 2;
-/// Newton's method on the platform's pose contracts by the mismatch.
+/// Steps of Newton's method on the platform's pose; each multiplies the error by about the mismatch.
 constexpr int kSteps = 8;
 
 std::vector<Transform> frames_of(const ParallelChain& chain) {
@@ -23,7 +23,7 @@ std::vector<Transform> frames_of(const ParallelChain& chain) {
   return frames;
 }
 
-/// Where each limb holds the platform.
+/// The platform poses of all limbs.
 std::vector<Transform> platforms(const ParallelChain& chain, std::span<const double> displacements) {
   POESY_EXPECTS(displacements.size() == chain.joints());
   std::vector<Transform> list;

@@ -83,7 +83,7 @@ void NormalEquations::assemble_matrix(std::span<const lie::Screw<double>> column
 void NormalEquations::hold_idle(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W) {
   idle_.clear();
   if (idle_freedoms_ == 0) return;
-  // Of the loops, each limb against the first; lengths in units of the reach.
+  // The Jacobian of the loops, each limb minus the first; lengths in units of the reach.
   const auto size = static_cast<Eigen::Index>(size_);
   Eigen::MatrixXd loops = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(limbs_ - 1), size);
   for (Eigen::Index column = 0; column < size; ++column) {

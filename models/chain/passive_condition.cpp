@@ -16,8 +16,8 @@ lie::Screw<double> in_reaches(const lie::Screw<double>& spatial, double reach) {
   return scaled;
 }
 
-/// J of Eq. 43 with column_of each passive joint's screw. A motion of limb i enters pair (k, i) with +, one of limb k
-/// with -.
+/// J of Eq. 43 with the screws column_of the passive joints. A motion of limb i enters pair (k, i) with +, one of limb
+/// k with -.
 template <class ColumnOf>
 Eigen::MatrixXd passive_jacobian(const ParallelChain& chain, std::span<const double> displacements,
                                  ColumnOf&& column_of) {
@@ -44,7 +44,7 @@ Eigen::MatrixXd passive_jacobian(const ParallelChain& chain, std::span<const dou
   return jacobian;
 }
 
-/// J as published, without unit.
+/// The published J, dimensionless.
 Eigen::MatrixXd jacobian_in_reaches(const ParallelChain& chain, std::span<const double> displacements) {
   const double reach = chain.reach();
   return passive_jacobian(chain, displacements,

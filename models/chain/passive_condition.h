@@ -7,11 +7,10 @@
 namespace poesy::chain {
 
 /// Condition number (2-norm) of the passive joints' Jacobian J of Du et al. 2022, Eq. 43, [6 pairs x passive joints],
-/// for perfect limbs at these displacements [all joints] (rad, m). Lengths are measured in units of the chain's reach:
-/// moments of revolute axes, about the base's origin, and displacements of prismatic joints. So it has no unit and
-/// scaling all lengths does not change it. By a metric that of W^(1/2) J, how far joints move the platform's points,
-/// each column divided by its length: that has no unit, and no origin enters. Infinity where J has lost a rank to
-/// rounding. metric: null as published.
+/// for perfect limbs at these displacements [all joints] (rad, m). Lengths, which are moments of revolute axes about
+/// the base's origin and displacements of prismatic joints, are in units of the chain's reach. So the number is
+/// dimensionless and invariant to scaling. By a metric it is the condition number of W^(1/2) J with columns of length
+/// 1, which also depends on no origin. Infinity if J is rank-deficient to rounding. metric: null as published.
 double passive_condition(const ParallelChain& chain, std::span<const double> displacements,
                          const Metric* metric = nullptr);
 

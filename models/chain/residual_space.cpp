@@ -8,7 +8,7 @@
 namespace poesy::chain {
 namespace {
 
-/// [pairs, L]: 1 where a limb is k, -1 where it is i.
+/// The incidence matrix [pairs, L]: 1 where a limb is k, -1 where it is i.
 Eigen::MatrixXd incidence_of(const ParallelChain& chain) {
   Eigen::MatrixXd incidence = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(chain.pairs.size()),
                                                     static_cast<Eigen::Index>(chain.limbs.size()));
@@ -19,7 +19,7 @@ Eigen::MatrixXd incidence_of(const ParallelChain& chain) {
   return incidence;
 }
 
-/// [L - 1, L] N with N^T N = incidence^T incidence: the motions of the limbs without what all have in common.
+/// N [L - 1, L] with N^T N = incidence^T incidence: removes the common part of the motions of the limbs.
 Eigen::MatrixXd independent_rows(const Eigen::MatrixXd& incidence) {
   const auto [values, vectors] = linalg::eigen_decomposition(incidence.transpose() * incidence);
   const Eigen::Index limbs = incidence.cols();

@@ -21,13 +21,13 @@ using Screw = lie::Screw<double>;
 using Matrix6 = lie::Matrix6<double>;
 using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// A part that is a smaller share of the whole is rounding.
+/// A part smaller than this share of the whole is rounding.
 constexpr double kRounding = 1e-12;
 
-/// A column of length 1 of which others leave less depends on them.
+/// A unit column depends on others if less than this remains after projecting them out.
 constexpr double kDependent = 1e-9;
 
-/// Room for one column more.
+/// Appends a column and returns it.
 auto next_column(Columns& columns) {
   columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
   return columns.rightCols<1>();
@@ -44,27 +44,28 @@ LimbMotions motions_of(const Limb& limb, std::span<const double> displacements) 
   return found;
 }
 
-/// The projection onto what is at right angles to all of these columns.
+/// The projection onto the orthogonal complement of these columns.
 Matrix6 beyond(const Columns& columns) {
   if (columns.cols() == 0) return Matrix6::Identity();
   const Eigen::MatrixXd rest = linalg::orthogonal_complement(columns, kDependent);
   return rest * rest.transpose();
 }
 
-/// What a projection leaves of x: all or nothing where the other part is rounding.
+/// The projection of x. A part of x that is rounding becomes exactly zero.
 Screw left_of(const Screw& x, const Matrix6& projection) {
   const Screw left = projection * x;
   if (left.norm() <= kRounding * x.norm()) return Screw::Zero();
   return (x - left).norm() <= kRounding * x.norm() ? x : left;
 }
 
-/// B_i: by how much a limb's motion moves the platform.
+/// B_i: from a motion of the limb to the motion of the platform.
 Matrix6 platform_by_limb(const ParallelChain& chain, FirstOrder& first_order, std::size_t limb) {
   std::vector<double> delta_mu(6 * chain.pairs.size());
   std::vector<double> moved(chain.passive_joints());
   Matrix6 B;
   for (std::size_t c = 0; c < 6; ++c) {
-    // An error of the first frame, which is seen from the base, and with errors at joints turns about the first one.
+    // The error of the first frame, which is expressed in the base frame. With errors at joints it turns about the
+    // first joint.
     const FrameEntry unit{chain.first_frame(limb), c};
     first_order.effect(unit, delta_mu, moved);
     B.col(static_cast<Eigen::Index>(c)) =
@@ -75,13 +76,13 @@ Matrix6 platform_by_limb(const ParallelChain& chain, FirstOrder& first_order, st
   return B;
 }
 
-/// Displacements of the platform, whose norms are those of the points.
+/// Parts of the displacement of the platform, scaled so that norms are those of the points.
 struct Parts {
   Screw drive;       ///< B_i A_i a
   Screw constraint;  ///< B_i n
 };
 
-/// Tells apart what errors of one limb do.
+/// Splits the effects of errors of one limb into parts.
 class LimbSeparation {
  public:
   /// root, radius: see separation_of().
@@ -105,14 +106,14 @@ class LimbSeparation {
     drives_ = joints.drives;
   }
 
-  /// Of each column of motions(): Joint::drive.
+  /// Joint::drive of each column of motions().
   const std::vector<std::size_t>& drives() const { return drives_; }
-  /// B_i A_i, each column over |A_i|_i.
+  /// B_i A_i, each column divided by its |A_i|_i.
   const Columns& motions() const { return motions_; }
   /// |A_i|_i of each column.
   double driven_length(Eigen::Index column) const { return driven_lengths_[column]; }
 
-  /// Of an error that moves the limb's platform by this twist.
+  /// The parts of an error that moves the limb's platform by this twist.
   Parts parts(const Screw& xi) const {
     const Screw not_passive = left_of(lengths_ * xi, beyond_passive_);
     const Screw rest = left_of(not_passive, beyond_drives_);
@@ -121,15 +122,15 @@ class LimbSeparation {
 
  private:
   Matrix6 lengths_;         ///< |lengths xi| = |xi|_i
-  Matrix6 from_lengths_;    ///< to displacements of the platform
-  Matrix6 beyond_passive_;  ///< what passive joints leave
-  Matrix6 beyond_drives_;   ///< what drives leave of that
+  Matrix6 from_lengths_;    ///< from these lengths to displacements of the platform
+  Matrix6 beyond_passive_;  ///< projection that removes the passive joints' part
+  Matrix6 beyond_drives_;   ///< projection that also removes the drives' part
   Columns motions_;
   Eigen::RowVectorXd driven_lengths_;
   std::vector<std::size_t> drives_;
 };
 
-/// Twists of the platform times this have the root mean square displacement of its points as their norm.
+/// The root U of the metric: |U xi| is the root mean square displacement of the platform's points by the twist xi.
 Matrix6 root_of_metric(const DeformationModel& model, std::span<const double> displacements) {
   return linalg::cholesky_root(platform_metric(model.chain, model.platform->points, displacements).W);
 }
@@ -152,10 +153,10 @@ std::vector<LimbSeparation> separations(const std::vector<LimbMotions>& limbs, c
   return list;
 }
 
-/// What drives of several limbs do in all of them, as columns that are comparable with LimbSeparation::motions().
+/// The motions of drives shared by several limbs, as columns comparable with LimbSeparation::motions().
 class SharedDrives {
  public:
-  /// Adds what a limb does, in its column. Returns whether the drive is new.
+  /// Adds the motion of a drive in one limb. Returns whether the drive is new.
   bool add(const LimbSeparation& limb, Eigen::Index column) {
     const auto [place, is_new] = sums_.try_emplace(limb.drives()[static_cast<std::size_t>(column)]);
     const double length = limb.driven_length(column);
@@ -164,7 +165,7 @@ class SharedDrives {
     return is_new;
   }
 
-  /// Sum of B_k A_k over the limbs, over the root of the sum of |A_k|_k^2; zero where limbs cancel each other.
+  /// The sum of B_k A_k over the limbs, divided by the root of the sum of |A_k|_k^2; zero if limbs cancel each other.
   Screw motion(std::size_t drive) const {
     const Sum& sum = sums_.at(drive);
     const Screw motion = sum.motion / std::sqrt(sum.square);
@@ -179,11 +180,11 @@ class SharedDrives {
   std::map<std::size_t, Sum> sums_;
 };
 
-/// What corrections of all drives leave of a displacement.
+/// The projection of a displacement onto what corrections of all drives leave.
 Matrix6 beyond_all_drives(const std::vector<LimbSeparation>& limbs) {
   Columns motions;
   SharedDrives shared;
-  std::vector<std::pair<std::size_t, Eigen::Index>> places;  // of shared drives among the columns
+  std::vector<std::pair<std::size_t, Eigen::Index>> places;  // positions of shared drives among the columns
   for (const LimbSeparation& limb : limbs) {
     for (Eigen::Index c = 0; c < limb.motions().cols(); ++c) {
       const std::size_t drive = limb.drives()[static_cast<std::size_t>(c)];
@@ -196,7 +197,7 @@ Matrix6 beyond_all_drives(const std::vector<LimbSeparation>& limbs) {
   return beyond(motions);
 }
 
-/// Whether the limb's drives move no other limb, so that they can take all of the drive part of its errors.
+/// Whether the limb's drives move no other limb, so that they can correct the whole drive part of its errors.
 bool drives_are_its_own(const std::vector<LimbSeparation>& limbs, std::size_t limb) {
   for (std::size_t i = 0; i < limbs.size(); ++i) {
     for (const std::size_t drive : limbs[i].drives()) {
@@ -264,7 +265,7 @@ std::optional<Matrix6> left_by_drives(const DeformationModel& model, std::span<c
   const std::optional<Metric> metric = model.metric(displacements);
   FirstOrder first_order(model.chain);
   if (!first_order.prepare(displacements, metric ? &metric->W : nullptr)) return std::nullopt;
-  // From [theta; displacement of the origin] to lengths: first to the twist, whose v is that of the base's origin.
+  // From [theta; displacement of the origin] to lengths: first to the twist, whose v is at the base's origin.
   Matrix6 to_lengths = Matrix6::Identity();
   to_lengths.bottomLeftCorner<3, 3>() = lie::hat<double>(model.platform_points(displacements)->platform.p);
   const Matrix6 root = root_of_metric(model, displacements);

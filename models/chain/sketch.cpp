@@ -10,7 +10,7 @@ namespace {
 using Vector3 = lie::Vector3<double>;
 using Transform = lie::Transform<double>;
 
-/// Motions of limbs that differ by less than this share of the largest are alike.
+/// Motions of limbs count as equal if they differ by less than this share of the largest.
 constexpr double kAlike = 1e-9;
 
 SketchVector sketched(const Vector3& vector) { return {vector.x(), vector.y(), vector.z()}; }
@@ -33,14 +33,15 @@ LimbFrames frames_of(const Limb& limb, std::span<const double> displacements) {
   return frames;
 }
 
-/// The joint, from 1, to which a frame of a limb belongs; 0 for the base, one more than there are for the platform.
+/// The number, from 1, of the joint to which a frame of a limb belongs; 0 for the base, the number of joints + 1 for
+/// the platform.
 std::size_t joint_of(const std::vector<SketchedJoint>& joints, std::size_t frame, std::size_t platform) {
   if (frame == platform) return joints.size() + 1;
   return static_cast<std::size_t>(
       std::ranges::count_if(joints, [frame](const SketchedJoint& joint) { return joint.first <= frame; }));
 }
 
-/// By which each limb moves the platform, or one motion where all are alike.
+/// The motion of the platform by each limb, or one motion if all are equal.
 std::vector<SketchTwist> motions(const ParallelChain& chain, FirstOrder& first_order, const FrameEntry& entry,
                                  double scale) {
   std::vector<double> delta_mu(6 * chain.pairs.size());
@@ -93,7 +94,7 @@ void place_limb(Sketch& sketch, const LimbFrames& frames, bool errors_at_joints)
 
 SketchedError sketched_error(const Sketch& sketch, const ErrorSlot& slot) {
   const std::vector<SketchedJoint>& joints = sketch.limbs[slot.limb];
-  const std::size_t end = sketch.frames[slot.limb].size() - 1;  // of the body where the limb ends
+  const std::size_t end = sketch.frames[slot.limb].size() - 1;  // of the body at the end of the limb
   return {.limb = slot.limb,
           .frame = slot.frame + 1 == end ? end : slot.frame,
           .axis = slot.component % 3,

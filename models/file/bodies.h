@@ -5,19 +5,19 @@
 
 #include "models/file/numbers.h"
 
-/// Bodies of a mechanism file, and which of them limbs name.
+/// The bodies of a mechanism file, and the bodies that limbs name.
 namespace poesy::file {
 
-/// Base, platform and the others with their copies, at home. Throws InputError where two have one name.
+/// Base, platform and the other bodies with their copies, at home. Throws InputError if two have the same name.
 std::vector<assembly::Body> bodies_of(const Numbers& numbers, const Transform& platform);
 
-/// The position of the body that a limb names, for its k-th copy; `usual` where it names none. Throws InputError where
-/// there is none of that name, or where copies do not go with each other.
+/// The position of the body that a limb names, for the limb's k-th copy; `usual` if it names none. Throws InputError if
+/// no body has that name, or if the copies of limb and body do not match.
 std::size_t body_of(const MechanismFile& file, const LimbLines& limb, const std::optional<Reference>& reference,
                     std::size_t usual, std::size_t copy);
 
-/// Throws InputError where limbs and bodies are not as they must be: a limb from the base leads to every body, none
-/// ends at the base or where it begins, and no label is there twice.
+/// Throws InputError unless limbs from the base lead to every body, no limb ends at the base or where it begins, and
+/// all labels differ.
 void check_branches(const MechanismFile& file, const Mechanism& made);
 
 }  // namespace poesy::file

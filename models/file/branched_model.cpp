@@ -31,7 +31,7 @@ assembly::Assembly assembly_of(const Mechanism& mechanism, assembly::Metric metr
   return made;
 }
 
-/// The joint's name, with the direction behind it where two drives hold it, as they may a cylindrical one: "q_rz",
+/// The joint's name. If two drives hold the joint, as they may hold a cylindrical one, the direction follows: "q_rz",
 /// "q_z".
 std::string drive_name(const std::vector<Joint>& joints, std::size_t j) {
   const auto is_of_it = [&](const Joint& one) { return one.name == joints[j].name && one.actuated; };
@@ -39,7 +39,7 @@ std::string drive_name(const std::vector<Joint>& joints, std::size_t j) {
   return joints[j].name + (joints[j].motion == Motion::prismatic ? "_z" : "_rz");
 }
 
-/// Drives, and joints whose reactions are wanted, in the order of the file.
+/// The reported drives, and the joints with wanted reactions, in the order of the file.
 assembly::Report report_of(const Mechanism& mechanism) {
   assembly::Report report;
   for (std::size_t e = 0; e < mechanism.limbs.size(); ++e) {
@@ -53,7 +53,7 @@ assembly::Report report_of(const Mechanism& mechanism) {
   return report;
 }
 
-/// Throws where names of bodies, limbs and joints make one name for two responses.
+/// Throws if names of bodies, limbs and joints give two responses the same name.
 void check_names(const Mechanism& mechanism, const std::vector<Response>& responses) {
   for (auto one = responses.begin(); one != responses.end(); ++one) {
     const auto other = std::find_if(one + 1, responses.end(), [&](const Response& r) { return r.name == one->name; });

@@ -8,12 +8,12 @@
 
 namespace poesy::file {
 
-/// The mechanism as solvers of limbs between bodies have it. home: its mobility there. Throws InputError where limbs
-/// are rigid and over-constrain each other, by the metric "stiffness".
+/// The mechanism in the form for solvers of limbs between bodies. home: its mobility there. Throws InputError if rigid
+/// limbs over-constrain each other and the metric is "stiffness".
 assembly::AssemblyModel assembly_model(const Mechanism& mechanism, std::shared_ptr<const Tracker> tracker,
                                        const Mobility& home, assembly::Metric metric);
 
-/// A mechanism with bodies between its limbs, or with stiffness. Throws InputError where limbs are rigid and
+/// The model of a mechanism that has bodies between its limbs, or stiffness. Throws InputError if rigid limbs
 /// over-constrain each other.
 std::unique_ptr<Model> branched_model(const MechanismFile& file, Checked found, assembly::Metric metric,
                                       chain::Fidelity fidelity);

@@ -11,12 +11,14 @@
 namespace poesy::file {
 namespace {
 
-/// Displacements that differ by less are the same, rad or reaches; tracking leaves a millionth of it.
+/// Displacements count as equal if they differ by less (rad or shares of the reach). Tracking leaves a millionth of
+/// this.
 constexpr double kSame = 1e-6;
-/// The same for rounded numbers, in units of what may stay open: what is held and what gives way share it differently.
+/// The same tolerance for rounded numbers, in units of Precision::closed: the split of the mismatch depends on which
+/// joints are given.
 constexpr double kSameOfRounded = 100.0;
 
-/// With the platform's frame elsewhere on the platform.
+/// The same mechanism with another frame of its platform.
 Mechanism with_platform_at(Mechanism mechanism, const Transform& platform_T_new) {
   mechanism.platform = mechanism.platform * platform_T_new;
   mechanism.bodies[kPlatform].home = mechanism.platform;
@@ -56,7 +58,7 @@ Chart actuators_chart(const Mechanism& mechanism) {
   return {std::move(description), mechanism, mechanism, Given::drives, Transform()};
 }
 
-/// Whether no name of the chart is that of a coordinate of the mechanism that the chart has not taken over.
+/// Whether the chart's new names differ from those of the mechanism's coordinates.
 bool names_are_new(const Chart& chart, const Mechanism& mechanism) {
   return std::ranges::none_of(chart.description().coordinates, [&](const PoseCoordinate& own) {
     const auto other = std::ranges::find(mechanism.coordinates, own.name, &Coordinate::name);

@@ -6,20 +6,22 @@
 #include "engine/model/model.h"
 #include "models/file/tracking.h"
 
-/// Other coordinates in which a mechanism of a file takes poses.
+/// Alternative coordinates for the poses of a mechanism of a file.
 namespace poesy::file {
 
-/// Coordinates that determine the pose as the mechanism's own do, and the way to them from home.
+/// Coordinates that determine the pose like the mechanism's own, and the path to a pose from home.
 class Chart {
  public:
-  /// tracked: the same mechanism, perhaps with another frame of the platform, in which its own has this place.
+  /// tracked: the same mechanism, perhaps with another frame of its platform, whose pose in this frame is given as
+  /// tracked_T_platform.
   Chart(PoseChart description, const Mechanism& mechanism, const Mechanism& tracked, Given given,
         const Transform& tracked_T_platform);
 
-  const PoseChart& description() const { return description_; }  ///< Names, dimensions and words.
+  const PoseChart& description() const { return description_; }  ///< Names, dimensions and descriptions.
 
-  /// The way straight in these coordinates [those of the description], SI. A pose that is reached so in another working
-  /// mode than straight in the mechanism's own coordinates, by which everything else is solved, is unreachable too.
+  /// Tracks the straight path in these coordinates [those of the description], SI. All other computations follow the
+  /// straight path in the mechanism's own coordinates, so a pose is also unreachable if that path leads to another
+  /// working mode.
   Tracked track(std::span<const double> coordinates) const;
 
  private:
@@ -32,12 +34,13 @@ class Chart {
   Transform tracked_T_platform_;
 };
 
-/// The pose [mechanism.coordinates], SI.
+/// The coordinates [mechanism.coordinates] of a pose, SI.
 std::vector<double> coordinates_of(const Mechanism& mechanism, const PlatformPose& pose);
 
-/// What a mechanism offers, whatever its geometry: "tip", where it has a tool and a length among its coordinates: its
-/// coordinates with the tool's place instead of P's; "actuators", where it has as many drives as coordinates: their
-/// displacements from home. A chart of which a name belongs to another coordinate of the mechanism is left out.
+/// The charts that any geometry offers. "tip", if the mechanism has a tool and a length among its coordinates: its
+/// coordinates with the tool's position instead of P's. "actuators", if it has as many drives as coordinates: the
+/// drives' displacements from home. A chart is left out if one of its names belongs to another coordinate of the
+/// mechanism.
 std::vector<Chart> charts_of(const Mechanism& mechanism);
 
 }  // namespace poesy::file

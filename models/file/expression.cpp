@@ -13,9 +13,9 @@
 namespace poesy::file {
 namespace {
 
-constexpr std::size_t kLongest = 1000;  ///< bytes; bounds the depth of the recursion, too
-constexpr int kLargestExponent = 12;    ///< behind ^
-constexpr int kLargestPower = 100;      ///< of a value that was raised; keeps powers of powers within int
+constexpr std::size_t kLongest = 1000;  ///< bytes; also limits the depth of recursion
+constexpr int kLargestExponent = 12;    ///< largest exponent after ^
+constexpr int kLargestPower = 100;      ///< largest power of a raised value; keeps powers of powers in the range of int
 constexpr std::array<std::string_view, 5> kFunctions{"sqrt", "sin", "cos", "tan", "atan2"};
 
 bool is_letter(char c) {
@@ -23,16 +23,16 @@ bool is_letter(char c) {
 }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Whether a name is a unit of length or angle. Those of other quantities, such as h and N, are free for parameters.
+/// Whether a name is a unit of length or angle. Names of other units, such as h and N, are free for parameters.
 bool is_unit_of_geometry(std::string_view name) {
   const Unit* unit = find_unit(name);
   return unit != nullptr && (unit->dimension == Dimension::length || unit->dimension == Dimension::angle);
 }
 
-/// Reads from left to right; each function takes what its name says off the front.
+/// A recursive descent parser. Each function consumes what its name says from the front of the text.
 class Parser {
  public:
-  /// due: powers of the value that is wanted, as far as that is known; for messages.
+  /// due: powers of the wanted value, as far as they are known; for messages.
   Parser(const Expression& expression, std::span<const GeometryParameter> parameters, std::span<const double> values,
          const Powers& due)
       : expression_(expression), text_(expression.text), parameters_(parameters), values_(values), due_(due) {}
@@ -81,7 +81,7 @@ class Parser {
     return text_.substr(begin, at_ - begin);
   }
 
-  /// Throws at the operator where two values cannot be added.
+  /// Throws, at the operator, if the two values cannot be added.
   void need_like(const Value& one, const Value& other, std::size_t at, std::string_view done) const {
     if (one.like(other)) return;
     fail(at, std::string(done) + " " + dimension_text(one) + " and " + dimension_text(other),
@@ -114,7 +114,7 @@ class Parser {
     }
   }
 
-  /// The powers of a value times another one that is raised to an exponent.
+  /// The powers of the product of a value and another one raised to an exponent.
   static Powers multiplied(const Powers& one, const Powers& other, int exponent) {
     return {one.length + exponent * other.length, one.angle + exponent * other.angle, one.mass + exponent * other.mass,
             one.time + exponent * other.time};
@@ -186,7 +186,7 @@ class Parser {
     return {value * found.si, found.powers};
   }
 
-  /// Behind a number: a power there belongs to the unit.
+  /// Reads a unit after a number; a power there belongs to the unit.
   WrittenUnit unit() {
     const std::size_t at = at_;
     const auto found = unit_at_begin(text_.substr(at));

@@ -10,7 +10,7 @@ namespace {
 
 char axis_of(std::size_t component) { return "xyz"[component % 3]; }
 
-/// "joint S (2 of 3)".
+/// The joint's text for descriptions: "joint S (2 of 3)".
 std::string joint_text(const std::vector<Joint>& joints, std::size_t j) {
   std::size_t before = 0, all = 0;
   for (std::size_t k = 0; k < joints.size(); ++k) {
@@ -22,7 +22,7 @@ std::string joint_text(const std::vector<Joint>& joints, std::size_t j) {
   return "joint " + joints[j].name + part;
 }
 
-/// What a fixed frame of a limb is between.
+/// The two parts that a fixed frame of a limb connects.
 struct Parts {
   std::string behind;  ///< "joint A"
   std::string before;  ///< "base"
@@ -62,7 +62,7 @@ Factor factor(const Mechanism& mechanism, const ErrorSlot& slot, std::string nam
           std::move(axis)};
 }
 
-/// All entries of all fixed frames.
+/// The errors of all entries of all fixed frames.
 struct FrameErrors {
   std::vector<Factor> factors;
   std::vector<ErrorSlot> slots;
@@ -84,7 +84,7 @@ FrameErrors frame_errors(const Mechanism& mechanism) {
   return all;
 }
 
-/// Positions of the factors whose names fit, ascending. Throws where there are none.
+/// Positions of the factors whose names match, ascending. Throws if there are none.
 std::vector<std::size_t> fitting(const Reference& pattern, const std::vector<Factor>& factors) {
   std::vector<std::size_t> found;
   for (std::size_t f = 0; f < factors.size(); ++f) {
@@ -140,7 +140,7 @@ bool are_alike(const Limb& a, const Limb& b) {
   return std::ranges::equal(a.joints, b.joints, {}, &Joint::motion, &Joint::motion);
 }
 
-/// In which limbs an error with limb = "each" is, and what is there.
+/// The limbs that have an error with limb = "each", and the parts that it is between.
 EachLimb each_limb(const ErrorLines& error, const Mechanism& mechanism) {
   EachLimb each{"error " + error.name.name + " with limb = \"each\" is", true};
   for (std::size_t i = 0; i < error.limbs.size();) {

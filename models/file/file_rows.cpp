@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int64_t kMostCopies = 100;
 
-/// Letters that a name may have, so that messages and tables show it whole, with what is appended to it.
+/// The largest length of a name, so that messages and tables show it whole with its suffixes.
 constexpr std::size_t kLongestName = 48;
 
 const Keys<Copies, Nothing>& copies_keys() {

@@ -16,13 +16,13 @@
 namespace poesy::file {
 namespace {
 
-/// What a limb's joint is before frames are known.
+/// A joint of a limb before its frame is known.
 struct Element {
   const JointLines* lines;
-  std::size_t position;  ///< among the elementary joints of its joint
+  std::size_t position;  ///< position among the elementary joints of its joint
   Motion motion;
   Vector3 point;
-  Vector3 z = Vector3::Zero();  ///< of S it follows from the joints before
+  Vector3 z = Vector3::Zero();  ///< of S: follows from the preceding joints
 };
 
 Motion motion_of(JointKind kind, std::size_t position) {
@@ -43,14 +43,14 @@ Motion motion_of(JointKind kind, std::size_t position) {
   throw std::logic_error("unknown kind of joint");
 }
 
-/// A drive's name in the n-th copy of a limb.
+/// The name of a drive in the n-th copy of a limb.
 std::string of_copy(const std::string& drive, std::size_t n) {
   std::string name;
   for (const char letter : drive) name += letter == '*' ? std::to_string(n) : std::string(1, letter);
   return name;
 }
 
-/// Throws where a drive would turn one joint and slide another, or where its name, a column of files of poses, is that
+/// Throws if a drive turns one joint and slides another, or if its name, which is a column of pose files, is also that
 /// of another column.
 void check_drives(const Mechanism& mechanism) {
   const std::vector<const Joint*> joints = moving_joints(mechanism);
@@ -111,7 +111,7 @@ class Builder {
  private:
   // ---- points
 
-  /// Null where the limb and the file have no point of this name.
+  /// The point of this name of the limb or the file; null if there is none.
   const NamedPoint* named_point(const LimbLines& limb, const std::string& name) const {
     for (const std::vector<NamedPoint>* list : {&limb.points, &file_.points}) {
       const auto found = std::ranges::find(*list, name, &NamedPoint::name);
@@ -132,7 +132,7 @@ class Builder {
                      suggestion(reference.name, known));
   }
 
-  /// `at`, or for P, H and C `from`. depth: of references that stand on references.
+  /// The point of a joint: `at`, or `from` for P, H and C. depth: number of references followed so far.
   Vector3 joint_point(const LimbLines& limb, const JointLines& joint, std::size_t depth = 0) const {
     if (depth > limb.joints.size()) {
       throw InputError(joint.place, joint.key + " '" + joint.name + "' takes its point from itself",
@@ -167,7 +167,7 @@ class Builder {
 
   // ---- axes and frames
 
-  /// The axis of a joint that is not S: as written, or from one point to another.
+  /// The axis of a joint other than S: as written, or from one point to another.
   Vector3 axis_of(const LimbLines& limb, const JointLines& joint) const {
     if (joint.axis && joint.to) {
       throw InputError(joint.axis->place, joint.axis->key + " is given besides `to`", "remove one of them");
@@ -203,8 +203,8 @@ class Builder {
     return list;
   }
 
-  /// The first axis of S: along the line from the last other point before it, or to the first one after it, of which
-  /// the last is the origin of the body where the limb ends.
+  /// The first axis of S. It points along the line from the last preceding point that differs, or else to the first
+  /// following one; the last point is the origin of the body at the end of the limb.
   Vector3 first_axis_of_s(const std::vector<Element>& elements, std::size_t e, const Vector3& end) const {
     const Vector3& own = elements[e].point;
     for (std::size_t k = e; k-- > 0;) {
@@ -219,7 +219,7 @@ class Builder {
                      "its first axis is along the line to another joint; write three R instead");
   }
 
-  /// As given, or towards the next point, or the first base axis that is not parallel to z.
+  /// The x axis of a joint: as given, or towards the next point, or the first base axis that is not parallel to z.
   Vector3 x_of(const Element& element, const Vector3& z, const Vector3& next) const {
     const JointLines& joint = *element.lines;
     if (joint.x && element.position == 0) {
@@ -237,7 +237,7 @@ class Builder {
     return perpendicular(Vector3::UnitZ(), z);
   }
 
-  /// end: origin of the body where the limb ends.
+  /// The joints of a limb. end: origin of the body at the end of the limb.
   std::vector<Joint> joints_of(const LimbLines& limb, const std::vector<Vector3>& points, const Vector3& end) const {
     std::vector<Element> elements = elements_of(limb, points);
     std::vector<Joint> joints;
@@ -245,7 +245,7 @@ class Builder {
       Element& element = elements[e];
       const JointLines& lines = *element.lines;
       if (lines.kind == JointKind::spherical) {
-        const std::size_t k = element.position;  // the second axis is the first frame's x, the third its y = z cross x
+        const std::size_t k = element.position;  // the second axis is x of the first frame, the third is y = z cross x
         element.z = k == 0 ? first_axis_of_s(elements, e, end) : Vector3(joints[e - k].at_home.R.col(k == 1 ? 0 : 1));
       }
       const Vector3 next = e + 1 < elements.size() ? elements[e + 1].point : end;
@@ -265,7 +265,7 @@ class Builder {
     return joints;
   }
 
-  /// M/rad.
+  /// The pitch in m/rad.
   double pitch_of(const JointLines& joint) const {
     if (!joint.pitch) return 0.0;
     const double pitch = numbers_.length(*joint.pitch);
@@ -301,7 +301,7 @@ class Builder {
     }
   }
 
-  /// before: limbs before it in the file.
+  /// The label of a copy of a limb. before: number of limbs before it in the file.
   static std::string label_of(const LimbLines& lines, std::size_t copy, std::size_t before) {
     if (lines.name.empty()) return std::to_string(before + 1);
     return lines.copies.count == 1 ? lines.name : lines.name + "_" + std::to_string(copy + 1);
@@ -321,7 +321,7 @@ class Builder {
                      "write the lowest value first");
   }
 
-  /// The point of the first joint of these that moves; of the first one where none does.
+  /// The point of the first moving joint in the range, or of the first joint if none moves.
   template <class Iterator>
   static Vector3 last_moving(Iterator begin, Iterator end) {
     const auto found = std::find_if(begin, end, [](const Joint& joint) { return joint.moves(); });
@@ -350,7 +350,7 @@ class Builder {
   Numbers numbers_;
 };
 
-/// Axes of the three rotations, in the order of their product. Precondition: not "vector".
+/// The axes of the three rotations, in the order of their product. Precondition: not "vector".
 std::array<int, 3> axes_of(Rotation rotation) {
   const std::string_view letters = name(rotation);
   return {letters[0] - 'x', letters[1] - 'x', letters[2] - 'x'};

@@ -20,28 +20,28 @@ using Vector3 = lie::Vector3<double>;
 /// A rigid motion.
 using Transform = lie::Transform<double>;
 
-/// What an elementary joint does, about or along its own z axis.
+/// The motion of an elementary joint, about or along its own z axis.
 enum class Motion { fixed, revolute, prismatic, helical };
 
 /// An elementary joint, or a fixed frame.
 struct Joint {
-  std::string name;        ///< of the joint that it belongs to
+  std::string name;        ///< of the joint to which it belongs
   Place place;             ///< of that joint in the file
   JointKind kind;          ///< of that joint
-  Motion motion;           ///< fixed: it has a frame and errors, and no displacement
-  bool actuated;           ///< a drive holds it
-  double pitch;            ///< of a helical one, m/rad; positive is right-handed
+  Motion motion;           ///< fixed: a frame with errors and without a displacement
+  bool actuated;           ///< whether a drive holds it
+  double pitch;            ///< of a helical joint (m/rad); positive is right-handed
   Transform at_home;       ///< base_T_joint at home
-  std::string drive = {};  ///< name of the drive, where the file names it; joints of one name move together
-  bool reaction = false;   ///< whether the reaction of the joint that it belongs to is a response
+  std::string drive = {};  ///< name of the drive, if the file gives one; joints of the same name move together
+  bool reaction = false;   ///< whether the reaction of its joint is a response
 
   /// Whether it has a displacement.
   bool moves() const { return motion != Motion::fixed; }
-  /// As limbs of the solver have it; a fixed frame is a joint that a drive holds where it is.
+  /// The joint as chain::Limb needs it; a fixed frame is an actuated joint that stays where it is.
   chain::Joint of_chain() const;
 };
 
-/// Positions of bodies that every mechanism has.
+/// Positions of the two bodies that every mechanism has.
 /// @{
 using assembly::kBase;
 using assembly::kPlatform;
@@ -49,119 +49,119 @@ using assembly::kPlatform;
 
 /// A limb in local product-of-exponentials form, as chain::Limb has it, from one body to another.
 struct Limb {
-  std::vector<Joint> joints;    ///< [n], in the order from the body where it begins to that where it ends
-  std::vector<Transform> home;  ///< [n + 1]: body to first joint, joint to joint, last joint to body, at home
-  std::size_t from = kBase;     ///< position of the body where it begins
-  std::size_t to = kPlatform;   ///< position of the body where it ends
-  std::string label = {};       ///< its number, counted from 1, or its name with that of the copy
-  std::vector<assembly::Bearing> bearings = {};  ///< bearings with compliance
-  std::vector<assembly::Link> links = {};        ///< links with compliance
-  std::optional<assembly::Matrix6> compliance =
-      {};  ///< compliance of the whole limb, in the frame of the body where it ends
+  std::vector<Joint> joints;    ///< [n], from the first body to the last
+  std::vector<Transform> home;  ///< [n + 1] at home: body to first joint, joint to joint, last joint to body
+  std::size_t from = kBase;     ///< position of the first body
+  std::size_t to = kPlatform;   ///< position of the last body
+  std::string label = {};       ///< its number, counted from 1, or its name and the number of the copy
+  std::vector<assembly::Bearing> bearings = {};      ///< bearings with compliance
+  std::vector<assembly::Link> links = {};            ///< links with compliance
+  std::optional<assembly::Matrix6> compliance = {};  ///< compliance of the whole limb, in the frame of the last body
 
-  /// That have a displacement.
+  /// Number of joints that have a displacement.
   std::size_t moving() const;
 };
 
-/// What moves one actuated joint, or several by the same displacement from home (rad or m).
+/// A drive of one actuated joint, or of several that it moves by the same displacement from home (rad or m).
 struct Drive {
-  std::string name;                 ///< as the file has it; of a drive without a name that of its joint's displacement
-  std::vector<std::size_t> joints;  ///< places among all joints that move, ascending
+  std::string name;                 ///< as in the file, or that of its joint's displacement
+  std::vector<std::size_t> joints;  ///< positions among all joints that move, ascending
 
   /// Whether it moves several joints.
   bool is_shared() const { return joints.size() > 1; }
 };
 
-/// x, y, z of P in the base frame (m), and rx, ry, rz from home (rad).
+/// Pose of a body: x, y, z of its origin (of the platform: P) in the base frame (m), and rx, ry, rz from home (rad).
 using PlatformPose = std::array<double, 6>;
 
 /// A coordinate of a pose.
 struct Coordinate {
-  std::string name;       ///< as the file has it
-  std::size_t component;  ///< of PlatformPose
-  double lower;           ///< of the workspace
-  double upper;           ///< likewise
+  std::string name;       ///< as in the file
+  std::size_t component;  ///< position in PlatformPose
+  double lower;           ///< lower limit of the workspace
+  double upper;           ///< upper limit of the workspace
 
-  /// Length or angle.
+  /// The dimension: length or angle.
   Dimension dimension() const { return component < 3 ? Dimension::length : Dimension::angle; }
 };
 
-/// Which entry of which fixed frame's error a factor adds to: entry += scale * factor.
+/// The entry of a fixed frame's error to which a factor adds: entry += scale * factor.
 struct ErrorSlot {
   std::size_t limb;       ///< counts from 0
   std::size_t frame;      ///< 0 .. joints of the limb
-  std::size_t component;  ///< of [epsilon; delta]
-  double scale;           ///< without unit
+  std::size_t component;  ///< position in [epsilon; delta]
+  double scale;           ///< dimensionless
 };
 
-/// What holds where the numbers of a file are exact.
+/// Precision of exact numbers.
 /// @{
 inline constexpr double kRankThreshold = 1e-6;  ///< a singular value below this share of the largest counts as zero
-inline constexpr double kClosed = 1e-12;        ///< up to which a loop counts as closed: rad, and shares of the reach
+inline constexpr double kClosed = 1e-12;  ///< a loop with a smaller opening is closed: rad, and shares of the reach
 /// @}
 
-/// How exactly a mechanism's numbers are taken; rounding.h finds it.
+/// The precision of a mechanism's numbers; rounding.h finds it.
 struct Precision {
   double rank_threshold = kRankThreshold;  ///< a singular value below this share of the largest counts as zero
-  /// Up to which loops count as closed. Of rounded numbers the gap, as a share of the reach: a pose is then the one
-  /// with the smallest mismatch of the limbs by the metric of the mechanism's points, and the mismatch stays in it.
+  /// Largest opening of a closed loop: rad, and shares of the reach. With rounded numbers it is the largest gap; a pose
+  /// is then the one with the smallest mismatch of the limbs by the metric of the mechanism's points, and this mismatch
+  /// remains.
   double closed = kClosed;
 
-  /// Whether loops that stay open by more than kClosed may count as closed.
+  /// Whether loops count as closed although they stay open by more than kClosed.
   bool rounded() const { return closed > kClosed; }
 };
 
-/// An error that is named once for each limb.
+/// An error with limb = "each".
 struct EachLimb {
-  std::string text;  ///< its name, and between which parts it is in which limbs
-  bool alike;        ///< whether these are the same parts in all limbs
+  std::string text;  ///< its name, and the parts that it is between in each limb
+  bool alike;        ///< whether these parts are the same in all limbs
 };
 
-/// Immutable. Everything that a model needs; solving is for others.
+/// A mechanism in numbers, immutable. Contains everything that a model needs except solvers.
 struct Mechanism {
-  std::string name;                          ///< as the file has it
-  std::string title;                         ///< likewise
+  std::string name;                          ///< as in the file
+  std::string title;                         ///< as in the file
   std::vector<assembly::Body> bodies = {};   ///< base, platform, and the others, copies included
   std::vector<Limb> limbs = {};              ///< copies included
   Transform platform;                        ///< base_T_platform at home
-  Rotation rotation;                         ///< what rx, ry, rz mean
+  Rotation rotation;                         ///< meaning of rx, ry, rz
   std::vector<Coordinate> coordinates = {};  ///< in the order of a pose's numbers
   Place coordinates_place;                   ///< in the file
-  std::optional<Vector3> tool = {};          ///< in the platform's frame
-  std::vector<Vector3> points = {};          ///< of the metric, in the platform's frame; on no line
+  std::optional<Vector3> tool = {};          ///< tool point in the platform's frame (m)
+  std::vector<Vector3> points = {};          ///< of the metric, in the platform's frame (m); not all on a line
   std::vector<Factor> factors = {};          ///< [F]
-  std::vector<ErrorSlot> slots = {};         ///< [F]
+  std::vector<ErrorSlot> slots = {};         ///< [F] the entry of each factor
   std::vector<FactorSet> sets = {};          ///< "all" first
-  std::vector<EachLimb> each = {};           ///< errors with limb = "each"
+  std::vector<EachLimb> each = {};           ///< the errors with limb = "each"
   bool errors_at_joints = true;              ///< see chain::Limb
-  double reach;                              ///< m: the largest distance between joints' points, before copies, and P
+  double reach;                              ///< m: largest distance between the joints' points, before copies, and P
   Precision precision = {};                  ///< of its numbers
-  assembly::Load load = {};                  ///< acts where there is stiffness
+  assembly::Load load = {};                  ///< used if there is stiffness
 
-  /// That have a displacement, of all limbs.
+  /// Number of joints that have a displacement, over all limbs.
   std::size_t moving() const;
-  /// Whether there are bodies besides base and platform.
+  /// Whether there are bodies other than base and platform.
   bool is_branched() const { return bodies.size() > 2; }
   /// Whether anything has stiffness.
   bool is_elastic() const;
 };
 
-/// The parameters' defaults, in the order of the file.
+/// The default values of the parameters (SI), in the order of the file.
 std::vector<double> default_geometry(const MechanismFile& file);
 
-/// The mechanism with these values of file.geometry, SI. Throws InputError with the place in the file where they make
-/// no mechanism: wrong dimensions, directions without length, axes that are parallel where they must not be, metric
-/// points on a line.
+/// The mechanism for these values of file.geometry, SI. Throws InputError with the place in the file if they give no
+/// mechanism: wrong dimensions, directions without length, parallel axes that must not be parallel, metric points on a
+/// line.
 Mechanism mechanism(const MechanismFile& file, std::span<const double> geometry);
 
-/// The same mechanism with lengths in units of its reach, whose reach is 1.
+/// The same mechanism with lengths in units of its reach; its reach becomes 1.
 Mechanism in_reaches(Mechanism mechanism);
 
-/// The displacements q_i_j of all joints that move, limb by limb: limbs count from 1, j is the joint's place among all
-/// joints and fixed frames of the limb.
+/// The names q_i_j of the displacements of all moving joints, limb by limb: limbs i count from 1, j is the joint's
+/// position, from 1, among all joints and fixed frames of the limb.
 std::vector<JointDisplacement> displacement_names(const Mechanism& mechanism);
 
-/// "limb 4", with a name "limb 4 (left_1)", for messages. limb: position, counts from 0.
+/// The limb's text for messages: "limb 4", or with a name "limb 4 (left_1)". limb: position, counts from 0.
 std::string limb_text(const Mechanism& mechanism, std::size_t limb);
 
 /// The joints that have a displacement, limb by limb.
@@ -170,29 +170,31 @@ std::vector<const Joint*> moving_joints(const Mechanism& mechanism);
 /// The drives of all limbs, in the order of their first joints.
 std::vector<Drive> drives_of(const Mechanism& mechanism);
 
-/// base_T_platform for R = Rot(rx, ry, rz) R_home and P = (x, y, z).
+/// base_T_platform of a pose: R = Rot(rx, ry, rz) R_home and P = (x, y, z).
 Transform platform_transform(const Mechanism& mechanism, const PlatformPose& pose);
 
-/// base_T_body of a body that is not the base. Of the platform as above; of others rx, ry, rz are the rotation vector.
+/// base_T_body of a body that is not the base. For the platform see platform_transform(); for others rx, ry, rz are the
+/// rotation vector.
 Transform body_transform(const Mechanism& mechanism, std::size_t body, const PlatformPose& pose);
 
-/// Twist [omega; v] of the body, at the base's origin, by each component of its pose: [6 x 6].
+/// The twists [omega; v] of the body, at the base's origin, per unit of each component of its pose: [6 x 6].
 lie::Matrix6<double> body_columns(const Mechanism& mechanism, std::size_t body, const PlatformPose& pose);
 
 /// The body's pose at home, without rotation.
 PlatformPose home_pose(const Mechanism& mechanism, std::size_t body);
 
-/// The limbs by which bodies can be placed one after the other: of each body but the base one that ends there.
+/// For each body except the base, a limb that ends there; in this order the bodies can be placed one after the other.
 std::vector<std::size_t> placing_limbs(const Mechanism& mechanism);
 
 /// The pose at home: P, and no rotation.
 PlatformPose home_pose(const Mechanism& mechanism);
 
-/// Twist [omega; v] of the platform, at the base's origin, by each component of its pose: [6 x 6].
+/// The twists [omega; v] of the platform, at the base's origin, per unit of each component of its pose: [6 x 6].
 lie::Matrix6<double> platform_columns(const Mechanism& mechanism, const PlatformPose& pose);
 
-/// Pose of the body where the limb ends by its moving joints [moving], where the body at which it begins is at `from`.
-/// columns: null, or [6 x moving], set to the twists of its end, at the base's origin, by each of them.
+/// Pose base_T_body of the body at the end of the limb for these displacements of its moving joints [moving] (rad, m).
+/// from: the pose of the body where it begins. columns: null, or [6 x moving], set to the twists [omega; v] of its end
+/// per unit of each displacement, at the base's origin.
 Transform limb_transform(const Limb& limb, std::span<const double> displacements,
                          Eigen::Matrix<double, 6, Eigen::Dynamic>* columns = nullptr, const Transform& from = {});
 

@@ -12,7 +12,8 @@
 namespace poesy::file {
 namespace {
 
-/// Of all limbs. Ranks take time with the cube of the axes, descriptions with the square of the frames.
+/// The limits hold for all limbs together. Rank computations grow with the cube of the axes, descriptions with the
+/// square of the frames.
 /// @{
 constexpr std::size_t kMostMovingAxes = 120;
 constexpr std::size_t kMostFrames = 1000;
@@ -38,7 +39,7 @@ void read_at(const StudyValue& value, JointLines& joint) {
   }
 }
 
-/// The name of a drive, in which * may be in the place of a copy's number.
+/// Reads the name of a drive, where * may replace the number of a copy.
 void read_drive(const StudyValue& value, JointLines& joint) {
   if (elements(joint.kind) > 1) {
     value.fail("is a text, but a joint of type " + std::string(name(joint.kind)) + " has two axes",
@@ -55,7 +56,8 @@ void read_drive(const StudyValue& value, JointLines& joint) {
   joint.actuated[0] = true;
 }
 
-/// true for joints with one axis and for both of C; 1 or 2 for one of C or U; a drive's name for joints with one axis.
+/// Reads `actuated`: true for joints with one axis and for both axes of C; 1 or 2 for one axis of C or U; the name of a
+/// drive for joints with one axis.
 void read_actuated(const StudyValue& value, JointLines& joint) {
   if (value.is_text()) return read_drive(value, joint);
   const std::size_t axes = elements(joint.kind);
@@ -140,7 +142,7 @@ std::vector<JointLines> joints(const StudyValue& value) {
   return list;
 }
 
-/// What [[error]] calls all limbs.
+/// The word of [[error]] for all limbs.
 constexpr std::string_view kEach = "each";
 
 std::string read_limb_name(const StudyValue& value) {
@@ -181,7 +183,7 @@ const Keys<LimbLines, Nothing>& limb_keys() {
   return keys;
 }
 
-/// What all limbs have together.
+/// Sums over all limbs.
 struct Extent {
   std::size_t limbs = 0;
   std::size_t axes = 0;    ///< that move
@@ -197,7 +199,7 @@ struct Extent {
   }
 };
 
-/// Fails where the limbs up to this one are too many to be studied.
+/// Fails if the limbs up to this one exceed the limits.
 void check_extent(const Extent& extent, const StudyValue& limb) {
   const auto check = [&](std::string_view what, std::size_t count, std::size_t most) {
     if (count <= most) return;
@@ -363,12 +365,12 @@ const Keys<ErrorLines, Nothing>& error_keys() {
   return keys;
 }
 
-/// A limb, copies included, as an error may name it.
+/// A limb or a copy of one, as an error may name it.
 struct NamedLimb {
   const LimbLines* lines;
   std::size_t copy;  ///< counts from 1
 
-  /// Behind the joint of this name; none where it has no such joint.
+  /// The position of the frame behind the joint of this name; none if there is no such joint.
   std::optional<std::size_t> frame_behind(std::string_view joint) const {
     std::size_t frame = 0;
     for (const JointLines& one : lines->joints) {
@@ -378,18 +380,18 @@ struct NamedLimb {
     return std::nullopt;
   }
 
-  /// "left_1"; empty where it has no name.
+  /// The label, for example "left_1"; empty if the limb has no name.
   std::string label() const {
     return lines->name.empty() || lines->copies.count == 1 ? lines->name : lines->name + "_" + std::to_string(copy);
   }
 
-  /// "limb 4", with a name "limb 4 (left_1)". position: counts from 0.
+  /// The limb's text for messages: "limb 4", or with a name "limb 4 (left_1)". position: counts from 0.
   std::string text(std::size_t position) const {
     const std::string number = "limb " + std::to_string(position + 1);
     return lines->name.empty() ? number : number + " (" + label() + ")";
   }
 
-  /// The one to the body where it ends.
+  /// The position of the last frame, before the body where the limb ends.
   std::size_t last_frame() const { return *frame_behind(lines->joints.back().name); }
 };
 
@@ -401,7 +403,7 @@ std::vector<NamedLimb> named_limbs(const MechanismFile& file) {
   return list;
 }
 
-/// "limb 4", "limbs 1, 2 and 3", counted from 1.
+/// The limbs' text for messages: "limb 4", "limbs 1, 2 and 3", counted from 1.
 std::string limbs_text(const std::vector<std::size_t>& limbs) {
   std::string text = limbs.size() == 1 ? "limb " : "limbs ";
   for (std::size_t k = 0; k < limbs.size(); ++k) {
@@ -411,7 +413,7 @@ std::string limbs_text(const std::vector<std::size_t>& limbs) {
   return text;
 }
 
-/// Adds the limbs of a number or a name to those of an error.
+/// Adds the limbs with this number or name to those of an error.
 void add_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, ErrorLines& error) {
   const auto add = [&](std::size_t limb) {
     if (std::ranges::find(error.limbs, limb) != error.limbs.end()) {
@@ -448,7 +450,7 @@ void read_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, Er
   for (const std::size_t i : error.limbs) error.numbers.push_back(alone ? 0 : by_copy ? known[i].copy : i + 1);
 }
 
-/// The frame behind a joint of each limb.
+/// Reads the name of a joint; the frame of the error is the one behind that joint, in each limb.
 void read_frame_by_name(const StudyValue& frame, const std::vector<NamedLimb>& known, ErrorLines& error) {
   for (const std::size_t i : error.limbs) {
     const std::optional<std::size_t> behind = known[i].frame_behind(frame.text());
@@ -460,7 +462,7 @@ void read_frame_by_name(const StudyValue& frame, const std::vector<NamedLimb>& k
   }
 }
 
-/// Which limbs, and a frame that they have.
+/// Reads the limbs of an error, and a frame that all of them have.
 void read_slot(const StudySection& section, const std::vector<NamedLimb>& known, ErrorLines& error) {
   read_limbs(section.require("limb"), known, error);
   const StudyValue frame = section.require("frame");
@@ -615,7 +617,7 @@ const Keys<MechanismFile, Nothing>& file_keys() {
   return keys;
 }
 
-/// A table whose keys are names that the file chooses.
+/// A table whose keys are names chosen by the file.
 StudyTable of_names(std::vector<std::string_view> paths, std::string_view name, std::string type,
                     std::string_view meaning, std::string missing = {}, std::string example = {}) {
   return {.paths = std::move(paths),
@@ -627,11 +629,11 @@ StudyTable of_names(std::vector<std::string_view> paths, std::string_view name, 
                     .meaning = meaning}}};
 }
 
-/// How a kind of joint is written, drawn and made.
+/// The properties of a kind of joint: its name in files and its letter in sketches.
 struct JointTraits {
   std::string_view name;
   char letter;
-  std::size_t elements;  ///< elementary joints
+  std::size_t elements;  ///< number of elementary joints
 };
 
 JointTraits traits_of(JointKind kind) {

@@ -23,26 +23,26 @@ using Vector = Eigen::VectorXd;
 constexpr double kDependent = 1e-9;
 constexpr double kMillimetres = 1e3;
 
-/// Joints that make one, of which the point or an axis may be meant otherwise: in a limb and its copies.
+/// A joint of a limb and its copies, whose point or axis may be wrong.
 struct Suspect {
   std::vector<std::size_t> limbs;
-  std::size_t first;  ///< of its elementary joints
-  std::size_t count;  ///< of them
-  bool point;         ///< else the axis that they have in common
+  std::size_t first;  ///< position of its first elementary joint
+  std::size_t count;  ///< number of its elementary joints
+  bool point;         ///< whether its point is suspected; else its common axis
 };
 
-/// The rows that no joint takes away, by the metric, at one pose.
+/// The loop equations at one pose, reduced by the metric to what no joint can change.
 struct PoseEquations {
   State state;
   lie::Matrix6<double> root;
-  Matrix rest;      ///< [6 limbs x D] orthonormal, at right angles to what joints and the pose can do
-  Vector mismatch;  ///< [D]
+  Matrix rest;      ///< [6 limbs x D] orthonormal, perpendicular to motions of the joints and of the pose
+  Vector mismatch;  ///< [D] mismatch in this basis
 };
 
 PoseEquations equations_at(const Mechanism& unit, double reach, const Tracked& tracked) {
   PoseEquations made;
   const std::vector<double> q = scaled_displacements(unit, tracked.displacements, 1.0 / reach);
-  made.state.resize(static_cast<Index>(q.size()) + 6);  // a mechanism without bodies between
+  made.state.resize(static_cast<Index>(q.size()) + 6);  // a mechanism without further bodies
   std::ranges::copy(q, made.state.begin());
   for (std::size_t c = 0; c < 6; ++c) {
     made.state[static_cast<Index>(q.size() + c)] = tracked.pose[c] / (c < 3 ? reach : 1.0);
@@ -61,8 +61,8 @@ PoseEquations equations_at(const Mechanism& unit, double reach, const Tracked& t
   return made;
 }
 
-/// The joints of a limb as they are written, each with what of it may be meant otherwise. The axes of S are its own
-/// affair; those of C are one.
+/// Adds the suspects of a limb: the joints as written, each with its point or axis. The axes of S are not suspects,
+/// because they follow from its neighbours; those of C are one axis.
 void add_suspects(const Limb& limb, std::size_t position, std::vector<Suspect>& list) {
   for (std::size_t j = 0; j < limb.joints.size();) {
     std::size_t end = j + 1;
@@ -79,7 +79,7 @@ void add_suspects(const Limb& limb, std::size_t position, std::vector<Suspect>& 
   }
 }
 
-/// Of all limbs: what copies have is written once.
+/// The suspects of all limbs. Copies share one suspect, because they are written once.
 std::vector<Suspect> suspects_of(const Mechanism& unit) {
   std::vector<Suspect> list;
   const auto written = [&](std::size_t limb) {
@@ -98,7 +98,8 @@ std::vector<Suspect> suspects_of(const Mechanism& unit) {
   return list;
 }
 
-/// What twists of a joint's axis at home do to the residual of its limb: the limb's other axes stay. [6 x 6]
+/// The effects of twists of a joint's axis at home on the residual of its limb while the limb's other axes stay. [6 x
+/// 6]
 std::vector<lie::Matrix6<double>> effects_of_axes(const Mechanism& unit, const State& state, const Suspect& suspect,
                                                   std::size_t position) {
   std::size_t k = 0;
@@ -117,8 +118,8 @@ std::vector<lie::Matrix6<double>> effects_of_axes(const Mechanism& unit, const S
   return effects;
 }
 
-/// Directions in which the suspect's point may move or its axis may turn in a limb, as twists at the base's origin:
-/// along and about axes of its frame, which copies turn with them.
+/// Directions in which the suspect's point may move or its axis may turn in a limb, as twists at the base's origin.
+/// They are along and about axes of the suspect's frame, which copies turn with them.
 Eigen::Matrix<double, 6, Eigen::Dynamic> twists_of(const Suspect& suspect, const Limb& limb) {
   const Transform& home = limb.joints[suspect.first].at_home;
   Eigen::Matrix<double, 6, Eigen::Dynamic> twists(6, suspect.point ? 3 : 2);
@@ -134,11 +135,11 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> twists_of(const Suspect& suspect, const
   return twists;
 }
 
-/// A suspect with what it ought to be, and what would be left then.
+/// A corrected suspect, and the mismatch that would remain.
 struct Correction {
   Suspect suspect;
-  Vector by;       ///< along its twists, rad or reaches
-  Vector is_left;  ///< [poses] |mismatch| at each
+  Vector by;       ///< correction along its twists, rad or shares of the reach
+  Vector is_left;  ///< [poses] remaining |mismatch| at each
 };
 
 Correction correction_of(const Mechanism& unit, const std::vector<PoseEquations>& poses, const Suspect& suspect) {
@@ -169,7 +170,7 @@ Correction correction_of(const Mechanism& unit, const std::vector<PoseEquations>
   return made;
 }
 
-/// "its axis along (0, 0, 1) instead of (0.001, 0, 1)".
+/// Text of a correction: "its axis along (0, 0, 1) instead of (0.001, 0, 1)".
 std::string corrected_text(const Transform& home, double reach, const Correction& correction) {
   if (correction.suspect.point) {
     const double scale = kMillimetres * reach;
@@ -196,7 +197,7 @@ InputError misfit(const Mechanism& mechanism, std::span<const PoseMobility> pose
     Correction correction = correction_of(unit, equations, suspect);
     if (!best || correction.is_left.norm() < best->is_left.norm()) best = std::move(correction);
   }
-  // The gap is over pairs, what is left over limbs: sum over pairs |r_k - r_i|^2 = limbs sum |r_i|^2.
+  // The gap is over pairs, the remaining mismatch over limbs: sum over pairs |r_k - r_i|^2 = limbs sum |r_i|^2.
   const auto limbs = static_cast<double>(unit.limbs.size());
   const double is_left = mechanism.reach * best->is_left.maxCoeff() *
                          std::sqrt(limbs / static_cast<double>(chain::pairs_of(unit.limbs.size()).size()));

@@ -6,9 +6,9 @@
 
 namespace poesy::file {
 
-/// That the limbs do not fit each other, and the joint whose axis or point, if it were another one, would leave the
-/// least of it, with that axis or point. mechanism: with a precision by which the poses were reached; poses: at least
-/// one.
+/// The error that the limbs do not fit each other. It names the joint whose corrected axis or point would reduce the
+/// mismatch most, with the corrected value. mechanism: with a precision at which the poses were reached; poses: at
+/// least one.
 InputError misfit(const Mechanism& mechanism, std::span<const PoseMobility> poses);
 
 }  // namespace poesy::file

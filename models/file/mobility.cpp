@@ -14,7 +14,7 @@ using Matrix = Eigen::MatrixXd;
 using Eigen::Index;
 using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// A matrix's singular values, its rank, and an orthonormal base of what it maps to zero.
+/// A matrix's singular values, its rank, and an orthonormal basis of its null space.
 struct Decomposed {
   Eigen::VectorXd values;
   Index rank;
@@ -22,7 +22,8 @@ struct Decomposed {
   Matrix V;     ///< [columns x columns]
 };
 
-/// threshold: below which share a singular value counts as zero: of the largest one, or of `largest` where it is not 0.
+/// threshold: a singular value below this share counts as zero: a share of the largest one, or of `largest` if that is
+/// not 0.
 Decomposed decomposed(const Matrix& matrix, double threshold, double largest = 0.0) {
   if (matrix.cols() == 0 || matrix.rows() == 0) {
     const Matrix identity = Matrix::Identity(matrix.cols(), matrix.cols());
@@ -36,17 +37,18 @@ Decomposed decomposed(const Matrix& matrix, double threshold, double largest = 0
 
 std::size_t size(Index count) { return static_cast<std::size_t>(count); }
 
-/// Loop Jacobian, and bodies' twists, in units of the reach.
+/// Loop Jacobian and twists of the bodies, with lengths in units of the reach.
 struct Jacobians {
   Matrix loops;
-  std::vector<Columns> bodies;       ///< [bodies][6 x joints] their twists by the limbs that place them; the base's: 0
-  std::vector<const Joint*> joints;  ///< of the columns
-  std::vector<std::string> limbs;    ///< of the columns, as messages name them
+  std::vector<Columns> bodies;       ///< [bodies][6 x joints] twists by the limbs that place them; the base's: 0
+  std::vector<const Joint*> joints;  ///< joint of each column
+  std::vector<std::string> limbs;    ///< limb of each column, for messages
 
   const Columns& platform() const { return bodies[kPlatform]; }
 };
 
-/// Every body has the twist of the first limb that ends there, and limbs that end there too have theirs less it.
+/// Each body has the twist of the first limb that ends there; other limbs that end there give equations, their twist
+/// minus that one.
 Jacobians jacobians(const Mechanism& unit, std::span<const double> q) {
   const auto joints = static_cast<Index>(unit.moving());
   const std::size_t bodies = unit.bodies.size();
@@ -64,7 +66,7 @@ Jacobians jacobians(const Mechanism& unit, std::span<const double> q) {
     }
   }
   std::vector<Transform> at(bodies);
-  /// The twist of the limb's end, without that of the body where it begins, and its pose.
+  /// Adds the twist of the limb's end to `to` and returns the pose of the end.
   const auto add_limb = [&](std::size_t i, Eigen::Ref<Matrix> to, double sign) {
     const Limb& limb = unit.limbs[i];
     Columns columns(6, static_cast<Index>(limb.moving()));
@@ -90,7 +92,7 @@ Jacobians jacobians(const Mechanism& unit, std::span<const double> q) {
   return made;
 }
 
-/// With one column for the joints of one drive, in the place of the first: its motion is the sum of theirs.
+/// Replaces the columns of the joints of one drive by their sum, at the position of the first.
 Jacobians with_one_column_a_drive(Jacobians all, const std::vector<Drive>& drives) {
   std::vector<Index> kept;
   std::vector<bool> follows(all.joints.size(), false);
@@ -114,7 +116,7 @@ Jacobians with_one_column_a_drive(Jacobians all, const std::vector<Drive>& drive
   return made;
 }
 
-/// The columns of joints that no drive holds.
+/// The columns of joints without a drive.
 Matrix passive(const Matrix& matrix, const Jacobians& all) {
   Matrix made(matrix.rows(), matrix.cols());
   Index count = 0;
@@ -124,7 +126,7 @@ Matrix passive(const Matrix& matrix, const Jacobians& all) {
   return made.leftCols(count);
 }
 
-/// "(0, 0.71, 0.71)".
+/// Text of a vector: "(0, 0.71, 0.71)".
 std::string vector_text(const Vector3& vector) {
   const auto entry = [](double value) {
     const double rounded = std::round(100.0 * value) / 100.0;
@@ -133,7 +135,8 @@ std::string vector_text(const Vector3& vector) {
   return "(" + entry(vector.x()) + ", " + entry(vector.y()) + ", " + entry(vector.z()) + ")";
 }
 
-/// "joint 'A' of limb 2 is loose, and the platform turns about (0, 0, 1)" for a motion of the passive joints.
+/// Sets the text for a motion of the passive joints: "joint 'A' of limb 2 is loose, and the platform turns about (0, 0,
+/// 1)".
 void describe_loose(const Jacobians& all, const Eigen::VectorXd& motion, const lie::Screw<double>& twist,
                     Mobility& found) {
   Index largest = 0;
@@ -153,7 +156,7 @@ void describe_loose(const Jacobians& all, const Eigen::VectorXd& motion, const l
                      (turns ? "turns about " + vector_text(direction) : "slides along " + vector_text(direction));
 }
 
-/// bodies: of the mechanism.
+/// Finds motions of the platform or another body while all drives are held. bodies: of the mechanism.
 void find_loose(const Jacobians& all, const std::vector<assembly::Body>& bodies, double threshold, Mobility& found) {
   const Matrix loops = passive(all.loops, all);
   const double largest = found.singular_values.empty() ? 0.0 : found.singular_values[0];
@@ -172,7 +175,7 @@ void find_loose(const Jacobians& all, const std::vector<assembly::Body>& bodies,
   }
 }
 
-/// The first coordinate without which the others have the same rank.
+/// The first coordinate whose removal does not change the rank.
 std::string dependent_of(const Mechanism& unit, const Matrix& rates, Index rank) {
   for (Index row = 0; row < rates.rows(); ++row) {
     Matrix others = rates;
@@ -183,8 +186,8 @@ std::string dependent_of(const Mechanism& unit, const Matrix& rates, Index rank)
 }
 
 void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Matrix& twists, Mobility& found) {
-  if (twists.cols() == 0) return;  // nothing moves; Eigen has no rows of a matrix without columns
-  // Where the coordinates are singular, the least rates that come nearest.
+  if (twists.cols() == 0) return;  // nothing moves; Eigen does not support a matrix without columns here
+  // At a singular pose of the coordinates, the least-squares rates of least norm.
   const Matrix rates = linalg::pseudo_inverse(platform_columns(unit, pose)) * twists;
   Matrix chosen(static_cast<Index>(unit.coordinates.size()), rates.cols());
   for (std::size_t c = 0; c < unit.coordinates.size(); ++c) {
@@ -195,14 +198,14 @@ void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Mat
   if (found.coordinates_rank < unit.coordinates.size()) found.dependent = dependent_of(unit, chosen, rank);
 }
 
-/// What singular values of the loops are compared with where drives move several joints, whose motions may cancel;
-/// 0: the largest of their own.
+/// The reference for singular values of the loops if drives move several joints, whose motions may cancel; 0: their own
+/// largest value.
 double largest_of(const Matrix& loops_by_joint, const std::vector<Drive>& drives) {
   if (std::ranges::none_of(drives, &Drive::is_shared)) return 0.0;
   return linalg::singular_values(loops_by_joint)[0];
 }
 
-/// Lengths in units of the reach.
+/// The mobility of a mechanism with lengths in units of its reach.
 Mobility mobility_of(const Mechanism& unit, std::span<const double> q, const PlatformPose& pose) {
   const double threshold = unit.precision.rank_threshold;
   const Jacobians of_joints = jacobians(unit, q);
@@ -261,7 +264,7 @@ Mobility home_mobility(const Mechanism& mechanism) {
 
 namespace {
 
-/// What the platform does besides its coordinates, from home.
+/// Finds the motion of the platform from home other than by its coordinates.
 void find_parasitic(const Mechanism& mechanism, const PlatformPose& pose, PoseMobility& found) {
   const PlatformPose home = home_pose(mechanism);
   for (std::size_t component = 0; component < pose.size(); ++component) {
@@ -295,8 +298,8 @@ std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::si
 
 namespace {
 
-/// " in limb 2, which has none" where some limbs have a drive and that one has not; else empty. Empty also where limbs
-/// branch, because many of them have no drive then.
+/// " in limb 2, which has none" if some limbs have a drive and that one has not; else empty. Also empty if limbs
+/// branch, because then many of them have no drive.
 std::string limb_without_drive(const Mechanism& mechanism) {
   if (mechanism.is_branched()) return {};
   const auto has_none = [](const Limb& limb) { return std::ranges::none_of(limb.joints, &Joint::actuated); };
@@ -305,7 +308,7 @@ std::string limb_without_drive(const Mechanism& mechanism) {
   return " in limb " + std::to_string(first - mechanism.limbs.begin() + 1) + ", which has none";
 }
 
-/// Throws where the platform moves although all drives are held. where: "" at home, or " at some poses".
+/// Throws if the platform can move while all drives are held. where: "" at home, or " at some poses".
 void check_held(const Mechanism& mechanism, const Mobility& found, const std::string& where) {
   if (found.loose == 0) return;
   throw InputError(

@@ -62,7 +62,7 @@ chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<
   return model;
 }
 
-/// What rounded numbers leave of the deformation, at the most, at poses of the workspace.
+/// The largest deformation, over poses of the workspace, that rounded numbers cause without errors.
 double nominal_deformation(const Mechanism& mechanism, const chain::DeformationModel& model, std::size_t response) {
   const std::vector<double> no_errors(model.slots.size(), 0.0);
   double largest = 0.0;
@@ -73,10 +73,10 @@ double nominal_deformation(const Mechanism& mechanism, const chain::DeformationM
   return largest;
 }
 
-/// Limbs between base and platform alone, without stiffness.
+/// A model of limbs between base and platform only, without stiffness.
 class ChainModel final : public TrackedModel {
  public:
-  /// points: of the platform's metric; none: as published.
+  /// points: of the platform's metric; none: the published weight.
   ChainModel(const MechanismFile& file, Checked found, std::vector<Vector3> points, chain::Fidelity fidelity)
       : TrackedModel(file, found),
         model_(chain_model(mechanism(), tracker(), found.home, std::move(points))),
@@ -139,14 +139,14 @@ class ChainModel final : public TrackedModel {
   }
 
  private:
-  /// Errors change what rounded numbers leave by less than this factor.
+  /// Errors change the deformation by rounded numbers by less than this factor.
   static constexpr double kNominalShare = 2.0;
 
   chain::DeformationModel model_;
   chain::Fidelity fidelity_;
 };
 
-/// A file, and what was found of its mechanism with the default geometry.
+/// A file, and its checked mechanism with the default geometry.
 struct Read {
   MechanismFile file;
   std::vector<double> defaults;
@@ -158,10 +158,10 @@ struct Read {
   }
 };
 
-/// By what mismatch is weighed, or forces are found.
+/// The basis of the responses: forces by stiffness, or mismatch by the platform's metric or by the published weight.
 enum class By { stiffness, platform, published };
 
-/// The mechanism with these values. points: of the platform's metric; none: the file's own.
+/// The model for these values of the geometry. points: of the platform's metric; none: the file's own.
 std::unique_ptr<Model> built(const Read& read, std::span<const double> values, std::size_t fidelity, By by,
                              std::optional<std::vector<Vector3>> points = {}) {
   Checked found = read.with(values);
@@ -215,7 +215,7 @@ std::string reference() {
 
 namespace {
 
-/// Of a file that has been read.
+/// The catalog entry of a file.
 CatalogEntry entry_of(MechanismFile file, const std::string& path) {
   const std::vector<double> defaults = default_geometry(file);
   Checked found = checked(mechanism(file, defaults), Workspace::in_reach);
@@ -235,7 +235,7 @@ CatalogEntry entry_of(MechanismFile file, const std::string& path) {
   return *other;
 }
 
-/// Gives the entry, by all its metrics, the way to other loads.
+/// Adds to the entry, for all its metrics, the function that changes loads.
 CatalogEntry with_loads(CatalogEntry entry, const MechanismFile& file, const std::string& path) {
   entry.with_load = [file, path](const StudyValue& value) {
     MechanismFile loaded = file;

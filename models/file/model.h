@@ -6,11 +6,11 @@
 
 namespace poesy::file {
 
-/// A mechanism from the text of its file, as a study may name it. `path` is for messages.
-/// Throws InputError "FILE:LINE:COL: ..." where the text describes no mechanism that its drives hold (mobility.h).
+/// The catalog entry of a mechanism from the text of its file. path: for messages. Throws InputError "FILE:LINE:COL:
+/// ..." if the text describes no mechanism that its drives hold (mobility.h).
 CatalogEntry catalog_entry(const std::string& text, const std::string& path);
 
-/// The whole reference of mechanism files, as Markdown.
+/// The complete reference of mechanism files, as Markdown.
 std::string reference();
 
 }  // namespace poesy::file

@@ -7,32 +7,32 @@
 
 namespace poesy::file {
 
-/// The numbers that expressions of a file have for these values of its geometry, SI. All throw InputError with the
-/// place where an expression has none, or one of another dimension.
+/// Evaluates the expressions of a file for values of its geometry, in SI. All functions throw InputError with the place
+/// in the file if an expression has no value or another dimension.
 class Numbers {
  public:
-  /// Both must outlive it.
+  /// values: of file.geometry, SI. Both arguments must outlive the object.
   Numbers(const MechanismFile& file, std::span<const double> values) : file_(&file), values_(values) {}
 
-  const MechanismFile& file() const { return *file_; }  ///< That has the expressions.
+  const MechanismFile& file() const { return *file_; }  ///< The file of the expressions.
 
-  /// The mechanism's reach (m), by which points are told apart.
+  /// The mechanism's reach (m), the scale at which two points count as equal.
   /// @{
   void set_reach(double reach) { reach_ = reach; }
   double reach() const { return reach_; }
   /// @}
 
-  double quantity(const Expression& expression, const Physical& wanted) const;  ///< Of this kind.
-  double positive(const Expression& expression, const Physical& wanted) const;  ///< Greater than 0.
-  double length(const Expression& expression) const;                            ///< m
-  Vector3 point(const Triple& triple) const;                                    ///< m
-  Vector3 vector(const Triple& triple, const Physical& wanted) const;           ///< Each entry of this kind.
-  /// Of unit length. Throws where the entries have several dimensions or are all zero.
+  double quantity(const Expression& expression, const Physical& wanted) const;  ///< SI value of this quantity.
+  double positive(const Expression& expression, const Physical& wanted) const;  ///< The same, checked to be positive.
+  double length(const Expression& expression) const;                            ///< SI value of a length (m).
+  Vector3 point(const Triple& triple) const;                                    ///< A point (m).
+  Vector3 vector(const Triple& triple, const Physical& wanted) const;  ///< A vector with entries of this quantity.
+  /// A direction as a unit vector. Throws if its entries have different dimensions or are all zero.
   Vector3 direction(const Triple& triple) const;
-  /// Axes of a frame with this z, and x made perpendicular to it.
+  /// The rotation of a frame with this z axis; x is made perpendicular to z.
   lie::Matrix3<double> axes(const Triple& x, const Triple& z) const;
 
-  bool same(const Vector3& a, const Vector3& b) const;  ///< Whether they are one point.
+  bool same(const Vector3& a, const Vector3& b) const;  ///< Whether two points are the same.
 
  private:
   const MechanismFile* file_;
@@ -40,18 +40,18 @@ class Numbers {
   double reach_ = 1.0;
 };
 
-/// Up to which angle directions count as parallel, rad.
+/// Directions count as parallel below this angle (rad).
 inline constexpr double kParallel = 1e-6;
 
-bool parallel(const Vector3& a, const Vector3& b);  ///< Of unit length.
+bool parallel(const Vector3& a, const Vector3& b);  ///< Whether two unit vectors are parallel.
 
-/// The rotation of a frame with these axes, perpendicular unit vectors.
+/// The rotation of a frame with these axes, which are perpendicular unit vectors.
 lie::Matrix3<double> frame_of(const Vector3& x, const Vector3& z);
 
-/// What of a direction is perpendicular to z, of unit length.
+/// The part of a direction perpendicular to z, as a unit vector.
 Vector3 perpendicular(const Vector3& direction, const Vector3& z);
 
-/// Where the k-th of things alike is, seen from the first.
+/// The motion from the first copy to copy k, in the base frame.
 Transform turned(const Copies& copies, std::size_t k);
 
 }  // namespace poesy::file

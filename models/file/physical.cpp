@@ -25,17 +25,18 @@ constexpr std::array<Physical, 7> kOfDimensions{{kLength,
 constexpr std::array<Physical, 7> kNamed{
     {kMass, kAcceleration, kForce, kMoment, kStiffness, kRotationalStiffness, kModulus}};
 
-/// Whether mass or time is among the powers, as it is not in geometry.
+/// Whether the powers include mass or time, which geometry does not have.
 bool is_mechanical(const Powers& powers) { return powers.mass != 0 || powers.time != 0; }
 
-/// A unit that may stand behind a number.
+/// A unit that may follow a number.
 struct KnownUnit {
   std::string_view name;
   double si;
   Powers powers;
 };
 
-/// Of the units of studies (engine/base/units.h), what expressions know. A time could not be told from a parameter h.
+/// The dimensions of units of studies (engine/base/units.h) that expressions know. Time is missing, because h could not
+/// be distinguished from a parameter.
 constexpr std::array<Dimension, 4> kOfStudies{Dimension::length, Dimension::angle, Dimension::force, Dimension::moment};
 
 constexpr std::array<KnownUnit, 22> kOthers{{{"N/m", 1.0, kStiffness.powers},
@@ -71,7 +72,7 @@ std::vector<KnownUnit> all_units() {
   return list;
 }
 
-/// Another way to write a part of a unit's name, in UTF-8.
+/// An alternative spelling of a part of a unit's name, in UTF-8.
 struct Sign {
   std::string_view part;
   std::string_view sign;
@@ -79,13 +80,13 @@ struct Sign {
 
 constexpr std::array<Sign, 3> kSigns{{{"um", "\xC2\xB5m"}, {"um", "\xCE\xBCm"}, {"deg", "\xC2\xB0"}}};
 
-/// Whether a word that has come so far goes on with this character.
+/// Whether a word may continue with this character.
 bool goes_on(char c) {
   const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
   return letter || (c >= '0' && c <= '9') || static_cast<unsigned char>(c) >= 0x80;
 }
 
-/// How many bytes of the text this unit's name takes at its beginning; 0 where another name stands there.
+/// Number of bytes of this unit's name at the beginning of the text; 0 if the text begins otherwise.
 std::size_t length_of(std::string_view name, std::string_view text) {
   const std::size_t size = text.size();
   while (!name.empty()) {
@@ -99,7 +100,7 @@ std::size_t length_of(std::string_view name, std::string_view text) {
   return !text.empty() && goes_on(text.front()) ? 0 : size - text.size();
 }
 
-/// "m^2 s^-1": each unit with its power; without those of power 0.
+/// The product of units as text, without powers of 0: "m^2 s^-1".
 std::string powers_text(std::span<const std::pair<std::string_view, int>> powers) {
   std::string text;
   for (const auto& [unit, power] : powers) {

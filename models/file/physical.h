@@ -7,7 +7,7 @@
 
 #include "engine/base/units.h"
 
-/// What the numbers of a mechanism file measure, and the units in which they may be written.
+/// The quantities of a mechanism file and their units.
 namespace poesy::file {
 
 /// A dimension as a product of powers of m, rad, kg and s.
@@ -17,21 +17,21 @@ struct Powers {
   int mass = 0;    ///< of kg
   int time = 0;    ///< of s
 
-  /// Whether values of these dimensions may be added. An angle is not a number, but in a product with other units rad
-  /// is 1, so that N m/rad and N m are alike.
+  /// Whether values of these dimensions may be added. An angle is not a plain number, but in a product with other units
+  /// rad is 1, so that N m/rad and N m are alike.
   bool like(const Powers& other) const;
 
-  bool only_angle() const;  ///< Whether all powers but that of rad are 0.
+  bool only_angle() const;  ///< Whether all powers other than that of rad are 0.
 
   bool operator==(const Powers&) const = default;  ///< Whether all powers are equal.
 };
 
-/// A quantity by the name that people give it.
+/// A quantity by its usual name.
 struct Physical {
   std::string_view name;     ///< with its article: "a stiffness"
   Powers powers;             ///< its dimension
-  std::string_view unit;     ///< that says which one is meant: "N/m"; empty where the name says it
-  std::string_view example;  ///< of a value: "20 N/um"; empty for a number
+  std::string_view unit;     ///< the unit that names it in messages, "N/m"; empty if the name is enough
+  std::string_view example;  ///< an example, "20 N/um"; empty for a number
 };
 
 inline constexpr Physical kLength{"a length", {.length = 1}, "", "1 mm"};                     ///< m
@@ -60,26 +60,26 @@ inline constexpr Physical kRotationalStiffness{
 /// Pa
 inline constexpr Physical kModulus{"a modulus", {.length = -1, .mass = 1, .time = -2}, "Pa", "210 GPa"};
 
-/// The quantity that a dimension of the engine is.
+/// The quantity of a dimension of the engine.
 const Physical& physical(Dimension dimension);
 
-/// "a length", "an angle", "a number", "length^2 angle^-1"; with mass or time "a force" where it has a name, else
-/// "kg m^2 s^-1".
+/// A dimension as text: "a length", "an angle", "a number", "length^2 angle^-1". With mass or time "a force" if the
+/// quantity has a name, else "kg m^2 s^-1".
 std::string dimension_text(const Powers& powers);
 
 /// A unit at the beginning of a text.
 struct WrittenUnit {
-  double si;           ///< its size
-  Powers powers;       ///< what it measures
-  std::size_t length;  ///< bytes of the text that its name takes
+  double si;           ///< its size in SI
+  Powers powers;       ///< its dimension
+  std::size_t length;  ///< number of bytes of its name in the text
 };
 
-/// The longest unit with whose name a text begins: "N m/rad", not "N". A micro sign (U+00B5) or Greek mu (U+03BC) may
-/// stand for the u before m, a degree sign (U+00B0) for deg, several blanks for one. Empty where there is none.
+/// The unit with the longest name that begins the text: "N m/rad", not "N". A micro sign (U+00B5) or Greek mu (U+03BC)
+/// may replace the u before m, a degree sign (U+00B0) deg, and several blanks one. Empty if no unit begins the text.
 std::optional<WrittenUnit> unit_at_begin(std::string_view text);
 
-/// The names of the units that a quantity may need, for messages: those of length and angle, and all others too where
-/// mass or time is among its powers.
+/// The names of possible units of a quantity, for messages: those of length and angle, and also all others if mass or
+/// time is among its powers.
 std::string known_units(const Powers& powers);
 
 }  // namespace poesy::file

@@ -13,26 +13,26 @@ namespace {
 using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 
-/// What strains a limb less than this share of what its softest direction gives way, strains it not at all.
+/// A wrench strains a limb only if the strain is at least this share of the limb's largest compliance.
 constexpr double kRigid = 1e-12;
-/// A share of a wrench that is rounding.
+/// A smaller share of a wrench is rounding.
 constexpr double kNothing = 1e-6;
 
-/// An orthonormal base of what a matrix maps to zero.
+/// An orthonormal basis of a matrix's null space.
 Matrix null_space(const Matrix& matrix, double threshold) {
   const linalg::SingularValueDecomposition svd = linalg::right_singular_vectors(matrix);
   const Index rank = (svd.values.array() > threshold * svd.values[0]).count();
   return svd.V.rightCols(matrix.cols() - rank);
 }
 
-/// Wrenches of all limbs, as the equations have them, that balance at every body and strain no limb: the null vectors
-/// of the matrix that are not motions, [wrenches x k].
+/// Wrenches of all limbs, in the order of the equations, that balance at every body and strain no limb: null vectors of
+/// the matrix that are not motions, [wrenches x k].
 Matrix unstrained(const assembly::Equilibrium& equations, double rank_threshold) {
   const Matrix& matrix = equations.matrix();
   const Index wrenches = equations.first_wrenches().back();
   const Matrix balanced = null_space(matrix.bottomLeftCorner(matrix.rows() - wrenches, wrenches), rank_threshold);
   if (balanced.cols() == 0) return balanced;
-  // Each limb by itself, because one may be softer than another by many orders of magnitude.
+  // Each limb is scaled by itself, because compliances may differ by many orders of magnitude.
   Matrix strain = matrix.topLeftCorner(wrenches, wrenches);
   for (std::size_t e = 0; e + 1 < equations.first_wrenches().size(); ++e) {
     const Index first = equations.first_wrenches()[e];
@@ -45,7 +45,7 @@ Matrix unstrained(const assembly::Equilibrium& equations, double rank_threshold)
   return balanced * svd.V.rightCols(balanced.cols() - strained);
 }
 
-/// Limbs that load each other by these wrenches: the first one that does, and all that it has to do with.
+/// The limbs that load each other by these wrenches: the first such limb, and all that are connected with it.
 std::vector<std::size_t> loaded_together(const Matrix& wrenches, const assembly::Equilibrium& equations) {
   const std::span<const Index> first = equations.first_wrenches();
   const auto rows = [&](std::size_t e) { return wrenches.middleRows(first[e], first[e + 1] - first[e]); };
@@ -57,7 +57,7 @@ std::vector<std::size_t> loaded_together(const Matrix& wrenches, const assembly:
   return limbs;
 }
 
-/// "limbs 1, 2 and left_3".
+/// Labels of limbs for messages: "limbs 1, 2 and left_3".
 std::string labels_text(const Mechanism& mechanism, const std::vector<std::size_t>& limbs) {
   std::string text = limbs.size() == 1 ? "limb " : "limbs ";
   for (std::size_t k = 0; k < limbs.size(); ++k) {

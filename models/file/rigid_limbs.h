@@ -5,9 +5,9 @@
 
 namespace poesy::file {
 
-/// Throws InputError where limbs that are rigid over-constrain each other at home, with their labels: then wrenches
-/// exist that no load balances and that strain nothing, and the equations of the assembly do not say how large they
-/// are. The assembly is the mechanism's by its stiffness.
+/// Throws InputError, with their labels, if rigid limbs over-constrain each other at home. Then wrenches exist that
+/// need no load and cause no strain, so the equations of the assembly do not determine their size. model: the
+/// mechanism's assembly with stiffness.
 void check_rigid_limbs(const Mechanism& mechanism, const assembly::AssemblyModel& model,
                        const assembly::Nominal& at_home);
 

@@ -10,15 +10,15 @@
 namespace poesy::file {
 namespace {
 
-/// The largest singular value that rounded input may leave in place of zero, relative to the largest of all.
+/// The largest singular value that may be zero but for rounded input, relative to the largest of all.
 constexpr double kLargestZero = 1e-2;
-/// The number of ranks that are tried.
+/// The number of gaps that are tried.
 constexpr std::size_t kMostGaps = 4;
-/// By how much singular values that are zero but for rounding may be larger elsewhere; the second where numbers are off
-/// by so much that the first leaves nothing to move.
+/// Factors by which singular values that are zero but for rounding may grow at other poses. The second is used if, with
+/// the first, the rank leaves no motion.
 constexpr std::array kMargins{5.0, 1.5};
 
-/// What a check finds wrong; nothing where it passes.
+/// The error that a check throws; empty if it passes.
 template <class Check>
 std::optional<InputError> problem_of(Check check) {
   try {
@@ -29,7 +29,7 @@ std::optional<InputError> problem_of(Check check) {
   return std::nullopt;
 }
 
-/// A rank, and the singular values on both sides of it as shares of the largest.
+/// A rank, and its neighbouring singular values as shares of the largest.
 struct Gap {
   std::size_t rank;
   double above;
@@ -37,19 +37,19 @@ struct Gap {
   double margin;  ///< of kMargins
 
   double ratio() const { return above / std::max(below, kRankThreshold); }
-  /// Whether the mechanism has that rank at this configuration too; the gap is then no wider than there.
+  /// Whether the mechanism has this rank at this configuration too. Narrows the gap to the values there.
   bool narrow(const std::vector<double>& values) {
     above = std::min(above, values[rank - 1] / values[0]);
     below = std::max(below, values[rank] / values[0]);
     return above > below;
   }
-  /// What tells the sides apart; nearer to the lower one, because the upper one falls near singular poses.
+  /// The threshold between both sides. It is nearer to the lower one, because the upper one falls near singular poses.
   double threshold() const {
     return margin * below <= kRankThreshold ? kRankThreshold : std::min(margin * below, std::sqrt(above * below));
   }
 };
 
-/// The widest gaps where the rank of rounded numbers may be, the widest first.
+/// The gaps where the rank of rounded numbers may be, the widest first.
 std::vector<Gap> gaps_of(const std::vector<double>& values) {
   std::vector<Gap> list;
   for (std::size_t rank = 1; rank < values.size(); ++rank) {
@@ -61,20 +61,20 @@ std::vector<Gap> gaps_of(const std::vector<double>& values) {
   return list;
 }
 
-/// The largest gap of the limbs where they were tried.
+/// The largest mismatch of the limbs at these poses.
 double largest_mismatch(const std::vector<PoseMobility>& poses) {
   double largest = 0.0;
   for (const PoseMobility& pose : poses) largest = std::max(largest, pose.tracked.mismatch);
   return largest;
 }
 
-/// What came of taking numbers as rounded; nothing where that is not how the mechanism moves.
+/// The result of treating numbers as rounded; empty if the mechanism does not move that way.
 struct Attempt {
   std::optional<Checked> checked = {};
-  std::optional<InputError> misfit = {};  ///< loops close only nearly
+  std::optional<InputError> misfit = {};  ///< set if the loops close only approximately
 };
 
-/// With this rank at home.
+/// Tries the rank of this gap.
 Attempt rounded(Mechanism mechanism, Gap gap) {
   const auto passes = [&](const Mobility& home, std::span<const PoseMobility> poses) {
     return !problem_of([&] {
@@ -115,7 +115,7 @@ Checked checked(Mechanism mechanism, Workspace workspace) {
     if (workspace == Workspace::in_reach) check_mobility(mechanism, home, poses);
   });
   if (!problem && !open) return {std::move(mechanism), std::move(home)};
-  if (mechanism.is_branched() && problem) throw *problem;  // numbers of branched limbs are taken as exact
+  if (mechanism.is_branched() && problem) throw *problem;  // numbers of branched mechanisms are treated as exact
   std::optional<InputError> nearly;
   for (Gap gap : gaps_of(home.singular_values)) {
     for (const double margin : kMargins) {

@@ -13,7 +13,7 @@
 namespace poesy::file {
 namespace {
 
-/// Makes numbers of what gives way in a limb.
+/// Evaluates the compliances of a limb.
 class Stiffness {
  public:
   explicit Stiffness(const Numbers& numbers) : numbers_(numbers) {}
@@ -52,7 +52,7 @@ class Stiffness {
   static constexpr std::size_t kAboutZ = 2;
   static constexpr std::size_t kAlongZ = 5;
 
-  /// What `actuated` must be where a drive holds this freedom; empty where the file has no such drive.
+  /// The value of `actuated` that makes a drive hold this freedom; empty if the file format has none.
   static std::string drive_along(const JointLines& joint, std::size_t direction) {
     if (joint.kind == JointKind::spherical || direction < kAboutZ) return {};
     if (joint.kind == JointKind::universal) return "1";
@@ -83,9 +83,9 @@ class Stiffness {
     throw std::logic_error("unknown kind of joint");
   }
 
-  static constexpr double kSymmetric = 1e-9;  ///< of the largest entry of a block
+  static constexpr double kSymmetric = 1e-9;  ///< as a share of the largest entry of a block
 
-  /// The first two entries that should be the same and are not; empty where the matrix is symmetric.
+  /// The first two entries that differ but should be equal; empty if the matrix is symmetric.
   static std::string asymmetry(const assembly::Matrix6& C) {
     for (Eigen::Index row = 0; row < 6; ++row) {
       for (Eigen::Index column = 0; column < row; ++column) {
@@ -224,7 +224,7 @@ class Stiffness {
     return section;
   }
 
-  /// Joints inside a beam must be on its line: only so does it stay straight as they move.
+  /// Throws if a joint inside a beam is not on the beam's line, because the beam would not stay straight when it moves.
   void check_between(const LinkLines& link, const assembly::Link& made, const Vector3& along, const Vector3& begin,
                      const Limb& limb) const {
     using At = assembly::LinkEnd::At;

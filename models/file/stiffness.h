@@ -7,13 +7,13 @@
 /// Stiffness and loads of a mechanism file.
 namespace poesy::file {
 
-/// What joints, links and the limb itself give way: sets bearings, links and compliance of a limb whose joints are
-/// known. turn: where the copy is, seen from the first. Throws InputError where an entry is not positive, a link passes
-/// a joint whose axis is not on its line, or a compliance is not symmetric or has a negative eigenvalue.
+/// Sets the compliances of a limb whose joints are known: bearings, links and the whole limb. turn: the motion from the
+/// first copy to this one. Throws InputError if an entry is not positive, a link passes a joint whose axis is not on
+/// its line, or a compliance is not symmetric or has a negative eigenvalue.
 void add_stiffness(const Numbers& numbers, const LimbLines& lines, const Transform& turn,
                    const std::vector<assembly::Body>& bodies, Limb& limb);
 
-/// The file's loads on the bodies of a mechanism.
+/// The loads of the file on the bodies of a mechanism.
 assembly::Load load_of(const Numbers& numbers, const Mechanism& made);
 
 }  // namespace poesy::file

@@ -10,7 +10,7 @@
 namespace poesy::file {
 namespace {
 
-/// Smaller numbers are rounding of a direction or a place.
+/// Smaller entries of a direction or a position are rounding.
 constexpr double kNothing = 5e-7;
 constexpr double kMillimetres = 1e3;
 
@@ -40,7 +40,7 @@ std::string counted(std::size_t count, std::string_view one, std::string_view mo
   return fmt::format("{} {}", count, count == 1 ? one : more);
 }
 
-/// What a pose has that home has not; empty: nothing.
+/// The difference in mobility between a pose and home; empty if there is none.
 std::string difference(const Mobility& home, const PoseMobility& at) {
   if (!at.reached()) return "out of reach: " + at.tracked.unreachable;
   const Mobility& found = at.mobility;
@@ -62,7 +62,7 @@ std::string pose_text(std::span<const Coordinate> coordinates, std::span<const d
 
 SketchVector sketched(const Vector3& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
-/// A line for each drive that has a name.
+/// A line for each named drive.
 std::string drive_lines(const Mechanism& mechanism) {
   std::string text;
   const std::vector<const Joint*> joints = moving_joints(mechanism);
@@ -74,14 +74,14 @@ std::string drive_lines(const Mechanism& mechanism) {
   return text;
 }
 
-/// Whether the mechanism has errors of these frames of a limb.
+/// Whether the mechanism has errors of frames `first` to `last` of a limb.
 bool has_errors(const Mechanism& mechanism, std::size_t limb, std::size_t first, std::size_t last) {
   return std::ranges::any_of(mechanism.slots, [&](const ErrorSlot& slot) {
     return slot.limb == limb && slot.frame >= first && slot.frame <= last;
   });
 }
 
-/// A line for each limb, where some begin or end at other bodies.
+/// A line for each limb, if some limbs begin or end at other bodies.
 std::string limb_lines(const Mechanism& mechanism) {
   std::string text;
   if (!mechanism.is_branched()) return text;

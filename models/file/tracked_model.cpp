@@ -11,7 +11,8 @@
 namespace poesy::file {
 namespace {
 
-/// Of the reach; joints that are closer are one part, whose errors may well be as large as that.
+/// Shortest link as a share of the reach. Joints that are closer belong to one part, and errors may be as large as
+/// their distance.
 constexpr double kShortestLink = 0.02;
 
 /// Positions of the responses with these names.

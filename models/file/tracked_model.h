@@ -13,8 +13,8 @@
 
 namespace poesy::file {
 
-/// What every mechanism of a file can say before anything is solved: where its poses and charts lead, how it moves, how
-/// large its errors may be.
+/// The part of a model that needs no solver: the poses and charts of a mechanism of a file, its mobility, and the
+/// bounds of its errors.
 class TrackedModel : public Model {
  public:
   const ModelDescription& description() const override { return description_; }
@@ -26,40 +26,40 @@ class TrackedModel : public Model {
   std::vector<std::string> mobility() const override;
   std::vector<std::string> remarks() const override;
   std::vector<std::string> unusual_geometry() const override;
-  /// The shortest link of the error's limb, the mechanism's reach where it has none, or half a turn.
+  /// The shortest link of the error's limb, or the mechanism's reach if it has none; for an angle half a turn.
   ErrorBound error_bound(FactorIndex factor) const override;
 
  protected:
-  /// The description has everything but responses and what follows from them.
+  /// Completes the description except for responses and data derived from them.
   TrackedModel(const MechanismFile& file, Checked found);
 
-  /// Sets them, with those that summaries show. deforms: whether the gap is one of these, where there is one.
+  /// Sets the responses and those shown in summaries. deforms: whether these may include the gap.
   void set_responses(std::vector<Response> responses, bool deforms = true);
 
-  /// For those that solve it.
+  /// For derived classes that solve the mechanism.
   /// @{
   const Mechanism& mechanism() const { return mechanism_; }
   const std::shared_ptr<const Tracker>& tracker() const { return tracker_; }
   /// @}
-  /// To complete it.
+  /// For derived classes that complete the description.
   ModelDescription& described() { return description_; }
 
  private:
   Mechanism mechanism_;
-  double mismatch_;  ///< m: of perfect limbs, at the most
+  double mismatch_;  ///< m: largest mismatch of perfect limbs
   std::shared_ptr<const Tracker> tracker_;
   std::vector<Chart> charts_;
   ModelDescription description_;
 };
 
-/// A limb as solvers have it. drives: of each joint that moves, as chain::Joint has it; those of the limb are taken
-/// off.
+/// A limb in the form for solvers. drives: Joint::drive of each joint that moves; those of the limb are removed from
+/// the front.
 chain::Limb chain_limb(const Limb& limb, bool errors_at_joints, std::span<const std::size_t>& drives);
 
-/// Of each joint that moves, the number of its drive where that moves others too, else 0.
+/// For each joint that moves, the number of its drive if the drive moves other joints too, else 0.
 std::vector<std::size_t> shared_drives(const Mechanism& mechanism);
 
-/// A displacement for each joint and fixed frame, from those of the joints that move.
+/// The displacements of all joints and fixed frames, from those of the joints that move [moving].
 std::vector<double> with_fixed(const Mechanism& mechanism, std::span<const double> moving);
 
 }  // namespace poesy::file
