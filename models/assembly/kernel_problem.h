@@ -17,7 +17,8 @@ struct KernelMotion {
 
 /// A constant motion that others are multiplied by.
 struct KernelConstant {
-  enum class Shape : std::uint8_t { identity, translation, any };  ///< What a motion may be.
+  /// What a motion may be.
+  enum class Shape : std::uint8_t { identity, translation, any };
   KernelMotion motion;  ///< all of it
   Shape shape;          ///< which parts of it are not those of the identity
 };

@@ -10,8 +10,8 @@ namespace poesy::assembly {
 template <class T>
 class LaneAssembly {
  public:
-  using Mask = typename T::MaskType;
-  using Motion = LaneMotion<T>;
+  using Mask = typename T::MaskType;  ///< of lanes
+  using Motion = LaneMotion<T>;       ///< of lanes
 
   /// Both must outlive it.
   LaneAssembly(const KernelProblem& problem, const KernelBlock& block)
