@@ -59,7 +59,8 @@ void BlockSolver::solve(PoseProblem& problem, const SampleBlock& samples, const 
   solver_.prepare(problem.pose());
   run(kernels_.solve, problem, samples, outcomes);
   nearing_.assign(samples.count, 0.0);
-  if (model_->over_constrained) problem.closure().find_nearing(samples, nearing_);
+  const bool may_hold_open = model_->over_constrained || model_->assembly.metric == Metric::stiffness;
+  if (may_hold_open) problem.closure().find_nearing(samples, nearing_);
   std::vector<double> errors(samples.errors.begin(), samples.errors.end());
   for (std::size_t b = 0; b < samples.count; ++b) {
     outcomes.status[b] = SolveStatus::converged;

@@ -27,8 +27,8 @@ class ErrorFrames {
 
 /// Solves blocks of samples with the fastest kernel that this machine has, and by Solver those that it leaves: the same
 /// equations, with the matrix of each state. Closure decides which samples are not_assembled, of those that Solver
-/// leaves and where limbs deform each other of those whose errors bring loops near their end. Owns the scratch of one
-/// thread.
+/// leaves and where limbs may hold open loops, by stiffness or against each other, of those whose errors bring loops
+/// near their end. Owns the scratch of one thread.
 class BlockSolver {
  public:
   BlockSolver(const AssemblyModel& model, const SolverOptions& options);  ///< The model must outlive it.
