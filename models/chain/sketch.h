@@ -17,7 +17,7 @@ void place(Sketch& sketch, const DeformationModel& model, std::span<const double
 
 /// A limb's frames (base_T_frame) before and after each joint has moved.
 struct LimbFrames {
-  std::vector<lie::Transform<double>> before;  ///< [n] of its joints
+  std::vector<lie::Transform<double>> before;  ///< [n] frames of the joints
   std::vector<lie::Transform<double>> after;   ///< [n + 2] of the first body, the joints, and the last body
 };
 

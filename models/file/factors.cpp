@@ -140,7 +140,7 @@ bool are_alike(const Limb& a, const Limb& b) {
   return std::ranges::equal(a.joints, b.joints, {}, &Joint::motion, &Joint::motion);
 }
 
-/// The limbs that have an error with limb = "each", and the parts that it is between.
+/// A text that names the limbs with this error, limb = "each", and the two parts that its frame connects in them.
 EachLimb each_limb(const ErrorLines& error, const Mechanism& mechanism) {
   EachLimb each{"error " + error.name.name + " with limb = \"each\" is", true};
   for (std::size_t i = 0; i < error.limbs.size();) {

@@ -264,7 +264,7 @@ Mobility home_mobility(const Mechanism& mechanism) {
 
 namespace {
 
-/// Finds the motion of the platform from home other than by its coordinates.
+/// Finds the parasitic motion of the platform from home: the part that is not in its coordinates.
 void find_parasitic(const Mechanism& mechanism, const PlatformPose& pose, PoseMobility& found) {
   const PlatformPose home = home_pose(mechanism);
   for (std::size_t component = 0; component < pose.size(); ++component) {

@@ -53,8 +53,8 @@ struct PoseMobility {
   std::vector<double> pose;  ///< [coordinates], SI
   Tracked tracked;           ///< path to the pose from home
   Mobility mobility = {};    ///< valid if the pose is reached
-  double turned = 0.0;       ///< largest rotation other than by coordinates (rad); 0 if the pose is not reached
-  double moved = 0.0;        ///< largest displacement of P other than by coordinates (m); 0 likewise
+  double turned = 0.0;       ///< parasitic rotation (rad), the largest; 0 if the pose is not reached
+  double moved = 0.0;        ///< parasitic displacement of P (m), the largest; 0 if the pose is not reached
 
   /// Whether the path ends at the pose.
   bool reached() const { return tracked.unreachable.empty(); }

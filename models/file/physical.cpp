@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// In the order of the enumeration.
+/// The quantity of each Dimension, in the order of that enumeration.
 constexpr std::array<Physical, 7> kOfDimensions{{kLength,
                                                  kAngle,
                                                  {"a time", {.time = 1}, "s", "2 s"},

@@ -34,7 +34,7 @@ struct Gap {
   std::size_t rank;
   double above;
   double below;
-  double margin;  ///< of kMargins
+  double margin;  ///< one of kMargins
 
   double ratio() const { return above / std::max(below, kRankThreshold); }
   /// Whether the mechanism has this rank at this configuration too. Narrows the gap to the values there.

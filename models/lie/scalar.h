@@ -4,8 +4,8 @@
 
 namespace poesy::lie {
 
-// The vocabulary that lets one formula serve a number and a batch of numbers: a comparison gives a mask,
-// `select` chooses per lane, `any` asks whether a rare branch is needed at all.
+// Functions that let one formula serve a number and a batch of numbers: a comparison gives a mask, `select` chooses per
+// lane, `any` tells whether some lane needs a rare branch.
 
 template <class T>
 requires std::is_floating_point_v<T>

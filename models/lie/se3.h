@@ -18,13 +18,13 @@ struct Transform {
   /// Translation.
   Vector3<T> p = Vector3<T>::Zero();
 
-  /// The motion back.
+  /// The inverse motion x -> R^T (x - p).
   Transform inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
-  /// First b, then a.
+  /// The motion b followed by a.
   friend Transform operator*(const Transform& a, const Transform& b) { return {a.R * b.R, a.R * b.p + a.p}; }
 };
 
-/// The motion of a screw (Eqs. A2, A4), stable at every angle.
+/// The motion exp(screw) (Eqs. A2, A4), stable at every angle.
 template <class T>
 Transform<T> exp(const Screw<T>& screw) {
   const Vector3<T> w = screw.template head<3>();
@@ -32,8 +32,8 @@ Transform<T> exp(const Screw<T>& screw) {
   return {exp(w), left_jacobian(w) * v};
 }
 
-/// The screw of a motion, with rotation angle at most pi: exp(log(g)) = g.
-/// Differs from the printed Eq. A6, which is 0/0 at small angles; equal to it elsewhere.
+/// The screw of a motion, with rotation angle at most pi: exp(log(g)) = g. Differs from the printed Eq. A6, which is
+/// 0/0 at small angles, and equals it elsewhere.
 template <class T>
 Screw<T> log(const Transform<T>& g) {
   const Vector3<T> w = log(g.R);
@@ -43,7 +43,7 @@ Screw<T> log(const Transform<T>& g) {
   return screw;
 }
 
-/// Ad(g): moves a screw from the frame of g to the frame g is seen from (Eq. A8).
+/// Ad(g): transforms a screw from the frame of g to the frame in which g is expressed (Eq. A8).
 template <class T>
 Matrix6<T> adjoint(const Transform<T>& g) {
   Matrix6<T> ad = Matrix6<T>::Zero();
@@ -64,7 +64,7 @@ Screw<T> bracket(const Screw<T>& a, const Screw<T>& b) {
   return c;
 }
 
-/// The wrench whose product with each twist a is that of the wrench [moment; force] with the bracket [a, b].
+/// The wrench [moment; force] whose product with each twist a equals the product of `wrench` with the bracket [a, b].
 template <class T>
 Screw<T> wrench_of_bracket(const Screw<T>& wrench, const Screw<T>& b) {
   const Vector3<T> moment = wrench.template head<3>(), force = wrench.template tail<3>();

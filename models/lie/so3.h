@@ -21,7 +21,7 @@ Matrix3<T> hat(const Vector3<T>& w) {
   return m;
 }
 
-/// The vector of the antisymmetric part of m; the inverse of hat.
+/// The vector of the antisymmetric part of m: the inverse of hat.
 template <class T>
 Vector3<T> vee(const Matrix3<T>& m) {
   return T(0.5) * Vector3<T>(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
@@ -81,7 +81,7 @@ Matrix3<T> exp(const Vector3<T>& w) {
   return rotation;
 }
 
-/// exp(w) x - x: by how much a rotation moves a point, without the cancellation where it is small.
+/// exp(w) x - x: the displacement of a point by a rotation, without cancellation at small angles.
 template <class T>
 Vector3<T> moved_by_rotation(const Vector3<T>& w, const Vector3<T>& x) {
   const auto [a, b, c] = exp_coefficients<T>(w.squaredNorm());
@@ -126,8 +126,8 @@ Matrix3<T> left_jacobian_inverse(const Vector3<T>& w) {
 
 namespace detail {
 
-/// Unit axis of a rotation by more than 90 degrees from its symmetric part, where the antisymmetric part fades.
-/// n n^T (1 - c) = S - c I; the column of the largest diagonal entry is the accurate one.
+/// Unit axis of a rotation by more than 90 degrees from its symmetric part S, because the antisymmetric part vanishes
+/// at 180 degrees. n n^T (1 - c) = S - c I; the column of the largest diagonal entry is the most accurate.
 template <class T>
 Vector3<T> axis_from_symmetric_part(const Matrix3<T>& rotation, T cosine, const Vector3<T>& antisymmetric) {
   using std::sqrt;

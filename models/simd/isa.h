@@ -4,17 +4,17 @@ namespace poesy::simd {
 
 /// Instruction sets that kernels are compiled for.
 enum class Isa {
-  plain,   ///< one double at a time, on any machine
+  plain,   ///< one double at a time, on every machine
   avx2,    ///< 4 lanes, with FMA
   avx512,  ///< 8 lanes
   neon     ///< 2 lanes
 };
 
-/// The best set this machine has, or the one that the environment variable POESY_ISA names (plain, avx2, avx512,
-/// neon). Throws InputError when that is none of them, or not on this machine.
+/// The best set that this machine supports, or the one in the environment variable POESY_ISA (plain, avx2, avx512,
+/// neon). Throws InputError if that names another set, or one that this machine does not support.
 Isa selected_isa();
 
-/// choose.operator()<isa>() for selected_isa(), where this build has kernels for it; else for plain.
+/// Calls choose.operator()<isa>() for selected_isa() if this build has kernels for it, else for plain.
 template <class Choose>
 auto for_selected_isa(Choose choose) {
   switch (selected_isa()) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The numbers of the instruction set that a kernel's source is being compiled for (models/CMakeLists.txt).
+// The number types of the instruction set for which a kernel's source is being compiled (models/CMakeLists.txt).
 
 #ifdef POESY_KERNEL_OF_NUMBERS
 #include "models/simd/number.h"

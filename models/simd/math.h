@@ -12,14 +12,14 @@ inline T polynomial(T x, const double (&c)[n]) {
   return sum;
 }
 
-/// Both of one angle.
+/// Sine and cosine of one angle.
 template <class T>
 struct SinCos {
-  T sin;  ///< of the angle
-  T cos;  ///< of the same angle
+  T sin;  ///< sine of the angle
+  T cos;  ///< cosine of the angle
 };
 
-/// The polynomials of fdlibm (Sun Microsystems 1993) for |x| <= pi/4.
+/// Sine and cosine for |x| <= pi/4 by the polynomials of fdlibm (Sun Microsystems 1993).
 template <class T>
 inline SinCos<T> sin_cos_near_zero(T x) {
   static constexpr double kSin[] = {-1.66666666666666324348e-01, 8.33333333332248946124e-03,
@@ -32,8 +32,8 @@ inline SinCos<T> sin_cos_near_zero(T x) {
   return {madd(x * z, polynomial(z, kSin), x), madd(z * z, polynomial(z, kCos), nmadd(T(0.5), z, T(1.0)))};
 }
 
-/// Sine and cosine for |x| < 100, within 2 ulp; where one of them vanishes at a multiple of pi/2, within 1e-26 for each
-/// quarter turn. Reduction by pi/2 in two parts (Cody and Waite). It is left out where no lane needs it, which changes
+/// Sine and cosine for |x| < 100, within 2 ulp; near their zeros at multiples of pi/2, within 1e-26 for each quarter
+/// turn. Reduces x by pi/2 in two parts (Cody and Waite). The reduction is skipped if no lane needs it, which changes
 /// no bit of any lane.
 template <class T>
 inline SinCos<T> sin_cos(T x) {
@@ -44,7 +44,7 @@ inline SinCos<T> sin_cos(T x) {
   if (!any(!(abs(quarters) < T(0.5)))) return sin_cos_near_zero(x);
   const T n = nearest(quarters);
   const auto [sine, cosine] = sin_cos_near_zero(nmadd(n, T(kHalfPiLow), nmadd(n, T(kHalfPiHigh), x)));
-  // n mod 2 and n mod 4, as 0 or +-1 and as -2 .. 2.
+  // n mod 2 as 0 or +-1, and n mod 4 as -2 .. 2.
   const T odd = nmadd(T(2.0), nearest(T(0.5) * n), n);
   const T quarter = nmadd(T(4.0), nearest(T(0.25) * n), n);
   const auto swap = abs(odd) > T(0.5);

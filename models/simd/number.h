@@ -5,11 +5,11 @@
 
 namespace poesy::simd {
 
-/// A truth value behind the same words as a batch of them.
+/// A truth value with the interface of simd::Mask.
 struct NumberMask {
   bool m;  ///< the one lane
 
-  /// Of the one lane.
+  /// Operations on the one lane.
   /// @{
   friend NumberMask operator&(NumberMask a, NumberMask b) { return {a.m && b.m}; }
   friend NumberMask operator|(NumberMask a, NumberMask b) { return {a.m || b.m}; }
@@ -19,24 +19,24 @@ struct NumberMask {
   /// @}
 };
 
-/// A plain double behind the same words as a batch: the reference for every batch, and the portable fallback.
+/// A double with the interface of a batch: the reference for every batch, and the portable fallback.
 struct Number {
-  /// What comparisons give.
+  /// The type of comparisons.
   using MaskType = NumberMask;
-  static constexpr std::size_t kLanes = 1;  ///< one
+  static constexpr std::size_t kLanes = 1;  ///< one lane
 
   double v;  ///< the lane
 
   Number() = default;
-  /// Implicit, so that constants may stand in formulas.
+  /// Implicit, so that formulas may contain constants.
   Number(double value) : v(value) {}
 
-  /// From one place in memory.
+  /// Reads one double.
   static Number load(const double* from) { return *from; }
-  /// To one place in memory.
+  /// Writes one double.
   void store(double* to) const { *to = v; }
 
-  /// As doubles.
+  /// Arithmetic and comparisons of doubles.
   /// @{
   friend Number operator+(Number a, Number b) { return a.v + b.v; }
   friend Number operator-(Number a, Number b) { return a.v - b.v; }
@@ -47,7 +47,7 @@ struct Number {
   friend NumberMask operator>(Number a, Number b) { return {a.v > b.v}; }
   /// @}
 
-  /// As Pack, with a rounding after each operation.
+  /// The operations of Pack; madd and nmadd round twice.
   /// @{
   friend Number madd(Number a, Number b, Number c) { return a.v * b.v + c.v; }
   friend Number nmadd(Number a, Number b, Number c) { return c.v - a.v * b.v; }

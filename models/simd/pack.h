@@ -1,8 +1,7 @@
 #pragma once
 
-// A batch of numbers that is used like one number. Included only by translation units that are compiled for one
-// instruction set: every name lives in a namespace of that set, so that no inline function of one set can be linked
-// into another.
+// A batch of numbers that is used like one number. Included only by translation units compiled for one instruction set:
+// every name is in a namespace of that set, so that no inline function of one set can be linked into another.
 #define HWY_COMPILE_ONLY_STATIC
 #include <hwy/highway.h>
 
@@ -14,18 +13,18 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::ScalableTag<double>;
 
-/// One truth value per lane.
+/// A truth value for each lane.
 struct Mask {
-  hn::Mask<Tag> m;  ///< a bit for each lane
+  hn::Mask<Tag> m;  ///< one bit for each lane
 
-  /// Lane by lane; any: of all lanes.
+  /// Operations lane by lane; any: whether some lane is true.
   /// @{
   friend Mask operator&(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
   friend Mask operator|(Mask a, Mask b) { return {hn::Or(a.m, b.m)}; }
   friend Mask operator!(Mask a) { return {hn::Not(a.m)}; }
   friend bool any(Mask a) { return !hn::AllFalse(Tag(), a.m); }
   /// @}
-  /// Bit n is lane n.
+  /// The mask as an integer; bit n is lane n.
   friend unsigned bits(Mask a) {
     unsigned char bytes[8] = {};
     hn::StoreMaskBits(Tag(), a.m, bytes);
@@ -33,28 +32,28 @@ struct Mask {
   }
 };
 
-/// Lanes of doubles. madd and nmadd round once; everything else is a single IEEE operation per lane, so that
+/// A batch of doubles. madd and nmadd round once; every other operation is a single IEEE operation per lane, so that
 /// instruction sets with fused multiply-add agree in every bit.
 struct Pack {
-  /// What comparisons give.
+  /// The type of comparisons.
   using MaskType = Mask;
-  /// Of this instruction set.
+  /// Number of lanes of this instruction set.
   static constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 
   hn::Vec<Tag> v;  ///< the lanes
 
   Pack() = default;
-  /// From lanes.
+  /// A batch of these lanes.
   Pack(hn::Vec<Tag> lanes) : v(lanes) {}
   /// The same number in every lane.
   Pack(double value) : v(hn::Set(Tag(), value)) {}
 
-  /// From kLanes places in memory.
+  /// Reads kLanes doubles.
   static Pack load(const double* from) { return hn::LoadU(Tag(), from); }
-  /// To kLanes places in memory.
+  /// Writes kLanes doubles.
   void store(double* to) const { hn::StoreU(v, Tag(), to); }
 
-  /// Lane by lane.
+  /// Arithmetic and comparisons lane by lane.
   /// @{
   friend Pack operator+(Pack a, Pack b) { return hn::Add(a.v, b.v); }
   friend Pack operator-(Pack a, Pack b) { return hn::Sub(a.v, b.v); }
@@ -69,7 +68,7 @@ struct Pack {
   friend Pack madd(Pack a, Pack b, Pack c) { return hn::MulAdd(a.v, b.v, c.v); }
   /// c - a b
   friend Pack nmadd(Pack a, Pack b, Pack c) { return hn::NegMulAdd(a.v, b.v, c.v); }
-  /// Lane by lane.
+  /// Selection and functions lane by lane.
   /// @{
   friend Pack select(Mask mask, Pack yes, Pack no) { return hn::IfThenElse(mask.m, yes.v, no.v); }
   friend Pack sqrt(Pack a) { return hn::Sqrt(a.v); }
@@ -77,7 +76,7 @@ struct Pack {
   friend Pack max(Pack a, Pack b) { return hn::Max(a.v, b.v); }
   friend Pack min(Pack a, Pack b) { return hn::Min(a.v, b.v); }
   /// @}
-  /// To the nearest whole number, ties to even.
+  /// Rounds to the nearest whole number, ties to even.
   friend Pack nearest(Pack a) { return hn::Round(a.v); }
 };
 

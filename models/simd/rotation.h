@@ -2,7 +2,7 @@
 
 #include "models/simd/math.h"
 
-// Vectors [3] and rotation matrices [9], by rows.
+// Vectors [3] and rotation matrices [9] by rows.
 
 namespace poesy::simd {
 
@@ -27,7 +27,7 @@ inline T dot3(const T* a, const T* b) {
   return madd(a[2], b[2], madd(a[1], b[1], a[0] * b[0]));
 }
 
-// Taylor series in x = theta^2, exact to rounding below the angle given.
+// Taylor series in x = theta^2, exact to rounding at the small angles for which the functions below use them.
 inline constexpr double kSincSeries[] = {1.0,           -1.0 / 6.0,        1.0 / 120.0,        -1.0 / 5040.0,
                                          1.0 / 362880., -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368000.0};
 inline constexpr double kCoscSeries[] = {
@@ -63,7 +63,7 @@ struct ExpCoefficients {
   T b;  ///< (1 - cos(theta)) / theta^2
 };
 
-/// At this theta^2, for theta < 100.
+/// The coefficients at this theta^2, for theta < 100.
 template <class T>
 inline ExpCoefficients<T> exp_coefficients(T theta_squared) {
   const T x = theta_squared;
@@ -86,7 +86,7 @@ struct LeftJacobianCoefficients {
   T c;  ///< (theta - sin(theta)) / theta^3
 };
 
-/// At this theta^2, for theta < 100.
+/// The coefficients at this theta^2, for theta < 100.
 template <class T>
 inline LeftJacobianCoefficients<T> left_jacobian_coefficients(T theta_squared) {
   const T x = theta_squared;
@@ -102,7 +102,7 @@ inline LeftJacobianCoefficients<T> left_jacobian_coefficients(T theta_squared) {
   return coefficients;
 }
 
-/// r = exp(w), with theta_squared = |w|^2; its inverse where `c.a` has the other sign.
+/// r = exp(w), with theta_squared = |w|^2; the inverse if the sign of `c.a` is changed.
 template <class T>
 inline void rotation_matrix(const T* w, T theta_squared, const ExpCoefficients<T>& c, T* r) {
   // R = (1 - b theta^2) I + a hat(w) + b w w^T
@@ -120,15 +120,15 @@ inline void rotation_matrix(const T* w, T theta_squared, const ExpCoefficients<T
   r[7] = madd(c.a, w[0], r[7]);
 }
 
-/// Rotation vectors, lane by lane.
+/// A rotation vector in each lane.
 template <class T>
 struct RotationLog {
   T w[3];  ///< components x, y, z
   T bend;  ///< (1 - theta/2 cot(theta/2)) / theta^2: left_jacobian(w)^-1 = I - hat(w) / 2 + bend hat(w)^2
 };
 
-/// Logarithm for rotations by less than a half turn. Angles come from tan(theta/2) = s / (1 + c), exact at small
-/// angles, where residuals live; beyond 37 degrees, from tan(theta/8). Close to a half turn digits are lost.
+/// Logarithm of rotations by less than 180 deg. The angle is computed from tan(theta/2) = s / (1 + c), exact at the
+/// small angles of residuals; beyond 37 deg, from tan(theta/8). Close to 180 deg digits are lost.
 template <class T>
 inline RotationLog<T> rotation_log(const T* r) {
   const T half(0.5);

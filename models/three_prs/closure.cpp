@@ -24,7 +24,7 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 const PlatformMotion kNoMotion{Matrix3::Identity(), Vector3::Zero()};
 
-/// The six equations without swings, and their derivative by [delta; dr] with E -> exp(delta) E.
+/// The six equations without swings, and their derivative with respect to [delta; dr] with E -> exp(delta) E.
 struct Equations {
   Step residual;
   Matrix6 jacobian;
@@ -55,13 +55,13 @@ PlatformMotion moved(const PlatformMotion& motion, const Step& step) {
   return {lie::exp(Vector3(step.head<3>())) * motion.E, motion.dr + step.tail<3>()};
 }
 
-/// Whether a status may be that of limbs that cannot be assembled.
+/// Whether limbs that cannot be assembled may give this status.
 bool may_be_impossible(SolveStatus status) {
   return status == SolveStatus::iteration_cap || status == SolveStatus::singular;
 }
 
-/// The way of the platform to where the mismatch of its limbs is least; see linalg::comes_to_rest(). The equations of
-/// rods are divided by their lengths, so that all are lengths (m).
+/// The descent of the platform to the least mismatch of its limbs; see linalg::comes_to_rest(). The equations of rods
+/// are divided by the rods' lengths, so that all are lengths (m).
 class Descent {
  public:
   Descent(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, const PlatformMotion& start)
@@ -145,7 +145,7 @@ void describe_limb(const Configuration& nominal, std::size_t i, ClosureLimb& lim
   limb.q = nominal.limbs[i].q;
 }
 
-/// The rows of `values` that take the place of constant errors.
+/// Sets the constant errors, and the rows of `values` that replace them.
 void vary(ClosurePose& pose, std::span<const double> errors, std::span<const FactorIndex> varied) {
   for (std::size_t i = 0; i < kLimbs; ++i) {
     ClosureLimb& limb = pose.limb[i];
@@ -249,7 +249,7 @@ ClosureSolver::ClosureSolver(const Geometry& geometry, const SolverOptions& opti
     : geometry_(geometry),
       options_(options),
       kernels_(simd::for_selected_isa([]<simd::Isa isa> { return kernels<isa>(); })),
-      // One alignment's worth more than needed, so that an aligned start fits.
+      // One alignment more than needed, so that an aligned start fits.
       scratch_(kClosureScratch + kMostLanes) {}
 
 void ClosureSolver::prepare(const Configuration& nominal, const SampleBlock& samples, const ClosureStart& start) {
@@ -281,7 +281,7 @@ void ClosureSolver::solve(const Configuration& nominal, const SampleBlock& sampl
   }
 }
 
-/// Of samples that the kernel did not solve, those that cannot be assembled.
+/// Finds the samples that cannot be assembled among those that the kernel did not solve.
 void ClosureSolver::review(const Configuration& nominal, const SampleBlock& samples, const ClosureStart& start,
                            const OutcomeBlock& outcomes) const {
   if (start.orientation() == 0.0) return;

@@ -14,48 +14,47 @@
 
 namespace poesy::three_prs {
 
-/// One limb with its errors, carriage held where the nominal pose has it; base frame, m.
+/// One limb with its errors, in the base frame (m). Its carriage stays at the nominal pose.
 struct LimbWithErrors {
   lie::Vector3<double> carriage;         ///< centre of the revolute joint
-  lie::Matrix3<double> base_R_revolute;  ///< its axis is the second column
-  lie::Vector3<double> rod;              ///< from that centre to C_i in the revolute's frame, before it swings
+  lie::Matrix3<double> base_R_revolute;  ///< second column: axis of the revolute joint
+  lie::Vector3<double> rod;              ///< from that centre to C_i in the revolute's frame, before the swing
   lie::Vector3<double> joint;            ///< from P to C_i, at the nominal rotation of the platform
 };
 
-/// A limb at a nominal configuration with its errors [20], as ordered by Source.
+/// The limb at a nominal configuration with its errors [20] (rad, m), ordered as Source.
 LimbWithErrors limb_with_errors(const Geometry& geometry, const Configuration& nominal, std::size_t limb,
                                 std::span<const double, kSources> errors);
 
-/// Finite motion of the platform from its nominal pose, base frame.
+/// Finite motion of the platform from its nominal pose, in the base frame.
 struct PlatformMotion {
-  lie::Matrix3<double> E;   ///< rotation: the platform stands at E R
+  lie::Matrix3<double> E;   ///< rotation: the displaced platform has orientation E R
   lie::Vector3<double> dr;  ///< displacement of P, m
 };
 
-/// How a solve ended.
+/// The end of a solve.
 struct Closing {
-  SolveStatus status;        ///< why it ended
-  std::uint32_t iterations;  ///< that it took
+  SolveStatus status;        ///< why the solve ended
+  std::uint32_t iterations;  ///< number of iterations
 };
 
-/// Where solves at a nominal configuration start: one step of its Jacobian from no motion, which is the first order of
-/// what the errors do. At a singular pose solves start without motion.
+/// The start of solves at a nominal configuration: one Newton step from no motion with the nominal Jacobian, which is
+/// the first-order motion by the errors. At a singular pose solves start from no motion.
 class ClosureStart {
  public:
-  /// For limbs about a nominal configuration.
+  /// Computes the nominal Jacobian's inverse at a configuration.
   ClosureStart(const Geometry& geometry, const Configuration& nominal);
 
-  /// The motion to first order, where a solve starts.
+  /// The first-order motion, the start of a solve.
   PlatformMotion operator()(const std::array<LimbWithErrors, kLimbs>& limbs) const;
 
-  /// [delta; dr] from the values of the six equations without motion; zero at a singular pose.
+  /// The matrix from the values of the six equations without motion to [delta; dr]; zero at a singular pose.
   const lie::Matrix6<double>& from_residual() const { return from_residual_; }
-  /// Order of the equations in which partial pivoting eliminates [dr; delta]: equation n stands at the n-th place
-  /// named.
+  /// Order in which partial pivoting eliminates the equations for [dr; delta]: entry n is the position of equation n.
   const std::array<std::size_t, 6>& elimination_order() const { return order_; }
   /// Sign of the Jacobian's determinant without errors and motion, as 1.0 or -1.0; 0 at a singular pose.
   double orientation() const { return orientation_; }
-  /// Sign of the product of the pivots in that order; 0 likewise.
+  /// Sign of the product of the pivots in that order, as 1.0 or -1.0; 0 at a singular pose.
   double pivot_sign() const { return pivot_sign_; }
 
  private:
@@ -66,55 +65,55 @@ class ClosureStart {
   double pivot_sign_ = 0.0;
 };
 
-/// Below which a change (rad, m) may be rounding: 64 eps x max(1, |r|).
+/// A smaller change (rad, m) may be rounding: 64 eps x max(1, |r|).
 double rounding_level(const lie::Vector3<double>& r);
 
-/// What one iteration did.
+/// The results of one iteration.
 struct ClosureIteration {
-  lie::Screw<double> residual;  ///< of the six equations before the step: of rods (m^2), of joints (m)
+  lie::Screw<double> residual;  ///< six equations before the step: of rods (m^2), of joints (m)
   lie::Screw<double> step;      ///< [delta; dr] (rad, m)
 };
 /// Called after each iteration.
 using ClosureObserver = std::function<void(const ClosureIteration&)>;
 
-/// Finds the motion at which all limbs close, to finite size of all errors: the nine equations
-///   r + dr + E R R_i (c0 + dc_i) = R_i (a0 + da_i) + R_i E(tA_i) e3 (q_i + dq_i) + R_i E(tA_i) E(tB_i) db_i
-///                                  + R_i E(tA_i) E(tB_i) Ry(th_i + dphi_i) E(tB'_i) e3 (l + dl_i),  i = 1, 2, 3
+/// Finds the motion at which all limbs close, for errors of finite size: the nine equations
+///     r + dr + E R R_i (c0 + dc_i) = R_i (a0 + da_i) + R_i E(tA_i) e3 (q_i + dq_i) + R_i E(tA_i) E(tB_i) db_i
+///                                    + R_i E(tA_i) E(tB_i) Ry(th_i + dphi_i) E(tB'_i) e3 (l + dl_i),  i = 1, 2, 3
 /// of which Eq. 14 is the first order. The swings dphi_i are eliminated exactly: a rod that turns about its revolute
-/// joint keeps its length and its component along the joint. That leaves six equations for E and dr, which Newton
-/// solves with their exact Jacobian; Gauss-Newton is the same there. A rod's equation is (|rod|^2 - l^2) / 2.
+/// joint keeps its length and its component along the joint. The remaining six equations for E and dr are solved by
+/// Newton with their exact Jacobian, where Gauss-Newton is the same method. A rod's equation is (|rod|^2 - l^2) / 2.
 ///
-/// Stopping rule. With c_j the largest component of the step j (rad, m), step j ends the solve as
-///   converged      when c_j is below the tolerance;
-///   stagnated      when c_j is at rounding level, 64 eps x max(1, |r|), and not below the smallest c so far;
-///   iteration_cap  when j is the allowed number of iterations;
-///   singular       when a pivot of the Jacobian falls to rounding, or when the solve has come to rest where the
-///                  determinant of the Jacobian has the other sign: no way leads there from the nominal pose, as errors
-///                  grow from zero, but through a singular one (theory.md, "Which root");
-///   non_finite     when an equation's value is not finite.
-/// A solve that ends at the cap or as singular is not_assembled instead where is_impossible() says so and orientation
-/// is not 0. `motion` is the start on entry, the last iterate on return. orientation: ClosureStart::orientation(); 0
-/// where any root will do. observe: may be empty.
+/// Stopping rule. With c_j the largest component of step j (rad, m), step j ends the solve as
+///     converged      when c_j is below the tolerance;
+///     stagnated      when c_j is at rounding level, 64 eps x max(1, |r|), and not below the smallest c so far;
+///     iteration_cap  when j is the allowed number of iterations;
+///     singular       when a pivot of the Jacobian falls to rounding, or when the solve has converged where the
+///                    determinant of the Jacobian has the other sign: as errors grow from zero, every path from the
+///                    nominal pose to such a root passes a singular pose (theory.md, "Which root");
+///     non_finite     when an equation's value is not finite.
+/// A solve that ends at the cap or as singular is not_assembled instead if is_impossible() returns true and orientation
+/// is not 0. motion: the start on entry, the last iterate on return. orientation: ClosureStart::orientation(); 0
+/// accepts any root. observe: may be empty.
 Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r, double orientation,
                     const SolverOptions& options, PlatformMotion& motion, const ClosureObserver& observe = {});
 
-/// Whether the limbs cannot be assembled: whether they are apart, by more than 1e-9 of |r|, where their mismatch comes
-/// to rest on the way downhill from this motion (linalg::comes_to_rest()). Three limbs of the 3-PRS are no
-/// over-constraint, so what is left there is what no joint can take away. False where it does not come to rest.
+/// Whether the limbs cannot be assembled. True if the descent of their mismatch from this motion
+/// (linalg::comes_to_rest()) ends where they are apart by more than 1e-9 of |r|. The three limbs of the 3-PRS do not
+/// over-constrain it, so no joint can remove a mismatch that remains there. False if the descent does not come to rest.
 bool is_impossible(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r,
                    const PlatformMotion& start);
 
-/// Swing of a limb's rod from th = 0 in the revolute's frame at this motion, th_i + dphi_i (rad).
+/// Swing th_i + dphi_i (rad) of a limb's rod at this motion, from th = 0 in the revolute's frame.
 double swing(const LimbWithErrors& limb, const lie::Vector3<double>& r, const PlatformMotion& motion);
 
-/// Closes the limbs of blocks of samples with the fastest kernel this machine has; what a kernel gives up, close_limbs
-/// solves. Owns the scratch of one thread.
+/// Closes the limbs of blocks of samples with the fastest kernel that this machine supports. close_limbs() solves the
+/// samples that the kernel gives up. Owns the scratch of one thread.
 class ClosureSolver {
  public:
-  /// For one thread.
+  /// Allocates the scratch of one thread.
   ClosureSolver(const Geometry& geometry, const SolverOptions& options);
 
-  /// Responses, status and iterations of a block at its nominal configuration; no details.
+  /// Computes responses, status and iterations of a block at its nominal configuration, but no details.
   void solve(const Configuration& nominal, const SampleBlock& samples, const OutcomeBlock& outcomes);
 
  private:
@@ -131,12 +130,12 @@ class ClosureSolver {
   std::vector<double> scratch_;
 };
 
-/// Solves one sample of a block by close_limbs; no details.
+/// Solves one sample of a block by close_limbs(); computes no details.
 void close_sample(const Geometry& geometry, const Configuration& nominal, const SampleBlock& samples,
                   std::size_t sample, const ClosureStart& start, const SolverOptions& options,
                   const OutcomeBlock& outcomes, const ClosureObserver& observe = {});
 
-/// Limbs of one sample of a block.
+/// The limbs of one sample of a block.
 std::array<LimbWithErrors, kLimbs> limbs_of_sample(const Geometry& geometry, const Configuration& nominal,
                                                    const SampleBlock& samples, std::size_t sample);
 

@@ -9,21 +9,21 @@
 
 namespace poesy::three_prs {
 
-/// Solves a tile of samples for the closure of all limbs, T::kLanes at a time, T being simd::Number or a SIMD batch:
-/// equations, Newton steps, stopping rule and iteration counts are those of close_limbs. A lane that has ended keeps
+/// Solves the closure of all limbs for a tile of samples, T::kLanes at a time. T is simd::Number or a SIMD batch.
+/// Equations, Newton steps, stopping rule and iteration counts are those of close_limbs(). A lane that has ended keeps
 /// its motion, and no operation mixes lanes.
 ///
-/// The Jacobian is eliminated in an order of its rows that is the same for all samples of a pose. What that cannot do
-/// is given up: pivots that differ by more than 1e6, steps that are large or not finite, attitude errors beyond 100
-/// rad, and rotations by more than 120 deg in the end.
+/// The rows of the Jacobian are eliminated in the same order for all samples of a pose. A sample is given up if this is
+/// not possible: pivots that differ by a factor of more than 1e6, steps that are large or not finite, attitude errors
+/// beyond 100 rad, and final rotations by more than 120 deg.
 template <class T>
 class ClosureKernel {
  public:
-  /// Refers to all of it.
+  /// Keeps references to all arguments. scratch: [kClosureScratch], aligned to 64 bytes.
   ClosureKernel(const ClosurePose& pose, const ClosureOptions& options, const Tile& tile, double* scratch)
       : pose_(pose), options_(options), tile_(tile), group_(reinterpret_cast<Group*>(scratch)) {}
 
-  /// Returns how many samples were given up.
+  /// Solves the tile. Returns the number of samples that were given up.
   std::size_t solve();
 
  private:
@@ -31,10 +31,10 @@ class ClosureKernel {
   static constexpr std::size_t kLanes = T::kLanes;
   static constexpr unsigned kAllLanes = (1u << kLanes) - 1u;
   static constexpr double kPivotRatio = 1e-6;
-  static constexpr double kLargestStep = 50.0;  ///< sum of magnitudes, rad and m
+  static constexpr double kLargestStep = 50.0;  ///< sum of magnitudes (rad, m)
   static constexpr double kLargestAngle2 = 1e4;
 
-  /// As LimbWithErrors.
+  /// A limb with its errors; see LimbWithErrors.
   struct Limb {
     T carriage[3];
     T axis[3];
@@ -46,8 +46,8 @@ class ClosureKernel {
     Limb limb[kLimbs];
     T E[9];
     T dr[3];
-    T smallest;  ///< change so far
-    T active;    ///< 1 in lanes that go on, 0 in those that have ended
+    T smallest;  ///< smallest change so far
+    T active;    ///< 1 in lanes that continue, 0 in those that have ended
   };
   static_assert(sizeof(Group) <= 48 * kLanes * sizeof(double));
 
@@ -68,7 +68,7 @@ class ClosureKernel {
   void begin(std::size_t g);
   bool round(std::size_t g, std::uint32_t iteration);
   void move(Group& group, const T* step, Mask lanes) const;
-  /// Writes down how these lanes ended, a bit each; without iterations where they are given up.
+  /// Stores the end of these lanes, given as bits. Iterations are not stored for lanes that are given up.
   void end(std::size_t g, unsigned lanes, SolveStatus status, std::uint32_t iterations) const;
   void store(std::size_t g);
 
@@ -98,7 +98,7 @@ inline void second_column(const T* w, const simd::ExpCoefficients<T>& c, T* x) {
   x[2] = madd(c.a, w[0], scaled * w[2]);
 }
 
-/// Turns x about z.
+/// Rotates x about z.
 template <class T>
 inline void turn(double cosine, double sine, T* x) {
   const T before = x[0];
@@ -147,7 +147,7 @@ auto ClosureKernel<T>::limb_with_errors(const ClosureLimb& limb, std::size_t at)
 
   const T length = T(pose_.l) + error[static_cast<std::size_t>(Source::l)];
   out.rod_y = length * nmadd(exp_Bp.a, theta_Bp[0], exp_Bp.b * theta_Bp[1] * theta_Bp[2]);
-  // Where an angle is beyond the sine's range, no equation has a value, and the sample is given up.
+  // Beyond the range of the sine no equation has a value, and the sample is given up.
   const T largest = max(angle2_A, max(angle2_B, angle2_Bp));
   out.length2 = select(largest < T(kLargestAngle2), length * length, T(__builtin_nan("")));
   return out;
@@ -168,7 +168,7 @@ void ClosureKernel<T>::evaluate(const Group& group, Equations& equations) const 
   }
 }
 
-/// The step of the nominal Jacobian from no motion, with which solves start. Returns where it can be taken.
+/// The first step of solves: that of the nominal Jacobian from no motion. Returns the lanes where it is usable.
 template <class T>
 auto ClosureKernel<T>::first_step(const Group& group, T* step) const -> Mask {
   Equations equations;
@@ -183,7 +183,8 @@ auto ClosureKernel<T>::first_step(const Group& group, T* step) const -> Mask {
   return size < T(kLargestStep);
 }
 
-/// x of m = [A | b], A x = b. Returns where no pivot is small beside the others. pivots: becomes their product.
+/// Solves A x = b for m = [A | b]. Returns the lanes where no pivot is small relative to the others. pivots: set to
+/// their product.
 template <class T>
 auto ClosureKernel<T>::eliminate(T (&m)[6][7], T* x, T& pivots) -> Mask {
   T inverse[6];
@@ -215,7 +216,8 @@ auto ClosureKernel<T>::eliminate(T (&m)[6][7], T* x, T& pivots) -> Mask {
   return smallest > T(kPivotRatio) * largest;
 }
 
-/// step: [delta; dr]; pivots: the product of those of the Jacobian. Returns where it can be taken.
+/// Computes a Newton step. step: [delta; dr]; pivots: product of the Jacobian's pivots. Returns the lanes where the
+/// step is usable.
 template <class T>
 auto ClosureKernel<T>::newton_step(const Group& group, T* step, T& pivots) const -> Mask {
   Equations equations;
@@ -267,7 +269,7 @@ void ClosureKernel<T>::move(Group& group, const T* step, Mask lanes) const {
   for (int k = 0; k < 3; ++k) group.dr[k] = select(lanes, group.dr[k] + step[3 + k], group.dr[k]);
 }
 
-/// One iteration of a group. Returns whether any of its lanes goes on.
+/// One iteration of a group. Returns whether any of its lanes continues.
 template <class T>
 bool ClosureKernel<T>::round(std::size_t g, std::uint32_t iteration) {
   Group& group = group_[g];
@@ -284,7 +286,7 @@ bool ClosureKernel<T>::round(std::size_t g, std::uint32_t iteration) {
   group.active = select(on, T(1.0), T(0.0));
   end(g, bits(converged), SolveStatus::converged, iteration);
   end(g, bits(stagnated), SolveStatus::stagnated, iteration);
-  // On the other side of a singular pose; see close_limbs.
+  // Roots beyond a singular pose; see close_limbs().
   const Mask beyond = T(pose_.pivot_sign) * pivots < T(0.0);
   end(g, bits((converged | stagnated) & beyond), SolveStatus::singular, iteration);
   return any(on);

@@ -8,9 +8,9 @@
 namespace poesy::three_prs {
 namespace {
 
-/// How the paper sees a source (Section 4.2).
+/// The class of a source in the paper (Section 4.2).
 enum class Role {
-  none,            ///< without effect to first order
+  none,            ///< no first-order effect
   compensable,     ///< enters the drive rows, except that c enters the constraint rows as well
   non_compensable  ///< enters the constraint rows
 };
@@ -43,7 +43,7 @@ constexpr std::array<Entry, kSources> kEntries{{{0, "a", "x", Role::compensable}
                                                 {7, "c", "y", Role::compensable},
                                                 {7, "c", "z", Role::compensable}}};
 
-/// What the error of a frame displaces, and what the axes are along which it is measured.
+/// The object that an error of a frame displaces, and the axes along which the error is measured.
 struct Meaning {
   std::string_view part;
   std::array<std::string_view, 3> axes;
@@ -51,7 +51,7 @@ struct Meaning {
 constexpr std::array<std::string_view, 3> kLimbAxes{"outwards", "the revolute joint's axis", "down the rail"};
 constexpr std::array<std::string_view, 3> kRodAxes{"across the rod", "the revolute joint's axis", "the rod's own axis"};
 constexpr std::array<std::string_view, 3> kPlatformAxes{"outwards", "across", "the platform's axis"};
-/// In the order of frames (Figures 3 and 4 of the paper).
+/// The frames' meanings, in their order (Figures 3 and 4 of the paper).
 constexpr std::array<Meaning, kFrames> kMeanings{{{"position error of the rail's upper end A", kLimbAxes},
                                                   {"error of the carriage's initial position on its rail", {}},
                                                   {"attitude error of the rail", kLimbAxes},

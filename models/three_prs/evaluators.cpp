@@ -105,7 +105,7 @@ class CalibratedEvaluator final : public Evaluator {
  private:
   using Rows = Eigen::Map<Eigen::VectorXd, 0, Eigen::InnerStride<>>;
 
-  /// One sample's rows of a block.
+  /// The rows of one sample in a block.
   static Rows rows_of(std::span<double> block, std::size_t sample, std::size_t count) {
     return {block.data() + sample, static_cast<Eigen::Index>(block.size() / count),
             Eigen::InnerStride<>(static_cast<Eigen::Index>(count))};
@@ -133,7 +133,7 @@ class CalibratedEvaluator final : public Evaluator {
 
 class GivenOutcome final : public Evaluator {
  public:
-  /// Refers to the trace.
+  /// Keeps a reference to the trace.
   explicit GivenOutcome(const SolveTrace& given) : given_(&given) {}
 
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
@@ -148,7 +148,7 @@ class GivenOutcome final : public Evaluator {
   const SolveTrace* given_;
 };
 
-/// A sample without varied errors, and where its outcome goes.
+/// A block of one sample without varied errors.
 SampleBlock one_sample(std::span<const double> pose, std::span<const double> errors) {
   return {pose, errors, {}, {}, 1};
 }

@@ -5,7 +5,7 @@
 
 namespace poesy::three_prs {
 
-/// The first `rows` rows of the map for the samples from `at` on.
+/// Computes the first `rows` rows of the map for the samples from `at` on.
 template <class T, std::size_t rows>
 inline void map_lanes(const FirstOrderMap& map, const Tile& tile, std::size_t at, T* sum) {
   for (std::size_t r = 0; r < rows; ++r) sum[r] = T(map.constant[r]);
@@ -16,7 +16,7 @@ inline void map_lanes(const FirstOrderMap& map, const Tile& tile, std::size_t at
   }
 }
 
-/// Writes vectors and their norms; returns where all of them are finite.
+/// Stores vectors and their norms. Returns the lanes where all of them are finite.
 template <class T>
 inline typename T::MaskType store_responses(const T* vectors, const Tile& tile, std::size_t at) {
   T norms(0.0);

@@ -1,4 +1,4 @@
-// Compiled once for each instruction set.
+// This file is compiled once for each instruction set.
 #include "models/three_prs/kernels.h"
 
 #include "models/simd/lanes.h"

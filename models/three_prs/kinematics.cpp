@@ -25,7 +25,8 @@ LimbConfiguration limb_configuration(const Geometry& g, const lie::Transform<dou
 
 bool is_tilt(double angle) { return std::abs(angle) < std::numbers::pi / 2.0; }
 
-/// Twist of the platform while its tip moves by a given velocity: the constraint rows of J, then the tip.
+/// The matrix [6 x 6] that a twist of the platform is multiplied by: the constraint rows of J, then the rows of the
+/// tip's velocity.
 Matrix6 tip_jacobian(const Geometry& geometry, const Configuration& at) {
   Matrix6 rows;
   rows.topRows<3>() = velocity_jacobian(at).bottomRows<3>();
@@ -34,14 +35,14 @@ Matrix6 tip_jacobian(const Geometry& geometry, const Configuration& at) {
   return rows;
 }
 
-/// Rates of alpha, beta, gamma while the platform turns by omega: omega = e_x alpha' + Rx e_y beta' + R e_z gamma'.
+/// Rates of alpha, beta, gamma if the platform turns by omega: omega = e_x alpha' + Rx e_y beta' + R e_z gamma'.
 Vector3 angle_rates(const Pose& pose, const Matrix3& R, const Vector3& omega) {
   Matrix3 axes;
   axes << Vector3::UnitX(), Vector3(0.0, std::cos(pose.alpha), std::sin(pose.alpha)), R.col(2);
   return linalg::solve(axes, omega);
 }
 
-/// The pose after the platform has moved by a small twist that its constraints allow.
+/// The pose after a small twist of the platform that its constraints allow.
 Pose moved(const Pose& pose, const Matrix3& R, const lie::Screw<double>& twist) {
   const Vector3 rates = angle_rates(pose, R, twist.head<3>());
   return {pose.alpha + rates[0], pose.beta + rates[1], pose.z + twist[5]};
@@ -49,15 +50,15 @@ Pose moved(const Pose& pose, const Matrix3& R, const lie::Screw<double>& twist) 
 
 Vector3 carriages(const Configuration& at) { return {at.limbs[0].q, at.limbs[1].q, at.limbs[2].q}; }
 
-/// Whether a place is so far away that squares of its distance may overflow, and rounding there hides the mechanism.
-/// Places that the rails alone rule out are nearer: the message about those says more.
+/// Whether a place is so far away that squares of its distance may overflow, and that rounding there exceeds the size
+/// of the mechanism. Nearer places that only the rails exclude have a message of their own.
 bool is_far(const Geometry& g, const Vector3& place) {
   constexpr double kReaches = 1e6;
   const double reach = g.rail + g.a + g.l + g.c + g.h;
   return !(place.cwiseAbs().maxCoeff() <= kReaches * reach);
 }
 
-/// The upright pose with the carriages at these heights on average.
+/// The upright pose at the mean height of these carriages.
 Pose upright(const Geometry& g, const Vector3& q) {
   return {0.0, 0.0, q.mean() + std::sqrt(g.l * g.l - (g.c - g.a) * (g.c - g.a))};
 }
@@ -147,7 +148,7 @@ std::optional<Pose> pose_of_carriages(const Geometry& geometry, const Vector3& q
     lie::Screw<double> wanted = lie::Screw<double>::Zero();
     wanted.head<3>() = missing;
     const lie::Screw<double> twist = linalg::solve(velocity_jacobian(at), wanted);
-    // A full step may lead to where a rod is too short, or away; then a shorter one is taken.
+    // A full step may lead to a pose where a rod is too short, or away from the solution; then a shorter step is taken.
     bool nearer = false;
     for (double share = 1.0; share >= kShortest && !nearer; share *= 0.5) {
       const Pose next = moved(pose, at.platform.R, share * twist);

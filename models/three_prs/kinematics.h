@@ -12,13 +12,13 @@ namespace poesy::three_prs {
 struct Geometry {
   double a = 0.25;    ///< radius of the circle on which the three rails stand; "inscribed" in the text
   double c = 0.135;   ///< radius of the circle of the spherical joints on the platform; "inscribed" in the text
-  double l = 0.57;    ///< rod, from the revolute to the spherical joint
+  double l = 0.57;    ///< rod length, from the revolute to the spherical joint
   double rail = 0.5;  ///< travel of each carriage: 0 <= q <= rail
-  double h = 0.1717;  ///< tool tip below P along the platform's z axis; the paper prints none
+  double h = 0.1717;  ///< tool tip below P along the platform's z axis; not printed in the paper
 };
 
-/// Pose coordinates: the tilts of R = Rx(alpha) Ry(beta) Rz(gamma) (Eq. 1; rad) and the z of P (m). x, y and gamma
-/// follow from them (Eq. 6).
+/// Pose coordinates: the tilts alpha, beta (rad) of R = Rx(alpha) Ry(beta) Rz(gamma) (Eq. 1) and the z of P (m). x, y
+/// and gamma follow from them (Eq. 6).
 struct Pose {
   double alpha;  ///< rotation about the base's x axis, rad
   double beta;   ///< rotation about the platform's y axis after alpha, rad
@@ -46,27 +46,28 @@ lie::Matrix3<double> base_R_limb(std::size_t limb);
 /// Pose of the platform with its parasitic motion x, y, gamma (Eqs. 1, 6). |alpha|, |beta| < 90 deg.
 lie::Transform<double> base_T_platform(const Geometry& geometry, const Pose& pose);
 
-/// Inverse kinematics (Eqs. 2-8; B_3z is q_3, misprinted as q_2). q and swing of a limb whose rod is too short are NaN.
+/// Inverse kinematics (Eqs. 2-8; B_3z is q_3, misprinted as q_2). If a rod is too short, q and swing of its limb are
+/// NaN.
 Configuration configuration(const Geometry& geometry, const Pose& pose);
 
 /// J of Eqs. 10-13, [6 x 6]: rows drive 1, 2, 3, constraint 1, 2, 3, columns [omega; v] of the platform at P in the
-/// base frame. J [omega; v] = (q_1', q_2', q_3', 0, 0, 0), misprinted with other rates on the left.
+/// base frame. J [omega; v] = (q_1', q_2', q_3', 0, 0, 0); the paper misprints the rates on the left.
 lie::Matrix6<double> velocity_jacobian(const Configuration& nominal);
 
-/// The condition number of J with the platform's rotation measured by what it moves the spherical joints: omega times
-/// c. Infinity at a singular pose.
+/// The condition number of J. Rotations are measured by the displacement of the spherical joints, omega times c, so
+/// that it has no unit. Infinity at a singular pose.
 double condition(const Geometry& geometry, const Configuration& nominal);
 
 /// From P to the tool tip in the base frame: R (0, 0, h).
 lie::Vector3<double> tool(const Geometry& geometry, const lie::Matrix3<double>& R);
 
-/// The pose at which the tool tip is at this point of the base frame (m), to rounding. Nothing where there is none
-/// between -90 and 90 deg near the upright pose; whether the limbs reach it is not asked.
+/// The pose whose tool tip is at this point of the base frame (m), to rounding. None if no such pose exists between -90
+/// and 90 deg near the upright pose. Does not check whether the limbs reach it.
 std::optional<Pose> pose_of_tip(const Geometry& geometry, const lie::Vector3<double>& tip);
 
-/// Forward kinematics: the pose at which the carriages stand at these q (m), to rounding, by Newton from upright; the
-/// joints of the platform stand below their carriages. Nothing where there is none between -90 and 90 deg near the
-/// upright pose; whether the rails are long enough is not asked.
+/// Forward kinematics: the pose with the carriages at these q (m), to rounding, by Newton from the upright pose, with
+/// the platform's joints below their carriages. None if no such pose exists between -90 and 90 deg near the upright
+/// pose. Does not check the length of the rails.
 std::optional<Pose> pose_of_carriages(const Geometry& geometry, const lie::Vector3<double>& q);
 
 }  // namespace poesy::three_prs

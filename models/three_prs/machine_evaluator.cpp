@@ -14,7 +14,7 @@ namespace {
 
 using Vector3 = lie::Vector3<double>;
 
-/// A varied error of the slides: its place among theirs, and its row of SampleBlock::values.
+/// A varied error of the slides: its position among their errors, and its row of SampleBlock::values.
 struct VariedSlide {
   std::size_t factor;
   std::size_t row;
@@ -56,7 +56,7 @@ class MachineEvaluator final : public Evaluator {
     }
   }
 
-  /// Rows of samples.values that belong to the head: mostly the first ones, as they stand.
+  /// The rows of samples.values for the head's errors. Usually they are the first rows and are not copied.
   std::span<const double> head_values(const SampleBlock& samples) {
     const std::size_t size = head_varied_.size() * samples.count;
     if (std::ranges::equal(head_varied_, samples.varied.first(head_varied_.size()))) return samples.values.first(size);
@@ -75,7 +75,7 @@ class MachineEvaluator final : public Evaluator {
                     outcomes);
   }
 
-  /// All samples see the same head.
+  /// Evaluates the head once for all samples, because none of its errors vary.
   void evaluate_head_once(const SampleBlock& samples, const OutcomeBlock& outcomes) {
     std::array<double, kResponses> responses;
     std::array<double, kLimbs> details;
@@ -94,7 +94,7 @@ class MachineEvaluator final : public Evaluator {
     std::ranges::fill(outcomes.iterations, iterations);
   }
 
-  /// Points of the platform in the head's frame at the nominal pose.
+  /// P and the tool tip in the head's frame at the nominal pose.
   struct Points {
     Vector3 P;
     Vector3 tip;
@@ -105,7 +105,7 @@ class MachineEvaluator final : public Evaluator {
     return {platform.p, platform.p + tool(geometry_, platform.R)};
   }
 
-  /// Errors of the slides; those that vary are still to be set.
+  /// The constant errors of the slides; the caller sets the varied ones.
   static std::array<double, kSlideFactors> slide_errors(const SampleBlock& samples) {
     std::array<double, kSlideFactors> errors;
     std::ranges::copy(samples.errors.last(kSlideFactors), errors.begin());
@@ -131,7 +131,7 @@ class MachineEvaluator final : public Evaluator {
     }
   }
 
-  /// Turns the nine components of the head's responses, [9 x B], into those of the head carried by the slides.
+  /// Transforms the nine components of the head's responses, [9 x B], by the displaced slides.
   void carry_by_slides(const SampleBlock& samples, std::span<double> responses) const {
     const Points at = points(samples);
     std::array<double, kSlideFactors> errors = slide_errors(samples);

@@ -17,7 +17,7 @@ namespace {
 
 enum Chart : std::size_t { tip, carriages };
 
-/// In the order of Chart.
+/// The charts in the order of Chart.
 std::vector<PoseChart> charts() {
   return {{"tip",
            {{"tip_x", Dimension::length, "x of the tool tip in the base frame"},
@@ -31,7 +31,8 @@ std::vector<PoseChart> charts() {
            "bring q_1, q_2, q_3 closer together, for the carriages may be too far apart for the rods"}};
 }
 
-/// The paper's Section 5.2.1, where no start height is printed: the origin's is chosen so that the rails suffice.
+/// The curves of the paper's Section 5.2.1. It prints no start height; the chosen origin keeps the carriages on their
+/// rails.
 std::vector<NamedCurve> curves() {
   const std::vector<double> origin{0.0, 0.0, 0.85};
   const auto helix = [](double t) {
@@ -147,7 +148,7 @@ class ThreePrs final : public Model {
     return head_trace(geometry_, fidelity_, pose, errors, options);
   }
 
-  /// As a standard deviation, exact solves leave up to a tenth of the level at which they stop. First order only
+  /// Exact solves leave a standard deviation of up to a tenth of the level at which they stop. First order only
   /// multiplies.
   double rounding(std::size_t /*response*/) const override {
     if (fidelity_ == Fidelity::first_order) return 0.0;

@@ -11,7 +11,7 @@ namespace {
 using Vector3 = lie::Vector3<double>;
 using Matrix3 = lie::Matrix3<double>;
 
-/// Where the errors of a source are, as SketchedError has it.
+/// The place of a source's errors, in the terms of SketchedError.
 struct Site {
   std::size_t frame;
   std::size_t after;
@@ -26,7 +26,7 @@ Site site_of(Source source) {
   return {4, 3, 4};
 }
 
-/// Of an error's name among x, y and z; a scalar is along z.
+/// The axis, 0 to 2, from the x, y or z in an error's name; a scalar is along z.
 std::size_t axis_of(const Factor& factor) {
   return factor.axis.empty() ? 2 : static_cast<std::size_t>(factor.axis.front() - 'x');
 }

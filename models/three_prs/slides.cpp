@@ -15,7 +15,7 @@ using Matrix3 = lie::Matrix3<double>;
 
 constexpr std::size_t kXSlide = kLimbs + 1;
 constexpr std::size_t kYSlide = kLimbs + 2;
-/// Frames after the head's, for slides are no copies of one another as limbs are.
+/// Frames after the head's; unlike limbs, slides are not copies of one another.
 enum Frame : std::size_t { kXTranslation = kFrames, kXRotation, kYTranslation, kYRotation, kSquareness };
 
 struct Entry {
@@ -26,7 +26,7 @@ struct Entry {
   std::string_view symbol;
   std::string_view meaning;
 };
-/// In the order of SlideSource.
+/// The slides' errors in the order of SlideSource.
 constexpr std::array<Entry, kSlideFactors> kEntries{{
     {"x_position", kXSlide, kXTranslation, "x", "EXX", "positioning error of the X slide along its travel"},
     {"x_straightness_y", kXSlide, kXTranslation, "y", "EYX", "straightness error of the X slide along y"},
@@ -56,7 +56,7 @@ Vector3 vector(SlideErrors errors, SlideSource source) {
   return Eigen::Map<const Vector3>(errors.data() + static_cast<std::size_t>(source));
 }
 
-/// Displacement of a point that a translation and a rotation about a point `arm` away give.
+/// Sets the displacement of a point by a translation and by a rotation about a point at the distance `arm`.
 void set_point(SlideEffects& effects, int row, SlideSource translation, SlideSource rotation, const Vector3& arm) {
   effects.block<3, 3>(row, static_cast<Eigen::Index>(translation)).setIdentity();
   effects.block<3, 3>(row, static_cast<Eigen::Index>(rotation)) = -lie::hat(arm);
@@ -74,7 +74,7 @@ lie::Transform<double> nominal_T_head(double slide_y, SlideErrors errors) {
   const Matrix3 E_x = lie::exp(vector(errors, SlideSource::x_rotation));
   const double squareness = errors[static_cast<std::size_t>(SlideSource::squareness)];
   const Matrix3 along_y = E_x * lie::exp(Vector3(0.0, 0.0, squareness));
-  // The travel itself as (E_x Rz - I) (0, slide_y, 0): exactly zero where nothing turns.
+  // The travel itself as (E_x Rz - I) (0, slide_y, 0), which is exactly zero without rotation.
   const Vector3 turned = slide_y * (along_y.col(1) - Vector3::UnitY());
   return {E_x * lie::exp(vector(errors, SlideSource::y_rotation)),
           vector(errors, SlideSource::x_translation) + along_y * vector(errors, SlideSource::y_translation) + turned};

@@ -2,13 +2,13 @@
 
 #include <cstddef>
 
-// Also read by translation units compiled for one instruction set: nothing but numbers.
+// Also read by translation units compiled for one instruction set, so it contains only numbers.
 
 namespace poesy::three_prs {
 
 inline constexpr std::size_t kLimbs = 3;
 
-/// Where each source's components stand among a limb's error sources.
+/// Position of each source's first component among a limb's error sources.
 enum class Source : std::size_t {
   a = 0,          ///< position of the rail's upper end A_i, in {O_i}
   q = 3,          ///< initial position of the carriage along the rail
@@ -19,10 +19,10 @@ enum class Source : std::size_t {
   l = 16,         ///< length of the rod
   c = 17          ///< position of the spherical joint, in {P_i'}
 };
-inline constexpr std::size_t kSources = 20;  ///< of one limb
+inline constexpr std::size_t kSources = 20;  ///< number of error components of one limb
 inline constexpr std::size_t kFactors = 60;
 
-/// Where the components of a limb's source stand among all factors; limbs counted from 0.
+/// Position of a source's first component among all factors. Limbs count from 0.
 constexpr std::size_t factor_of(std::size_t limb, Source source) {
   return limb * kSources + static_cast<std::size_t>(source);
 }

@@ -9,7 +9,8 @@
 
 namespace poesy::three_prs {
 
-/// Cuts blocks into tiles. A tile whose rows do not end at a multiple of kMostLanes is worked on in rows of its own.
+/// Cuts blocks into tiles. If the rows of a tile do not end at a multiple of kMostLanes, the tile is copied to padded
+/// rows.
 class Tiles {
  public:
   /// Calls work(tile) for each tile of a block. Details are null where the block asks for none.
@@ -39,7 +40,7 @@ class Tiles {
             outcomes.iterations.data() + first};
   }
 
-  /// Lanes behind the last sample repeat it, so that they end when it does.
+  /// Copies a tile to padded rows. The lanes behind the last sample repeat it, so that they end when it does.
   void stage(const SampleBlock& samples, Tile& tile) {
     POESY_EXPECTS(samples.varied.size() <= kFactors);
     for (std::size_t v = 0; v < samples.varied.size(); ++v) {

@@ -21,8 +21,8 @@ constexpr Table kRpuLimb{"ooo.xx",   //
                          "ooox.x"};  //
 constexpr std::array<Table, 3> kLimbs{kUprLimb, kUprLimb, kRpuLimb};
 
-/// What the errors of each frame j = 0..4 of a limb displace, and against what (Tables 1 to 3 and the text below Eq.
-/// 25).
+/// The object that the errors of each frame j = 0..4 of a limb displace, and its reference (Tables 1 to 3 and the text
+/// below Eq. 25).
 using Parts = std::array<std::string_view, 5>;
 constexpr Parts kUprParts{"universal joint's first axis against the base",         //
                           "universal joint's second axis against its first",       //
@@ -36,7 +36,7 @@ constexpr Parts kRpuParts{"revolute joint against the base",                    
                           "universal joint's hole against the platform"};
 constexpr std::array<Parts, 3> kParts{kUprParts, kUprParts, kRpuParts};
 
-/// In whose axes the errors of frame j are measured. The z axis of a frame is its joint's.
+/// The frame whose axes measure the errors of frame j. The z axis of a frame is its joint's.
 std::string axes_of(std::size_t frame, char axis) {
   if (frame == 0) return "the base";
   if (frame == 4) return "the platform";

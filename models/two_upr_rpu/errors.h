@@ -7,14 +7,14 @@
 
 namespace poesy::two_upr_rpu {
 
-/// The 71 geometric errors (Du et al. 2022, Section 3.2): of 90 error parameters, 12 are initial joint
-/// displacements and 7 are zero by the definition of the frames. Ordered by limb, frame, linear before angular.
+/// The 71 geometric errors (Du et al. 2022, Section 3.2): of 90 error parameters, 12 are initial joint displacements
+/// and 7 are zero by the definition of the frames. They are ordered by limb, then by frame, linear before angular.
 std::vector<Factor> factors();
 
-/// The frame entry of each factor, in the same order.
+/// The frame entry of each factor, in the order of factors().
 std::vector<chain::ErrorSlot> error_slots();
 
-/// all (71), deforming (25: limbs 1 and 3, Section 6.1), deforming-all (41: Table 7), benign (30).
+/// The sets: all (71), deforming (25: limbs 1 and 3, Section 6.1), deforming-all (41: Table 7), benign (30).
 std::vector<FactorSet> factor_sets();
 
 }  // namespace poesy::two_upr_rpu

@@ -15,8 +15,8 @@
 namespace poesy::two_upr_rpu {
 namespace {
 
-/// How far a limb's platform pose may be from the wanted one before its loop counts as open: as a share of the chain's
-/// reach, and in rad. Loops that close leave some 1e-15.
+/// A limb's loop counts as open if its platform pose differs from the wanted one by more than this (rad, and shares of
+/// the chain's reach). Closed loops differ by about 1e-15.
 constexpr double kClosure = 1e-9;
 
 using Vector3 = lie::Vector3<double>;
@@ -26,7 +26,7 @@ Pose pose_from(std::span<const double> pose) {
   return {pose[0], pose[1], pose[2]};
 }
 
-/// The chain by the metric of these points, or as published where there are none.
+/// The chain with the metric of these points, or with the published weight if there are none.
 chain::DeformationModel deformation_model(const Geometry& geometry, std::vector<Vector3> points) {
   const auto displacements = [geometry](std::span<const double> pose) {
     const auto q = two_upr_rpu::joint_displacements(geometry, pose_from(pose));
@@ -72,13 +72,13 @@ ModelDescription describe(const chain::DeformationModel& deformation) {
   return description;
 }
 
-/// Whether two poses are the same, up to kClosure.
+/// Whether two poses are equal up to kClosure.
 bool are_same(const lie::Transform<double>& a, const lie::Transform<double>& b, double reach) {
   const lie::Screw<double> screw = lie::log(a * b.inverse());
   return screw.head<3>().norm() < kClosure && screw.tail<3>().norm() < kClosure * reach;
 }
 
-/// U, P and R of the first two limbs, R, P and U of the third; U is where both of its axes meet.
+/// The joints of the limbs: U, P and R of the first two, R, P and U of the third. U is at the intersection of its axes.
 std::vector<std::vector<SketchedJoint>> joints() {
   const auto joint = [](char type, std::size_t first, std::size_t frame) {
     return SketchedJoint{.name = {},
@@ -96,7 +96,7 @@ std::vector<std::vector<SketchedJoint>> joints() {
 
 class TwoUprRpu final : public Model {
  public:
-  /// points: of the platform's metric; none: as published.
+  /// points: of the platform's metric; none: the published weight.
   TwoUprRpu(const Geometry& geometry, std::vector<Vector3> points, chain::Fidelity fidelity)
       : geometry_(geometry),
         deformation_(deformation_model(geometry, std::move(points))),
@@ -149,7 +149,8 @@ class TwoUprRpu final : public Model {
     return points;
   }
 
-  /// The smaller of the platform and the base, which every limb joins; the offsets c and d are no links and may be 0.
+  /// Lengths are bounded by the smaller of the platform and the base, which every limb joins; the offsets c and d are
+  /// not links and may be 0.
   ErrorBound error_bound(FactorIndex factor) const override {
     if (description_.factors[factor.value].dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
     if (geometry_.l_A < geometry_.l_B) return {geometry_.l_A, "the platform's size l_A"};
@@ -170,7 +171,7 @@ class TwoUprRpu final : public Model {
   }
 
  private:
-  /// Where a leg has no length, or a coordinate is so large that digits are lost, the limbs do not meet.
+  /// The limbs do not meet if a leg has no length, or if a coordinate is so large that digits are lost.
   std::optional<std::string> open_loop(const Pose& pose) const {
     const auto q = two_upr_rpu::joint_displacements(geometry_, pose);
     const lie::Transform<double> wanted = base_T_platform(pose);
