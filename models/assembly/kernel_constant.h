@@ -20,7 +20,7 @@ class ConstantStep {
   explicit ConstantStep(const KernelProblem& problem)
       : problem_(problem),
         mismatch_(6 * problem.limbs.size()),
-        particular_(mismatch_.size(), T(0.0)),
+        particular_(6 * problem.limbs.size(), T(0.0)),
         right_(problem.size),
         found_(problem.size),
         twists_(6 * problem.bodies.size(), T(0.0)) {}
