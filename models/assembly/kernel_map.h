@@ -3,6 +3,7 @@
 // Included only by kernels.cpp, which is compiled once for each instruction set.
 
 #include <algorithm>
+#include <utility>
 
 #include "models/assembly/kernel_report.h"
 
@@ -19,12 +20,13 @@ class KernelMapper {
       : problem_(problem),
         map_(problem.map),
         block_(block),
-        blocks_((std::min(rows, first_joint() + problem.joints) + kRows - 1) / kRows),
-        coordinates_(blocks_ * kRows) {}
+        coordinates_(std::min(rows, first_joint() + problem.joints)) {}
 
   /// Of the lanes from sample `at` on, until the next call.
   const T* coordinates(std::size_t at) {
-    for (std::size_t n = 0; n < blocks_; ++n) multiply(n, at);
+    for (std::size_t row = 0; row < coordinates_.size(); row += kRows) {
+      multiply_some(row, at, std::make_index_sequence<kRows>());
+    }
     return coordinates_.data();
   }
 
@@ -45,23 +47,30 @@ class KernelMapper {
  private:
   static constexpr std::size_t kRows = KernelMap::kRows;
 
-  /// Eight rows at once, so that each value is read once for them.
-  void multiply(std::size_t n, std::size_t at) {
-    T sum[kRows];
-    for (std::size_t k = 0; k < kRows; ++k) sum[k] = T(map_.offset[n * kRows + k]);
-    const double* of = map_.matrix.data() + n * kRows * map_.entries;
+  /// As many rows from one on as there are, at most kRows.
+  template <std::size_t... n>
+  void multiply_some(std::size_t row, std::size_t at, std::index_sequence<n...>) {
+    const std::size_t count = std::min(kRows, coordinates_.size() - row);
+    ((count == n + 1 ? multiply<n + 1>(row, at) : void()), ...);
+  }
+
+  /// Rows at once, so that each value is read once for them.
+  template <std::size_t rows>
+  void multiply(std::size_t row, std::size_t at) {
+    T sum[rows];
+    for (std::size_t k = 0; k < rows; ++k) sum[k] = T(map_.offset[row + k]);
+    const double* of = map_.matrix.data() + row * map_.entries;
     const double* value = block_.values + at;
     for (std::size_t v = 0; v < map_.entries; ++v, of += kRows, value += block_.stride) {
       const T x = T::load(value);
-      for (std::size_t k = 0; k < kRows; ++k) sum[k] = madd(T(of[k]), x, sum[k]);
+      for (std::size_t k = 0; k < rows; ++k) sum[k] = madd(T(of[k]), x, sum[k]);
     }
-    for (std::size_t k = 0; k < kRows; ++k) coordinates_[n * kRows + k] = sum[k];
+    for (std::size_t k = 0; k < rows; ++k) coordinates_[row + k] = sum[k];
   }
 
   const KernelProblem& problem_;
   const KernelMap& map_;
   const KernelBlock& block_;
-  std::size_t blocks_;
   std::vector<T> coordinates_;
 };
 

@@ -110,13 +110,13 @@ struct KernelReport {
 /// The first order of samples: coordinates = offset + matrix * values that vary. Coordinates are the twists of bodies
 /// without the base [6 x (bodies - 1)], stresses, displacements of passive joints.
 struct KernelMap {
-  static constexpr std::size_t kRows = 8;  ///< that are multiplied at once
-  std::size_t entries;                     ///< values that vary
-  std::size_t stresses;                    ///< coordinates of the wrenches that limbs put on each other
-  std::vector<double> offset;              ///< [rows, padded]
-  std::vector<double> matrix;              ///< [rows / 8, padded][entries][8]
-  std::vector<double> wrenches;            ///< [6 limbs x stresses] of a unit of each stress, row by row
-  std::vector<double> by_load;             ///< [6 limbs] of the load
+  static constexpr std::size_t kRows = 12;  ///< that are multiplied at once
+  std::size_t entries;                      ///< values that vary
+  std::size_t stresses;                     ///< coordinates of the wrenches that limbs put on each other
+  std::vector<double> offset;               ///< [rows, padded]
+  std::vector<double> matrix;               ///< [rows / kRows, padded][entries][kRows]
+  std::vector<double> wrenches;             ///< [6 limbs x stresses] of a unit of each stress, row by row
+  std::vector<double> by_load;              ///< [6 limbs] of the load
 };
 
 /// An assembly at a pose, with its errors.
