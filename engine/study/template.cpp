@@ -63,6 +63,20 @@ std::string mechanism_section(const TemplateLines& lines, const Study& shown) {
   return text;
 }
 
+/// How a response of one's own is written, in comment lines.
+std::string response_section(const TemplateLines& lines, const ModelDescription& model) {
+  if (model.responses.empty()) return {};
+  std::string example;
+  for (const Response& response : model.responses) {
+    if (!example.empty() || response.components.size() < 2) continue;
+    example = fmt::format("# norm = [\"{}\", \"{}\"]\n", model.responses[response.components[0]].name,
+                          model.responses[response.components[1]].name);
+  }
+  if (example.empty()) example = fmt::format("# sum = {{ {} = 1 }}\n", model.responses.front().name);
+  return "\n" + lines.explanation_lines("", "response") + lines.keys_lines("response") +
+         "# [[response]]\n# name = \"own\"\n" + example;
+}
+
 /// A comment on other coordinates in which a file may give poses.
 std::string charts_comment(const ModelDescription& model) {
   std::string text;
@@ -139,11 +153,11 @@ std::string template_text(const CatalogEntry& entry, const StudyKind& kind, cons
   shown.mechanism.entry = entry.description.metric == "published" ? &by_metric(entry, "platform") : &entry;
   shown.analysis.kind = &kind;
   POESY_EXPECTS(kind.no_template == nullptr || !kind.no_template(shown.model()));
-  return head(lines, shown) + mechanism_section(lines, shown) + "\n[poses]\n" + charts_comment(shown.model()) +
-         template_lines(lines, poses_keys(), shown) + "\n" + comment(lines.meaning("errors")) +
-         lines.keys_lines("errors.linear") + "[errors]\n" + template_lines(lines, errors_keys(), shown) +
-         analysis_section(lines, shown) + "\n[solver]\n" + template_lines(lines, solver_keys(), shown) + "\n[run]\n" +
-         template_lines(lines, run_keys(), shown);
+  return head(lines, shown) + mechanism_section(lines, shown) + response_section(lines, shown.model()) + "\n[poses]\n" +
+         charts_comment(shown.model()) + template_lines(lines, poses_keys(), shown) + "\n" +
+         comment(lines.meaning("errors")) + lines.keys_lines("errors.linear") + "[errors]\n" +
+         template_lines(lines, errors_keys(), shown) + analysis_section(lines, shown) + "\n[solver]\n" +
+         template_lines(lines, solver_keys(), shown) + "\n[run]\n" + template_lines(lines, run_keys(), shown);
 }
 
 std::string study_reference(const StudyKinds& kinds) { return introduction() + tables_reference(kinds.tables); }

@@ -101,7 +101,7 @@ void FirstOrder::determinant_slopes(std::span<lie::Screw<double>> slopes) {
   using Screw = lie::Screw<double>;
   POESY_EXPECTS(slopes.size() == limb_of_frame_.size());
   std::ranges::fill(slopes, Screw::Zero());
-  std::vector<double> by_joint(columns_.size());
+  by_joint_.resize(columns_.size());
   std::size_t a = columns_.size();
   unit_.assign(a, 0.0);
   for (std::size_t i = chain_->limbs.size(); i-- > 0;) {
@@ -110,7 +110,7 @@ void FirstOrder::determinant_slopes(std::span<lie::Screw<double>> slopes) {
     for (std::size_t j = limb.joints.size(); j-- > 0;) {
       if (!limb.joints[j].actuated) {
         --a;
-        by_joint[a] = behind.dot(columns_[a]);
+        by_joint_[a] = behind.dot(columns_[a]);
         unit_[a] = 1.0;
         equations_.solve_for(unit_);
         unit_[a] = 0.0;
@@ -120,7 +120,7 @@ void FirstOrder::determinant_slopes(std::span<lie::Screw<double>> slopes) {
       slopes[chain_->first_frame(i) + j] = behind;
     }
   }
-  equations_.solve_for(by_joint);
+  equations_.solve_for(by_joint_);
   pull_of(equations_.solution());
   for (std::size_t f = 0; f < slopes.size(); ++f) slopes[f] -= pull_[limb_of_frame_[f]];
 }

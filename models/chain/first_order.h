@@ -67,6 +67,7 @@ class FirstOrder {
   std::vector<double> meetings_;                  ///< [passive joints] number of pairs that contain the joint's limb
   std::vector<double> no_mismatch_;               ///< [6 x pairs] zeros
   std::vector<double> unit_;                      ///< [passive joints] a unit vector
+  std::vector<double> by_joint_;                  ///< [passive joints] scratch
   std::vector<double> mismatch_;                  ///< [6 x pairs] scratch
   std::vector<lie::Screw<double>> pull_;          ///< [limbs] scratch
   lie::Matrix6<double> W_;

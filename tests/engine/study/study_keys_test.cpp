@@ -47,6 +47,7 @@ Catalog catalog() {
     return entry;
   };
   two.front().description.separation = SeparationDescription{"of no interest", {}};
+  two.front().description.responses.push_back({"third", Dimension::length, "never solved"});
   two.front().build = [](auto geometry, auto) { return std::make_unique<CalibratedFake>(geometry[0]); };
   two.front().description.fidelities = {"exact", "first-order"};
   CatalogEntry by_platform = two.front();
@@ -63,6 +64,13 @@ const Catalog kCatalog = catalog();
 constexpr std::string_view kHead = R"(format = "poesy-study"
 version = 1
 title = "A study"
+[[response]]
+name = "one"
+norm = ["linear_deformation", "third"]
+description = "never solved"
+[[response]]
+name = "two"
+sum = { linear_deformation = 1, third = -2 }
 [mechanism]
 model = "fake"
 geometry = { arm = "50 mm" }
