@@ -20,10 +20,14 @@
 namespace poesy {
 namespace {
 
-/// The fake mechanism as if it could be calibrated, which makes no difference.
+extern const Catalog kCatalog;
+
+/// The fake mechanism as if it could be calibrated, which makes no difference, and as the catalog describes it.
 class CalibratedFake : public test::FakeModel {
  public:
   using FakeModel::FakeModel;
+
+  const ModelDescription& description() const override { return kCatalog.front().description; }
 
   std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
     return evaluator(options);
@@ -35,8 +39,6 @@ class FakeByPlatform final : public CalibratedFake {
  public:
   std::vector<PlatformPoint> metric_points() const override { return {{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}}; }
 };
-
-extern const Catalog kCatalog;
 
 /// The fake mechanism with two fidelities and two metrics, which make no difference. Every file describes it.
 Catalog catalog() {
