@@ -23,7 +23,7 @@ constexpr std::size_t kSamples = 1000;
 struct Mechanism {
   std::string file;          ///< its name, without ".toml"
   std::string metric;        ///< by which it is solved
-  std::vector<double> pose;  ///< SI
+  std::vector<double> pose;  ///< SI; empty: the middle of the workspace
 };
 
 /// By which code.
@@ -69,6 +69,10 @@ assembly::AssemblyModel assembly_of(const Mechanism& mechanism) {
 void solves(benchmark::State& state, const Case& which) {
   const std::unique_ptr<Model> model = built(which.mechanism);
   const assembly::AssemblyModel limbs = assembly_of(which.mechanism);
+  std::vector<double> pose = which.mechanism.pose;
+  for (std::size_t k = pose.size(); k < model->description().pose_lower.size(); ++k) {
+    pose.push_back(0.5 * (model->description().pose_lower[k] + model->description().pose_upper[k]));
+  }
   const SolverOptions options{.tolerance = model->description().tolerance};
   const std::size_t errors = model->description().factors.size();
   std::mt19937_64 engine(1);
@@ -91,7 +95,7 @@ void solves(benchmark::State& state, const Case& which) {
   const std::unique_ptr<Evaluator> evaluator =
       of_product ? model->evaluator(options) : assembly::assembly_evaluator(limbs, options, fidelity);
   for (auto _ : state) {
-    evaluator->evaluate({which.mechanism.pose, none, varied, values, kSamples}, {responses, status, iterations, {}});
+    evaluator->evaluate({pose, none, varied, values, kSamples}, {responses, status, iterations, {}});
     benchmark::DoNotOptimize(responses.data());
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSamples));
@@ -103,7 +107,14 @@ const std::vector<Mechanism> kMechanisms{{"linear-delta", "platform", {0.03, -0.
                                          {"linear-delta", "stiffness", {0.03, -0.02, 0.2}},
                                          {"delta-parallelogram", "platform", {-0.03, 0.04, 0.16}},
                                          {"upr2-rpu-beams", "stiffness", {-0.25, 0.2, -0.15}},
-                                         {"upr2-rpu", "platform", {-0.25, 0.2, -0.15}}};
+                                         {"upr2-rpu", "platform", {-0.25, 0.2, -0.15}},
+                                         {"tripteron", "platform", {}},
+                                         {"ups6", "platform", {}}};
+
+/// Whether the product compares limbs in pairs, or with one platform where they can meet.
+bool is_unbranched(const Mechanism& mechanism) {
+  return mechanism.file == "upr2-rpu" || mechanism.file == "tripteron" || mechanism.file == "ups6";
+}
 
 }  // namespace
 
@@ -117,7 +128,7 @@ int main(int argc, char** argv) {
       add({mechanism, Code::assembly, 0.1, isa}, "0.1");
       add({mechanism, Code::assembly, 1.0, isa}, "1");
       add({mechanism, Code::first_order, 0.1, isa}, "first-order");
-      if (mechanism.file != "upr2-rpu") continue;
+      if (!is_unbranched(mechanism)) continue;
       add({mechanism, Code::product, 0.1, isa}, "0.1/pairs");
       add({mechanism, Code::product, 1.0, isa}, "1/pairs");
     }
