@@ -177,7 +177,7 @@ TEST_P(AssemblyKernel, IsTheSameAtAnyPlace) {
   });
 }
 
-TEST(AssemblyKernels, HaveTheSameBitsByAllSetsWithFusedMultiplyAdd) {
+TEST(AssemblyKernels, HaveTheSameBitsByAllSetsThatFuse) {
   if (!test::machine_has("avx2") || !test::machine_has("avx512"))
     GTEST_SKIP() << "this machine has one of them at most";
   for_each_sample(21, [](const AssemblyModel& model, PoseProblem& problem, Samples& samples) {
