@@ -57,6 +57,20 @@ ModelDescription described(ModelDescription model, const std::vector<OwnResponse
   return model;
 }
 
+/// Forms a response of each sample, `to`, from those of the model, rows [R x samples].
+void form(const OwnResponse& own, std::span<const double> rows, std::span<double> to) {
+  std::ranges::fill(to, 0.0);
+  for (const ResponseTerm& term : own.terms) {
+    const std::span<const double> row = rows.subspan(term.response * to.size(), to.size());
+    for (std::size_t b = 0; b < to.size(); ++b) {
+      const double value = term.weight * row[b];
+      to[b] += own.is_norm ? value * value : value;
+    }
+  }
+  if (!own.is_norm) return;
+  for (double& value : to) value = std::sqrt(value);
+}
+
 class EvaluatorOfOwn final : public Evaluator {
  public:
   EvaluatorOfOwn(std::unique_ptr<Evaluator> inner, const std::vector<OwnResponse>& own, std::size_t responses)
@@ -74,19 +88,6 @@ class EvaluatorOfOwn final : public Evaluator {
   }
 
  private:
-  static void form(const OwnResponse& own, std::span<const double> rows, std::span<double> to) {
-    std::ranges::fill(to, 0.0);
-    for (const ResponseTerm& term : own.terms) {
-      const std::span<const double> row = rows.subspan(term.response * to.size(), to.size());
-      for (std::size_t b = 0; b < to.size(); ++b) {
-        const double value = term.weight * row[b];
-        to[b] += own.is_norm ? value * value : value;
-      }
-    }
-    if (!own.is_norm) return;
-    for (double& value : to) value = std::sqrt(value);
-  }
-
   std::unique_ptr<Evaluator> inner_;
   const std::vector<OwnResponse>& own_;
   std::size_t responses_;  ///< of the model
@@ -111,8 +112,9 @@ class ModelOfOwn final : public ForwardingModel {
     std::optional<SolveTrace> trace = ForwardingModel::trace(pose, errors, options);
     if (!trace) return trace;
     const std::size_t known = trace->responses.size();
-    for (const OwnResponse& own : own_)
-      trace->responses.push_back(value(own, std::span(trace->responses).first(known)));
+    trace->responses.resize(known + own_.size());
+    const std::span<double> all(trace->responses);
+    for (std::size_t k = 0; k < own_.size(); ++k) form(own_[k], all.first(known), all.subspan(known + k, 1));
     return trace;
   }
 
@@ -133,15 +135,6 @@ class ModelOfOwn final : public ForwardingModel {
  private:
   const ModelDescription& inner() const { return ForwardingModel::description(); }
   bool is_own(std::size_t response) const { return response >= inner().responses.size(); }
-
-  static double value(const OwnResponse& own, std::span<const double> responses) {
-    double sum = 0.0;
-    for (const ResponseTerm& term : own.terms) {
-      const double one = term.weight * responses[term.response];
-      sum += own.is_norm ? one * one : one;
-    }
-    return own.is_norm ? std::sqrt(sum) : sum;
-  }
 
   std::unique_ptr<Evaluator> with_own(std::unique_ptr<Evaluator> evaluator) const {
     if (evaluator == nullptr) return nullptr;

@@ -11,7 +11,7 @@ const InnerRows<OwnResponse>& response_keys() {
       .paths = {"response"},
       .meaning =
           "A response of one's own, formed from those of the mechanism before anything is counted. It has `norm` "
-          "or `sum`, and stands wherever a response may.",
+          "or `sum`, and may be named wherever a response may.",
       .rows = {
           InnerRow<OwnResponse>{.name = "name",
                                 .value = text_at(&OwnResponse::name),
@@ -45,7 +45,7 @@ bool is_name(const std::string& text) {
 std::size_t response_of(const StudyValue& value, const std::string& name, const ModelDescription& model) {
   const auto found = std::ranges::find(model.responses, name, &Response::name);
   if (found == model.responses.end()) {
-    value.fail("names '" + printable(name) + "', which is no response of the mechanism",
+    value.fail("names '" + printable(name) + "', which is not a response of the mechanism",
                suggestion(name, names(model.responses)));
   }
   return static_cast<std::size_t>(found - model.responses.begin());

@@ -362,7 +362,7 @@ void BlockSolver::find_nearing(std::span<const FrameError<double>> errors, std::
   });
 }
 
-void BlockSolver::find_near(std::span<const double> values) {
+void BlockSolver::add_up_nearing(std::span<const double> values) {
   nearing_of_.clear();
   if (metric_ != nullptr || chain_->meets) return;
   nearing_of_.assign(count_, nearing_constant_);
@@ -375,7 +375,7 @@ void BlockSolver::find_near(std::span<const double> values) {
 /// Finds the samples that cannot be assembled among those that are not solved, doubted, near by the published rule, or
 /// solved slowly by Gauss-Newton.
 void BlockSolver::review(std::span<const double> values) {
-  find_near(values);
+  add_up_nearing(values);
   const bool may_be_slow = options_.method == KernelMethod::gauss_newton && metric_ != nullptr && !chain_->meets;
   for (std::size_t b = 0; b < count_; ++b) {
     using enum SolveStatus;

@@ -72,7 +72,7 @@ class BlockSolver {
   double fit_starts(double center, double half_width);
   void run(std::span<const double> values, std::size_t count, const KernelOptions& options, double* displacements);
   void find_nearing(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied);
-  void find_near(std::span<const double> values);
+  void add_up_nearing(std::span<const double> values);
   void review(std::span<const double> values);
   void set_frames(std::span<const double> values, std::size_t sample);
   void map(std::span<const double> values, std::size_t count, bool wants_residuals);

@@ -57,9 +57,9 @@ PartMembers members_by_word(const StudyValue& value, const Study& study) {
     value.fail(fmt::format("is '{}', but the study does not vary '{}'", printable(pattern), factor->name),
                "name it in analysis.factors, or leave it out here");
   }
-  const bool is_name = pattern.find_first_of("*?") == std::string::npos;
-  value.fail("is '" + printable(pattern) + "', which is none of the model's errors",
-             is_name ? suggestion(pattern, names(model.factors)) : "'poesy models " + model.name + "' lists them");
+  value.fail(
+      "is '" + printable(pattern) + "', which is none of the model's errors",
+      is_pattern(pattern) ? "'poesy models " + model.name + "' lists them" : suggestion(pattern, names(model.factors)));
 }
 
 PartMembers members_by_pattern(const StudyValue& value, const Study& study) {
