@@ -2,3 +2,4 @@ poesy_test(base_test LABELS unit SOURCES engine/base/array_test.cpp engine/base/
            engine/base/text_test.cpp engine/base/units_test.cpp
            LINKS poesy_base)
 poesy_test(linalg_test LABELS property SOURCES engine/linalg/decompositions_test.cpp LINKS poesy_linalg)
+poesy_test(fits_test LABELS unit SOURCES engine/fits/fit_test.cpp engine/fits/it_grade_test.cpp LINKS poesy_fits)

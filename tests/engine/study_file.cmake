@@ -3,7 +3,7 @@ poesy_test(io_input_test LABELS unit SOURCES engine/study/study_file_test.cpp en
            engine/kinds/study_kinds_test.cpp engine/study/study_text_test.cpp engine/study/study_trajectory_test.cpp
            engine/study/calibrated_key_test.cpp engine/study/correlated_errors_test.cpp engine/study/shift_key_test.cpp engine/study/table_file_test.cpp engine/study/bare_numbers_test.cpp engine/study/patterns_test.cpp LINKS poesy_kinds tomlplusplus::tomlplusplus)
 poesy_test(allocation_keys_test LABELS unit
-           SOURCES engine/kinds/allocation/drawn_part_test.cpp engine/kinds/allocation/it_grade_test.cpp
+           SOURCES engine/kinds/allocation/drawn_part_test.cpp
                    engine/kinds/allocation/keys_test.cpp
            LINKS poesy_kinds poesy_models)
 poesy_test(own_responses_test LABELS unit SOURCES engine/study/own_responses_test.cpp LINKS poesy_kinds poesy_models)

@@ -7,7 +7,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
-#include "engine/kinds/allocation/it_grade.h"
+#include "engine/fits/it_grade.h"
 #include "engine/kinds/allocation/parts.h"
 #include "engine/optimise/max_tolerances.h"
 

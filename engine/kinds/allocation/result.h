@@ -10,7 +10,7 @@
 
 #include "engine/base/array.h"
 #include "engine/base/index.h"
-#include "engine/kinds/allocation/it_grade.h"
+#include "engine/fits/it_grade.h"
 #include "engine/optimise/cost_law.h"
 #include "engine/optimise/least_cost.h"
 #include "engine/report/tables.h"

@@ -1,4 +1,4 @@
-#include "engine/kinds/allocation/it_grade.h"
+#include "engine/fits/it_grade.h"
 
 #include <array>
 #include <cstddef>
