@@ -315,10 +315,27 @@ Distribution Distribution::shifted(double shift) const {
   return made;
 }
 
+Distribution Distribution::about(double centre) const {
+  POESY_EXPECTS(centre_ == 0.0);
+  if (!std::isfinite(centre)) throw std::invalid_argument("mean must be a finite number");
+  if (shape_ == Shape::measured && centre != 0.0) throw std::invalid_argument("mean is not for measured values");
+  Distribution made = *this;
+  if (centre == 0.0) return made;
+  made.centre_ = centre;
+  made.mean_ = centre;
+  return made;
+}
+
 double Distribution::quantile(double u) const {
   POESY_EXPECTS(u > 0.0 && u < 1.0);
-  if (shift_ == 0.0) return centred_quantile(u);
-  return centred_quantile(share_in_half(u)) + shift_of_half(shift_, u);
+  double value = shift_ == 0.0 ? centred_quantile(u) : centred_quantile(share_in_half(u)) + shift_of_half(shift_, u);
+  add_centre({&value, 1});
+  return value;
+}
+
+void Distribution::add_centre(std::span<double> values) const {
+  if (centre_ == 0.0) return;
+  for (double& value : values) value += centre_;
 }
 
 double Distribution::centred_quantile(double u) const {
@@ -338,6 +355,11 @@ double Distribution::centred_quantile(double u) const {
 }
 
 void Distribution::transform(std::span<double> uniforms) const {
+  shifted_transform(uniforms);
+  add_centre(uniforms);
+}
+
+void Distribution::shifted_transform(std::span<double> uniforms) const {
   if (shift_ == 0.0) return centred_transform(uniforms);
   std::array<double, 512> shifts;
   for (; !uniforms.empty(); uniforms = uniforms.subspan(std::min(shifts.size(), uniforms.size()))) {
@@ -371,6 +393,7 @@ void Distribution::centred_transform(std::span<double> uniforms) const {
 void Distribution::transform_scores(std::span<double> scores) const {
   if (shape_ == Shape::normal && shift_ == 0.0) {
     for (double& score : scores) score *= sigma_;
+    add_centre(scores);
     return;
   }
   normal_shares(scores);

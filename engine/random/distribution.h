@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,7 +12,7 @@
 namespace poesy {
 
 /// The distribution of one error: its quantile function, mean and standard deviation. All shapes but the measured one
-/// are symmetric about zero.
+/// are symmetric about their centre, which is zero unless about() moves it.
 class Distribution {
  public:
   /// Shapes of the density.
@@ -38,13 +39,20 @@ class Distribution {
   /// shift, and for measured values, whose mean is measured too. Precondition: it has no shift yet.
   Distribution shifted(double shift) const;
 
+  /// The same distribution moved, so that its middle is at `centre` (m or rad). A zero centre gives the same bits.
+  /// Throws std::invalid_argument for a number that is not finite, and for measured values, whose mean is measured too.
+  /// Precondition: its centre is 0.
+  Distribution about(double centre) const;
+
   Shape shape() const { return shape_; }   ///< The shape of the density.
   double sigma() const { return sigma_; }  ///< Sigma of the (parent) normal; 0 for other shapes.
-  /// Without a shift, the largest possible magnitude of an error; infinity for the normal.
+  /// Without a shift, the largest possible distance of an error from the centre; infinity for the normal.
   double half_width() const { return half_width_; }
   double shift() const { return shift_; }  ///< Offset of the mean, as often up as down; 0 unless it is shifted.
-  double largest() const { return half_width_ + shift_; }  ///< Largest possible magnitude; infinity for the normal.
-  double mean() const { return mean_; }                    ///< The mean; 0 unless it is measured.
+  /// Largest possible magnitude; infinity for the normal.
+  double largest() const { return half_width_ + shift_ + std::abs(centre_); }
+  double centre() const { return centre_; }  ///< The middle of a symmetric shape; 0 for measured values.
+  double mean() const { return mean_; }      ///< The mean: the centre, or that of measured values.
   /// The standard deviation about the mean: after truncation; for measured values with n - 1; with a shift, sqrt(s^2 +
   /// shift^2) where s is that without it.
   double standard_deviation() const { return standard_deviation_; }
@@ -56,26 +64,31 @@ class Distribution {
   /// increases with u on either side of 1/2, and falls at 1/2. Precondition: 0 < u < 1.
   double quantile(double u) const;
   void transform(std::span<double> uniforms) const;  ///< Replaces each uniform by its quantile.
-  /// Replaces each normal score z, a standard normal, by the value at the same share: sigma z for the normal, otherwise
-  /// the quantile of Phi(z).
+  /// Replaces each normal score z, a standard normal, by the value at the same share: centre + sigma z for the normal,
+  /// otherwise the quantile of Phi(z).
   void transform_scores(std::span<double> scores) const;
 
-  /// Whether shape, parameters, shift and measured values are the same.
+  /// Whether shape, parameters, shift, centre and measured values are the same.
   friend bool operator==(const Distribution&, const Distribution&) = default;
 
  private:
   Distribution(Shape shape, double sigma, double half_width, double standard_deviation);
 
-  /// The quantile without a shift.
+  /// The quantile without a shift, about zero.
   /// @{
   double centred_quantile(double u) const;
   void centred_transform(std::span<double> uniforms) const;
   /// @}
+  /// Replaces each uniform by its quantile about zero.
+  void shifted_transform(std::span<double> uniforms) const;
+  /// Moves values about zero to the centre.
+  void add_centre(std::span<double> values) const;
 
   Shape shape_;
   double sigma_;
   double half_width_;
   double shift_ = 0.0;
+  double centre_ = 0.0;
   double mean_ = 0.0;
   double standard_deviation_;
   std::optional<SmoothedValues> parts_;

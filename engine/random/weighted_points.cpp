@@ -36,14 +36,15 @@ void add_parts(const SmoothedValues& parts, WeightedPoints& found) {
 WeightedPoints weighted_points(const Distribution& distribution) {
   using enum Distribution::Shape;
   const double w = distribution.half_width();
+  const double c = distribution.centre();
   WeightedPoints found;
   switch (distribution.shape()) {
     case uniform:
-      add_piece(-w, w, 1.0, 0.0, found);
+      add_piece(c - w, c + w, 1.0, 0.0, found);
       return found;
     case triangular:
-      add_piece(-w, 0.0, 0.5, 1.0, found);
-      add_piece(0.0, w, 0.5, -1.0, found);
+      add_piece(c - w, c, 0.5, 1.0, found);
+      add_piece(c, c + w, 0.5, -1.0, found);
       return found;
     case measured:
       add_parts(*distribution.parts(), found);

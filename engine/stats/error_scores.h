@@ -22,14 +22,16 @@ struct ScoreMoments {
   double cube;    ///< E[S^3]
 };
 
-/// The score of a normal error e = t z: z^2 - 1; if it is truncated at +-w: z^2 - 1 + (2 w/t) phi(w/t) / (2 Phi(w/t) -
-/// 1).
+/// The score of a normal error e = c + t z: z^2 - 1; if it is truncated at c +- w: z^2 - 1 + (2 w/t) phi(w/t) / (2
+/// Phi(w/t) - 1).
 struct NormalScore {
-  double sigma;       ///< t, of the normal before truncation, > 0
-  double half_width;  ///< w, the largest possible error; infinite for the normal
+  double sigma;         ///< t, of the normal before truncation, > 0
+  double half_width;    ///< w, the largest possible distance from the mean; infinite for the normal
+  double centre = 0.0;  ///< c, the mean, about which the error grows
 
   double ends() const;  ///< The term that truncation adds to z^2 - 1.
-  /// The growth score of z = e / t is factor exp(exponent z^2) - 1: for the normal exp(z^2 (1 - 1/g^2) / 2) / g - 1.
+  /// The growth score of z = (e - c) / t is factor exp(exponent z^2) - 1: for the normal exp(z^2 (1 - 1/g^2) / 2) / g
+  /// - 1.
   /// @{
   double growth_factor() const;
   static constexpr double growth_exponent() { return 0.5 * (1.0 - 1.0 / (kErrorGrowth * kErrorGrowth)); }
@@ -83,7 +85,8 @@ class PolynomialScore {
 
 /// The score of an error of a NormalBlock.
 struct BlockScore {
-  double sigma;  ///< t, > 0
+  double sigma;         ///< t, > 0
+  double centre = 0.0;  ///< c, the mean
 };
 
 /// The score of one error; std::monostate if it is not known.
@@ -92,7 +95,7 @@ using ErrorScore = std::variant<std::monostate, NormalScore, PolynomialScore, Bl
 /// The size t by which a yield is differentiated; 0 if the score is not known.
 double size_of(const ErrorScore& score);
 
-/// A block of k correlated normal errors e_i = t_i z_i with correlation R. The score by t_i, for constant R and
+/// A block of k correlated normal errors e_i = c_i + t_i z_i with correlation R. The score by t_i, for constant R and
 /// constant sizes of the others, is z_i (R^-1 z)_i - 1.
 struct NormalBlock {
   std::vector<std::size_t> errors;  ///< [k] positions among all errors; each of them has a BlockScore

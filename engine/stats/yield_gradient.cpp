@@ -32,8 +32,8 @@ PowerSums power_sums(std::span<const std::size_t> rejects, const Score score) {
 [[gnu::noinline]] PowerSums slope_sums(const NormalScore& score, std::span<const double> row,
                                        std::span<const std::size_t> rejects) {
   const double inverse_sigma = 1.0 / score.sigma;
-  return power_sums(rejects, [row, inverse_sigma](std::size_t b) {
-    const double z = row[b] * inverse_sigma;
+  return power_sums(rejects, [row, inverse_sigma, centre = score.centre](std::size_t b) {
+    const double z = (row[b] - centre) * inverse_sigma;
     return z * z - 1.0;
   });
 }
@@ -42,8 +42,8 @@ PowerSums power_sums(std::span<const std::size_t> rejects, const Score score) {
                                         std::span<const std::size_t> rejects) {
   const double inverse_sigma = 1.0 / score.sigma;
   const double factor = score.growth_factor();
-  return power_sums(rejects, [row, inverse_sigma, factor](std::size_t b) {
-    const double z = row[b] * inverse_sigma;
+  return power_sums(rejects, [row, inverse_sigma, factor, centre = score.centre](std::size_t b) {
+    const double z = (row[b] - centre) * inverse_sigma;
     return factor * std::exp(NormalScore::growth_exponent() * z * z) - 1.0;
   });
 }
@@ -132,7 +132,8 @@ void ScoreSums::add_block(const NormalBlock& block, std::span<const double> erro
   for (const std::size_t b : rejects) {
     for (std::size_t i = 0; i < size; ++i) {
       const std::size_t p = block.errors[i];
-      z[i] = errors[p * count + b] / size_of(scores_.each[p]);
+      const auto& [sigma, centre] = std::get<BlockScore>(scores_.each[p]);
+      z[i] = (errors[p * count + b] - centre) / sigma;
     }
     block.replace(z);
     for (std::size_t i = 0; i < size; ++i) found[i].add(z[i]);

@@ -5,7 +5,7 @@ poesy_test(random_test LABELS unit
                    engine/random/weighted_points_test.cpp engine/random/smoothed_values_test.cpp
            LINKS poesy_random Boost::headers)
 poesy_test(random_property_test LABELS property
-           SOURCES engine/random/distribution_property_test.cpp engine/random/shifted_distribution_test.cpp
+           SOURCES engine/random/distribution_property_test.cpp engine/random/shifted_distribution_test.cpp engine/random/centred_distribution_test.cpp
                    engine/random/stream_property_test.cpp
            LINKS poesy_random Boost::headers)
 poesy_test(random_statistical_test LABELS statistical
