@@ -75,7 +75,8 @@ void add_share(std::vector<Cell>& row, std::uint64_t good, const YieldVerdict& y
 std::string with_parts_text(const YieldVerdict& yield) {
   if (std::isnan(yield.with_parts->low)) {
     return "What few measured parts leave open of the yield is not known: fewer than 10 machines are rejects or good, "
-           "or errors are correlated that were not all measured on the same parts";
+           "errors are correlated that were not all measured on the same parts, or measured errors are drawn anew at "
+           "each pose";
   }
   return fmt::format(
       "Interval of machines and measured parts: {} to {} (resampled parts, {}); low, high count machines "
@@ -189,6 +190,7 @@ std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& res
     tables.insert(tables.begin(), *std::move(limits));
   }
   if (auto measured = measured_table(result)) tables.push_back(*std::move(measured));
+  if (auto stated = stated_table(result)) tables.push_back(*std::move(stated));
   if (kind.settling == nullptr) return tables;
   if (auto convergence = convergence_table(result, kind.settling(result))) tables.push_back(*std::move(convergence));
   return tables;
@@ -267,6 +269,32 @@ std::optional<Table> measured_table(const StoredResult& result) {
          [&](std::size_t e) { return number_cell(found.correlation[e], 3); }},
         {text_column("most_correlated", "with", 1),
          [&](std::size_t e) { return text_cell(found.most_correlated[e]); }}});
+  return table;
+}
+
+std::optional<Table> stated_table(const StoredResult& result) {
+  const auto mean = [&](std::size_t p) { return result.factor_mean.empty() ? 0.0 : result.factor_mean[p]; };
+  const auto draws = [&](std::size_t p) {
+    return result.factor_draws.empty() ? std::string(name(Draws::per_machine)) : result.factor_draws[p];
+  };
+  std::vector<std::size_t> stated;
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
+    if (mean(p) != 0.0 || draws(p) == name(Draws::per_pose)) stated.push_back(p);
+  }
+  if (stated.empty()) return std::nullopt;
+  Table table{.name = "stated_errors",
+              .caption = "Errors with a mean, or that a machine draws anew at each pose",
+              .columns = {},
+              .notes = {"sigma: of the scatter about the mean; drawn: in a study of machines"}};
+  const auto value = [&](double si, std::size_t p) { return value_cell(si, result.factors[p], kDigits); };
+  fill(table, stated,
+       {name_column(result.factors, "error"),
+        {text_column("unit", "unit"), [&](std::size_t p) { return text_cell(unit_text(result.factors[p])); }},
+        {text_column("distribution", "distribution"),
+         [&](std::size_t p) { return text_cell(result.factor_distribution[p]); }},
+        {number_column("mean", "mean"), [&](std::size_t p) { return value(mean(p), p); }},
+        {number_column("sigma", "sigma"), [&](std::size_t p) { return value(result.factor_sigma[p], p); }},
+        {text_column("draws", "drawn"), [&](std::size_t p) { return text_cell(draws(p)); }}});
   return table;
 }
 

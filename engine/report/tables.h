@@ -77,6 +77,10 @@ Table yield_table(const StoredResult& result, const LimitVerdicts& verdicts);
 /// are no such errors.
 std::optional<Table> measured_table(const StoredResult& result);
 
+/// Errors of which the study states a mean, or that a machine draws anew at each pose; none if there are no such
+/// errors.
+std::optional<Table> stated_table(const StoredResult& result);
+
 /// Sentences on the yield that the smallest number of measured parts can show. Precondition: errors are measured.
 std::string few_parts_text(const StoredResult& result, double conf_level, double asked);
 

@@ -104,6 +104,9 @@ struct StoredResult {
   MeasuredErrors measured;                       ///< errors that were drawn from measured parts
   std::vector<double> factor_sigma;              ///< [P] standard deviations of errors that were drawn, SI
   std::vector<std::string> factor_distribution;  ///< [P] distributions of these errors: "normal", ...
+  std::vector<double> factor_mean;               ///< [P] means that the study states, SI; empty if it states none
+  /// [P] "per pose" for errors that a machine draws anew at each pose, else "per machine"; empty if there are none.
+  std::vector<std::string> factor_draws;
   /// What the samples vary, one after the other: single errors, or kAllFactors. Empty if nothing was drawn.
   std::vector<std::string> varied;
   std::vector<Failure> failures;                 ///< the first failures; their slots are positions in `varied`

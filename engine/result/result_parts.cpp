@@ -188,12 +188,40 @@ MeasuredErrors measured_errors(const Study& study) {
   return found;
 }
 
+std::vector<double> stated_means(const Study& study) {
+  std::vector<double> mean;
+  for (const FactorIndex factor : study.analysis.factors) {
+    mean.push_back(study.errors.by_factor[factor.value].centre());
+  }
+  if (std::ranges::all_of(mean, [](double one) { return one == 0.0; })) mean.clear();
+  return mean;
+}
+
+namespace {
+
+/// Adds what a study says about single errors beside their scatter, if it says something.
+void add_stated(ResultBuilder& result, const Study& study) {
+  if (const std::vector<double> mean = stated_means(study); !mean.empty()) {
+    result.add("/factors/mean", {"factor"}, mean, {kFactorUnit, "Mean of the error, as set in the study"});
+  }
+  const auto is_per_pose = [&](FactorIndex factor) { return study.errors.is_per_pose(factor); };
+  if (study.analysis.draws != Draws::per_machine || std::ranges::none_of(study.analysis.factors, is_per_pose)) return;
+  const auto draws = texts(study.analysis.factors, [&](FactorIndex factor) {
+    return name(is_per_pose(factor) ? Draws::per_pose : Draws::per_machine);
+  });
+  result.add("/factors/draws", {"factor"}, draws,
+             {"1", "Whether a machine draws the error \"per machine\" or anew \"per pose\""});
+}
+
+}  // namespace
+
 void add_sigma(ResultBuilder& result, const Study& study) {
   result.add("/factors/sigma", {"factor"}, standard_deviations(study),
              {kFactorUnit, "Standard deviation of the error, as set in the study"});
   const auto shapes = texts(study.analysis.factors,
                             [&](FactorIndex factor) { return name(study.errors.by_factor[factor.value].shape()); });
   result.add("/factors/distribution", {"factor"}, shapes, {"1", "Distribution of the error, as set in the study"});
+  add_stated(result, study);
   const MeasuredErrors measured = measured_errors(study);
   if (measured.names.empty()) return;
   result.add_axis("measured_error", measured.names, {"1", "Errors that are drawn as parts were measured"});
@@ -204,6 +232,11 @@ void read_sigma(const h5::File& file, StoredResult& result) {
   result.factor_sigma = read_along<double>(file, "/factors/sigma", {"factor"});
   result.factor_distribution = read_along<std::string>(file, "/factors/distribution", {"factor"});
   check_names(result.factor_distribution, "/factors/distribution");
+  if (file.exists("/factors/mean")) result.factor_mean = read_along<double>(file, "/factors/mean", {"factor"});
+  if (file.exists("/factors/draws")) {
+    result.factor_draws = read_along<std::string>(file, "/factors/draws", {"factor"});
+    check_names(result.factor_draws, "/factors/draws");
+  }
   if (!file.exists("/measured_errors")) return;
   result.measured.names = file.read<std::string>("/measured_error");
   check_names(result.measured.names, "/measured_error");
@@ -220,6 +253,12 @@ void append_sigma_tables(CsvTables& tables, const StoredResult& result) {
   table.columns = {list_column(with_unit("sigma", si_units(result.factors)), result.factor_sigma),
                    {with_unit("sigma", display_units(result.factors)),
                     [&](std::size_t p) { return result.factor_sigma[p] / display(result.factors[p]).si; }}};
+  if (!result.factor_mean.empty()) {
+    table.columns.push_back(list_column(with_unit("mean", si_units(result.factors)), result.factor_mean));
+  }
+  if (!result.factor_draws.empty()) {
+    table.rest.push_back({"draws", [&](std::size_t p) { return result.factor_draws[p]; }});
+  }
   tables.push_back(std::move(table));
   if (!result.measured.names.empty()) tables.push_back(measured_table(result));
 }

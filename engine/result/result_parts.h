@@ -64,10 +64,13 @@ CsvTable pose_table(const StoredResult& result);               ///< The table of
 
 /// The measured errors among those that a study varies.
 MeasuredErrors measured_errors(const Study& study);
+/// [P] The means that a study states for the errors that it varies, SI; empty if all are zero.
+std::vector<double> stated_means(const Study& study);
 /// Adds the standard deviations of the errors that the study varies, /factors/sigma, the names of their distributions,
-/// /factors/distribution, and /measured_errors if some are measured.
+/// /factors/distribution, /factors/mean and /factors/draws if the study states some, and /measured_errors if some are
+/// measured.
 void add_sigma(ResultBuilder& result, const Study& study);
-/// Reads `factor_sigma`, `factor_distribution` and `measured`.
+/// Reads the fields of these.
 void read_sigma(const h5::File& file, StoredResult& result);
 /// Adds factors.csv with the standard deviation of each error, and measured_errors.csv if some are measured.
 void append_sigma_tables(CsvTables& tables, const StoredResult& result);

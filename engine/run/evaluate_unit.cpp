@@ -102,6 +102,12 @@ EffectBins UnitSolver::draw_in_bins(const WorkUnit& unit) {
   return bins;
 }
 
+void UnitSolver::draw_per_pose(const WorkUnit& unit) {
+  const std::span<double> values = std::span(values_).first(plan_->factors().size() * unit.count);
+  for (const std::size_t v : plan_->per_pose()) draw_uniforms(unit, v, values.subspan(v * unit.count, unit.count));
+  plan_->transform_per_pose(values, unit.count);
+}
+
 UnitOutcomes UnitSolver::solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range,
                                std::span<double> details) {
   const std::span values = std::span(values_).first(varied.size() * count);

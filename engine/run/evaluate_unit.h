@@ -97,6 +97,8 @@ class UnitSolver {
   void draw_uniforms(const WorkUnit& unit, std::size_t slot, std::span<double> row) const;
   /// Fills values_ with the draws of all factors, one row after the other, and returns the bins of the draws.
   EffectBins draw_in_bins(const WorkUnit& unit);
+  /// Replaces, in values_ [P x B], the errors that machines draw anew at each pose by those of the unit's pose.
+  void draw_per_pose(const WorkUnit& unit);
   /// Solves the first [varied x count] values at a pose. details: see OutcomeBlock.
   UnitOutcomes solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range,
                      std::span<double> details = {});

@@ -19,6 +19,22 @@ void add_each(List& sums, const List& other) {
 
 }  // namespace
 
+LinearFit joined(std::span<const LinearFit> fits) {
+  POESY_EXPECTS(!fits.empty());
+  LinearFit all = fits.front();
+  const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (const LinearFit& fit : fits.subspan(1)) {
+    POESY_EXPECTS(fit.errors == all.errors);
+    append(all.offset, fit.offset);
+    append(all.slope, fit.slope);
+    append(all.slope_variance, fit.slope_variance);
+    append(all.rest, fit.rest);
+  }
+  return all;
+}
+
 LinearFitSums::LinearFitSums(std::size_t errors, std::size_t rows)
     : errors_(errors), x_(errors), xx_(errors * errors), shift_(rows), y_(rows), yy_(rows), xy_(rows * errors) {
   POESY_EXPECTS(errors > 0 && rows > 0);

@@ -25,6 +25,10 @@ struct LinearFit {
   std::size_t rows() const { return offset.size(); }  ///< The number of fitted numbers, K.
 };
 
+/// The rows of fits one after the other, for errors that have other values in each fit. Machines and products are those
+/// of the first. Precondition: there is one, and all have the same errors.
+LinearFit joined(std::span<const LinearFit> fits);
+
 /// Sums over machines for a LinearFit, in one pass and mergeable.
 class LinearFitSums {
  public:

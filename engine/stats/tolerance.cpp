@@ -88,7 +88,8 @@ MeanSquare mean_square(const ResponseStudy& study) {
     }
     growth = growth / static_cast<double>(poses) - response.background;
     const bool none = growth < 0.0 || study.index[p] < kIndexRounding;
-    const double effect = std::isnan(study.index[p]) ? kNaN : growth / square(study.sigma[p]);
+    const double of_error = square(study.sigma[p]) + (study.error_mean.empty() ? 0.0 : square(study.error_mean[p]));
+    const double effect = std::isnan(study.index[p]) ? kNaN : growth / of_error;
     response.effects.push_back(none ? 0.0 : effect);
   }
   return response;

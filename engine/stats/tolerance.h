@@ -26,6 +26,9 @@ struct ResponseStudy {
   Cells<double> mean;                  ///< mean of the response while one error varies
   Cells<double> std;                   ///< standard deviation of the response while one error varies
   std::span<const double> background;  ///< [M] the response with all varied errors zero
+  /// [P] means of the errors in the study; empty if all are zero. An error of mean m and deviation s adds a^2 (m^2 +
+  /// s^2) to the mean square, of which a^2 s^2 is its effect.
+  std::span<const double> error_mean = {};
 };
 
 /// The error relative to which equal-effect tolerances are set.

@@ -136,6 +136,17 @@ MeasuredTogether columns_of(const StudyValue& value, std::span<const FactorIndex
   return asked;
 }
 
+/// Throws if some of these errors are drawn per machine and others per pose.
+void check_draws(const StudyValue& value, std::span<const FactorIndex> factors, const Study& study) {
+  const auto anew = [&](FactorIndex factor) { return study.errors.is_per_pose(factor); };
+  const auto fixed = std::ranges::find_if_not(factors, anew);
+  const auto moving = std::ranges::find_if(factors, anew);
+  if (fixed == factors.end() || moving == factors.end()) return;
+  value.fail(fmt::format("has '{}', which is drawn per pose, and '{}', which is not",
+                         study.model().factors[moving->value].name, study.model().factors[fixed->value].name),
+             "errors that depend on each other are drawn together: give all of them the same draws");
+}
+
 CorrelatedErrors read_block(const StudyValue& value, const Study& study, const Reading& reading) {
   const StudySection section = value.section();
   CorrelatedErrors block;
@@ -155,6 +166,7 @@ CorrelatedErrors read_block(const StudyValue& value, const Study& study, const R
     factors.fail("has '" + study.model().factors[factor.value].name + "', whose distribution has a shift",
                  "leave it out here, or remove its shift: errors with one cannot be correlated");
   }
+  check_draws(factors, block.factors, study);
   const StudyValue correlation = section.require("correlation");
   if (correlation.is_text()) {
     static_cast<void>(correlation.word(std::array{kAsMeasured}));
@@ -174,6 +186,7 @@ void read_as_measured(const StudyValue& value, Study& study, const Reading& read
   const StudySection errors = reading.root.section("errors");
   for (const MeasuredTogether& table : measured_together(errors, study.model())) {
     if (table.factors.size() < 2 || reading.use != StudyUse::run) continue;
+    check_draws(value, table.factors, study);
     study.errors.correlated.push_back({table.factors, correlation_of(table, errors, study.model())});
     check_definite(value, study.errors.correlated.back().correlation);
   }

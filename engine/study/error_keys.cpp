@@ -9,6 +9,7 @@
 
 #include "engine/base/name_pattern.h"
 #include "engine/base/text.h"
+#include "engine/fits/fit.h"
 #include "engine/study/bare_numbers.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
@@ -28,9 +29,13 @@ constexpr std::size_t kMostMeasured = 10'000;
 /// The parameters of a distribution in a study.
 struct Parameters {
   Shape shape = Shape::normal;
-  double sigma = 0.0;       ///< SI; 0 if the shape has none
-  double half_width = 0.0;  ///< SI; 0 if the shape has none
-  double shift = 0.0;       ///< SI
+  double sigma = 0.0;                     ///< SI; 0 if the shape has none
+  double half_width = 0.0;                ///< SI; 0 if the shape has none
+  double shift = 0.0;                     ///< SI
+  double mean = 0.0;                      ///< SI
+  std::optional<SizeLimits> limits = {};  ///< SI, instead of half_width (of a normal: sigma) and mean
+  double sigmas = 0.0;                    ///< of a normal with limits: standard deviations from its mean to a limit
+  Draws draws = Draws::per_machine;
   Dimension dimension = Dimension::length;
   std::string file = {};            ///< file of measured values
   std::string column = {};          ///< column of the file
@@ -38,7 +43,7 @@ struct Parameters {
   std::string doubt = {};           ///< doubt about their unit
 };
 
-/// The distribution without its shift.
+/// The distribution about zero, without its shift.
 Distribution centred_distribution_of(const Parameters& parameters) {
   switch (parameters.shape) {
     case Shape::normal:
@@ -74,6 +79,11 @@ KeyValue<Parameters> size_at(double Parameters::*member, double (StudyValue::*re
   return {.type = "quantity", .bounds = "at least 1e-30 m or rad", .read = read};
 }
 
+/// An example of limits.
+std::string_view example_limits(Dimension dimension) {
+  return dimension == Dimension::angle ? "[\"-0.1 deg\", 0]" : "[\"-0.1 mm\", 0]";
+}
+
 KeyValue<Parameters> shift_value() {
   const auto read = [](const StudyValue& value, Parameters& parameters) {
     parameters.shift = value.quantity(parameters.dimension);
@@ -82,6 +92,49 @@ KeyValue<Parameters> shift_value() {
                "it must be at least 0, because the mean is off to either side as often");
   };
   return {.type = "quantity", .bounds = "at least 0", .read = read};
+}
+
+/// A limit: a quantity, or 0 without a unit.
+double limit_of(const StudyValue& value, Dimension dimension) {
+  return value.is_zero() ? 0.0 : value.quantity(dimension);
+}
+
+/// Limits as a drawing states them for a size: "217 h6".
+SizeLimits read_size_limits(const StudyValue& value, Dimension dimension) {
+  if (dimension != Dimension::length) {
+    value.fail("is '" + printable(value.text()) + "', but zones of ISO 286 are of lengths",
+               "write two quantities: " + std::string(example_limits(dimension)));
+  }
+  try {
+    return size_limits(value.text());
+  } catch (const std::invalid_argument& reason) {
+    value.fail(std::string("cannot be read: ") + reason.what(),
+               "write \"217 h6\", or two quantities: " + std::string(example_limits(dimension)));
+  }
+}
+
+SizeLimits read_two_limits(const StudyValue& value, Dimension dimension) {
+  const auto ends = value.list(2, "write two, e.g. " + std::string(example_limits(dimension)));
+  const SizeLimits limits{limit_of(ends[0], dimension), limit_of(ends[1], dimension)};
+  if (limits.upper - limits.lower >= 2.0 * kSmallest) return limits;
+  const std::string problem = limits.lower < limits.upper ? "are so close that squares lose their digits"
+                                                          : "have the second no larger than the first";
+  value.fail(problem, "write the smaller limit first, e.g. " + std::string(example_limits(dimension)));
+}
+
+KeyValue<Parameters> limits_value() {
+  const auto read = [](const StudyValue& value, Parameters& parameters) {
+    parameters.limits =
+        value.is_text() ? read_size_limits(value, parameters.dimension) : read_two_limits(value, parameters.dimension);
+  };
+  return {.type = "two quantities, or a text", .bounds = "the smaller one first", .read = read};
+}
+
+KeyValue<Parameters> mean_value() {
+  const auto read = [](const StudyValue& value, Parameters& parameters) {
+    parameters.mean = value.is_zero() ? 0.0 : value.quantity(parameters.dimension);
+  };
+  return {.type = "quantity", .read = read};
 }
 
 KeyValue<Parameters> values_value() {
@@ -94,10 +147,21 @@ KeyValue<Parameters> values_value() {
   return {.type = "list of quantities", .bounds = "at least 8", .read = read};
 }
 
+InnerRow<Parameters> draws_row() {
+  return {.name = "draws",
+          .value = word_at<Draws>(
+              {{Draws::per_machine, "a machine has the same error at every pose"},
+               {Draws::per_pose, "a machine has another error at each pose: end stops, backlash, repeatability"}},
+              &Parameters::draws),
+          .meaning =
+              "When the error is drawn in a study of machines (draws = \"per machine\" in [analysis]); alone in "
+              "a table of [errors.override] it leaves the distribution as it is."};
+}
+
 const InnerRows<Parameters>& distribution_keys() {
   static const InnerRows<Parameters> keys{
       .paths = {"errors.linear", "errors.angular", "errors.override.FACTOR"},
-      .meaning = "A distribution about zero, or of measured values.",
+      .meaning = "A distribution about zero or a mean, between limits, or of measured values.",
       .chooser = "distribution",
       .owner = "the distribution",
       .rows = {InnerRow<Parameters>{
@@ -117,21 +181,47 @@ const InnerRows<Parameters>& distribution_keys() {
                InnerRow<Parameters>{.name = "sigma",
                                     .value = size_at(&Parameters::sigma, &StudyValue::positive_quantity),
                                     .required = true,
+                                    .besides = " (a normal may have limits instead)",
                                     .only_for = {name(Shape::normal), name(Shape::truncated_normal)},
                                     .meaning = "Standard deviation, before it is cut off."},
                InnerRow<Parameters>{
                    .name = "half_width",
                    .value = size_at(&Parameters::half_width, &StudyValue::half_width),
                    .required = true,
+                   .besides = " (or limits instead)",
                    .only_for = {name(Shape::truncated_normal), name(Shape::uniform), name(Shape::triangular)},
-                   .meaning = "Largest possible size of the error, but for its shift; a +- before it, as on a "
-                              "drawing, may stay."},
+                   .meaning = "Largest possible size of the error, but for its shift and mean; a +- before it, as on "
+                              "a drawing, may stay."},
+               InnerRow<Parameters>{.name = "mean",
+                                    .value = mean_value(),
+                                    .usual = "`0`",
+                                    .only_for = {name(Shape::normal), name(Shape::truncated_normal),
+                                                 name(Shape::uniform), name(Shape::triangular)},
+                                    .meaning = "The middle of the distribution, with its sign: all errors are off by "
+                                               "this."},
+               InnerRow<Parameters>{
+                   .name = "limits",
+                   .value = limits_value(),
+                   .usual = "",
+                   .example = "[\"-0.1 mm\", 0]",
+                   .only_for = {name(Shape::normal), name(Shape::truncated_normal), name(Shape::uniform),
+                                name(Shape::triangular)},
+                   .meaning = "Instead of mean and half_width, of a normal of mean and sigma: the smallest and the "
+                              "largest error, or those of a size with its zone in ISO 286, \"217 h6\" (mm; holes H, "
+                              "shafts d, e, f, g, h, up to 500 mm)."},
+               InnerRow<Parameters>{.name = "sigmas",
+                                    .value = number_at(above_zero("3"), &Parameters::sigmas),
+                                    .usual = "",
+                                    .only_for = {name(Shape::normal)},
+                                    .meaning = "Standard deviations of a normal from its mean to each of its limits: "
+                                               "3 lets 0.27 % of the errors lie beyond them."},
                InnerRow<Parameters>{.name = "shift",
                                     .value = shift_value(),
                                     .usual = "none",
                                     .only_for = {name(Shape::normal), name(Shape::truncated_normal),
                                                  name(Shape::uniform), name(Shape::triangular)},
                                     .meaning = "The mean of the errors is off by this, as often up as down."},
+               draws_row(),
                InnerRow<Parameters>{.name = "file",
                                     .value = text_at(&Parameters::file),
                                     .usual = "",
@@ -176,35 +266,80 @@ bool take_values(const StudySection& section, StudyUse use, const Distribution& 
       fmt::format("measure at least {} parts, or write a distribution with sigma", Distribution::kLeastMeasured));
 }
 
-/// Reads a distribution. usual: that of other errors of this dimension. doubts: receives doubts about a file of
-/// measured values.
-Distribution read_distribution(const StudyValue& value, Dimension dimension, StudyUse use, const Distribution& usual,
-                               std::vector<std::string>& doubts) {
+/// A distribution and when its errors are drawn.
+struct StatedError {
+  Distribution distribution;
+  Draws draws = Draws::per_machine;
+
+  friend bool operator==(const StatedError&, const StatedError&) = default;
+};
+
+/// Takes the limits of a distribution as its middle and its size. Throws where other keys state these, too.
+void take_limits(const StudySection& section, Parameters& parameters) {
+  const bool is_normal = parameters.shape == Shape::normal;
+  if (!parameters.limits) {
+    if (const auto sigmas = section.find("sigmas")) sigmas->fail("is set without limits", "write limits, or sigma");
+    return;
+  }
+  for (const std::string_view key : {"mean", "shift", "half_width"}) {
+    section.refuse(key, "a distribution with limits");
+  }
+  if (is_normal) {
+    section.refuse("sigma", "a normal distribution with limits");
+    static_cast<void>(section.require("sigmas", "a normal distribution with limits needs it, e.g. sigmas = 3"));
+  }
+  const auto [lower, upper] = *parameters.limits;
+  parameters.mean = 0.5 * (lower + upper);
+  (is_normal ? parameters.sigma : parameters.half_width) =
+      is_normal ? (upper - lower) / (2.0 * parameters.sigmas) : 0.5 * (upper - lower);
+}
+
+/// Throws if a key is missing that the distribution of this word needs.
+void require_sizes(const StudySection& section, const std::string& word, const Parameters& parameters) {
+  for (const auto& row : distribution_keys().rows) {
+    if (!row.required || !holds_for(row.only_for, word)) continue;
+    const bool has_limits = parameters.limits && (row.name == "half_width" || parameters.shape == Shape::normal);
+    if (!has_limits) static_cast<void>(section.require(row.name, "the distribution \"" + word + "\" needs it"));
+  }
+}
+
+/// Reads a distribution and when it is drawn. usual: that of other errors of this dimension. doubts: receives doubts
+/// about a file of measured values.
+StatedError read_error(const StudyValue& value, Dimension dimension, StudyUse use, const Distribution& usual,
+                       std::vector<std::string>& doubts) {
   const StudySection section = value.section();
   Parameters parameters{.dimension = dimension};
   read_keys(distribution_keys(), section, parameters, Nothing());
-  const std::string word = chosen_word(distribution_keys(), parameters);
-  for (const auto& row : distribution_keys().rows) {
-    if (!row.required || !holds_for(row.only_for, word)) continue;
-    static_cast<void>(section.require(row.name, "the distribution \"" + word + "\" needs it"));
-  }
+  require_sizes(section, chosen_word(distribution_keys(), parameters), parameters);
+  take_limits(section, parameters);
   if (parameters.shape == Shape::measured && !take_values(section, use, usual, parameters)) {
-    return default_distribution(dimension);
+    return {default_distribution(dimension), parameters.draws};
   }
   if (!parameters.doubt.empty()) doubts.push_back(parameters.doubt);
   try {
-    return centred_distribution_of(parameters).shifted(parameters.shift);
+    return {centred_distribution_of(parameters).shifted(parameters.shift).about(parameters.mean), parameters.draws};
   } catch (const std::invalid_argument& reason) {
     value.fail(std::string("is impossible: ") + reason.what(), "correct its parameters");
   }
 }
 
+/// The error of this factor in a study.
+StatedError stated_error(const ErrorModel& errors, std::size_t f) {
+  return {errors.by_factor[f], errors.is_per_pose(FactorIndex(f)) ? Draws::per_pose : Draws::per_machine};
+}
+
+void set_error(const StatedError& error, std::size_t f, ErrorModel& errors) {
+  errors.by_factor[f] = error.distribution;
+  std::erase(errors.per_pose, FactorIndex(f));
+  if (error.draws == Draws::per_machine) return;
+  errors.per_pose.insert(std::ranges::upper_bound(errors.per_pose, FactorIndex(f)), FactorIndex(f));
+}
+
 template <Dimension kDimension>
 void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
-  const Distribution distribution =
-      read_distribution(value, kDimension, reading.use, default_distribution(kDimension), study.doubts);
+  const StatedError error = read_error(value, kDimension, reading.use, default_distribution(kDimension), study.doubts);
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
-    if (study.model().factors[f].dimension == kDimension) study.errors.by_factor[f] = distribution;
+    if (study.model().factors[f].dimension == kDimension) set_error(error, f, study.errors);
   }
 }
 
@@ -233,14 +368,25 @@ void check_override(const StudySection& overrides, const ModelDescription& model
   overrides.allow(known, "factor");
 }
 
+/// Reads a table of [errors.override]. usual: the error without it.
+StatedError read_own_error(const StudyValue& value, Dimension dimension, StudyUse use, const StatedError& usual,
+                           std::vector<std::string>& doubts) {
+  if (!value.is_section() || value.section().keys() != std::vector<std::string>{"draws"}) {
+    return read_error(value, dimension, use, usual.distribution, doubts);
+  }
+  Parameters parameters;
+  read_key(row_of(distribution_keys(), "draws"), value.section().require("draws"), parameters, Nothing());
+  return {usual.distribution, parameters.draws};
+}
+
 void read_override(const StudyValue& value, Study& study, const Reading& reading) {
   const StudySection overrides = value.section();
   check_override(overrides, study.model());
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     const Factor& factor = study.model().factors[f];
-    Distribution& distribution = study.errors.by_factor[f];
     if (const auto own = override_of(overrides, factor.name)) {
-      distribution = read_distribution(*own, factor.dimension, reading.use, distribution, study.doubts);
+      set_error(read_own_error(*own, factor.dimension, reading.use, stated_error(study.errors, f), study.doubts), f,
+                study.errors);
     }
   }
 }
@@ -255,7 +401,8 @@ std::string values_text(std::span<const double> values, Dimension dimension, Val
   return text + "\n]";
 }
 
-std::string distribution_text(const Distribution& distribution, Dimension dimension, ValueText value) {
+std::string error_text(const StatedError& error, Dimension dimension, ValueText value) {
+  const Distribution& distribution = error.distribution;
   const auto sigma = [&] { return ", sigma = " + value(distribution.sigma(), dimension); };
   const auto half_width = [&] { return ", half_width = " + value(distribution.half_width(), dimension); };
   std::string text = fmt::format("{{ distribution = {}", in_quotes(name(distribution.shape())));
@@ -275,36 +422,38 @@ std::string distribution_text(const Distribution& distribution, Dimension dimens
       break;
   }
   if (distribution.shift() > 0.0) text += ", shift = " + value(distribution.shift(), dimension);
+  if (distribution.centre() != 0.0) text += ", mean = " + value(distribution.centre(), dimension);
+  if (error.draws == Draws::per_pose) text += ", draws = " + in_quotes(name(error.draws));
   return text + " }";
 }
 
-/// The distribution that most factors of this dimension have, to which `linear` or `angular` is set.
-Distribution commonest_distribution(const Study& study, Dimension dimension) {
+/// The error that most factors of this dimension have, to which `linear` or `angular` is set.
+StatedError commonest_error(const Study& study, Dimension dimension) {
   const std::vector<Factor>& factors = study.model().factors;
-  std::vector<Distribution> all;
+  std::vector<StatedError> all;
   for (std::size_t f = 0; f < factors.size(); ++f) {
-    if (factors[f].dimension == dimension) all.push_back(study.errors.by_factor[f]);
+    if (factors[f].dimension == dimension) all.push_back(stated_error(study.errors, f));
   }
-  const auto uses = [&](const Distribution& distribution) { return std::ranges::count(all, distribution); };
+  const auto uses = [&](const StatedError& error) { return std::ranges::count(all, error); };
   const auto commonest = std::ranges::max_element(all, {}, uses);
-  return commonest == all.end() ? default_distribution(dimension) : *commonest;
+  return commonest == all.end() ? StatedError{default_distribution(dimension)} : *commonest;
 }
 
 template <Dimension kDimension>
 std::string usual_line(const Study& study) {
   return fmt::format("{} = {}\n", error_kind(kDimension),
-                     distribution_text(commonest_distribution(study, kDimension), kDimension, exact_value));
+                     error_text(commonest_error(study, kDimension), kDimension, exact_value));
 }
 
 std::string override_lines(const Study& study) {
-  const Distribution linear = commonest_distribution(study, Dimension::length);
-  const Distribution angular = commonest_distribution(study, Dimension::angle);
+  const StatedError linear = commonest_error(study, Dimension::length);
+  const StatedError angular = commonest_error(study, Dimension::angle);
   std::string text;
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     const Factor& factor = study.model().factors[f];
-    const Distribution& own = study.errors.by_factor[f];
+    const StatedError own = stated_error(study.errors, f);
     if (own == (factor.dimension == Dimension::length ? linear : angular)) continue;
-    text += factor.name + " = " + distribution_text(own, factor.dimension, exact_value) + "\n";
+    text += factor.name + " = " + error_text(own, factor.dimension, exact_value) + "\n";
   }
   return text.empty() ? "" : "\n[errors.override]\n" + text;
 }
@@ -321,7 +470,7 @@ template <Dimension kDimension>
 StudyRow usual_row(std::string_view meaning) {
   return {.name = error_kind(kDimension),
           .value = {.type = "table"},
-          .usual = "`" + distribution_text(default_distribution(kDimension), kDimension, readable_value) + "`",
+          .usual = "`" + error_text({default_distribution(kDimension)}, kDimension, readable_value) + "`",
           .meaning = meaning,
           .reader = read_usual<kDimension>,
           .lines = usual_line<kDimension>};
@@ -341,21 +490,37 @@ StudyRow usual_row(std::string_view meaning) {
   refuse_error(distribution, "sigma", problem);
 }
 
-/// Checks the distributions of the factors that vary by their largest possible error, or the standard deviation of a
-/// normal.
+/// Checks the distributions of the factors that vary by their mean, and by their largest possible error or the standard
+/// deviation of a normal.
 void check_distributions(const StudySection& root, const Study& study, const Model& model) {
+  constexpr std::array<std::string_view, 6> kKeys{"mean", "shift", "limits", "half_width", "values", "column"};
+  const std::span keys(kKeys);
   for (const FactorIndex factor : study.analysis.factors) {
     const Distribution& distribution = study.errors.by_factor[factor.value];
+    const auto refuse = [&](const std::optional<std::string>& problem, std::span<const std::string_view> at) {
+      if (problem) refuse_distribution(root, model.description().factors[factor.value], *problem, at);
+    };
     const bool bounded = std::isfinite(distribution.half_width());
     const std::string_view what = bounded ? "a largest error" : "a standard deviation";
-    const double size = error_size(distribution);
+    const double size = bounded ? distribution.largest() : distribution.standard_deviation();
     const auto problem = beyond_bound(model, factor, size, what);
-    if (!problem) continue;
-    constexpr std::array<std::string_view, 4> kKeys{"shift", "half_width", "values", "column"};
+    refuse(beyond_bound(model, factor, std::abs(distribution.centre()), "a mean"), std::array{keys[0], keys[2]});
     const double without_shift = bounded ? distribution.half_width() : distribution.sigma();
     const bool too_large_without = beyond_bound(model, factor, without_shift, what).has_value();
-    refuse_distribution(root, model.description().factors[factor.value], *problem,
-                        std::span(kKeys).subspan(too_large_without ? 1 : 0));
+    refuse(problem, keys.subspan(too_large_without ? 2 : 0));
+  }
+}
+
+/// Throws if a calibrated machine would draw an error anew at each pose: the best correction at each pose would remove
+/// it, which no calibration can.
+void check_calibrated(const StudySection& analysis, const Study& study) {
+  if (!study.mechanism.calibrated || study.analysis.draws != Draws::per_machine) return;
+  for (const FactorIndex factor : study.analysis.factors) {
+    if (!study.errors.is_per_pose(factor)) continue;
+    analysis.require("calibrated")
+        .fail("is true, but the error '" + study.model().factors[factor.value].name +
+                  "' is drawn per pose, which no calibration removes",
+              "leave such errors out of analysis.factors here, and study them without calibrated");
   }
 }
 
@@ -393,9 +558,9 @@ StudyTables errors_tables() {
 Distribution usual_distribution(const Reading& reading, Dimension dimension) {
   const auto value = reading.root.section("errors").find(error_kind(dimension));
   std::vector<std::string> said_with_the_errors;
-  return value
-             ? read_distribution(*value, dimension, reading.use, default_distribution(dimension), said_with_the_errors)
-             : default_distribution(dimension);
+  return value ? read_error(*value, dimension, reading.use, default_distribution(dimension), said_with_the_errors)
+                     .distribution
+               : default_distribution(dimension);
 }
 
 void read_errors_section(Study& study, const Reading& reading) {
@@ -428,6 +593,7 @@ void check_error_bounds(const StudySection& root, const Study& study, const Mode
       check_error_size(model, factor, held->linear, held->angular, analysis.section("background"));
     }
   }
+  check_calibrated(analysis, study);
   if (kind.check_errors != nullptr) kind.check_errors(analysis, study, model);
 }
 

@@ -48,7 +48,12 @@ Plan::Plan(const Study& study, PoseSet poses)
   for (const FactorIndex factor : factors_) background_[factor.value] = 0.0;
   distributions_.reserve(factors_.size());
   for (const FactorIndex factor : factors_) distributions_.push_back(study.errors.by_factor[factor.value]);
+  for (std::size_t slot = 0; slot < factors_.size() && draws_ == Draws::per_machine; ++slot) {
+    if (study.errors.is_per_pose(factors_[slot])) per_pose_.push_back(slot);
+  }
 }
+
+bool Plan::is_per_pose(std::size_t slot) const { return std::ranges::binary_search(per_pose_, slot); }
 
 bool Plan::is_correlated(std::size_t slot) const {
   return std::ranges::any_of(correlated_, [&](const CorrelatedSlots& block) {
@@ -56,11 +61,13 @@ bool Plan::is_correlated(std::size_t slot) const {
   });
 }
 
-void Plan::transform(std::span<double> uniforms, std::size_t count) const {
+template <class Chosen>
+void Plan::transform_if(std::span<double> uniforms, std::size_t count, const Chosen& is_chosen) const {
   POESY_EXPECTS(uniforms.size() == factors_.size() * count);
   const auto row = [&](std::size_t slot) { return uniforms.subspan(slot * count, count); };
   std::vector<std::span<double>> rows;
   for (const CorrelatedSlots& block : correlated_) {
+    if (!is_chosen(block.slots.front())) continue;
     rows.clear();
     for (const std::size_t slot : block.slots) {
       normal_quantiles(1.0, row(slot));
@@ -70,8 +77,16 @@ void Plan::transform(std::span<double> uniforms, std::size_t count) const {
     for (const std::size_t slot : block.slots) distributions_[slot].transform_scores(row(slot));
   }
   for (std::size_t slot = 0; slot < factors_.size(); ++slot) {
-    if (!is_correlated(slot)) distributions_[slot].transform(row(slot));
+    if (is_chosen(slot) && !is_correlated(slot)) distributions_[slot].transform(row(slot));
   }
+}
+
+void Plan::transform(std::span<double> uniforms, std::size_t count) const {
+  transform_if(uniforms, count, [](std::size_t) { return true; });
+}
+
+void Plan::transform_per_pose(std::span<double> uniforms, std::size_t count) const {
+  transform_if(uniforms, count, [&](std::size_t slot) { return is_per_pose(slot); });
 }
 
 Plan Plan::with_samples(std::size_t samples) const {

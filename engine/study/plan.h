@@ -61,9 +61,15 @@ class Plan {
   Plan with_samples(std::size_t samples) const;  ///< The plan with another number of samples.
   std::uint64_t seed() const { return seed_; }   ///< The seed of the draws.
   Draws draws() const { return draws_; }         ///< Whether errors are drawn for each pose or for each machine.
-  /// The address of the draws of factors()[slot] at a pose. A machine has the draws of the first pose at every pose.
+  /// The positions among factors(), ascending, of errors that machines draw anew at each pose. Empty if draws() is per
+  /// pose, because all errors are then drawn so.
+  std::span<const std::size_t> per_pose() const { return per_pose_; }
+  bool is_per_pose(std::size_t slot) const;  ///< Whether machines draw the factor of this slot anew at each pose.
+  /// The address of the draws of factors()[slot] at a pose. A machine has the draws of the first pose at every pose,
+  /// but of its per_pose() errors those of the pose.
   StreamAddress address(std::size_t slot, PoseIndex pose) const {
-    return {seed_, Purpose::error_samples, factors_[slot], draws_ == Draws::per_machine ? PoseIndex(0) : pose};
+    const bool is_fixed = draws_ == Draws::per_machine && !is_per_pose(slot);
+    return {seed_, Purpose::error_samples, factors_[slot], is_fixed ? PoseIndex(0) : pose};
   }
   const PoseSet& poses() const { return poses_; }  ///< The poses, in the order of the study.
   std::span<const FactorIndex> factors() const {
@@ -71,12 +77,15 @@ class Plan {
   }  ///< The factors that vary, as positions in the model's list.
   /// The distribution of each varied factor, in the order of factors().
   std::span<const Distribution> distributions() const { return distributions_; }
-  /// Blocks of correlated errors. No factor is in two of them. Empty if errors vary one by one.
+  /// Blocks of correlated errors. No factor is in two of them, and either all or none of a block are per_pose(). Empty
+  /// if errors vary one by one.
   std::span<const CorrelatedSlots> correlated() const { return correlated_; }
   bool is_correlated(std::size_t slot) const;  ///< Whether the factor of this slot is in such a block.
   /// Replaces the uniforms of all factors, [P x B] in the order of factors(), by errors, SI. Each factor uses the
   /// uniforms of its own address; a correlated one also uses those of the others in its block, of the same sample.
   void transform(std::span<double> uniforms, std::size_t count) const;
+  /// The same for the rows of per_pose() alone; the others are left as they are.
+  void transform_per_pose(std::span<double> uniforms, std::size_t count) const;
   /// [F] Constant errors; zero for those that vary, even while only another one varies.
   std::span<const double> background() const { return background_; }
   const SolverOptions& solver() const { return solver_; }        ///< The solver of each sample.
@@ -84,6 +93,10 @@ class Plan {
   std::uint64_t solves() const;                                  ///< The solves of all units together.
 
  private:
+  /// Transforms the rows of the slots that are chosen. Precondition: all or none of a correlated block.
+  template <class Chosen>
+  void transform_if(std::span<double> uniforms, std::size_t count, const Chosen& is_chosen) const;
+
   PoseSet poses_;
   std::vector<FactorIndex> factors_;
   std::vector<Distribution> distributions_;
@@ -95,6 +108,7 @@ class Plan {
   std::size_t units_per_cell_;
   std::uint64_t seed_;
   Draws draws_;
+  std::vector<std::size_t> per_pose_;
   SolverOptions solver_;
   NotConverged not_converged_;
 };

@@ -77,6 +77,8 @@ std::string_view name(Judge judge) { return name_among(kJudgeNames, judge); }
 std::string_view name(NotConverged policy) { return name_among(kNotConvergedNames, policy); }
 std::string_view name(SolverOptions::Method method) { return name_among(kMethodNames, method); }
 
+bool ErrorModel::is_per_pose(FactorIndex factor) const { return std::ranges::binary_search(per_pose, factor); }
+
 std::vector<double> background_errors(const std::optional<Background>& background, const ModelDescription& model) {
   std::vector<double> errors(model.factors.size(), 0.0);
   if (!background) return errors;
@@ -88,7 +90,8 @@ std::vector<double> background_errors(const std::optional<Background>& backgroun
 }
 
 double error_size(const Distribution& distribution) {
-  return std::isfinite(distribution.half_width()) ? distribution.largest() : distribution.standard_deviation();
+  if (std::isfinite(distribution.half_width())) return distribution.largest();
+  return distribution.standard_deviation() + std::abs(distribution.centre());
 }
 
 std::vector<double> standard_deviations(const Study& study) {

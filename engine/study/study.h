@@ -59,6 +59,10 @@ struct CorrelatedErrors {
 struct ErrorModel {
   std::vector<Distribution> by_factor;            ///< [F] for all factors of the model
   std::vector<CorrelatedErrors> correlated = {};  ///< no factor is in two of them
+  /// Ascending: errors that a machine draws anew at each pose, with Draws::per_machine; its other errors are fixed.
+  std::vector<FactorIndex> per_pose = {};
+
+  bool is_per_pose(FactorIndex factor) const;  ///< Whether a machine draws this error anew at each pose.
 };
 
 /// Errors that are constant while others vary.
@@ -159,7 +163,8 @@ std::string_view name(SolverOptions::Method method);  ///< The word in a study f
 /// [F] The constant errors: the value of the background, or zero.
 std::vector<double> background_errors(const std::optional<Background>& background, const ModelDescription& model);
 
-/// The size of errors with this distribution, SI: the largest possible one, for a normal the standard deviation.
+/// The size of errors with this distribution, SI: the largest possible one, for a normal the standard deviation and the
+/// magnitude of its mean.
 double error_size(const Distribution& distribution);
 
 std::vector<double> standard_deviations(

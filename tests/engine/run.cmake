@@ -8,7 +8,7 @@ if(NOT POESY_SANITIZE)
 endif()
 poesy_test(monte_carlo_sort_test LABELS regression SOURCES engine/kinds/monte_carlo/sort_test.cpp
            LINKS poesy_kinds poesy_models)
-poesy_test(machines_test LABELS unit SOURCES engine/kinds/monte_carlo/machines_test.cpp LINKS poesy_kinds Boost::headers)
+poesy_test(machines_test LABELS unit SOURCES engine/kinds/monte_carlo/machines_test.cpp engine/kinds/monte_carlo/stated_errors_test.cpp LINKS poesy_kinds Boost::headers)
 poesy_test(part_groups_test LABELS unit SOURCES engine/kinds/monte_carlo/part_groups_test.cpp LINKS poesy_kinds)
 poesy_test(part_sums_statistical_test LABELS statistical
            SOURCES engine/kinds/monte_carlo/part_sums_statistical_test.cpp LINKS poesy_kinds Boost::headers)

@@ -2,7 +2,6 @@
 they are run; verdicts and exit codes."""
 
 import json
-import re
 
 import h5py
 import numpy
@@ -56,12 +55,6 @@ class Machines(ResumptionTest):
         done = self.poesy("run", "study.toml", "-o", output, "--quiet")
         self.assertEqual(done.returncode, code, done.stderr)
         return done
-
-    def errors_of(self, sample, pose):
-        """The errors of a machine by name, as replay has them."""
-        text = self.succeeds("replay", "out.h5", "all", pose, sample)
-        part = text[text.index("errors that vary\n"):text.index("solved as in the run")]
-        return dict(re.findall(r"^  (\S+) +(\S+)", part, re.MULTILINE))
 
     def test_yield_is_what_evaluate_counts(self):
         machines = 60

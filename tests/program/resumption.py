@@ -1,6 +1,7 @@
 """What the tests of checkpoints share: a study of each kind that is under way for a second or so, and stopping it."""
 
 import os
+import re
 import signal
 import subprocess
 import tempfile
@@ -114,7 +115,15 @@ kind = "sensitivity"
 factors = "in-plane"
 samples = 2300
 """
-STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "machines": MACHINES, "uniform errors": UNIFORM, "sobol": SOBOL,
+# Of which some errors are drawn anew at each pose, and some have a mean.
+REPEATED = MACHINES.replace("[solver]", """\
+[errors.override]
+"delta_1_*" = { distribution = "uniform", half_width = "1 mm", draws = "per pose" }
+"epsilon_2_*" = { distribution = "normal", sigma = "0.2 deg", mean = "0.1 deg", draws = "per pose" }
+delta_3_1_y = { distribution = "triangular", limits = [0, "1 mm"] }
+[solver]""", 1)
+STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "machines": MACHINES, "uniform errors": UNIFORM,
+           "repeated machines": REPEATED, "sobol": SOBOL,
            "allocation": ALLOCATION, "evaluate": CASES, "identification": IDENTIFICATION,
            "coupling": COUPLING, "fidelities": FIDELITIES}
 ADAPTIVE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"
@@ -141,6 +150,12 @@ class ResumptionTest(ProgramTest):
     def content_hash(self, name="out.h5"):
         with h5py.File(self.folder / name) as result:
             return result.attrs["content_sha256"]
+
+    def errors_of(self, sample, pose):
+        """The errors of a machine by name, as replay has them."""
+        text = self.succeeds("replay", "out.h5", "all", pose, sample)
+        part = text[text.index("errors that vary\n"):text.index("solved as in the run")]
+        return dict(re.findall(r"^  (\S+) +(\S+)", part, re.MULTILINE))
 
     def undisturbed(self, study):
         """The content hash of the study's result."""

@@ -41,20 +41,22 @@ class LoadSolver : protected UnitSolver {
   LoadSolver(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits)
       : UnitSolver(plan, model, plan.factors().size()), limits_(limits) {}
 
-  /// Draws the errors of these machines into values_ [P x B]. machines: ascending numbers, at most kMachinesOfPiece.
+  /// Draws the errors of these machines at the first pose into values_ [P x B]. machines: ascending numbers, at most
+  /// kMachinesOfPiece.
   void draw(std::span<const std::size_t> machines) {
     const std::size_t count = machines.size();
     const std::size_t errors = plan_->factors().size();
-    for (std::size_t from = 0; from < count;) {  // consecutive machines are drawn together
-      std::size_t to = from + 1;
-      while (to < count && machines[to] == machines[to - 1] + 1) ++to;
-      const WorkUnit run{0, PoseIndex(0), SampleIndex(machines[from]), to - from};
-      for (std::size_t p = 0; p < errors; ++p) {
-        draw_uniforms(run, p, std::span(values_).subspan(p * count + from, to - from));
-      }
-      from = to;
-    }
+    for (std::size_t p = 0; p < errors; ++p) draw_row(p, PoseIndex(0), machines);
     plan_->transform(std::span(values_).first(errors * count), count);
+  }
+
+  /// Draws those of their errors anew that machines have anew at each pose. Returns the positions of these errors.
+  std::span<const std::size_t> draw_per_pose(PoseIndex pose, std::span<const std::size_t> machines) {
+    const std::span<const std::size_t> errors = plan_->per_pose();
+    if (errors.empty()) return errors;
+    for (const std::size_t p : errors) draw_row(p, pose, machines);
+    plan_->transform_per_pose(std::span(values_).first(plan_->factors().size() * machines.size()), machines.size());
+    return errors;
   }
 
   /// Solves the drawn machines at one pose and raises their loads [B]. Sets missing [B] to 1 where a machine is not
@@ -81,6 +83,18 @@ class LoadSolver : protected UnitSolver {
   std::span<const ResponseLimit> limits_;  ///< [K]
 
  private:
+  /// Fills the row of an error with the uniforms of these machines at a pose.
+  void draw_row(std::size_t error, PoseIndex pose, std::span<const std::size_t> machines) {
+    const std::size_t count = machines.size();
+    for (std::size_t from = 0; from < count;) {  // consecutive machines are drawn together
+      std::size_t to = from + 1;
+      while (to < count && machines[to] == machines[to - 1] + 1) ++to;
+      const WorkUnit run{0, pose, SampleIndex(machines[from]), to - from};
+      draw_uniforms(run, error, std::span(values_).subspan(error * count + from, to - from));
+      from = to;
+    }
+  }
+
   /// value / limit, but at most 1 for a value up to the limit, whatever the rounding.
   static double over_limit(double value, double limit) {
     const double load = value / limit;

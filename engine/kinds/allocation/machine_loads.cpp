@@ -87,6 +87,7 @@ class LoadEvaluator : private LoadSolver {
  private:
   void add(std::size_t m, LoadSums& found) {
     at_pose_.assign(found.load.size(), 0.0);
+    draw_per_pose(PoseIndex(m), numbers_);
     const UnitOutcomes outcomes = add_pose(PoseIndex(m), at_pose_, missing_, beyond_);
     for (std::size_t b = 0; b < at_pose_.size(); ++b) {
       found.load[b] = std::max(found.load[b], at_pose_[b]);

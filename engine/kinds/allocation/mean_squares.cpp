@@ -14,14 +14,15 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kNodes = 3;            ///< mu - sigma, 0, mu + sigma
+constexpr std::size_t kNodes = 3;            ///< mu - sigma, c, mu + sigma; c: Distribution::centre()
 constexpr std::size_t kDrawsOfPiece = 16;    ///< draws of one piece of work
 constexpr double kUnsolvedOverLimit = 10.0;  ///< response over limit of a sample without a solution
 constexpr double kLargestSum = 1e100;        ///< largest sum of squares in a state; slopes from it are finite
 
 /// The result of a piece of work at its pose: K limits, P errors.
 struct AddedSquares {
-  std::vector<double> base;     ///< [K] y(0)^2 of the perfect mechanism; NaN where it is not solved, and among others
+  /// [K] y^2 of the mechanism whose errors are at their centres; NaN where it is not solved, and among others
+  std::vector<double> base;
   std::vector<double> added;    ///< [K x P] sums over the draws
   std::vector<double> counted;  ///< [P] draws that were solved
 
@@ -76,7 +77,8 @@ class AddedSquaresEvaluator : private UnitSolver {
  private:
   /// The value of another error in a slot of the batch.
   double other(std::size_t n, std::size_t sample, std::size_t slot) const {
-    return pieces_.alone(n) ? 0.0 : draws_[slot * pieces_.draws + pieces_.first_draw(n) + sample];
+    if (pieces_.alone(n)) return plan_->distributions()[slot].centre();
+    return draws_[slot * pieces_.draws + pieces_.first_draw(n) + sample];
   }
 
   /// Solves pairs of a sample and an error, sample by sample, at each of the three nodes.
@@ -92,7 +94,8 @@ class AddedSquaresEvaluator : private UnitSolver {
     for (std::size_t k = 0; k < pairs; ++k) {
       const std::size_t p = (first + k) % errors;
       const Distribution& error = plan_->distributions()[p];
-      const std::array nodes{error.mean() - error.standard_deviation(), 0.0, error.mean() + error.standard_deviation()};
+      const std::array nodes{error.mean() - error.standard_deviation(), error.centre(),
+                             error.mean() + error.standard_deviation()};
       std::ranges::copy(nodes, &values_[p * count + k * kNodes]);
     }
     const UnitOutcomes outcomes = UnitSolver::solve(pieces_.pose(n), plan_->factors(), count, 0.0);

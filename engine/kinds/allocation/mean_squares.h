@@ -24,12 +24,13 @@ inline constexpr std::size_t kDrawsAmongOthers = 64;
 
 /// The mean squares at the plan's errors.
 ///
-/// An error e of mean mu and standard deviation sigma adds y(mu + sigma)^2 / 2 + y(mu - sigma)^2 / 2 - y(0)^2 to a mean
-/// square, which is exact where y is linear in e, or the norm of a linear function. With all other errors zero it adds
-/// o; among the first `draws` draws of the others it adds t on average. Where errors interact in pairs, t - o is the
-/// error's part of these interactions, each of which is shared by two errors. So
+/// An error e of mean mu and standard deviation sigma adds y(mu + sigma)^2 / 2 + y(mu - sigma)^2 / 2 - y(c)^2 to a mean
+/// square, where c is its centre: a stated mean, or 0. This is exact where y is linear in e, or the norm of a linear
+/// function. With all other errors at their centres it adds o; among the first `draws` draws of the others it adds t on
+/// average. Where errors interact in pairs, t - o is the error's part of these interactions, each of which is shared by
+/// two errors. So
 ///
-///     value = y(0)^2 + sum of (o + t) / 2,     slope = t / sigma^2,
+///     value = y(c)^2 + sum of (o + t) / 2,     slope = t / sigma^2,
 ///
 /// without noise where errors do not interact, and with draws = 0, where t = o. A sample that is not solved counts as
 /// ten times the limit where the error is alone, and is left out among others. The result has the same bits for any

@@ -88,6 +88,14 @@ void check_distributions(const StudyValue& value, const PartMembers& members, co
       value.fail("has '" + error + "', whose distribution is measured, so its tolerance is no choice",
                  "leave it out of all parts to let it vary as measured, or give it another distribution");
     }
+    if (study.errors.by_factor[factor.value].centre() != 0.0) {
+      value.fail("has '" + error + "', whose mean is not zero, so its tolerance is not about the nominal size",
+                 "take the nominal size in the middle of the limits and remove the mean, or leave it out of all parts");
+    }
+    if (study.errors.is_per_pose(factor)) {
+      value.fail("has '" + error + "', which a machine draws anew at each pose, so no part has it",
+                 "leave it out of all parts; it varies all the same");
+    }
     for (const CorrelatedErrors& block : study.errors.correlated) {
       if (std::ranges::find(block.factors, factor) == block.factors.end()) continue;
       value.fail("has '" + error + "', which errors.correlated correlates with others",

@@ -82,6 +82,7 @@ class VariationEvaluator : private LoadSolver {
     at_pose_.assign(plan_->poses().size() * count_, 0.0);
     load_.assign(count_, 0.0);
     for (std::size_t m = 0; m < plan_->poses().size(); ++m) {
+      draw_per_pose(PoseIndex(m), numbers_);
       solve(m, std::span(at_pose_).subspan(m * count_, count_));
       for (std::size_t b = 0; b < count_; ++b) load_[b] = std::max(load_[b], at_pose_[m * count_ + b]);
     }
@@ -93,6 +94,9 @@ class VariationEvaluator : private LoadSolver {
   /// and elsewhere large.
   void solve_at(std::size_t m, bool deciding, VariedLoads& found) {
     pairs_.clear();
+    for (const std::size_t p : draw_per_pose(PoseIndex(m), numbers_)) {
+      std::copy_n(&values_[p * count_], count_, &drawn_[p * count_]);
+    }
     for (std::size_t pair = 0; pair < found.load.size(); ++pair) {
       const std::size_t b = pair % count_;
       const bool decides = at_pose_[m * count_ + b] >= load_[b] - kDeciding;
@@ -138,7 +142,7 @@ class VariationEvaluator : private LoadSolver {
   const VariedMachines& varied_;
   std::size_t count_ = 0;             ///< B, the machines of the piece
   std::vector<std::size_t> numbers_;  ///< [B]
-  std::vector<double> drawn_;         ///< [P x B] errors
+  std::vector<double> drawn_;         ///< [P x B] errors at the present pose
   std::vector<double> at_pose_;       ///< [M x B] loads without variations
   std::vector<double> load_;          ///< [B] the largest of them
   std::vector<double> change_;        ///< [V] the largest change of a load at a pose

@@ -89,6 +89,9 @@ Table share_table(const StoredResult& result, const YieldResult& yield, const st
               .notes = {fmt::format("over all poses, of a norm that of its vector; low, high: {} interval",
                                     percent_text(yield.conf_level))},
               .ranked = true};
+  if (!result.factor_mean.empty()) {
+    table.notes.emplace_back("of the scatter about the means of the errors, which the study states");
+  }
   for (const std::size_t r : responses) {
     const std::string& response = result.responses[r].name;
     add("share_" + response, response, yield.mean_square_share.row(r), r == first ? 0 : 1);

@@ -36,7 +36,9 @@ LimitedVectors::LimitedVectors(const Plan& plan, const Model& model, const Analy
     rows_ += vector.rows;
     vectors_.push_back(std::move(vector));
   }
-  if (rows_ * plan.poses().size() * (plan.factors().size() + 1) <= kMostSums) return;
+  const std::size_t errors = plan.factors().size();
+  const std::size_t products = plan.per_pose().empty() ? 0 : errors * errors;  // of a fit at each pose
+  if (plan.poses().size() * (rows_ * (errors + 1) + products) <= kMostSums) return;
   vectors_.clear();
   rows_ = 0;
   details_ = 0;

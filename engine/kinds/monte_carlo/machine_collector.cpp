@@ -91,10 +91,12 @@ MachineResult MachineCollector::machines(const MachineSums& sums, std::span<cons
       main_effects(std::span(sums.effects).subspan(at_poses + 1, 1), Dependence::unknown, sums.effects[at_poses + 1],
                    spreads, table_->responses(), analysis_->conf_level);
   leave_out_correlated(table_->plan(), found.effects_on_largest);
+  leave_out_per_pose(table_->plan(), found.effects_on_largest);
   if (!sums.scores) return found;
   found.yield = yield_of(counts_.machines, *sums.scores, analysis_->limits, analysis_->conf_level);
   if (sums.parts) found.yield->parts = parts_yield(*sums.parts, *found.yield);
-  set_first_order(*table_, sums.fit ? &*sums.fit : nullptr, counts_.rejected, analysis_->conf_level, *found.yield);
+  if (sums.pose_scores) set_pose_gradient(table_->plan(), *sums.pose_scores, *found.yield);
+  set_first_order(*table_, sums.map(), counts_.rejected, analysis_->conf_level, *found.yield);
   return found;
 }
 
@@ -104,6 +106,7 @@ EffectResult MachineCollector::effects(const MachineSums& sums, std::span<const 
   found.effects = main_effects(std::span(sums.effects).first(at_poses), Dependence::unknown, sums.effects[at_poses],
                                spreads, table_->responses(), analysis_->conf_level);
   leave_out_correlated(table_->plan(), found.effects);
+  leave_out_curves_per_pose(table_->plan(), found.effects);
   return found;
 }
 

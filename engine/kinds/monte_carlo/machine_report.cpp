@@ -121,6 +121,11 @@ std::string indices_note(const StoredResult& result, std::size_t r) {
       result.responses[r].name, number_text(sum, 3));
 }
 
+/// Whether a machine has one value of the error, so that the mean over its poses may depend on it.
+bool has_curve(const StoredResult& result, std::size_t p) {
+  return result.factor_draws.empty() || result.factor_draws[p] != name(Draws::per_pose);
+}
+
 /// Charts with a panel for each response of the headline. The errors of the largest indices come first.
 Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
   constexpr std::size_t kMost = 12;
@@ -137,8 +142,10 @@ Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
     const NamedUnit& response = result.responses[r];
     Panel panel{"mean of " + response.name, unit_text(response), {}};
     const auto s1 = [&](std::size_t p) { return effects.s1(r, p); };
-    const std::vector<std::size_t> order = largest_first(positions(factors), s1);
-    for (const std::size_t p : std::span(order).first(std::min(kMost, factors))) {
+    std::vector<std::size_t> order = largest_first(positions(factors), s1);
+    std::erase_if(order, [&](std::size_t p) { return !has_curve(result, p); });
+    if (order.empty()) continue;
+    for (const std::size_t p : std::span(order).first(std::min(kMost, order.size()))) {
       const auto add = [&](std::string_view what, const MainEffects::Curves& values) {
         return pool.add(fmt::format("{}/{}/{}", what, r, p), values.row(r, p), display(response).si);
       };

@@ -17,7 +17,7 @@ ErrorScore score_of(const Distribution& distribution) {
   switch (distribution.shape()) {
     case normal:
     case truncated_normal:
-      return NormalScore{distribution.sigma(), distribution.half_width()};
+      return NormalScore{distribution.sigma(), distribution.half_width(), distribution.centre()};
     case uniform:
     case triangular:
     case measured: {
@@ -41,8 +41,23 @@ ErrorScores scores_of(const Plan& plan) {
       return plan.distributions()[p].shape() == Distribution::Shape::normal;
     };
     if (!std::ranges::all_of(block.slots, is_normal)) continue;
-    for (const std::size_t p : block.slots) scores.each[p] = BlockScore{plan.distributions()[p].sigma()};
+    for (const std::size_t p : block.slots) {
+      scores.each[p] = BlockScore{plan.distributions()[p].sigma(), plan.distributions()[p].centre()};
+    }
     scores.blocks.push_back({block.slots, lower_triangle(block.copula.correlation())});
+  }
+  return scores;
+}
+
+/// The scores of errors that are drawn per pose, or of the others.
+ErrorScores scores_of(const Plan& plan, const ErrorScores& all, Draws draws) {
+  const auto is_one = [&](std::size_t p) { return plan.is_per_pose(p) == (draws == Draws::per_pose); };
+  ErrorScores scores{std::vector<ErrorScore>(all.each.size())};
+  for (std::size_t p = 0; p < all.each.size(); ++p) {
+    if (is_one(p)) scores.each[p] = all.each[p];
+  }
+  for (const NormalBlock& block : all.blocks) {
+    if (is_one(block.errors.front())) scores.blocks.push_back(block);
   }
   return scores;
 }
@@ -55,7 +70,7 @@ std::size_t kept_machines(const Plan& plan, const LimitedVectors& vectors, const
   constexpr std::size_t kMost = 1'000'000;
   const bool is_wanted = std::ranges::any_of(
       scores.each, [](const ErrorScore& score) { return std::holds_alternative<PolynomialScore>(score); });
-  if (!is_wanted || vectors.rows() == 0) return 0;
+  if (!is_wanted || vectors.rows() == 0 || !plan.per_pose().empty()) return 0;
   const std::size_t at_pose = 2 * vectors.rows() + kWorkOfRange * vectors.each().size();
   return std::clamp(kMostWork / (plan.poses().size() * scores.each.size() * at_pose), kLeast, kMost);
 }
@@ -68,6 +83,8 @@ MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis&
       has_limits_(!analysis.limits.empty()),
       limits_(responses_, std::numeric_limits<double>::infinity()),
       scores_(scores_of(plan)),
+      fixed_scores_(scores_of(plan, scores_, Draws::per_machine)),
+      pose_scores_(scores_of(plan, scores_, Draws::per_pose)),
       vectors_(plan, model, analysis),
       kept_(kept_machines(plan, vectors_, scores_)) {
   POESY_EXPECTS(plan.draws() == Draws::per_machine);

@@ -46,6 +46,14 @@ class MachineTable {
   /// The scores of the errors, from which the gradient of the yield by their sizes is computed. An error that is
   /// correlated with others has one only if they are all normal.
   const ErrorScores& scores() const { return scores_; }
+  /// The same scores divided: those of errors that are fixed in a machine, and those of errors that it draws anew at
+  /// each pose (Plan::per_pose). Each has no score for the errors of the other.
+  /// @{
+  const ErrorScores& fixed_scores() const { return fixed_scores_; }
+  const ErrorScores& pose_scores() const { return pose_scores_; }
+  /// @}
+  /// Whether machines draw some errors anew at each pose.
+  bool has_per_pose() const { return !plan_->per_pose().empty(); }
 
   /// The vectors behind the limited responses, which are fitted to first order.
   const LimitedVectors& vectors() const { return vectors_; }
@@ -74,6 +82,8 @@ class MachineTable {
   bool has_limits_;
   std::vector<double> limits_;
   ErrorScores scores_;
+  ErrorScores fixed_scores_;
+  ErrorScores pose_scores_;
   LimitedVectors vectors_;
   std::vector<double> rounding_;
   std::size_t kept_;

@@ -1,7 +1,9 @@
 #include "engine/kinds/monte_carlo/machine_unit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <utility>
 
 #include "engine/base/contract.h"
 
@@ -28,13 +30,24 @@ void rejected_state(Archive& archive, std::vector<std::uint8_t>& rejected, const
                  "has flags of other machines");
 }
 
+namespace {
+
+void merge_fit(std::optional<LinearFitSums>& fit, const std::optional<LinearFitSums>& later) {
+  if (later && fit) fit->merge(*later);
+  if (later && !fit) fit = later;
+}
+
+}  // namespace
+
 MachineSums::MachineSums(const MachineTable& table)
     : at_pose({table.plan().poses().size(), table.responses()}),
       mean(table.responses()),
       largest(table.responses()),
       rms(table.responses()),
       table_(&table) {
-  if (table.has_limits()) scores.emplace(table.scores());
+  if (table.has_limits()) scores.emplace(table.fixed_scores());
+  if (table.has_limits() && table.has_per_pose()) pose_scores.emplace(table.pose_scores());
+  if (table.has_per_pose()) fit_at_pose.resize(table.plan().poses().size());
   if (table.has_parts()) parts.emplace(table.parts());
   effects.assign(table.effects(), MainEffectSums(table.errors(), table.responses()));
 }
@@ -45,15 +58,29 @@ void MachineSums::merge(const MachineSums& later) {
   merge_each(largest, later.largest);
   merge_each(rms, later.rms);
   if (scores) scores->merge(*later.scores);
-  if (later.fit && fit) fit->merge(*later.fit);
-  if (later.fit && !fit) fit = later.fit;
+  if (pose_scores) pose_scores->merge(*later.pose_scores);
+  merge_fit(fit, later.fit);
+  for_each_pair(fit_at_pose, later.fit_at_pose, merge_fit);
   if (parts) parts->merge(*later.parts);
   merge_each(effects, later.effects);
+}
+
+std::optional<LinearFit> MachineSums::map() const {
+  if (fit_at_pose.empty()) return fit ? fit->fit() : std::nullopt;
+  std::vector<LinearFit> at_poses;
+  for (const auto& one : fit_at_pose) {
+    auto found = one ? one->fit() : std::nullopt;
+    if (!found) return std::nullopt;
+    at_poses.push_back(*std::move(found));
+  }
+  return joined(at_poses);
 }
 
 void MachineSums::state(Archive& archive) {
   archive.objects(at_pose, mean, largest, rms);
   if (scores) archive.object(*scores);
+  if (pose_scores) archive.object(*pose_scores);
+  for (auto& one : fit_at_pose) archive.optional(one, table_->errors(), table_->vectors().rows());
   archive.optional(fit, table_->errors(), table_->vectors().rows() * table_->plan().poses().size());
   archive.expect(!fit || table_->vectors().rows() > 0, "has a fit of vectors that are not limited");
   if (parts) archive.object(*parts);
@@ -109,6 +136,8 @@ void MachineUnitEvaluator::solve_pose(const WorkUnit& unit, std::size_t pose, co
     found.failed[pose].add(SampleIndex(unit.first.value + b), outcomes.status[b]);
   }
   block.add_pose(outcomes.responses, ok);
+  if (found.sums->pose_scores) note_rejects(outcomes, ok);
+  if (is_fitted_ && table_->has_per_pose()) add_fit_at(pose, ok, found);
   const ArrayView<const double, axis::Response, axis::Sample> responses(outcomes.responses, sum_.lengths());
   for (std::size_t r = 0; r < responses_; ++r) {
     const std::span all = responses.row(r);
@@ -143,37 +172,81 @@ void MachineUnitEvaluator::add_machines(const MachineBlock& block, const EffectB
   const std::vector<std::uint8_t> rejected = block.rejected();
   const std::span errors = std::span(values_).first(table_->errors() * block.machines());
   found.sums->scores->add(errors, rejected);
+  if (found.sums->pose_scores) {
+    for (std::uint8_t& poses : poses_beyond_) poses = poses == 1 ? 1 : 0;
+    found.sums->pose_scores->add(deciding_.all(), poses_beyond_);
+  }
   if (found.sums->parts) found.sums->parts->add(errors, rejected);
-  if (is_fitted_) add_fit(block.solved(), found);
+  if (is_fitted_ && !table_->has_per_pose()) add_fit(block.solved(), found);
   found.rejected = rejected;
 }
 
-void MachineUnitEvaluator::add_fit(std::span<const std::uint8_t> solved, MachineUnit& found) const {
+Array<double, axis::Factor, axis::Sample> MachineUnitEvaluator::standardised(std::size_t machines) const {
   const std::size_t errors = table_->errors();
-  const std::span<const double> drawn = std::span(values_).first(errors * solved.size());
-  const ArrayView<const double, axis::Factor, axis::Sample> values(drawn, {errors, solved.size()});
+  const std::span<const double> drawn = std::span(values_).first(errors * machines);
+  const ArrayView<const double, axis::Factor, axis::Sample> values(drawn, {errors, machines});
   Array<double, axis::Factor, axis::Sample> x(values.lengths());
   for (std::size_t p = 0; p < errors; ++p) {
     const Distribution& error = plan_->distributions()[p];
     std::ranges::transform(values.row(p), x.row(p).begin(),
                            [&](double one) { return (one - error.mean()) / error.standard_deviation(); });
   }
-  found.sums->fit.emplace(errors, table_->vectors().rows() * plan_->poses().size());
-  found.sums->fit->add(x.all(), rows_.all(), solved);
+  return x;
+}
+
+void MachineUnitEvaluator::add_fit(std::span<const std::uint8_t> solved, MachineUnit& found) const {
+  found.sums->fit.emplace(table_->errors(), table_->vectors().rows() * plan_->poses().size());
+  found.sums->fit->add(standardised(solved.size()).all(), rows_.all(), solved);
+}
+
+void MachineUnitEvaluator::add_fit_at(std::size_t pose, std::span<const std::uint8_t> ok, MachineUnit& found) const {
+  std::optional<LinearFitSums>& fit = found.sums->fit_at_pose[pose];
+  fit.emplace(table_->errors(), table_->vectors().rows());
+  fit->add(standardised(ok.size()).all(), rows_.row(pose), ok);
+}
+
+void MachineUnitEvaluator::note_rejects(const UnitOutcomes& outcomes, std::span<const std::uint8_t> ok) {
+  const ArrayView<const double, axis::Response, axis::Sample> responses(outcomes.responses, sum_.lengths());
+  const ArrayView<const double, axis::Factor, axis::Sample> errors(outcomes.values, deciding_.lengths());
+  for (std::size_t b = 0; b < ok.size(); ++b) {
+    bool is_beyond = ok[b] == 0;
+    for (std::size_t r = 0; r < responses_ && !is_beyond; ++r) {
+      is_beyond = !(std::abs(responses(r, b)) <= table_->limits()[r]);
+    }
+    if (!is_beyond || poses_beyond_[b] == 2) continue;
+    if (++poses_beyond_[b] == 2) continue;
+    for (const std::size_t p : plan_->per_pose()) deciding_(p, b) = errors(p, b);
+  }
+}
+
+void MachineUnitEvaluator::draw_at(const WorkUnit& unit, std::size_t pose, EffectBins& bins) {
+  if (pose == 0 || !table_->has_per_pose()) return;
+  const WorkUnit at_pose{unit.slot, PoseIndex(pose), unit.first, unit.count};
+  const bool has_effects = std::ranges::find(table_->effect_poses(), PoseIndex(pose)) != table_->effect_poses().end();
+  if (has_effects) {
+    bins = draw_in_bins(at_pose);
+  } else {
+    draw_per_pose(at_pose);
+  }
 }
 
 MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {
   const WorkUnit unit = table_->unit(n);
   const std::size_t poses = plan_->poses().size();
   MachineUnit found(*table_, {unit.first.value, unit.first.value + unit.count});
-  const EffectBins bins = draw_in_bins(unit);
+  EffectBins bins = draw_in_bins(unit);
   make_room({responses_, unit.count}, sum_);
   is_fitted_ = table_->is_fitted(n);
   const LimitedVectors& vectors = table_->vectors();
   make_room({is_fitted_ ? vectors.details() : 0, unit.count}, details_);
   make_room({poses, is_fitted_ ? vectors.rows() : 0, unit.count}, rows_);
+  poses_beyond_.assign(table_->has_per_pose() ? unit.count : 0, 0);
+  make_room({table_->has_per_pose() ? table_->errors() : 0, unit.count}, deciding_);
   MachineBlock block(table_->limits(), unit.count);
-  for (std::size_t m = 0; m < poses; ++m) solve_pose(unit, m, bins, block, found);
+  for (std::size_t m = 0; m < poses; ++m) {
+    draw_at(unit, m, bins);
+    solve_pose(unit, m, bins, block, found);
+  }
   found.counts = block.counts();
   add_machines(block, bins, found);
   found.rejected.resize(kept_of(*table_, {unit.first.value, unit.first.value + unit.count}));

@@ -31,7 +31,12 @@ struct MachineSums {
   std::vector<Moments> largest;                        ///< [R] of the machines' largest magnitudes
   std::vector<Moments> rms;                            ///< [R] of the machines' root mean squares
   std::optional<ScoreSums> scores;                     ///< set if there are limits
-  std::optional<LinearFitSums> fit;     ///< fit of the limited vectors at all poses, for the machines that are fitted
+  /// Of errors that machines draw anew at each pose, over machines that one pose alone rejects, by the errors at this
+  /// pose. Set if there are such errors and limits.
+  std::optional<ScoreSums> pose_scores;
+  std::optional<LinearFitSums> fit;  ///< fit of the limited vectors at all poses, for the machines that are fitted
+  /// [M] The same at each pose alone, instead of `fit`, if machines draw errors anew at each pose; otherwise empty.
+  std::vector<std::optional<LinearFitSums>> fit_at_pose;
   std::optional<PartSums> parts;        ///< set if there are limits and errors were measured on parts
   std::vector<MainEffectSums> effects;  ///< [MachineTable::effects()]
 
@@ -40,6 +45,8 @@ struct MachineSums {
   /// Adds later machines. Precondition: the machines of `later` come after those of this object.
   void merge(const MachineSums& later);
 
+  /// The linear map of the limited vectors at all poses, pose by pose; none if too few machines were fitted.
+  std::optional<LinearFit> map() const;
   void state(Archive& archive);  ///< Reads or writes every bit.
 
  private:
@@ -84,11 +91,19 @@ class MachineUnitEvaluator : private UnitSolver {
   MachineUnit operator()(std::size_t n);
 
  private:
+  /// Replaces the errors that are drawn anew at each pose, and their bins if effects are summed at this pose.
+  void draw_at(const WorkUnit& unit, std::size_t pose, EffectBins& bins);
   void solve_pose(const WorkUnit& unit, std::size_t pose, const EffectBins& bins, MachineBlock& block,
                   MachineUnit& found);
+  /// Counts the poses that reject each machine, and keeps the errors that are drawn anew from the first of these.
+  void note_rejects(const UnitOutcomes& outcomes, std::span<const std::uint8_t> ok);
   void add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found);
+  /// [P x B] The present errors, standardised.
+  Array<double, axis::Factor, axis::Sample> standardised(std::size_t machines) const;
   /// Fits the limited vectors to these machines, whose rows at all poses are in rows_.
   void add_fit(std::span<const std::uint8_t> solved, MachineUnit& found) const;
+  /// The same at one pose, whose samples count where `ok` is 1.
+  void add_fit_at(std::size_t pose, std::span<const std::uint8_t> ok, MachineUnit& found) const;
   /// The values whose machine or sample counts.
   std::span<const double> only(std::span<const double> values, std::span<const std::uint8_t> counts);
 
@@ -101,6 +116,8 @@ class MachineUnitEvaluator : private UnitSolver {
       details_;  ///< details at the pose, if a limited vector is made of them
   /// Components of the limited vectors, if the unit is fitted.
   Array<double, axis::Pose, axis::VectorRow, axis::Sample> rows_;
+  std::vector<std::uint8_t> poses_beyond_;              ///< [B] poses that reject the machine: 0, 1, or 2 for more
+  Array<double, axis::Factor, axis::Sample> deciding_;  ///< errors at the first of these poses
 };
 
 }  // namespace poesy

@@ -189,6 +189,8 @@ PartGroup part_group(std::vector<std::size_t> errors, std::vector<SmoothedValues
 PartGroups part_groups(const Plan& plan) {
   PartGroups groups;
   const auto is_measured = [&](std::size_t p) { return plan.distributions()[p].parts().has_value(); };
+  groups.known = std::ranges::none_of(plan.per_pose(), is_measured);
+  if (!groups.known) return groups;
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {
     if (is_measured(p) && !plan.is_correlated(p)) {
       groups.each.push_back(part_group({p}, {*plan.distributions()[p].parts()}, {}));

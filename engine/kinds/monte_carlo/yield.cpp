@@ -45,11 +45,17 @@ void set_quantiles(std::span<const Bucket> buckets, std::span<const double> leve
   values.quantile_error(response) = found.error;
 }
 
-/// Sets main effects to NaN at these positions: an error on a response, or all errors on it.
+/// Sets curves to NaN at these positions: an error on a response, or all errors on it.
+template <class... Positions>
+void leave_out_curve(MainEffects& effects, Positions... at) {
+  for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) std::ranges::fill(list->row(at...), kNaN);
+}
+
+/// Sets main effects to NaN at these positions.
 template <class... Positions>
 void leave_out(MainEffects& effects, Positions... at) {
   for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) std::ranges::fill(list->row(at...), kNaN);
-  for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) std::ranges::fill(list->row(at...), kNaN);
+  leave_out_curve(effects, at...);
 }
 
 }  // namespace
@@ -106,6 +112,16 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
   return found;
 }
 
+void set_pose_gradient(const Plan& plan, const ScoreSums& scores, YieldResult& found) {
+  const std::vector<Estimate> gradient = scores.gradient(found.conf_level);
+  const std::vector<Estimate> change = scores.change(found.conf_level);
+  for (const std::size_t p : plan.per_pose()) {
+    set_estimate(gradient[p], found.gradient, found.gradient_ci_low, found.gradient_ci_high, p);
+    set_estimate(within(change[p], -found.value, 1.0 - found.value), found.change, found.change_ci_low,
+                 found.change_ci_high, p);
+  }
+}
+
 PartsYield parts_yield(const PartSums& parts, const YieldResult& found) {
   const Interval interval = parts.interval(found.conf_level);
   if (std::isnan(interval.low)) return {kNaN, kNaN};
@@ -136,6 +152,18 @@ void leave_out_correlated(const Plan& plan, MainEffects& effects) {
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {
     if (!plan.is_correlated(p)) continue;
     for (std::size_t r = 0; r < effects.s1.length<axis::Response>(); ++r) leave_out(effects, r, p);
+  }
+}
+
+void leave_out_per_pose(const Plan& plan, MainEffects& effects) {
+  for (const std::size_t p : plan.per_pose()) {
+    for (std::size_t r = 0; r < effects.s1.length<axis::Response>(); ++r) leave_out(effects, r, p);
+  }
+}
+
+void leave_out_curves_per_pose(const Plan& plan, MainEffects& effects) {
+  for (const std::size_t p : plan.per_pose()) {
+    for (std::size_t r = 0; r < effects.s1.length<axis::Response>(); ++r) leave_out_curve(effects, r, p);
   }
 }
 

@@ -32,6 +32,9 @@ MachineValues machine_values(std::span<const Moments> moments, std::span<const Q
 YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::span<const ResponseLimit> limits,
                      double conf_level);
 
+/// Sets the gradient by errors that machines draw anew at each pose (MachineSums::pose_scores).
+void set_pose_gradient(const Plan& plan, const ScoreSums& scores, YieldResult& found);
+
 /// The interval that includes the uncertainty from few parts. parts: of the same machines as `found`.
 PartsYield parts_yield(const PartSums& parts, const YieldResult& found);
 
@@ -42,6 +45,11 @@ MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence de
 /// Sets indices and curves of correlated errors to NaN, because other errors vary with them, and the uniform from which
 /// such an error is drawn is not its own.
 void leave_out_correlated(const Plan& plan, MainEffects& effects);
+
+/// Sets indices and curves of errors that machines draw anew at each pose to NaN, because a machine has many of them.
+void leave_out_per_pose(const Plan& plan, MainEffects& effects);
+/// The same for the curves alone: the indices are those at single poses.
+void leave_out_curves_per_pose(const Plan& plan, MainEffects& effects);
 
 /// Sets indices and curves to NaN for responses that do not vary (stats/indices.h), at the poses over which indices are
 /// summed or from machine to machine. Records which responses do not vary at any pose, if there are some. rounding: [R]

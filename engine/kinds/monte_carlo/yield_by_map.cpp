@@ -32,7 +32,7 @@ std::vector<ErrorEffect> effects_on(const MachineTable& table, std::size_t respo
   std::vector<ErrorEffect> errors;
   for (const Distribution& error : plan.distributions()) {
     const double sigma = error.standard_deviation();
-    const double offset = error.mean() / sigma;
+    const double offset = (error.mean() - error.centre()) / sigma;  // a stated mean is not scatter
     errors.push_back({.mean_square = 1.0 + offset * offset,
                       .block = 0,
                       .rounding = sigma * index_rounding(table.rounding()[response], sigma)});
@@ -140,13 +140,12 @@ void set_gradient(const MachineTable& table, const LinearFit& fit, std::span<con
 
 }  // namespace
 
-void set_first_order(const MachineTable& table, const LinearFitSums* sums, std::span<const std::uint8_t> rejected,
-                     double conf_level, YieldResult& yield) {
+void set_first_order(const MachineTable& table, const std::optional<LinearFit>& fit,
+                     std::span<const std::uint8_t> rejected, double conf_level, YieldResult& yield) {
   for (auto* list : {&yield.mean_square_share, &yield.mean_square_share_ci_low, &yield.mean_square_share_ci_high}) {
     *list = decltype(yield.mean_square_share)({table.responses(), table.errors()}, kNaN);
   }
   yield.linear_share = decltype(yield.linear_share)({table.responses()}, kNaN);
-  const std::optional<LinearFit> fit = sums == nullptr ? std::nullopt : sums->fit();
   if (!fit) return;
   set_shares(table, *fit, conf_level, yield);
   if (!rejected.empty()) set_gradient(table, *fit, rejected, conf_level, yield);

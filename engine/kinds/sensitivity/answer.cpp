@@ -35,7 +35,8 @@ constexpr double kHardly = 0.01;
 /// None if not all effects are known, or no error has one.
 std::optional<FewMatter> few_matter(const StoredResult& result) {
   const std::size_t response = response_named(result, default_ranking(result));
-  const MeanSquare found = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
+  const MeanSquare found =
+      mean_square(response_study(sensitivity_of(result), result.factor_sigma, result.factor_mean, response));
   const std::vector<double> shares = mean_square_shares(found, result.factor_sigma);
   if (std::ranges::any_of(shares, [](double share) { return std::isnan(share); })) return std::nullopt;
   std::vector<std::size_t> order = positions(shares.size());

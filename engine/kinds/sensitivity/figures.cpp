@@ -101,7 +101,8 @@ void add_rankings(const ReportedResult& a, const ReportedResult& b, Page& page) 
 
 /// The root mean square predicted from the errors one by one (stats/tolerance.h), in the unit shown.
 double total_rms(const StoredResult& result, std::size_t response) {
-  const MeanSquare squares = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
+  const MeanSquare squares =
+      mean_square(response_study(sensitivity_of(result), result.factor_sigma, result.factor_mean, response));
   return std::sqrt(squares.at(result.factor_sigma)) / display(result.responses[response]).si;
 }
 

@@ -133,7 +133,8 @@ double index_rounding(const SensitivityResult& result, std::size_t response, dou
   return index_rounding(result.rounding(response), sigma);
 }
 
-ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma, std::size_t response) {
+ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma,
+                             std::span<const double> error_mean, std::size_t response) {
   const std::array lengths{result.factors(), result.poses()};
   POESY_EXPECTS(sigma.size() == result.factors());
   std::vector<double> index;
@@ -145,12 +146,14 @@ ResponseStudy response_study(const SensitivityResult& result, std::span<const do
           .count = {result.count.row(response), lengths},
           .mean = {result.mean.row(response), lengths},
           .std = {result.std.row(response), lengths},
-          .background = result.background.row(response)};
+          .background = result.background.row(response),
+          .error_mean = error_mean};
 }
 
-Tolerances response_tolerances(const SensitivityResult& result, std::span<const double> sigma, std::size_t response,
+Tolerances response_tolerances(const SensitivityResult& result, std::span<const double> sigma,
+                               std::span<const double> error_mean, std::size_t response,
                                const std::optional<ReferenceError>& reference) {
-  return tolerances(response_study(result, sigma, response), reference);
+  return tolerances(response_study(result, sigma, error_mean, response), reference);
 }
 
 }  // namespace poesy

@@ -30,12 +30,14 @@ SensitivityResult sensitivity_result(const Plan& plan, CellStats cells,
 /// The magnitude below which an index of an error of this standard deviation is rounding (stats/indices.h).
 double index_rounding(const SensitivityResult& result, std::size_t response, double sigma);
 
-/// The data of one response for tolerances, by the published index. sigma: [P] of the study's errors. Refers to both
-/// arguments.
-ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma, std::size_t response);
+/// The data of one response for tolerances, by the published index. sigma: [P] of the study's errors. error_mean: [P]
+/// their means, empty if all are zero. Refers to its arguments.
+ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma,
+                             std::span<const double> error_mean, std::size_t response);
 
 /// The tolerances of one response, relative to this reference. Without a reference those of equal effect are NaN.
-Tolerances response_tolerances(const SensitivityResult& result, std::span<const double> sigma, std::size_t response,
+Tolerances response_tolerances(const SensitivityResult& result, std::span<const double> sigma,
+                               std::span<const double> error_mean, std::size_t response,
                                const std::optional<ReferenceError>& reference);
 
 }  // namespace poesy

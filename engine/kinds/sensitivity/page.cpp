@@ -211,7 +211,8 @@ void warn_of_small_errors(const StoredResult& result, std::vector<std::string>& 
 /// Warns only of errors that add a noticeable part to the mean square.
 void warn_of_sizes(const StoredResult& result, std::vector<std::string>& list) {
   const std::size_t response = response_named(result, default_ranking(result));
-  const MeanSquare square = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
+  const MeanSquare square =
+      mean_square(response_study(sensitivity_of(result), result.factor_sigma, result.factor_mean, response));
   const std::vector<std::size_t> negligible =
       negligible_errors(result, response, square, square.growth(result.factor_sigma));
   if (changing_errors(result, response).size() == negligible.size()) return;
@@ -254,7 +255,8 @@ ErrorShares error_shares(const StoredResult& result) {
   const std::size_t r = response_named(result, default_ranking(result));
   if (!varies(result, r)) return {};
   const std::string& response = result.responses[r].name;
-  const MeanSquare found = mean_square(response_study(sensitivity_of(result), result.factor_sigma, r));
+  const MeanSquare found =
+      mean_square(response_study(sensitivity_of(result), result.factor_sigma, result.factor_mean, r));
   return {.what = "share of the mean square of " + response,
           .values = mean_square_shares(found, result.factor_sigma),
           .pose_what = "the effect of all errors on " + response,

@@ -312,7 +312,7 @@ std::string set_sensitivity_tolerances(const StoredResult& result, const Toleran
   const std::size_t response = chosen_response(options, result);
   const NamedUnit& named = result.responses[response];
   check_sizes(options, result, response);
-  const ResponseStudy study = response_study(sensitivity_of(result), result.factor_sigma, response);
+  const ResponseStudy study = response_study(sensitivity_of(result), result.factor_sigma, result.factor_mean, response);
   const std::optional<ReferenceError> reference = reference_of(options, result, response);
   check_reference(options, result, study, named.name, reference);
   ResponseTolerances found{response, tolerances(study, reference), std::nullopt};

@@ -83,7 +83,7 @@ std::optional<ReferenceError> reference_for(const Study& study, const Sensitivit
     return ReferenceError{static_cast<std::size_t>(at - factors.begin()), chosen->tolerance};
   }
   const std::vector<double> sigma = standard_deviations(study);
-  const auto smallest = smallest_effect(response_study(found, sigma, response).index, sigma);
+  const auto smallest = smallest_effect(response_study(found, sigma, {}, response).index, sigma);
   if (!smallest) return std::nullopt;
   return ReferenceError{*smallest, display_unit(study.model().factors[factors[*smallest].value].dimension).si};
 }
@@ -179,6 +179,11 @@ void add_distribution_note(std::vector<std::string>& notes, const StoredResult& 
     if (shape == "normal") continue;
     ++count;
     if (std::ranges::find(shapes, shape) == shapes.end()) shapes.push_back(shape);
+  }
+  if (!result.factor_mean.empty()) {
+    notes.emplace_back(
+        "the study states means of errors: tolerances are about them, and what the means do to the response is not "
+        "counted here. Confirm by a Monte Carlo study");
   }
   if (count == 0) return;
   notes.push_back(
@@ -287,6 +292,7 @@ void set_references(const Study& study, SensitivityResult& found) {
 
 void write_tolerance_group(ResultBuilder& result, const Study& study, const SensitivityResult& found) {
   const std::vector<double> sigma = standard_deviations(study);
+  const std::vector<double> mean = stated_means(study);
   ToleranceGroup group;
   group.kind = group.unit = Array<std::string, axis::Factor>({found.factors()});
   const auto factor = [&](std::size_t p) -> const Factor& {
@@ -301,7 +307,7 @@ void write_tolerance_group(ResultBuilder& result, const Study& study, const Sens
   ReferenceColumns references{Array<std::string, axis::Response>({found.responses()}),
                               Array<double, axis::Response>({found.responses()}, kNaN)};
   for (std::size_t r = 0; r < found.responses(); ++r) {
-    const Tolerances all = response_tolerances(found, sigma, r, found.reference(r));
+    const Tolerances all = response_tolerances(found, sigma, mean, r, found.reference(r));
     std::ranges::copy(all.equal_effect, group.equal_effect.row(r).begin());
     std::ranges::copy(all.mean_square_share, group.mean_square_share.row(r).begin());
     std::ranges::transform(all.mean_square.effects, group.rms_effect.row(r).begin(),
@@ -333,7 +339,9 @@ void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& fa
 
 ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t response) {
   const SensitivityResult& found = sensitivity_of(result);
-  return {response, response_tolerances(found, result.factor_sigma, response, found.reference(response)), std::nullopt};
+  return {response,
+          response_tolerances(found, result.factor_sigma, result.factor_mean, response, found.reference(response)),
+          std::nullopt};
 }
 
 void append_tolerance_tables(CsvTables& tables, const StoredResult& result) {

@@ -209,6 +209,20 @@ void check_correlation(const Study& study, const StudySection& analysis) {
   }
 }
 
+/// Throws if a machine would draw an error anew at each pose, because a pick-freeze pair shares or changes an error as
+/// a whole.
+void check_draws(const Study& study, const StudySection& analysis) {
+  for (const FactorIndex factor : study.analysis.factors) {
+    if (!study.errors.is_per_pose(factor)) continue;
+    const auto value = analysis.find("factors");
+    throw InputError(value ? value->place() : analysis.place(),
+                     "the error '" + study.model().factors[factor.value].name +
+                         "' is drawn per pose, but indices of Sobol' are of errors that a machine keeps",
+                     "name other errors in analysis.factors, remove its draws = \"per pose\", or take kind = "
+                     "\"monte-carlo\", whose S1 knows it");
+  }
+}
+
 void check_sobol(Study& study, const Reading& reading) {
   const StudySection analysis = reading.root.section("analysis");
   study.analysis.draws = Draws::per_machine;
@@ -216,6 +230,7 @@ void check_sobol(Study& study, const Reading& reading) {
     analysis.require("samples").fail("is a table, but analysis.design is not \"random\"",
                                      "write a number, e.g. samples = 4096");
   }
+  check_draws(study, analysis);
   check_replicates(study, analysis);
   if (asked_of<SobolOptions>(study.analysis).groups_by == GroupsBy::name) {
     check_named_groups(study, analysis.section("groups"));

@@ -214,6 +214,7 @@ void add_glossary(const StoredResult& result, Page& page) {
   section.table(table_of("coordinates", "coordinate", "Coordinates of a pose", result.pose_coordinates));
   section.table(table_of("errors", "error", "Errors", result.factors));
   if (const auto measured = measured_table(result)) section.table(*measured);
+  if (const auto stated = stated_table(result)) section.table(*stated);
 }
 
 void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& page) {

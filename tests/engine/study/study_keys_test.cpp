@@ -78,9 +78,9 @@ model = "fake"
 geometry = { arm = "50 mm" }
 fidelity = "exact"
 [errors]
-linear = { distribution = "normal", sigma = "2 mm", shift = "1 mm" }
-angular = { distribution = "truncated-normal", sigma = "1 deg", half_width = "2 deg", shift = "1 deg" }
-override = { delta_1 = { distribution = "uniform", half_width = "1 mm", shift = "1 mm" }, delta_2 = { distribution = "triangular", half_width = "1 mm", shift = "1 mm" } }
+linear = { distribution = "normal", sigma = "2 mm", shift = "1 mm", mean = "0 mm" }
+angular = { distribution = "truncated-normal", sigma = "1 deg", half_width = "2 deg", shift = "1 deg", mean = "0 deg" }
+override = { delta_1 = { distribution = "uniform", half_width = "1 mm", shift = "1 mm", mean = "0 mm", draws = "per machine" }, delta_2 = { distribution = "triangular", half_width = "1 mm", shift = "1 mm", mean = "0 mm" } }
 [solver]
 metric = "published"
 method = "newton"
@@ -119,11 +119,19 @@ std::vector<std::string> studies() {
       "delta_2 = { distribution = \"measured\", values = [\"1 mm\", \"2 mm\", \"3 mm\", \"4 mm\", \"5 mm\", "
       "\"6 mm\", \"7 mm\", \"8 mm\"] } }\n"
       "correlated = [{ factors = [\"delta_1\", \"delta_2\"], correlation = [[1, 0.5], [0.5, 1]] }]");
+  std::string between = head;
+  const std::size_t errors_at = between.find("linear = {");
+  between.replace(errors_at, between.find("[solver]") - errors_at,
+                  "linear = { distribution = \"normal\", limits = [0, \"2 mm\"], sigmas = 3 }\n"
+                  "angular = { distribution = \"truncated-normal\", sigma = \"1 deg\", limits = [0, \"2 deg\"] }\n"
+                  "override = { delta_1 = { distribution = \"uniform\", limits = \"8 h6\" }, "
+                  "delta_2 = { distribution = \"triangular\", limits = [\"-1 mm\", 0] } }\n");
   const std::string background = "background = { factors = \"benign\", linear = \"2 mm\", angular = \"2 deg\" }\n";
   return {
       head + "[poses]\nselect = \"interior\"\ncount = 3\n" + box +
           "[analysis]\nkind = \"sensitivity\"\nfactors = [\"delta_1\"]\nsamples = 50\nconf_level = 0.9\n" + background +
           "reference = { factor = \"delta_1\", tolerance = \"2 mm\" }\n",
+      between + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
       from_file + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
       by_platform + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
       both + "[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n[analysis]\nlinearity = 0.02\n",
@@ -401,6 +409,7 @@ TEST(StudyKeys, HaveTheBoundsThatTheyName) {
       Outside{"at least 1e-30 m or rad",
               {"\"9.99e-31 m\"", "\"9.99e-31 rad\""},
               "it must be at least 1e-30 m or 1e-30 rad"},
+      Outside{"the smaller one first", {"[\"1 mm\", 0]", "[\"1 deg\", 0]"}, "the smaller limit first"},
       Outside{"greater than 1", {"1"}, "it must be greater than 1"},
       Outside{"between 0 and 1", {"0", "1", "[0]", "[1]"}, "it must lie between 0 and 1"},
       Outside{"at least 8", {"7", "[\"1 mm\"]"}, "at least 8"},

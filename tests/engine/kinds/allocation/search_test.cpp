@@ -373,6 +373,21 @@ TEST(MeanSquaresOf, LinearFunctionsAreExact) {
   }
 }
 
+// y = 0.01 + x1 + 2 x2 - x3 has E y^2 = (0.01 + m1 + 2 m2 - m3)^2 + s1^2 + 4 s2^2 + s3^2: means add before they are
+// squared.
+TEST(MeanSquaresOf, ErrorsWithMeansAreExact) {
+  FunctionStudy study(
+      3, [](std::span<const double> x, double, std::span<double> y) { y[0] = 0.01 + x[0] + 2.0 * x[1] - x[2]; }, 1.0,
+      1000);
+  study.study.errors.by_factor[0] = Distribution::normal(0.05).about(0.2);
+  study.study.errors.by_factor[1] = Distribution::uniform(0.1).about(-0.3);
+  const Plan plan(study.study, PoseSet(1, {0.5}));
+  const MeanSquares found = *mean_squares(plan, study.model, study.study.analysis.limits, 20, {.threads = 2});
+  const double mean = 0.01 + 0.2 - 0.6;
+  EXPECT_NEAR(found.value[0], mean * mean + 0.0025 + 4.0 * 0.01 / 3.0 + 0.0025, 1e-12);
+  for (std::size_t p = 0; p < 3; ++p) EXPECT_NEAR(found.slope[p], p == 1 ? 4.0 : 1.0, 1e-9) << p;
+}
+
 // y = x1 + 10 x2 x3 has E y^2 = s^2 + 100 s^4. The part of x2 is known from 4000 draws of x3, whose mean square has a
 // relative standard error of sqrt(2 / 4000); alpha = 1e-5 for each of the three.
 TEST(MeanSquaresOf, ErrorsThatActTogetherCountForEach) {

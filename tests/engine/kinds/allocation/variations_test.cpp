@@ -4,12 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
 #include "engine/kinds/allocation/machine_loads.h"
 #include "engine/kinds/allocation/result.h"
+#include "engine/random/stream.h"
 #include "engine/study/poses/pose_selection.h"
 #include "tests/support/function_model.h"
 
@@ -66,6 +69,46 @@ TEST(TryVariations, ChangesErrorsAsATolerance) {
     const auto whole = machine_loads(other.plan(), other.model, other.study.analysis.limits, {.threads = 1});
     // Without signs: the function has none where all errors are mirrored.
     for (std::size_t k = 0; k < 225; ++k) EXPECT_NEAR(found[v * 225 + k], whole->load[2 * k], 1e-9) << v;
+  }
+}
+
+TEST(TryVariations, KeepErrorsThatAreDrawnAnewAtEachPose) {
+  VariedStudy study;
+  study.study.errors.per_pose = {FactorIndex(2)};
+  const std::vector<Variation> list{{{0}, 1.05}, {{0, 1}, 2.0}, {{1, 3}, 1.05}};
+  const std::vector<double> found = study.varied(list);
+  for (std::size_t v = 0; v < list.size(); ++v) {
+    VariedStudy other;
+    other.study.errors.per_pose = study.study.errors.per_pose;
+    for (const std::size_t p : list[v].errors) {
+      other.study.errors.by_factor[p] = Distribution::normal(0.3 * list[v].factor);
+    }
+    const auto whole = machine_loads(other.plan(), other.model, other.study.analysis.limits, {.threads = 1});
+    for (std::size_t k = 0; k < 225; ++k) EXPECT_NEAR(found[v * 225 + k], whole->load[2 * k], 1e-9) << v;
+  }
+}
+
+// The load of machine s by a loop over its poses, with draws from the addresses that theory.md names.
+TEST(MachineLoads, AreThoseOfErrorsDrawnAnewAtEachPose) {
+  VariedStudy study;
+  study.study.errors.per_pose = {FactorIndex(0), FactorIndex(2)};
+  const Plan plan = study.plan();
+  const auto found = machine_loads(plan, study.model, study.study.analysis.limits, {.threads = 2});
+  for (std::size_t s = 0; s < 450; ++s) {
+    double load = 0.0;
+    for (std::size_t m = 0; m < kPlaces.size(); ++m) {
+      std::array<double, kErrors> x{};
+      for (std::size_t p = 0; p < kErrors; ++p) {
+        const PoseIndex pose(p == 0 || p == 2 ? m : 0);
+        fill_uniforms({study.study.seed, Purpose::error_samples, FactorIndex(p), pose}, SampleIndex(s),
+                      std::span(x).subspan(p, 1));
+        x[p] = Distribution::normal(0.3).quantile(x[p]);
+      }
+      std::array<double, 2> y{};
+      function(x, kPlaces[m], y);
+      load = std::max({load, std::abs(y[0]), std::abs(y[1])});
+    }
+    EXPECT_NEAR(found->load[s], load, 1e-12) << s;
   }
 }
 

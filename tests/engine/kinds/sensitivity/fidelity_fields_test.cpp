@@ -83,7 +83,7 @@ TEST_F(FidelityFile, ConfirmationOfItsTolerancesIsAtTheFirstFidelity) {
   solved.fidelity = result_.fidelity;
   write_result(path_, example_.study, example_.poses, solved, example_.facts);
   const StoredResult stored = read_result(path_);
-  const ResponseStudy study = response_study(sensitivity_of(stored), stored.factor_sigma, 1);
+  const ResponseStudy study = response_study(sensitivity_of(stored), stored.factor_sigma, {}, 1);
   ResponseTolerances found{1, tolerances(study, sensitivity_of(stored).reference(1)), std::nullopt};
   found.limit =
       limit_tolerances(study, found.all.mean_square, stored.factor_sigma, 10.0, largest_tolerances(stored, catalog_));

@@ -48,7 +48,7 @@ struct Found {
     for (const Distribution& distribution : plan.distributions()) sigma.push_back(distribution.standard_deviation());
   }
 
-  ResponseStudy response() const { return response_study(result, sigma, kResponse); }
+  ResponseStudy response() const { return response_study(result, sigma, {}, kResponse); }
   double weight(std::size_t factor, std::size_t pose) const {
     return test::FakeModel::weight(test::FakeModel::kArm, kResponse, factor, plan.poses()[PoseIndex(pose)]);
   }
