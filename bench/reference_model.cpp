@@ -27,7 +27,7 @@ class ReferenceEvaluator final : public Evaluator {
 
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
     const std::vector<double> nominal = model_->joint_displacements(samples.pose);
-    for (std::size_t f = 0; f < model_->slots.size(); ++f) set(f, samples.errors[f]);
+    for (std::size_t f = 0; f < model_->terms.size(); ++f) set(f, samples.errors[f]);
     for (std::size_t frame = 0; frame < frames_.size(); ++frame) update(frame);
     for (std::size_t b = 0; b < samples.count; ++b) {
       for (std::size_t v = 0; v < samples.varied.size(); ++v) {
@@ -44,9 +44,9 @@ class ReferenceEvaluator final : public Evaluator {
  private:
   /// Returns the frame that has the error.
   std::size_t set(std::size_t factor, double value) {
-    const chain::ErrorSlot& slot = model_->slots[factor];
-    const std::size_t frame = first_frame_[slot.limb] + slot.frame;
-    errors_[frame][static_cast<Eigen::Index>(slot.component)] = value;
+    const chain::ErrorTerm& term = model_->terms[factor].front();
+    const std::size_t frame = first_frame_[term.limb] + term.frame;
+    errors_[frame][static_cast<Eigen::Index>(term.component)] = value;
     return frame;
   }
 
@@ -84,7 +84,7 @@ class ReferenceEvaluator final : public Evaluator {
 
 ReferenceModel::ReferenceModel(const Model& model)
     : model_(&model),
-      deformation_{two_upr_rpu::parallel_chain({}), two_upr_rpu::error_slots(),
+      deformation_{two_upr_rpu::parallel_chain({}), two_upr_rpu::error_terms(),
                    [&model](std::span<const double> pose) { return model.joint_displacements(pose); }} {}
 
 std::unique_ptr<Evaluator> ReferenceModel::evaluator(const SolverOptions& options) const {

@@ -14,6 +14,7 @@
 
 #include "engine/base/index.h"
 #include "engine/base/units.h"
+#include "engine/model/feature.h"
 #include "engine/model/sketch.h"
 #include "engine/model/status.h"
 
@@ -161,6 +162,7 @@ struct ModelDescription {
   std::vector<PoseCoordinate> pose_coordinates;   ///< in the order of a pose's numbers
   std::vector<Factor> factors;                    ///< [F] all errors; their order determines the addresses of draws
   std::vector<FactorSet> factor_sets;             ///< sets that a study may name; a set called "all" has every factor
+  std::vector<Feature> features = {};             ///< of parts with the tolerances of their drawings
   std::vector<Response> responses;                ///< [R]
   std::optional<DeformationMeasure> deformation;  ///< none if errors only move the platform
   std::vector<Detail> details;                    ///< details, in the order of OutcomeBlock::details

@@ -427,12 +427,13 @@ std::string error_text(const StatedError& error, Dimension dimension, ValueText 
   return text + " }";
 }
 
-/// The error that most factors of this dimension have, to which `linear` or `angular` is set.
+/// The error that most factors of this dimension have, to which `linear` or `angular` is set, but for those in zones.
 StatedError commonest_error(const Study& study, Dimension dimension) {
   const std::vector<Factor>& factors = study.model().factors;
+  const std::vector<std::optional<double>> zones = sigmas_by_zones(study);
   std::vector<StatedError> all;
   for (std::size_t f = 0; f < factors.size(); ++f) {
-    if (factors[f].dimension == dimension) all.push_back(stated_error(study.errors, f));
+    if (factors[f].dimension == dimension && !zones[f]) all.push_back(stated_error(study.errors, f));
   }
   const auto uses = [&](const StatedError& error) { return std::ranges::count(all, error); };
   const auto commonest = std::ranges::max_element(all, {}, uses);
@@ -448,11 +449,13 @@ std::string usual_line(const Study& study) {
 std::string override_lines(const Study& study) {
   const StatedError linear = commonest_error(study, Dimension::length);
   const StatedError angular = commonest_error(study, Dimension::angle);
+  const std::vector<std::optional<double>> zones = sigmas_by_zones(study);
   std::string text;
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     const Factor& factor = study.model().factors[f];
     const StatedError own = stated_error(study.errors, f);
-    if (own == (factor.dimension == Dimension::length ? linear : angular)) continue;
+    const StatedError& usual = factor.dimension == Dimension::length ? linear : angular;
+    if (own == (zones[f] ? StatedError{Distribution::normal(*zones[f])} : usual)) continue;
     text += factor.name + " = " + error_text(own, factor.dimension, exact_value) + "\n";
   }
   return text.empty() ? "" : "\n[errors.override]\n" + text;
@@ -477,10 +480,11 @@ StudyRow usual_row(std::string_view meaning) {
 }
 
 /// Refuses at the value that determines the factor's distribution: the first of these keys that it has, or else sigma.
-[[noreturn]] void refuse_distribution(const StudySection& root, const Factor& factor, const std::string& problem,
-                                      std::span<const std::string_view> keys) {
+[[noreturn]] void refuse_distribution(const StudySection& root, const Factor& factor, bool is_in_zone,
+                                      const std::string& problem, std::span<const std::string_view> keys) {
   const StudySection errors = root.section("errors");
   const auto own = override_of(errors.section("override"), factor.name);
+  if (!own && is_in_zone) refuse_error(errors, "zones", "makes " + factor.name + ", which " + problem);
   const auto value = own ? own : errors.find(error_kind(factor.dimension));
   if (!value) refuse_error(errors, error_kind(factor.dimension), problem);
   const StudySection distribution = value->section();
@@ -495,10 +499,13 @@ StudyRow usual_row(std::string_view meaning) {
 void check_distributions(const StudySection& root, const Study& study, const Model& model) {
   constexpr std::array<std::string_view, 6> kKeys{"mean", "shift", "limits", "half_width", "values", "column"};
   const std::span keys(kKeys);
+  const std::vector<std::optional<double>> zones = sigmas_by_zones(study);
   for (const FactorIndex factor : study.analysis.factors) {
     const Distribution& distribution = study.errors.by_factor[factor.value];
     const auto refuse = [&](const std::optional<std::string>& problem, std::span<const std::string_view> at) {
-      if (problem) refuse_distribution(root, model.description().factors[factor.value], *problem, at);
+      if (!problem) return;
+      refuse_distribution(root, model.description().factors[factor.value], zones[factor.value].has_value(), *problem,
+                          at);
     };
     const bool bounded = std::isfinite(distribution.half_width());
     const std::string_view what = bounded ? "a largest error" : "a standard deviation";
@@ -530,7 +537,7 @@ const StudyRows& errors_keys() {
   static const StudyRows keys{.paths = {"errors"},
                               .meaning = "How the errors that vary scatter, by their dimension.",
                               .rows = {usual_row<Dimension::length>("Distribution of every length."),
-                                       usual_row<Dimension::angle>("Distribution of every angle."),
+                                       usual_row<Dimension::angle>("Distribution of every angle."), zones_row(),
                                        StudyRow{.name = "override",
                                                 .value = {.type = "table"},
                                                 .usual = "none",
@@ -552,6 +559,7 @@ StudyTables errors_tables() {
                      .meaning = "Distribution of this error, or of all whose names match \"rod_*\", with '*' for any "
                                 "letters and '?' for one; the last key of the file that fits an error counts."}}},
           described(distribution_keys()),
+          zones_table(),
           correlated_table()};
 }
 

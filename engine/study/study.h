@@ -14,6 +14,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/base/index.h"
+#include "engine/drawing/zone_scatter.h"
 #include "engine/model/model.h"
 #include "engine/model/own_responses.h"
 #include "engine/random/distribution.h"
@@ -57,8 +58,9 @@ struct CorrelatedErrors {
 
 /// The distributions of the errors.
 struct ErrorModel {
-  std::vector<Distribution> by_factor;            ///< [F] for all factors of the model
-  std::vector<CorrelatedErrors> correlated = {};  ///< no factor is in two of them
+  std::vector<Distribution> by_factor;             ///< [F] for all factors of the model
+  std::optional<drawing::ZoneScatter> zones = {};  ///< how features scatter in their zones; none: as other lengths
+  std::vector<CorrelatedErrors> correlated = {};   ///< no factor is in two of them
   /// Ascending: errors that a machine draws anew at each pose, with Draws::per_machine; its other errors are fixed.
   std::vector<FactorIndex> per_pose = {};
 

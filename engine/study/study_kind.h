@@ -172,6 +172,13 @@ Distribution usual_distribution(const Reading& reading, Dimension dimension);
 StudyRow correlated_row();
 StudyTable correlated_table();
 /// @}
+/// The row of `zones` in [errors]. Precondition of reading: the distributions of all lengths were read.
+/// @{
+StudyRow zones_row();
+StudyTable zones_table();
+/// @}
+/// [F] the standard deviations (m) that errors.zones gives; none of an error without it.
+std::vector<std::optional<double>> sigmas_by_zones(const Study& study);
 /// Throws InputError at the block's place if correlated errors do not vary together.
 void check_correlated(const Study& study, const Reading& reading);
 /// The path of a file that the study names relative to its folder.

@@ -16,11 +16,13 @@ ErrorFrames::ErrorFrames(const AssemblyModel& model) : model_(&model) {
   }
 }
 
-const std::vector<std::vector<Transform>>& ErrorFrames::with(std::span<const double> errors) {
+const std::vector<std::vector<Transform>>& ErrorFrames::with(std::span<const double> errors,
+                                                             std::span<const double> displacements) {
   for (auto& limb : errors_) std::ranges::fill(limb, chain::FrameError<double>::Zero());
   for (std::size_t f = 0; f < errors.size(); ++f) {
-    const chain::ErrorSlot& slot = model_->slots[f];
-    errors_[slot.limb][slot.frame][static_cast<Index>(slot.component)] += slot.scale * errors[f];
+    for (const chain::ErrorTerm& term : model_->terms[f]) {
+      errors_[term.limb][term.frame][static_cast<Index>(term.component)] += term.at(displacements) * errors[f];
+    }
   }
   for (std::size_t e = 0; e < frames_.size(); ++e) {
     const chain::Limb& limb = model_->assembly.limbs[e].chain;
@@ -70,7 +72,7 @@ void BlockSolver::solve(PoseProblem& problem, const SampleBlock& samples, const 
     for (std::size_t v = 0; v < samples.varied.size(); ++v) {
       errors[samples.varied[v].value] = samples.values[v * samples.count + b];
     }
-    const std::vector<std::vector<Transform>>& frames = frames_.with(errors);
+    const std::vector<std::vector<Transform>>& frames = frames_.with(errors, problem.pose().displacements);
     if (ends_[b] != KernelEnd::converged) solve_one(problem, frames, b, outcomes);
     const bool is_asked = is_near || !solved(outcomes.status[b]);
     if (is_asked && problem.closure().is_impossible(frames)) outcomes.status[b] = SolveStatus::not_assembled;

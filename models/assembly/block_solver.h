@@ -16,8 +16,9 @@ class ErrorFrames {
  public:
   explicit ErrorFrames(const AssemblyModel& model);  ///< The model must outlive it.
 
-  /// With these errors [F]: [limbs][n + 1]. Stays as it is until the next call.
-  const std::vector<std::vector<Transform>>& with(std::span<const double> errors);
+  /// With these errors [F] where joints are nominally so displaced: [limbs][n + 1]. Stays as it is until the next call.
+  const std::vector<std::vector<Transform>>& with(std::span<const double> errors,
+                                                  std::span<const double> displacements);
 
  private:
   const AssemblyModel* model_;

@@ -110,11 +110,11 @@ bool Closure::is_regular() {
   loops_.emplace(model_->assembly, *pose_, model_->idle);
   if (!loops_->is_regular()) return false;
   const std::vector<std::vector<Screw>> slopes = loops_->determinant_slopes();
-  const Eigen::MatrixXd twists = error_twists(*model_, *pose_);
-  for (std::size_t f = 0; f < model_->slots.size(); ++f) {
-    const chain::ErrorSlot& slot = model_->slots[f];
-    const auto row = 6 * static_cast<Index>(slot.limb);
-    nearing_.push_back(slopes[slot.limb][slot.frame].dot(twists.block<6, 1>(row, static_cast<Index>(f))));
+  for (const chain::ErrorTerms& terms : model_->terms) {
+    nearing_.push_back(0.0);
+    for (const chain::ErrorTerm& term : terms) {
+      nearing_.back() += slopes[term.limb][term.frame].dot(term_twist(*model_, *pose_, term));
+    }
   }
   return true;
 }

@@ -53,13 +53,18 @@ class AssemblyEvaluator final : public Evaluator {
 
 }  // namespace
 
+Screw term_twist(const AssemblyModel& model, const Nominal& pose, const chain::ErrorTerm& term) {
+  const Limb& limb = model.assembly.limbs[term.limb];
+  return term.at(pose.displacements) *
+         error_twist(limb, pose.bodies[limb.from], pose.limbs[term.limb], term.frame, term.component);
+}
+
 Matrix error_twists(const AssemblyModel& model, const Nominal& pose) {
-  Matrix G = Matrix::Zero(6 * index(model.assembly.limbs.size()), index(model.slots.size()));
-  for (std::size_t f = 0; f < model.slots.size(); ++f) {
-    const chain::ErrorSlot& slot = model.slots[f];
-    const Limb& limb = model.assembly.limbs[slot.limb];
-    G.block<6, 1>(6 * index(slot.limb), index(f)) =
-        slot.scale * error_twist(limb, pose.bodies[limb.from], pose.limbs[slot.limb], slot.frame, slot.component);
+  Matrix G = Matrix::Zero(6 * index(model.assembly.limbs.size()), index(model.terms.size()));
+  for (std::size_t f = 0; f < model.terms.size(); ++f) {
+    for (const chain::ErrorTerm& term : model.terms[f]) {
+      G.block<6, 1>(6 * index(term.limb), index(f)) += term_twist(model, pose, term);
+    }
   }
   return G;
 }
@@ -97,7 +102,7 @@ SolveTrace assembly_trace(const AssemblyModel& model, std::span<const double> po
   Solver solver(model.assembly, model.ranks, options);
   solver.prepare(at);
   ErrorFrames frames(model);
-  const Solution solution = solver.solve(frames.with(errors));
+  const Solution solution = solver.solve(frames.with(errors, at.displacements));
   trace.rows = solution.steps;
   trace.status = solution.status;
   trace.iterations = solution.iterations;

@@ -13,20 +13,23 @@ namespace poesy::assembly {
 
 /// An assembly as a model: limbs against bodies, whose responses are displacements, mismatch, energy and forces.
 struct AssemblyModel {
-  Assembly assembly;                    ///< perfect limbs between bodies
-  Report report;                        ///< joints whose forces are responses
-  std::vector<chain::ErrorSlot> slots;  ///< [F], one per factor
-  std::vector<std::size_t> ranks;       ///< [limbs] of their passive joints' columns
-  std::size_t idle = 0;                 ///< freedoms of passive joints that move no body
-  bool deforms = true;                  ///< whether errors may keep limbs and bodies apart, or loads act
-  bool over_constrained = true;         ///< whether limbs deform each other
-  double stiffness = 0.0;               ///< N/m: the largest force that moving a limb's end makes at home
+  Assembly assembly;                     ///< perfect limbs between bodies
+  Report report;                         ///< joints whose forces are responses
+  std::vector<chain::ErrorTerms> terms;  ///< [F] of each error
+  std::vector<std::size_t> ranks;        ///< [limbs] of their passive joints' columns
+  std::size_t idle = 0;                  ///< freedoms of passive joints that move no body
+  bool deforms = true;                   ///< whether errors may keep limbs and bodies apart, or loads act
+  bool over_constrained = true;          ///< whether limbs deform each other
+  double stiffness = 0.0;                ///< N/m: the largest force that moving a limb's end makes at home
   /// Nominal displacements of all joints at a reachable pose, limb by limb (rad, m).
   std::function<std::vector<double>(std::span<const double> pose)> joint_displacements;
 
   /// The perfect assembly at a reachable pose.
   Nominal at(std::span<const double> pose) const { return nominal(assembly, joint_displacements(pose)); }
 };
+
+/// The twist of the limb's end by what a unit of an error adds to this entry.
+Screw term_twist(const AssemblyModel& model, const Nominal& pose, const chain::ErrorTerm& term);
 
 /// G: the twists of limbs' ends by a unit of each error, [6 limbs x F].
 Eigen::MatrixXd error_twists(const AssemblyModel& model, const Nominal& pose);

@@ -103,14 +103,18 @@ void PoseProblem::find_entries() {
   first_.push_back(0);
   for (const Limb& limb : model_->assembly.limbs) first_.push_back(first_.back() + limb.chain.frames());
   errors_.resize(first_.back());
-  for (const chain::ErrorSlot& slot : model_->slots) {
-    const auto is_same = [&](const Entry& one) {
-      return one.limb == slot.limb && one.frame == slot.frame && one.component == slot.component;
-    };
-    const auto at = std::ranges::find_if(entries_, is_same);
-    entry_.push_back(static_cast<std::size_t>(at - entries_.begin()));
-    if (at == entries_.end()) entries_.push_back({slot.limb, slot.frame, slot.component});
-    scale_.push_back(slot.scale * (slot.component < 3 ? 1.0 : 1.0 / model_->assembly.reach));
+  added_.push_back(0);
+  for (const chain::ErrorTerms& terms : model_->terms) {
+    for (const chain::ErrorTerm& term : terms) {
+      const auto is_same = [&](const Entry& one) {
+        return one.limb == term.limb && one.frame == term.frame && one.component == term.component;
+      };
+      const auto at = std::ranges::find_if(entries_, is_same);
+      const double unit = term.component < 3 ? 1.0 : model_->assembly.reach;
+      additions_.push_back({static_cast<std::size_t>(at - entries_.begin()), term.at(pose_.displacements) / unit});
+      if (at == entries_.end()) entries_.push_back({term.limb, term.frame, term.component});
+    }
+    added_.push_back(additions_.size());
   }
 }
 
@@ -275,6 +279,11 @@ void PoseProblem::solve_first_order(const Equilibrium& equations) {
   }
 }
 
+/// Where the values of an entry begin that varies.
+double* PoseProblem::row_of(const Entry& entry, std::size_t stride, std::vector<double>& values) {
+  return values.data() + static_cast<std::size_t>(entry.row) * stride;
+}
+
 /// Constants of entries, and the values of those that vary.
 void PoseProblem::read_values(const SampleBlock& samples, std::vector<double>& values) {
   const std::size_t stride = padded(samples.count);
@@ -282,25 +291,28 @@ void PoseProblem::read_values(const SampleBlock& samples, std::vector<double>& v
     entry.constant = 0.0;
     entry.row = -1;
   }
-  std::vector<bool> varies(entry_.size(), false);
+  std::vector<bool> varies(model_->terms.size(), false);
   for (const FactorIndex factor : samples.varied) varies[factor.value] = true;
-  for (std::size_t f = 0; f < entry_.size(); ++f) {
-    if (!varies[f]) entries_[entry_[f]].constant += scale_[f] * samples.errors[f];
+  for (std::size_t f = 0; f < varies.size(); ++f) {
+    if (varies[f]) continue;
+    for (const Addition& one : additions(f)) entries_[one.entry].constant += one.scale * samples.errors[f];
   }
-  values.resize(samples.varied.size() * stride);
   int rows = 0;
+  for (const FactorIndex factor : samples.varied) {
+    for (const Addition& one : additions(factor.value)) {
+      Entry& entry = entries_[one.entry];
+      if (entry.row < 0) entry.row = rows++;
+    }
+  }
+  values.resize(static_cast<std::size_t>(rows) * stride);
+  for (const Entry& entry : entries_) {
+    if (entry.row >= 0) std::fill_n(row_of(entry, stride, values), stride, entry.constant);
+  }
   for (std::size_t v = 0; v < samples.varied.size(); ++v) {
-    const std::size_t f = samples.varied[v].value;
-    Entry& entry = entries_[entry_[f]];
-    const bool is_first = entry.row < 0;
-    if (is_first) entry.row = rows++;
-    double* to = values.data() + static_cast<std::size_t>(entry.row) * stride;
     const double* from = samples.values.data() + v * samples.count;
-    if (is_first) {
-      for (std::size_t b = 0; b < samples.count; ++b) to[b] = entry.constant + scale_[f] * from[b];
-      std::fill(to + samples.count, to + stride, entry.constant);
-    } else {
-      for (std::size_t b = 0; b < samples.count; ++b) to[b] += scale_[f] * from[b];
+    for (const Addition& one : additions(samples.varied[v].value)) {
+      double* to = row_of(entries_[one.entry], stride, values);
+      for (std::size_t b = 0; b < samples.count; ++b) to[b] += one.scale * from[b];
     }
   }
 }

@@ -48,7 +48,16 @@ class PoseProblem {
     int row = -1;           ///< among the values; -1: it does not vary
   };
 
+  /// What an error adds to an entry.
+  struct Addition {
+    std::size_t entry;  ///< position
+    double scale;       ///< in the entry's unit per unit of the error
+  };
+
   void find_entries();
+  std::span<const Addition> additions(std::size_t f) const {
+    return std::span(additions_).subspan(added_[f], added_[f + 1] - added_[f]);
+  }
   int mark_of(const JointPlace& place) const;
   KernelJoint kernel_joint(const JointPlace& place, std::size_t passive) const;
   KernelMark kernel_mark(const JointPlace& place) const;
@@ -57,6 +66,7 @@ class PoseProblem {
   void set_own_matrices(const Equilibrium& equations);
   void solve_first_order(const Equilibrium& equations);
   Eigen::MatrixXd twists_of_entries(const Equilibrium& equations) const;
+  static double* row_of(const Entry& entry, std::size_t stride, std::vector<double>& values);
   void read_values(const SampleBlock& samples, std::vector<double>& values);
   void set_segments(std::size_t e);
   void set_map();
@@ -66,8 +76,8 @@ class PoseProblem {
   Transform frame_;                  ///< base_T_kernel
   std::vector<JointPlace> marks_;    ///< joints whose frames are reported
   std::vector<Entry> entries_;       ///< that errors have
-  std::vector<std::size_t> entry_;   ///< [F] of each error
-  std::vector<double> scale_;        ///< [F] from the error
+  std::vector<Addition> additions_;  ///< of all errors, one error after the other
+  std::vector<std::size_t> added_;   ///< [F + 1] where those of an error begin
   std::vector<std::size_t> first_;   ///< [limbs + 1] where the frames of a limb begin among all
   std::vector<KernelError> errors_;  ///< [frames of all limbs]
   Eigen::MatrixXd coordinates_;      ///< [coordinates x (entries + 1)] of a unit of each, and of the load

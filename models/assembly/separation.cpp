@@ -23,7 +23,7 @@ Separation separation(const AssemblyModel& model, std::span<const double> pose) 
   const Nominal at = model.at(pose);
   const FirstOrder first_order(model.assembly, at, model.ranks);
   if (!first_order.is_regular()) {
-    const std::vector<double> unknown(model.slots.size(), kNaN);
+    const std::vector<double> unknown(model.terms.size(), kNaN);
     return {unknown, unknown, unknown, unknown};
   }
   std::vector<chain::LimbMotions> limbs(at.limbs.size());
@@ -34,11 +34,10 @@ Separation separation(const AssemblyModel& model, std::span<const double> pose) 
     }
     limbs[e].platform = platform_by_limb(first_order, static_cast<Index>(limbs.size()), static_cast<Index>(e));
   }
-  const Eigen::MatrixXd twists = error_twists(model, at);
-  std::vector<chain::EndTwist> errors;
-  for (std::size_t f = 0; f < model.slots.size(); ++f) {
-    const std::size_t limb = model.slots[f].limb;
-    errors.push_back({limb, twists.block<6, 1>(6 * static_cast<Index>(limb), static_cast<Index>(f))});
+  std::vector<std::vector<chain::EndTwist>> errors;
+  for (const chain::ErrorTerms& terms : model.terms) {
+    std::vector<chain::EndTwist>& twists = errors.emplace_back();
+    for (const chain::ErrorTerm& term : terms) chain::add_twist(term.limb, term_twist(model, at, term), twists);
   }
   return chain::separation_of(limbs, linalg::cholesky_root(at.W), chain::radius_of(model.assembly.points), errors);
 }
@@ -46,7 +45,7 @@ Separation separation(const AssemblyModel& model, std::span<const double> pose) 
 SeparationDescription separation_description(const AssemblyModel& model) {
   std::string measure = "root mean square displacement of the platform's points";
   if (model.deforms) measure += ", without the gap between limbs and bodies";
-  return {std::move(measure), std::vector<std::string>(model.slots.size())};
+  return {std::move(measure), std::vector<std::string>(model.terms.size())};
 }
 
 }  // namespace poesy::assembly

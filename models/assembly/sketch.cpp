@@ -10,8 +10,8 @@ SketchVector sketched(const Vector3& vector) { return {vector.x(), vector.y(), v
 void add_errors(Sketch& sketch, const AssemblyModel& model, const Nominal& pose) {
   const FirstOrder first_order(model.assembly, pose, model.ranks);
   const Balance effects = first_order.effect(error_twists(model, pose));
-  for (std::size_t f = 0; f < model.slots.size(); ++f) {
-    sketch.errors.push_back(chain::sketched_error(sketch, model.slots[f]));
+  for (std::size_t f = 0; f < model.terms.size(); ++f) {
+    sketch.errors.push_back(chain::sketched_error(sketch, model.terms[f].front()));
     if (!first_order.is_regular()) continue;
     const Screw twist = effects.twists.block<6, 1>(6 * kPlatform, static_cast<Eigen::Index>(f));
     SketchTwist& motion = sketch.errors.back().motions.emplace_back();

@@ -35,12 +35,17 @@ struct Prepared {
   bool operator==(const Prepared&) const = default;
 };
 
+/// What the values of a varied error add to those of a varied entry.
+struct Addition {
+  std::size_t value;  ///< position of the error among the varied ones
+  std::size_t row;    ///< position of the entry among the varied ones
+  double scale;
+};
+
 class DeformationEvaluator final : public Evaluator {
  public:
   DeformationEvaluator(const DeformationModel& model, const SolverOptions& options, Fidelity fidelity)
-      : model_(&model), solver_(model.chain, options, fidelity), errors_(model.chain.frames()) {
-    for (const ErrorSlot& slot : model.slots) entries_.push_back(model.entry(slot));
-  }
+      : model_(&model), solver_(model.chain, options, fidelity), errors_(model.chain.frames()) {}
 
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
     const Nominal& nominal = nominal_at(samples.pose);
@@ -77,30 +82,47 @@ class DeformationEvaluator final : public Evaluator {
     return place->second;
   }
 
-  double& entry_of(std::size_t factor) {
-    return errors_[entries_[factor].frame][static_cast<Eigen::Index>(entries_[factor].component)];
+  double& value_of(const FrameEntry& entry) { return errors_[entry.frame][static_cast<Eigen::Index>(entry.component)]; }
+
+  void set_constant(const Nominal& nominal, const SampleBlock& samples) {
+    varies_.assign(model_->terms.size(), false);
+    for (const FactorIndex factor : samples.varied) varies_[factor.value] = true;
+    for (auto& error : errors_) error.setZero();
+    for (std::size_t f = 0; f < varies_.size(); ++f) {
+      if (varies_[f]) continue;
+      for (const ErrorTerm& term : model_->terms[f]) {
+        value_of(model_->entry(term)) += term.at(nominal.displacements) * samples.errors[f];
+      }
+    }
+  }
+
+  /// Finds the entries that vary and what is added to them. Returns whether their values are those of the samples.
+  bool find_varied(const Nominal& nominal, const SampleBlock& samples) {
+    varied_.clear();
+    additions_.clear();
+    bool is_plain = true;
+    for (std::size_t v = 0; v < samples.varied.size(); ++v) {
+      const ErrorTerms& terms = model_->terms[samples.varied[v].value];
+      is_plain = is_plain && terms.size() == 1;
+      for (const ErrorTerm& term : terms) {
+        const FrameEntry entry = model_->entry(term);
+        const auto row = static_cast<std::size_t>(std::ranges::find(varied_, entry) - varied_.begin());
+        additions_.push_back({v, row, term.at(nominal.displacements)});
+        const bool is_new = row == varied_.size();
+        if (is_new) varied_.push_back(entry);
+        is_plain = is_plain && is_new && additions_.back().scale == 1.0 && value_of(entry) == 0.0;
+      }
+    }
+    return is_plain;
   }
 
   /// Prepares the solver. Returns the values of the varied entries [varied entries x B]: those of the samples, unless
-  /// several factors add to an entry, or a factor is scaled.
+  /// several errors add to an entry, or an error is scaled or adds to several.
   std::span<const double> prepare(const Nominal& nominal, const SampleBlock& samples) {
-    varies_.assign(entries_.size(), false);
-    for (const FactorIndex factor : samples.varied) varies_[factor.value] = true;
-    for (auto& error : errors_) error.setZero();
-    for (std::size_t f = 0; f < entries_.size(); ++f) {
-      if (!varies_[f]) entry_of(f) += model_->slots[f].scale * samples.errors[f];
-    }
-    varied_.clear();
-    bool is_plain = true;
-    for (const FactorIndex factor : samples.varied) {
-      const FrameEntry& entry = entries_[factor.value];
-      is_plain = is_plain && model_->slots[factor.value].scale == 1.0 && entry_of(factor.value) == 0.0 &&
-                 std::ranges::find(varied_, entry) == varied_.end();
-      if (std::ranges::find(varied_, entry) == varied_.end()) varied_.push_back(entry);
-    }
-    const double scale = samples.varied.size() == 1 ? model_->slots[samples.varied[0].value].scale : 1.0;
-    const auto values = is_plain ? samples.values : combined(samples);
-    Prepared wanted{&nominal, errors_, varied_, samples.range * std::abs(scale)};
+    set_constant(nominal, samples);
+    const auto values = find_varied(nominal, samples) ? samples.values : combined(samples);
+    const double range = additions_.size() == 1 ? samples.range * std::abs(additions_.front().scale) : 0.0;
+    Prepared wanted{&nominal, errors_, varied_, range};
     if (wanted == prepared_) return values;
     solver_.prepare(nominal.displacements, errors_, varied_, wanted.range, nominal.metric ? &*nominal.metric : nullptr,
                     nominal.platform ? &*nominal.platform : nullptr, nominal.held ? &*nominal.held : nullptr);
@@ -108,22 +130,16 @@ class DeformationEvaluator final : public Evaluator {
     return values;
   }
 
-  /// The values of the varied entries [varied entries x B]: the constant part of each, and the contributions of all
-  /// factors.
+  /// The values of the varied entries [varied entries x B]: the constant part of each, and all additions.
   std::span<const double> combined(const SampleBlock& samples) {
     values_.resize(varied_.size() * samples.count);
-    std::size_t begun = 0;  // rows follow the order in which factors first use an entry
-    for (std::size_t v = 0; v < samples.varied.size(); ++v) {
-      const std::size_t factor = samples.varied[v].value;
-      const auto row = static_cast<std::size_t>(std::ranges::find(varied_, entries_[factor]) - varied_.begin());
-      const double scale = model_->slots[factor].scale;
-      const double* from = samples.values.data() + v * samples.count;
-      double* to = values_.data() + row * samples.count;
-      if (row == begun) {
-        std::fill_n(to, samples.count, entry_of(factor));
-        ++begun;
-      }
-      for (std::size_t b = 0; b < samples.count; ++b) to[b] += scale * from[b];
+    for (std::size_t row = 0; row < varied_.size(); ++row) {
+      std::fill_n(values_.data() + row * samples.count, samples.count, value_of(varied_[row]));
+    }
+    for (const Addition& one : additions_) {
+      const double* from = samples.values.data() + one.value * samples.count;
+      double* to = values_.data() + one.row * samples.count;
+      for (std::size_t b = 0; b < samples.count; ++b) to[b] += one.scale * from[b];
     }
     return values_;
   }
@@ -132,10 +148,10 @@ class DeformationEvaluator final : public Evaluator {
   BlockSolver solver_;
   Prepared prepared_;
   std::map<std::vector<double>, Nominal> nominal_;  ///< by pose
-  std::vector<FrameEntry> entries_;                 ///< [F] entry of each factor
   std::vector<bool> varies_;                        ///< [F]
   std::vector<FrameError<double>> errors_;
   std::vector<FrameEntry> varied_;
+  std::vector<Addition> additions_;
   std::vector<double> values_;  ///< [varied entries x B]
 };
 
@@ -256,8 +272,8 @@ std::vector<Response> responses_of(const DeformationModel& model) {
   return list;
 }
 
-FrameEntry DeformationModel::entry(const ErrorSlot& slot) const {
-  return {chain.first_frame(slot.limb) + slot.frame, slot.component};
+FrameEntry DeformationModel::entry(const ErrorTerm& term) const {
+  return {chain.first_frame(term.limb) + term.frame, term.component};
 }
 
 std::optional<PlatformPoints> DeformationModel::platform_points(std::span<const double> displacements) const {

@@ -8,18 +8,11 @@
 
 #include "engine/model/model.h"
 #include "models/chain/block_solver.h"
+#include "models/chain/error_terms.h"
 #include "models/chain/limb.h"
 #include "models/chain/metric.h"
 
 namespace poesy::chain {
-
-/// The entry of a fixed frame's error to which a factor adds: entry += scale x error.
-struct ErrorSlot {
-  std::size_t limb;       ///< counts from 0
-  std::size_t frame;      ///< 0 .. joints of the limb
-  std::size_t component;  ///< position in [omega; v]: 0-2 angular, 3-5 linear
-  double scale = 1.0;     ///< dimensionless
-};
 
 /// The reported displacement of the platform.
 struct PlatformReport {
@@ -32,8 +25,8 @@ struct PlatformReport {
 /// A parallel chain as a model. Its responses are the comprehensive deformations of its limbs, the displacement of its
 /// platform, or both.
 struct DeformationModel {
-  ParallelChain chain;           ///< perfect limbs
-  std::vector<ErrorSlot> slots;  ///< [F], one per factor
+  ParallelChain chain;            ///< perfect limbs
+  std::vector<ErrorTerms> terms;  ///< [F] of each error
   /// Nominal displacements of all joints at a reachable pose, limb by limb (rad, m).
   std::function<std::vector<double>(std::span<const double> pose)> joint_displacements;
   /// Points of the platform, in its frame (m), whose displacement measures mismatch; none: the published weight.
@@ -43,8 +36,8 @@ struct DeformationModel {
   /// whatever metric the solves use; none: the metric of the solves.
   std::vector<lie::Vector3<double>> held_at = {};
 
-  /// The position of a factor's error among all frames.
-  FrameEntry entry(const ErrorSlot& slot) const;
+  /// The entry to which a term adds.
+  FrameEntry entry(const ErrorTerm& term) const;
   /// The reported points at these displacements [all joints] (rad, m); none if only the deformation is reported.
   std::optional<PlatformPoints> platform_points(std::span<const double> displacements) const;
   /// The metric at nominal displacements [all joints] (rad, m); none for the published weight.

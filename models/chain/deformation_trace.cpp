@@ -20,17 +20,21 @@ double largest(std::span<const double> values) {
   return most;
 }
 
-/// All fixed frames with these errors, limb by limb.
-std::vector<lie::Transform<double>> frames_with(const DeformationModel& model, std::span<const double> errors) {
-  std::vector<lie::Transform<double>> frames;
-  for (std::size_t i = 0; i < model.chain.limbs.size(); ++i) {
-    const Limb& limb = model.chain.limbs[i];
-    std::vector<FrameError<double>> of_limb(limb.frames(), FrameError<double>::Zero());
-    for (std::size_t f = 0; f < model.slots.size(); ++f) {
-      const ErrorSlot& slot = model.slots[f];
-      if (slot.limb == i) of_limb[slot.frame][static_cast<Eigen::Index>(slot.component)] += slot.scale * errors[f];
+/// All fixed frames with these errors, limb by limb, where joints are nominally so displaced.
+std::vector<lie::Transform<double>> frames_with(const DeformationModel& model, std::span<const double> displacements,
+                                                std::span<const double> errors) {
+  std::vector<FrameError<double>> of_frames(model.chain.frames(), FrameError<double>::Zero());
+  for (std::size_t f = 0; f < model.terms.size(); ++f) {
+    for (const ErrorTerm& term : model.terms[f]) {
+      const FrameEntry entry = model.entry(term);
+      of_frames[entry.frame][static_cast<Eigen::Index>(entry.component)] += term.at(displacements) * errors[f];
     }
-    for (std::size_t j = 0; j < limb.frames(); ++j) frames.push_back(frame_with_error(limb, j, of_limb[j]));
+  }
+  std::vector<lie::Transform<double>> frames;
+  for (const Limb& limb : model.chain.limbs) {
+    for (std::size_t j = 0; j < limb.frames(); ++j) {
+      frames.push_back(frame_with_error(limb, j, of_frames[frames.size()]));
+    }
   }
   return frames;
 }
@@ -100,7 +104,7 @@ void append(const std::vector<double>& responses, SolveTrace& trace) {
 
 SolveTrace first_order_trace(const DeformationModel& model, std::span<const double> pose,
                              std::span<const double> errors) {
-  POESY_EXPECTS(errors.size() == model.slots.size());
+  POESY_EXPECTS(errors.size() == model.terms.size());
   const std::vector<double> displacements = model.joint_displacements(pose);
   const std::optional<Metric> metric = model.metric(displacements);
   SolveTrace trace;
@@ -114,12 +118,13 @@ SolveTrace first_order_trace(const DeformationModel& model, std::span<const doub
   std::vector<double> moved(model.chain.passive_joints());
   lie::Screw<double> xi = lie::Screw<double>::Zero();
   for (std::size_t f = 0; f < errors.size() && trace.status == SolveStatus::converged; ++f) {
-    const ErrorSlot& slot = model.slots[f];
-    const FrameEntry entry = model.entry(slot);
-    const double error = slot.scale * errors[f];
-    first_order.effect(entry, effect, moved);
-    for (std::size_t n = 0; n < effect.size(); ++n) delta_mu[n] += error * effect[n];
-    xi += error / static_cast<double>(model.chain.limbs.size()) * first_order.sum_of_motions(entry, moved);
+    for (const ErrorTerm& term : model.terms[f]) {
+      const FrameEntry entry = model.entry(term);
+      const double error = term.at(displacements) * errors[f];
+      first_order.effect(entry, effect, moved);
+      for (std::size_t n = 0; n < effect.size(); ++n) delta_mu[n] += error * effect[n];
+      xi += error / static_cast<double>(model.chain.limbs.size()) * first_order.sum_of_motions(entry, moved);
+    }
   }
   trace.responses = deformations(model, metric ? &*metric : nullptr, delta_mu);
   if (const auto points = model.platform_points(displacements)) append(platform_displacement(xi, *points, true), trace);
@@ -128,7 +133,7 @@ SolveTrace first_order_trace(const DeformationModel& model, std::span<const doub
 
 SolveTrace deformation_trace(const DeformationModel& model, std::span<const double> pose,
                              std::span<const double> errors, const SolverOptions& options) {
-  POESY_EXPECTS(errors.size() == model.slots.size());
+  POESY_EXPECTS(errors.size() == model.terms.size());
   std::vector<double> displacements = model.joint_displacements(pose);
   std::vector<double> delta_mu(6 * model.chain.pairs.size());
   const std::vector<JointType> types = passive_types(model.chain);
@@ -150,7 +155,7 @@ SolveTrace deformation_trace(const DeformationModel& model, std::span<const doub
   };
   DeformationSolver solver(model.chain, options);
   const std::optional<PlatformPoints> points = model.platform_points(displacements);
-  const std::vector<lie::Transform<double>> frames = frames_with(model, errors);
+  const std::vector<lie::Transform<double>> frames = frames_with(model, displacements, errors);
   const std::optional<Metric> held = model.held(displacements);
   const Deformation end = solver.solve(frames, displacements, delta_mu, metric, observe, held ? &*held : nullptr);
   trace.status = end.status;

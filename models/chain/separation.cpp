@@ -216,12 +216,15 @@ Separation separation(const DeformationModel& model, std::span<const double> pos
   const std::optional<Metric> metric = model.metric(displacements);
   FirstOrder first_order(model.chain);
   if (!first_order.prepare(displacements, metric ? &metric->W : nullptr)) {
-    const std::vector<double> unknown(model.slots.size(), kNaN);
+    const std::vector<double> unknown(model.terms.size(), kNaN);
     return {unknown, unknown, unknown, unknown};
   }
-  std::vector<EndTwist> errors;
-  for (const ErrorSlot& slot : model.slots) {
-    errors.push_back({slot.limb, slot.scale * first_order.motion(model.entry(slot))});
+  std::vector<std::vector<EndTwist>> errors;
+  for (const ErrorTerms& terms : model.terms) {
+    std::vector<EndTwist>& twists = errors.emplace_back();
+    for (const ErrorTerm& term : terms) {
+      add_twist(term.limb, term.at(displacements) * first_order.motion(model.entry(term)), twists);
+    }
   }
   return separation_of(limb_motions(model, displacements, first_order), root_of_metric(model, displacements),
                        radius_of(model.platform->points), errors);
@@ -244,19 +247,35 @@ void LimbMotions::add(const Joint& joint, const Screw& twist, const Vector3& at)
 }
 
 Separation separation_of(const std::vector<LimbMotions>& motions, const Matrix6& root, double radius,
-                         std::span<const EndTwist> errors) {
+                         std::span<const std::vector<EndTwist>> errors) {
   const std::vector<LimbSeparation> limbs = separations(motions, root, radius);
   const Matrix6 uncorrected = beyond_all_drives(limbs);
   Separation found;
-  for (const EndTwist& error : errors) {
-    const auto [drive, constraint] = limbs[error.limb].parts(error.twist);
-    found.drive.push_back(drive.norm());
-    found.constraint.push_back(constraint.norm());
-    found.effect.push_back((drive + constraint).norm());
-    const Screw left = drives_are_its_own(limbs, error.limb) ? constraint : Screw(drive + constraint);
+  for (const std::vector<EndTwist>& twists : errors) {
+    Screw drives = Screw::Zero();
+    Screw constraints = Screw::Zero();
+    Screw left = Screw::Zero();
+    for (const EndTwist& end : twists) {
+      const auto [drive, constraint] = limbs[end.limb].parts(end.twist);
+      drives += drive;
+      constraints += constraint;
+      left += drives_are_its_own(limbs, end.limb) ? constraint : Screw(drive + constraint);
+    }
+    found.drive.push_back(drives.norm());
+    found.constraint.push_back(constraints.norm());
+    found.effect.push_back((drives + constraints).norm());
     found.residual.push_back(left_of(left, uncorrected).norm());
   }
   return found;
+}
+
+void add_twist(std::size_t limb, const Screw& twist, std::vector<EndTwist>& twists) {
+  const auto known = std::ranges::find(twists, limb, &EndTwist::limb);
+  if (known == twists.end()) {
+    twists.push_back({limb, twist});
+  } else {
+    known->twist += twist;
+  }
 }
 
 std::optional<Matrix6> left_by_drives(const DeformationModel& model, std::span<const double> pose) {
@@ -279,7 +298,7 @@ std::optional<SeparationDescription> separation_description(const DeformationMod
   if (!model.platform || model.platform->points.empty()) return std::nullopt;
   std::string measure = "root mean square displacement of the platform's points";
   if (!model.chain.meets) measure += ", without the gap between its limbs";
-  return SeparationDescription{std::move(measure), std::vector<std::string>(model.slots.size())};
+  return SeparationDescription{std::move(measure), std::vector<std::string>(model.terms.size())};
 }
 
 }  // namespace poesy::chain

@@ -52,16 +52,19 @@ struct LimbMotions {
   void add(const Joint& joint, const lie::Screw<double>& twist, const lie::Vector3<double>& at);
 };
 
-/// The twist of a limb's end by a unit of an error if no joint moves.
+/// The twist of a limb's end by a unit of an error if no joint moves. An error may twist the ends of several limbs.
 struct EndTwist {
   std::size_t limb;          ///< position of the limb
   lie::Screw<double> twist;  ///< of the end
 };
 
+/// Adds a twist of a limb's end to those of an error.
+void add_twist(std::size_t limb, const lie::Screw<double>& twist, std::vector<EndTwist>& twists);
+
 /// separation() from the motions of the limbs. root: U, where |U xi| is the root mean square displacement of the
 /// platform's points by the twist xi; radius: rho.
 Separation separation_of(const std::vector<LimbMotions>& limbs, const lie::Matrix6<double>& root, double radius,
-                         std::span<const EndTwist> errors);
+                         std::span<const std::vector<EndTwist>> errors);
 
 /// The description of separation(), without classes of the literature; none if the model has no platform->points.
 std::optional<SeparationDescription> separation_description(const DeformationModel& model);

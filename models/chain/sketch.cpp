@@ -41,16 +41,24 @@ std::size_t joint_of(const std::vector<SketchedJoint>& joints, std::size_t frame
       std::ranges::count_if(joints, [frame](const SketchedJoint& joint) { return joint.first <= frame; }));
 }
 
-/// The motion of the platform by each limb, or one motion if all are equal.
-std::vector<SketchTwist> motions(const ParallelChain& chain, FirstOrder& first_order, const FrameEntry& entry,
-                                 double scale) {
+/// The motion of the platform by each limb, or one motion if all are equal. displacements: [all joints].
+std::vector<SketchTwist> motions(const DeformationModel& model, FirstOrder& first_order, const ErrorTerms& terms,
+                                 std::span<const double> displacements) {
+  const ParallelChain& chain = model.chain;
   std::vector<double> delta_mu(6 * chain.pairs.size());
   std::vector<double> moved(chain.passive_joints());
-  first_order.effect(entry, delta_mu, moved);
   std::vector<lie::Screw<double>> twists(chain.limbs.size(), lie::Screw<double>::Zero());
-  twists[first_order.limb_of_frame(entry.frame)] = first_order.motion(entry);
-  for (std::size_t a = 0; a < moved.size(); ++a) {
-    twists[first_order.limb_of_joint(a)] += moved[a] * first_order.column(a);
+  double moves = 0.0;
+  for (const ErrorTerm& term : terms) {
+    const FrameEntry entry = model.entry(term);
+    const double scale = term.at(displacements);
+    const lie::Screw<double> motion = scale * first_order.motion(entry);
+    first_order.effect(entry, delta_mu, moved);
+    twists[term.limb] += motion;
+    for (std::size_t a = 0; a < moved.size(); ++a) {
+      twists[first_order.limb_of_joint(a)] += scale * moved[a] * first_order.column(a);
+    }
+    moves = std::max(moves, motion.norm());
   }
   double largest = 0.0;
   double apart = 0.0;
@@ -58,11 +66,11 @@ std::vector<SketchTwist> motions(const ParallelChain& chain, FirstOrder& first_o
     largest = std::max(largest, twist.norm());
     apart = std::max(apart, (twist - twists.front()).norm());
   }
-  if (apart <= kAlike * std::max(largest, first_order.motion(entry).norm())) twists.resize(1);
+  if (apart <= kAlike * std::max(largest, moves)) twists.resize(1);
   std::vector<SketchTwist> list;
   for (const lie::Screw<double>& twist : twists) {
     SketchTwist& one = list.emplace_back();
-    for (std::size_t c = 0; c < one.size(); ++c) one[c] = scale * twist[static_cast<Eigen::Index>(c)];
+    for (std::size_t c = 0; c < one.size(); ++c) one[c] = twist[static_cast<Eigen::Index>(c)];
   }
   return list;
 }
@@ -71,9 +79,9 @@ void add_errors(Sketch& sketch, const DeformationModel& model, std::span<const d
   const std::optional<Metric> metric = model.metric(displacements);
   FirstOrder first_order(model.chain);
   const bool regular = first_order.prepare(displacements, metric ? &metric->W : nullptr);
-  for (const ErrorSlot& slot : model.slots) {
-    sketch.errors.push_back(sketched_error(sketch, slot));
-    if (regular) sketch.errors.back().motions = motions(model.chain, first_order, model.entry(slot), slot.scale);
+  for (const ErrorTerms& terms : model.terms) {
+    sketch.errors.push_back(sketched_error(sketch, terms.front()));
+    if (regular) sketch.errors.back().motions = motions(model, first_order, terms, displacements);
   }
 }
 
@@ -92,14 +100,14 @@ void place_limb(Sketch& sketch, const LimbFrames& frames, bool errors_at_joints)
   list.back().origin = list[frames.before.size()].origin;
 }
 
-SketchedError sketched_error(const Sketch& sketch, const ErrorSlot& slot) {
-  const std::vector<SketchedJoint>& joints = sketch.limbs[slot.limb];
-  const std::size_t end = sketch.frames[slot.limb].size() - 1;  // of the body at the end of the limb
-  return {.limb = slot.limb,
-          .frame = slot.frame + 1 == end ? end : slot.frame,
-          .axis = slot.component % 3,
-          .after = joint_of(joints, slot.frame, end),
-          .before = joint_of(joints, slot.frame + 1, end),
+SketchedError sketched_error(const Sketch& sketch, const ErrorTerm& term) {
+  const std::vector<SketchedJoint>& joints = sketch.limbs[term.limb];
+  const std::size_t end = sketch.frames[term.limb].size() - 1;  // of the body at the end of the limb
+  return {.limb = term.limb,
+          .frame = term.frame + 1 == end ? end : term.frame,
+          .axis = term.component % 3,
+          .after = joint_of(joints, term.frame, end),
+          .before = joint_of(joints, term.frame + 1, end),
           .motions = {}};
 }
 

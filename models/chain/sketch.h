@@ -24,7 +24,7 @@ struct LimbFrames {
 /// Adds the joints and frames of one limb to the sketch. sketch.frames contains those of the preceding limbs.
 void place_limb(Sketch& sketch, const LimbFrames& frames, bool errors_at_joints);
 
-/// The sketch of an error of a limb that place_limb() has added, without its motions.
-SketchedError sketched_error(const Sketch& sketch, const ErrorSlot& slot);
+/// The sketch of an error by its first term, of a limb that place_limb() has added, without its motions.
+SketchedError sketched_error(const Sketch& sketch, const ErrorTerm& term);
 
 }  // namespace poesy::chain

@@ -124,15 +124,12 @@ assembly::AssemblyModel assembly_model(const Mechanism& mechanism, std::shared_p
   assembly::AssemblyModel model{
       .assembly = assembly_of(mechanism, metric),
       .report = report_of(mechanism),
-      .slots = {},
+      .terms = mechanism.terms,
       .ranks = {},
       .idle = home.left_when_locked,
       .deforms = metric == assembly::Metric::stiffness || home.passive_rank < home.loop_equations,
       .over_constrained = home.passive_rank < home.loop_equations,
       .joint_displacements = {}};
-  for (const ErrorSlot& slot : mechanism.slots) {
-    model.slots.push_back({slot.limb, slot.frame, slot.component, slot.scale});
-  }
   const assembly::Nominal at_home =
       assembly::nominal(model.assembly, std::vector<double>(model.assembly.joints(), 0.0));
   model.ranks = assembly::passive_ranks(model.assembly, at_home, mechanism.precision.rank_threshold);

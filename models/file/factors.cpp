@@ -1,9 +1,12 @@
 #include "models/file/factors.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "engine/base/name_pattern.h"
 #include "engine/base/text.h"
+#include "models/file/features.h"
 
 namespace poesy::file {
 namespace {
@@ -35,37 +38,57 @@ Parts parts_of(const Mechanism& mechanism, const Limb& limb, std::size_t frame) 
           frame == 0 ? mechanism.bodies[limb.from].name : joint_text(limb.joints, frame - 1)};
 }
 
-std::string description(const Mechanism& mechanism, const ErrorSlot& slot) {
-  const Limb& limb = mechanism.limbs[slot.limb];
+std::string description(const Mechanism& mechanism, const chain::ErrorTerm& term) {
+  const Limb& limb = mechanism.limbs[term.limb];
   const std::size_t last = limb.joints.size();
-  const Parts parts = parts_of(mechanism, limb, slot.frame);
+  const Parts parts = parts_of(mechanism, limb, term.frame);
   const auto the = [&](std::size_t body) {
     return (body <= kPlatform ? "the " : "body ") + mechanism.bodies[body].name;
   };
-  const std::string axes = slot.frame == 0      ? the(limb.from)
-                           : slot.frame == last ? the(limb.to)
-                                                : "frame " + std::to_string(slot.frame);
-  const std::string kind = slot.component < 3 ? "angular error about " : "linear error along ";
-  std::string text = "limb " + limb.label + ", " + parts.text() + ": " + kind + axis_of(slot.component) + " of " + axes;
-  const bool at_joint = mechanism.errors_at_joints && (slot.frame == 0 || slot.frame == last);
-  if (slot.component < 3 && at_joint) text += " at " + (slot.frame == 0 ? parts.behind : parts.before);
+  const std::string axes = term.frame == 0      ? the(limb.from)
+                           : term.frame == last ? the(limb.to)
+                                                : "frame " + std::to_string(term.frame);
+  const std::string kind = term.component < 3 ? "angular error about " : "linear error along ";
+  std::string text = "limb " + limb.label + ", " + parts.text() + ": " + kind + axis_of(term.component) + " of " + axes;
+  const bool at_joint = mechanism.about == ErrorsAbout::joint && (term.frame == 0 || term.frame == last);
+  if (term.component < 3 && at_joint) text += " at " + (term.frame == 0 ? parts.behind : parts.before);
   return text;
 }
 
 /// The error of one entry of a fixed frame. axis: empty for a scalar.
-Factor factor(const Mechanism& mechanism, const ErrorSlot& slot, std::string name, std::string axis) {
+Factor factor(const Mechanism& mechanism, const chain::ErrorTerm& term, std::string name, std::string axis) {
   return {std::move(name),
-          slot.component < 3 ? Dimension::angle : Dimension::length,
-          slot.limb + 1,
-          slot.frame,
-          description(mechanism, slot),
+          term.component < 3 ? Dimension::angle : Dimension::length,
+          term.limb + 1,
+          term.frame,
+          description(mechanism, term),
           std::move(axis)};
+}
+
+/// The terms of an angle of a limb's first or last frame that turns about the point of the joint there, where the
+/// solver turns it about the origin of the body: [epsilon; c x epsilon] with c that point.
+chain::ErrorTerms about_joint(const Mechanism& mechanism, const chain::ErrorTerm& term) {
+  chain::ErrorTerms list{term};
+  const Limb& limb = mechanism.limbs[term.limb];
+  const bool is_first = term.frame == 0;
+  const bool is_at_end = is_first || term.frame == limb.joints.size();
+  const bool is_as_solved = mechanism.errors_at_joints || mechanism.about == ErrorsAbout::frame;
+  if (is_as_solved || !is_at_end || term.component >= 3) return list;
+  const Transform& body = mechanism.bodies[is_first ? limb.from : limb.to].home;
+  const Joint& joint = is_first ? limb.joints.front() : limb.joints.back();
+  const Vector3 at = body.R.transpose() * (joint.at_home.p - body.p);
+  const Vector3 shift = at.cross(Vector3::Unit(static_cast<Eigen::Index>(term.component)));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double entry = term.scale * shift[static_cast<Eigen::Index>(axis)];
+    if (entry != 0.0) list.push_back({term.limb, term.frame, 3 + axis, entry});
+  }
+  return list;
 }
 
 /// The errors of all entries of all fixed frames.
 struct FrameErrors {
   std::vector<Factor> factors;
-  std::vector<ErrorSlot> slots;
+  std::vector<chain::ErrorTerms> terms;
 };
 
 FrameErrors frame_errors(const Mechanism& mechanism) {
@@ -76,8 +99,9 @@ FrameErrors frame_errors(const Mechanism& mechanism) {
         const std::string axis(1, axis_of(component));
         const std::string name =
             (component < 3 ? "epsilon_" : "delta_") + std::to_string(i + 1) + "_" + std::to_string(j) + "_" + axis;
-        all.slots.push_back({i, j, component, 1.0});
-        all.factors.push_back(factor(mechanism, all.slots.back(), name, axis));
+        const chain::ErrorTerm term{i, j, component};
+        all.terms.push_back(about_joint(mechanism, term));
+        all.factors.push_back(factor(mechanism, term, name, axis));
       }
     }
   }
@@ -109,30 +133,124 @@ void add_listed(const std::vector<Reference>& patterns, const FrameErrors& all, 
       }
       taken[f] = true;
       mechanism.factors.push_back(all.factors[f]);
-      mechanism.slots.push_back(all.slots[f]);
+      mechanism.terms.push_back(all.terms[f]);
     }
   }
 }
 
-void add_named(const ErrorLines& error, double scale, Mechanism& mechanism) {
+std::string number_suffix(const SlotLines& slot, std::size_t k) {
+  return slot.numbers[k] == 0 ? "" : "_" + std::to_string(slot.numbers[k]);
+}
+
+double scale_of(const Expression& scale, const Numbers& numbers) {
+  const double value = numbers.quantity(scale, kNumber);
+  if (value != 0.0) return value;
+  throw InputError(scale.place, scale.key + " is zero, so the error has no effect", "write its scale");
+}
+
+/// Adds an error for each limb and each component of a vector.
+void add_vector(const ErrorLines& error, const Numbers& numbers, Mechanism& mechanism) {
+  const double scale = scale_of(error.scale, numbers);
   const bool vector = error.components.size() > 1;
-  for (std::size_t k = 0; k < error.limbs.size(); ++k) {
-    const std::string number = error.numbers[k] == 0 ? "" : "_" + std::to_string(error.numbers[k]);
+  const SlotLines& slot = error.slot;
+  for (std::size_t k = 0; k < slot.limbs.size(); ++k) {
     for (const std::size_t component : error.components) {
       const std::string axis = vector ? std::string(1, axis_of(component)) : "";
-      const std::string name = error.name.name + (vector ? "_" + axis : "") + number;
-      const ErrorSlot slot{error.limbs[k], error.frames[k], component, scale};
-      Factor made = factor(mechanism, slot, name, axis);
+      const std::string name = error.name.name + (vector ? "_" + axis : "") + number_suffix(slot, k);
+      const chain::ErrorTerm term{slot.limbs[k], slot.frames[k], component, scale};
+      Factor made = factor(mechanism, term, name, axis);
       if (!error.description.empty()) made.description = error.description;
-      if (std::ranges::find(mechanism.factors, name, &Factor::name) != mechanism.factors.end()) {
-        throw InputError(error.name.place,
-                         error.name.key + " '" + error.name.name + "' makes a second error '" + name + "'",
-                         "give it a name of its own");
-      }
-      mechanism.factors.push_back(std::move(made));
-      mechanism.slots.push_back(slot);
+      add_error(std::move(made), about_joint(mechanism, term), error.name, mechanism);
     }
   }
+}
+
+/// The terms of an error, and what it measures.
+struct Combination {
+  chain::ErrorTerms terms;
+  std::optional<int> length;  ///< power of m that it is; none: not known yet
+};
+
+std::string measure_text(int length) { return length == 1 ? "a length" : "an angle"; }
+
+/// Adds the components of one frame. A share is per unit of the error: an error that is a length has numbers for delta
+/// and 1/length for epsilon.
+void add_components(const std::vector<ComponentLines>& components, std::size_t limb, std::size_t frame,
+                    const Numbers& numbers, const Mechanism& mechanism, Combination& made) {
+  for (const ComponentLines& one : components) {
+    const Value share = numbers.value(one.scale);
+    if (share.any) continue;
+    const int length = (one.component < 3 ? 0 : 1) - share.powers.length;
+    const auto fail = [&](const std::string& problem) {
+      throw InputError(one.scale.place, one.scale.key + " '" + one.scale.text + "' " + problem,
+                       "for an error that is a length write numbers for delta and 1/length for epsilon, for an angle "
+                       "lengths for delta and numbers for epsilon");
+    };
+    if (!share.powers.like({.length = share.powers.length}) || (length != 0 && length != 1)) {
+      fail("is " + dimension_text(share) + ", so the error is neither a length nor an angle");
+    }
+    if (made.length && *made.length != length) {
+      fail("makes the error " + measure_text(length) + ", and what is before it " + measure_text(*made.length));
+    }
+    made.length = length;
+    if (share.si == 0.0) continue;
+    const chain::ErrorTerms terms = about_joint(mechanism, {limb, frame, one.component, share.si});
+    made.terms.insert(made.terms.end(), terms.begin(), terms.end());
+  }
+}
+
+void add_combination(const ErrorLines& error, const Combination& made, const std::string& name, std::string description,
+                     Mechanism& mechanism) {
+  if (made.terms.empty()) {
+    throw InputError(error.name.place, error.name.key + " '" + error.name.name + "' changes nothing",
+                     "write the share of a component");
+  }
+  const chain::ErrorTerm& first = made.terms.front();
+  add_error({name, *made.length == 1 ? Dimension::length : Dimension::angle, first.limb + 1, first.frame,
+             error.description.empty() ? std::move(description) : error.description},
+            made.terms, error.name, mechanism);
+}
+
+std::string components_text(const std::vector<ComponentLines>& components) {
+  std::string text;
+  for (const ComponentLines& one : components) {
+    text +=
+        std::string(text.empty() ? "" : ", ") + (one.component < 3 ? "epsilon_" : "delta_") + axis_of(one.component);
+  }
+  return text;
+}
+
+/// Adds the error of several components in each limb.
+void add_combinations(const ErrorLines& error, const Numbers& numbers, Mechanism& mechanism) {
+  const SlotLines& slot = error.slot;
+  for (std::size_t k = 0; k < slot.limbs.size(); ++k) {
+    Combination made;
+    add_components(error.combination, slot.limbs[k], slot.frames[k], numbers, mechanism, made);
+    const Limb& limb = mechanism.limbs[slot.limbs[k]];
+    add_combination(error, made, error.name.name + number_suffix(slot, k),
+                    "limb " + limb.label + ", " + parts_of(mechanism, limb, slot.frames[k]).text() + ": " +
+                        components_text(error.combination) + " together",
+                    mechanism);
+  }
+}
+
+/// Adds the one error of several places.
+void add_shared(const ErrorLines& error, const Numbers& numbers, Mechanism& mechanism) {
+  Combination made;
+  std::string limbs;
+  for (const PlaceLines& place : error.places) {
+    for (std::size_t k = 0; k < place.slot.limbs.size(); ++k) {
+      add_components(place.components, place.slot.limbs[k], place.slot.frames[k], numbers, mechanism, made);
+      limbs += (limbs.empty() ? "" : ", ") + mechanism.limbs[place.slot.limbs[k]].label;
+    }
+  }
+  add_combination(error, made, error.name.name, "one number in limbs " + limbs, mechanism);
+}
+
+void add_named(const ErrorLines& error, const Numbers& numbers, Mechanism& mechanism) {
+  if (!error.places.empty()) return add_shared(error, numbers, mechanism);
+  if (!error.combination.empty()) return add_combinations(error, numbers, mechanism);
+  add_vector(error, numbers, mechanism);
 }
 
 /// Whether two limbs have the same joints in the same order.
@@ -142,14 +260,15 @@ bool are_alike(const Limb& a, const Limb& b) {
 
 /// A text that names the limbs with this error, limb = "each", and the two parts that its frame connects in them.
 EachLimb each_limb(const ErrorLines& error, const Mechanism& mechanism) {
+  const SlotLines& slot = error.slot;
   EachLimb each{"error " + error.name.name + " with limb = \"each\" is", true};
-  for (std::size_t i = 0; i < error.limbs.size();) {
+  for (std::size_t i = 0; i < slot.limbs.size();) {
     const auto parts_in = [&](std::size_t limb) {
-      return parts_of(mechanism, mechanism.limbs[limb], error.frames[limb]).text();
+      return parts_of(mechanism, mechanism.limbs[limb], slot.frames[limb]).text();
     };
     const std::string parts = parts_in(i);
     const std::size_t first = i;
-    while (i < error.limbs.size() && parts_in(i) == parts) ++i;
+    while (i < slot.limbs.size() && parts_in(i) == parts) ++i;
     each.text += std::string(first == 0 ? "" : ";") + " in limb" + (i - first == 1 ? "" : "s");
     for (std::size_t k = first; k < i; ++k) {
       each.text += (k == first ? " " : k + 1 == i ? " and " : ", ") + std::to_string(k + 1);
@@ -175,21 +294,28 @@ FactorSet set_of(const SetLines& lines, const std::vector<Factor>& factors) {
 
 }  // namespace
 
-void add_factors(const MechanismFile& file, std::span<const double> geometry, Mechanism& mechanism) {
+void add_error(Factor factor, chain::ErrorTerms terms, const Reference& name, Mechanism& mechanism) {
+  if (std::ranges::find(mechanism.factors, factor.name, &Factor::name) != mechanism.factors.end()) {
+    throw InputError(name.place, name.key + " '" + name.name + "' makes a second error '" + factor.name + "'",
+                     "give it a name of its own");
+  }
+  mechanism.factors.push_back(std::move(factor));
+  mechanism.terms.push_back(std::move(terms));
+}
+
+void add_factors(const Numbers& numbers, Mechanism& mechanism) {
+  const MechanismFile& file = numbers.file();
   FrameErrors all = frame_errors(mechanism);
   if (file.all_frames()) {
     mechanism.factors = std::move(all.factors);
-    mechanism.slots = std::move(all.slots);
+    mechanism.terms = std::move(all.terms);
   } else if (file.frames) {
     add_listed(*file.frames, all, mechanism);
   }
+  add_features(numbers, mechanism);
   for (const ErrorLines& error : file.errors) {
-    const double scale = evaluate(error.scale, Dimension::number, file.geometry, geometry);
-    if (scale == 0.0) {
-      throw InputError(error.scale.place, error.scale.key + " is zero, so the error has no effect", "write its scale");
-    }
-    add_named(error, scale, mechanism);
-    if (error.each) mechanism.each.push_back(each_limb(error, mechanism));
+    add_named(error, numbers, mechanism);
+    if (error.slot.each) mechanism.each.push_back(each_limb(error, mechanism));
   }
   FactorSet every{"all", "all errors", {}};
   for (std::size_t f = 0; f < mechanism.factors.size(); ++f) every.factors.emplace_back(f);

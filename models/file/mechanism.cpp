@@ -103,8 +103,9 @@ class Builder {
     if (lines.tool) made.tool = numbers_.point(*lines.tool);
     add_metric_points(made);
     made.load = load_of(numbers_, made);
-    made.errors_at_joints = file_.about == ErrorsAbout::joint;
-    add_factors(file_, values_, made);
+    made.about = file_.about;
+    made.errors_at_joints = file_.about == ErrorsAbout::joint && !file_.has_features();
+    add_factors(numbers_, made);
     return made;
   }
 

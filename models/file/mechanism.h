@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "engine/model/feature.h"
 #include "engine/model/model.h"
 #include "models/assembly/assembly.h"
+#include "models/chain/error_terms.h"
 #include "models/chain/limb.h"
 #include "models/file/mechanism_file.h"
 #include "models/lie/se3.h"
@@ -85,14 +87,6 @@ struct Coordinate {
   Dimension dimension() const { return component < 3 ? Dimension::length : Dimension::angle; }
 };
 
-/// The entry of a fixed frame's error to which a factor adds: entry += scale * factor.
-struct ErrorSlot {
-  std::size_t limb;       ///< counts from 0
-  std::size_t frame;      ///< 0 .. joints of the limb
-  std::size_t component;  ///< position in [epsilon; delta]
-  double scale;           ///< dimensionless
-};
-
 /// Precision of exact numbers.
 /// @{
 inline constexpr double kRankThreshold = 1e-6;  ///< a singular value below this share of the largest counts as zero
@@ -119,24 +113,26 @@ struct EachLimb {
 
 /// A mechanism in numbers, immutable. Contains everything that a model needs except solvers.
 struct Mechanism {
-  std::string name;                          ///< as in the file
-  std::string title;                         ///< as in the file
-  std::vector<assembly::Body> bodies = {};   ///< base, platform, and the others, copies included
-  std::vector<Limb> limbs = {};              ///< copies included
-  Transform platform;                        ///< base_T_platform at home
-  Rotation rotation;                         ///< meaning of rx, ry, rz
-  std::vector<Coordinate> coordinates = {};  ///< in the order of a pose's numbers
-  Place coordinates_place;                   ///< in the file
-  std::optional<Vector3> tool = {};          ///< tool point in the platform's frame (m)
-  std::vector<Vector3> points = {};          ///< of the metric, in the platform's frame (m); not all on a line
-  std::vector<Factor> factors = {};          ///< [F]
-  std::vector<ErrorSlot> slots = {};         ///< [F] the entry of each factor
-  std::vector<FactorSet> sets = {};          ///< "all" first
-  std::vector<EachLimb> each = {};           ///< the errors with limb = "each"
-  bool errors_at_joints = true;              ///< see chain::Limb
-  double reach;                              ///< m: largest distance between the joints' points, before copies, and P
-  Precision precision = {};                  ///< of its numbers
-  assembly::Load load = {};                  ///< used if there is stiffness
+  std::string name;                           ///< as in the file
+  std::string title;                          ///< as in the file
+  std::vector<assembly::Body> bodies = {};    ///< base, platform, and the others, copies included
+  std::vector<Limb> limbs = {};               ///< copies included
+  Transform platform;                         ///< base_T_platform at home
+  Rotation rotation;                          ///< meaning of rx, ry, rz
+  std::vector<Coordinate> coordinates = {};   ///< in the order of a pose's numbers
+  Place coordinates_place;                    ///< in the file
+  std::optional<Vector3> tool = {};           ///< tool point in the platform's frame (m)
+  std::vector<Vector3> points = {};           ///< of the metric, in the platform's frame (m); not all on a line
+  std::vector<Factor> factors = {};           ///< [F]
+  std::vector<chain::ErrorTerms> terms = {};  ///< [F] what each error adds to entries of frames' errors
+  std::vector<FactorSet> sets = {};           ///< "all" first
+  std::vector<EachLimb> each = {};            ///< the errors with limb = "each"
+  ErrorsAbout about = ErrorsAbout::joint;     ///< of errors of frames, and of those with their own names
+  bool errors_at_joints = true;               ///< see chain::Limb; false with features, whose errors are about frames
+  std::vector<Feature> features = {};         ///< of all limbs
+  double reach;                               ///< m: largest distance between the joints' points, before copies, and P
+  Precision precision = {};                   ///< of its numbers
+  assembly::Load load = {};                   ///< used if there is stiffness
 
   /// Number of joints that have a displacement, over all limbs.
   std::size_t moving() const;

@@ -177,6 +177,8 @@ const Keys<LimbLines, Nothing>& limb_keys() {
               "frames."),
           optional("links", kept("list of tables", read_links, &LimbLines::links), "rigid",
                    "Parts between its joints that give way."),
+          optional("features", kept("list of tables", read_features, &LimbLines::features), "none",
+                   "Bores, faces, points and distances of its parts, with the tolerances of their drawings."),
           optional("compliance", kept("list of lists", read_compliance, &LimbLines::compliance), "none",
                    "Of the whole limb, besides joints and links: 6 x 6 bare SI numbers, [rotation; translation] from "
                    "[moment; force] in the frame of `to`.")}};
@@ -338,6 +340,51 @@ std::vector<std::size_t> components(const StudyValue& value) {
   return list;
 }
 
+ComponentLines component(const Reference& name, const StudyValue& value) {
+  const auto known = std::ranges::find(kComponents, name.name);
+  if (known == kComponents.end()) {
+    value.fail("is of a component that no frame has",
+               "write delta_x, delta_y, delta_z, epsilon_x, epsilon_y or "
+               "epsilon_z = its share of the error");
+  }
+  return {static_cast<std::size_t>(known - kComponents.begin()), expression(value)};
+}
+
+/// Reads `components = { delta_x = -0.6, epsilon_y = "2 / L" }`.
+std::vector<ComponentLines> combination(const StudyValue& value) {
+  const StudySection section = value.section();
+  std::vector<ComponentLines> list;
+  for (const Reference& name : keys_in_order(section)) list.push_back(component(name, *section.find(name.name)));
+  if (list.empty()) value.fail("is empty", "write { delta_z = 1 }, for instance");
+  return list;
+}
+
+/// A place as written, before its limbs are known.
+struct WrittenPlace {
+  std::optional<std::size_t> component;
+  Expression scale{"1", "scale", {}, true};
+  std::vector<ComponentLines> combination;
+};
+
+const Keys<WrittenPlace, Nothing>& place_keys() {
+  using P = WrittenPlace;
+  static const Keys<P, Nothing> keys{
+      .paths = {"error.places"},
+      .meaning = "A place of an error that has several: one number, drawn once, acts in all of them.",
+      .rows = {
+          needed<P>("limb", {.type = "integer, text or list"}, "\"each\"",
+                    "As in [[error]], but all are places of one error."),
+          needed<P>("frame", {.type = "integer or text"}, "0", "As in [[error]]."),
+          optional("component",
+                   kept(
+                       "text", [](const StudyValue& value) { return value.word(kComponents); }, &P::component),
+                   "", "delta_x, ..., epsilon_z of the frame."),
+          optional("scale", kept("number", expression, &P::scale), "`1`", "The component is the error times this."),
+          optional("components", kept("table", combination, &P::combination), "",
+                   "Without `component`: several, as in [[error]].")}};
+  return keys;
+}
+
 const Keys<ErrorLines, Nothing>& error_keys() {
   using E = ErrorLines;
   static const Keys<E, Nothing> keys{
@@ -347,20 +394,29 @@ const Keys<ErrorLines, Nothing>& error_keys() {
           needed("name", kept("text", reference, &E::name), "\"l\"",
                  "Its name; components of a vector append _x, _y, _z, and an error of several limbs _1, _2, ... behind "
                  "that: the copy's number where the limb is named, else the limb's."),
-          needed<E>("limb", {.type = "integer, text or list"}, "\"each\"",
-                    "The limb: its number, counted from 1, or its name, which also means its copies; a list of numbers "
-                    "and names; or \"each\", where all limbs have the frame. Each limb has an error of its own."),
-          needed<E>(
-              "frame", {.type = "integer or text"}, "0",
+          optional<E>(
+              "limb", {.type = "integer, text or list"}, "required without `places`",
+              "The limb: its number, counted from 1, or its name, which also means its copies; a list of numbers "
+              "and names; or \"each\", where all limbs have the frame. Each limb has an error of its own."),
+          optional<E>(
+              "frame", {.type = "integer or text"}, "required without `places`",
               "The fixed frame: 0 before the first joint, the last one to the body where the limb ends; or the name of "
               "a joint: the frame behind it. An error acts in the axes of the joint before it, and its angles turn "
               "about that joint's point; in the first frame the axes are those of the body where the limb begins, in "
               "the last one those of the body where it ends. About what angles turn there, `about` in [errors] says."),
-          needed(
-              "component", kept("text or list", components, &E::components), "\"delta_z\"",
+          optional(
+              "component", kept("text or list", components, &E::components),
+              "required without `components` and `places`",
               "delta_x, delta_y, delta_z (lengths) or epsilon_x, epsilon_y, epsilon_z (angles) of the frame; several "
               "make a vector."),
           optional("scale", kept("number", expression, &E::scale), "`1`", "The component is the error times this."),
+          optional("components", kept("table", combination, &E::combination), "",
+                   "Without `component`: components that make one error together, each with its share of it: "
+                   "{ delta_x = -0.6, epsilon_y = \"2 / L\" }. The shares say whether the error is a length (delta: "
+                   "numbers, epsilon: 1/length) or an angle (delta: lengths, epsilon: numbers)."),
+          optional<E>("places", {.type = "list of tables"}, "",
+                      "Without `limb`, `frame` and `component`: the places where one error acts, of one number: "
+                      "[{ limb = 1, frame = 3, component = \"delta_z\" }, ...]."),
           optional("description", text_at(&E::description), "what the frame's own error says", "For people.")}};
   return keys;
 }
@@ -413,68 +469,68 @@ std::string limbs_text(const std::vector<std::size_t>& limbs) {
   return text;
 }
 
-/// Adds the limbs with this number or name to those of an error.
-void add_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, ErrorLines& error) {
+/// Adds the limbs with this number or name.
+void add_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, SlotLines& slot) {
   const auto add = [&](std::size_t limb) {
-    if (std::ranges::find(error.limbs, limb) != error.limbs.end()) {
+    if (std::ranges::find(slot.limbs, limb) != slot.limbs.end()) {
       value.fail("names " + known[limb].text(limb) + " a second time", "remove it");
     }
-    error.limbs.push_back(limb);
+    slot.limbs.push_back(limb);
   };
   if (!value.is_text()) {
     return add(static_cast<std::size_t>(value.whole_number(1, static_cast<std::int64_t>(known.size())) - 1));
   }
   const std::string name = value.text();
-  const std::size_t before = error.limbs.size();
+  const std::size_t before = slot.limbs.size();
   for (std::size_t i = 0; i < known.size(); ++i) {
     if (!name.empty() && (known[i].lines->name == name || known[i].label() == name)) add(i);
   }
-  if (error.limbs.size() > before) return;
+  if (slot.limbs.size() > before) return;
   value.fail("is '" + printable(name) + "', which no limb is named",
              "write a limb's number, its name, a list of these, or \"each\"");
 }
 
-void read_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, ErrorLines& error) {
+void read_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, SlotLines& slot) {
   bool by_copy = false;
   if (value.is_text() && value.text() == kEach) {
-    for (std::size_t i = 0; i < known.size(); ++i) error.limbs.push_back(i);
-    error.each = true;
+    for (std::size_t i = 0; i < known.size(); ++i) slot.limbs.push_back(i);
+    slot.each = true;
   } else if (value.is_list()) {
-    for (const StudyValue& element : value.list()) add_limbs(element, known, error);
-    if (error.limbs.empty()) value.fail("is empty", "write the limbs' numbers, e.g. [1, 2, 3]");
+    for (const StudyValue& element : value.list()) add_limbs(element, known, slot);
+    if (slot.limbs.empty()) value.fail("is empty", "write the limbs' numbers, e.g. [1, 2, 3]");
   } else {
-    add_limbs(value, known, error);
+    add_limbs(value, known, slot);
     by_copy = true;
   }
-  const bool alone = by_copy && error.limbs.size() == 1;
-  for (const std::size_t i : error.limbs) error.numbers.push_back(alone ? 0 : by_copy ? known[i].copy : i + 1);
+  const bool alone = by_copy && slot.limbs.size() == 1;
+  for (const std::size_t i : slot.limbs) slot.numbers.push_back(alone ? 0 : by_copy ? known[i].copy : i + 1);
 }
 
 /// Reads the name of a joint; the frame of the error is the one behind that joint, in each limb.
-void read_frame_by_name(const StudyValue& frame, const std::vector<NamedLimb>& known, ErrorLines& error) {
-  for (const std::size_t i : error.limbs) {
+void read_frame_by_name(const StudyValue& frame, const std::vector<NamedLimb>& known, SlotLines& slot) {
+  for (const std::size_t i : slot.limbs) {
     const std::optional<std::size_t> behind = known[i].frame_behind(frame.text());
     if (!behind) {
       frame.fail("is '" + printable(frame.text()) + "', which no joint of " + known[i].text(i) + " is named",
                  suggestion(frame.text(), names(known[i].lines->joints)));
     }
-    error.frames.push_back(*behind);
+    slot.frames.push_back(*behind);
   }
 }
 
 /// Reads the limbs of an error, and a frame that all of them have.
-void read_slot(const StudySection& section, const std::vector<NamedLimb>& known, ErrorLines& error) {
-  read_limbs(section.require("limb"), known, error);
-  const StudyValue frame = section.require("frame");
-  if (frame.is_text()) return read_frame_by_name(frame, known, error);
+void read_slot(const StudySection& section, const std::vector<NamedLimb>& known, SlotLines& slot) {
+  read_limbs(section.require("limb", "write limb = \"each\""), known, slot);
+  const StudyValue frame = section.require("frame", "write frame = 0");
+  if (frame.is_text()) return read_frame_by_name(frame, known, slot);
   const auto number = static_cast<std::size_t>(frame.whole_number(0));
-  error.frames.assign(error.limbs.size(), number);
+  slot.frames.assign(slot.limbs.size(), number);
   std::vector<std::size_t> with;
   std::vector<std::size_t> without;
-  for (const std::size_t i : error.limbs) (number <= known[i].last_frame() ? with : without).push_back(i);
+  for (const std::size_t i : slot.limbs) (number <= known[i].last_frame() ? with : without).push_back(i);
   if (without.empty()) return;
   const std::string last = std::to_string(known[without.front()].last_frame());
-  if (error.each && !with.empty()) {
+  if (slot.each && !with.empty()) {
     std::string list;
     for (const std::size_t i : with) list += (list.empty() ? "" : ", ") + std::to_string(i + 1);
     frame.fail("is " + std::to_string(number) + ", which " + limbs_text(with) + " have, and " + limbs_text(without) +
@@ -485,13 +541,51 @@ void read_slot(const StudySection& section, const std::vector<NamedLimb>& known,
              "the last frame of " + known[without.front()].text(without.front()) + " is " + last);
 }
 
+/// Throws unless exactly one of two keys is there.
+void need_one_of(const StudySection& section, std::string_view one, std::string_view other) {
+  if (section.find(one)) {
+    section.refuse(other, "an error with " + std::string(one));
+  } else if (!section.find(other)) {
+    static_cast<void>(section.require(one, "write component = \"delta_z\", or components = { delta_z = 1 }"));
+  } else {
+    section.refuse("scale", "an error with components, each of which has its share");
+  }
+}
+
+PlaceLines read_place(const StudySection& section, const std::vector<NamedLimb>& known) {
+  WrittenPlace written;
+  read_keys(place_keys(), section, written, Nothing{});
+  need_one_of(section, "component", "components");
+  PlaceLines place{{}, std::move(written.combination)};
+  if (const auto value = section.find("component")) {
+    if (!section.find("scale")) written.scale = {"1", value->full_name(), value->place(), true};
+    place.components.push_back({*written.component, std::move(written.scale)});
+  }
+  read_slot(section, known, place.slot);
+  return place;
+}
+
+/// Reads where an error acts and on what: in one place of each limb, or in several places together.
+void read_where(const StudySection& section, const std::vector<NamedLimb>& known, ErrorLines& error) {
+  const std::optional<StudyValue> places = section.find("places");
+  if (!places) {
+    need_one_of(section, "component", "components");
+    return read_slot(section, known, error.slot);
+  }
+  for (const std::string_view key : {"limb", "frame", "component", "components", "scale"}) {
+    section.refuse(key, "an error with places, each of which says it");
+  }
+  for (const StudyValue& element : places->list()) error.places.push_back(read_place(element.section(), known));
+  if (error.places.empty()) places->fail("is empty", "write [{ limb =, frame =, component = }]");
+}
+
 void read_named_errors(const StudyValue& value, MechanismFile& file) {
   const std::vector<NamedLimb> limbs = named_limbs(file);
   for (const StudyValue& element : tables(value)) {
     ErrorLines error;
     read_keys(error_keys(), element.section(), error, Nothing{});
     check_name(error.name);
-    read_slot(element.section(), limbs, error);
+    read_where(element.section(), limbs, error);
     file.errors.push_back(std::move(error));
   }
 }
@@ -671,6 +765,10 @@ std::string_view name(Rotation rotation) {
 
 std::string_view name(ErrorsAbout about) { return about == ErrorsAbout::joint ? "joint" : "frame"; }
 
+bool MechanismFile::has_features() const {
+  return std::ranges::any_of(limbs, [](const LimbLines& limb) { return !limb.features.empty(); });
+}
+
 const StudyTables& mechanism_file_tables() {
   static const StudyTables tables = [] {
     StudyTables list{
@@ -688,8 +786,12 @@ const StudyTables& mechanism_file_tables() {
         described(joint_keys()),
         described(errors_keys()),
         described(error_keys()),
+        described(place_keys()),
+        of_names({"error.components", "error.places.components"}, "COMPONENT", "number or expression",
+                 "A component of the frame's error, delta_x, ..., epsilon_z, and its share of the error."),
         of_names({"sets"}, "SET", "list", "A set: names or patterns of errors.")};
     for (StudyTable& part : part_tables()) list.push_back(std::move(part));
+    for (StudyTable& one : feature_tables()) list.push_back(std::move(one));
     return list;
   }();
   return tables;

@@ -11,6 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/model/model.h"
 #include "engine/schema/keys.h"
+#include "models/file/feature_lines.h"
 #include "models/file/lines.h"
 #include "models/file/part_lines.h"
 
@@ -57,6 +58,7 @@ struct LimbLines {
   std::vector<NamedPoint> points;             ///< points of this limb alone
   Copies copies;                              ///< copies of the limb
   std::vector<LinkLines> links;               ///< links with compliance
+  std::vector<FeatureLines> features;         ///< of its parts, with tolerances
   std::optional<ComplianceLines> compliance;  ///< in the frame of the last body
 };
 
@@ -99,16 +101,35 @@ enum class ErrorsAbout {
 /// "joint" or "frame".
 std::string_view name(ErrorsAbout about);
 
-/// A named error, `[[error]]`, as written.
-struct ErrorLines {
-  Reference name;                  ///< without the number of a limb
+/// A frame of some limbs, as `limb` and `frame` name it.
+struct SlotLines {
   std::vector<std::size_t> limbs;  ///< limbs that have it, counted from 0
   bool each = false;               ///< whether the limbs are written as "each"
   /// [limbs] suffix of the name: the number of the limb or of its copy; 0: none.
   std::vector<std::size_t> numbers;
-  std::vector<std::size_t> frames;           ///< [limbs] position of the frame in each limb, from 0
-  std::vector<std::size_t> components;       ///< positions in [epsilon; delta]
+  std::vector<std::size_t> frames;  ///< [limbs] position of the frame in each limb, from 0
+};
+
+/// A component of a frame's error, and by how much an error changes it.
+struct ComponentLines {
+  std::size_t component;  ///< position in [epsilon; delta]
+  Expression scale;       ///< per unit of the error
+};
+
+/// A place of an error that has several.
+struct PlaceLines {
+  SlotLines slot;                          ///< where it is
+  std::vector<ComponentLines> components;  ///< what it changes there
+};
+
+/// A named error, `[[error]]`, as written.
+struct ErrorLines {
+  Reference name;                            ///< without the number of a limb
+  SlotLines slot;                            ///< where it is, one error in each limb; without limbs: see places
+  std::vector<std::size_t> components;       ///< positions in [epsilon; delta], each an error; none: see combination
   Expression scale{"1", "scale", {}, true};  ///< the entry of the frame's error is the error times this
+  std::vector<ComponentLines> combination;   ///< components that are one error
+  std::vector<PlaceLines> places;            ///< of one error
   std::string description;                   ///< empty: the description of the frame
 };
 
@@ -135,8 +156,10 @@ struct MechanismFile {
   std::vector<ErrorLines> errors;                ///< errors with their own names
   std::vector<SetLines> sets;                    ///< sets other than "all"
 
+  /// Whether a limb has features.
+  bool has_features() const;
   /// Whether every entry of every fixed frame is an error: if the file says so, or if it names no error at all.
-  bool all_frames() const { return all || (!frames && errors.empty()); }
+  bool all_frames() const { return all || (!frames && errors.empty() && !has_features()); }
 };
 
 /// The tables of a mechanism file with every key, for the reference.

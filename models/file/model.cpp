@@ -51,9 +51,7 @@ chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<
   model.chain.pairs = chain::pairs_of(mechanism.limbs.size());
   model.chain.idle = home.idle;
   model.chain.meets = home.passive_rank == home.loop_equations;
-  for (const ErrorSlot& slot : mechanism.slots) {
-    model.slots.push_back({slot.limb, slot.frame, slot.component, slot.scale});
-  }
+  model.terms = mechanism.terms;
   model.points = std::move(points);
   model.held_at = mechanism.points;
   model.chain.rounded = mechanism.precision.rounded();
@@ -64,7 +62,7 @@ chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<
 
 /// The largest deformation, over poses of the workspace, that rounded numbers cause without errors.
 double nominal_deformation(const Mechanism& mechanism, const chain::DeformationModel& model, std::size_t response) {
-  const std::vector<double> no_errors(model.slots.size(), 0.0);
+  const std::vector<double> no_errors(model.terms.size(), 0.0);
   double largest = 0.0;
   for (const PoseMobility& pose : workspace_mobility(mechanism)) {
     if (!pose.reached()) continue;

@@ -24,6 +24,8 @@ double Numbers::length(const Expression& expression) const {
   return evaluate(expression, Dimension::length, file_->geometry, values_);
 }
 
+Value Numbers::value(const Expression& expression) const { return evaluate(expression, file_->geometry, values_); }
+
 Vector3 Numbers::point(const Triple& triple) const {
   return {length(triple.entries[0]), length(triple.entries[1]), length(triple.entries[2])};
 }

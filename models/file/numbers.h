@@ -25,6 +25,7 @@ class Numbers {
   double quantity(const Expression& expression, const Physical& wanted) const;  ///< SI value of this quantity.
   double positive(const Expression& expression, const Physical& wanted) const;  ///< The same, checked to be positive.
   double length(const Expression& expression) const;                            ///< SI value of a length (m).
+  Value value(const Expression& expression) const;                              ///< A value of any dimension.
   Vector3 point(const Triple& triple) const;                                    ///< A point (m).
   Vector3 vector(const Triple& triple, const Physical& wanted) const;  ///< A vector with entries of this quantity.
   /// A direction as a unit vector. Throws if its entries have different dimensions or are all zero.

@@ -76,9 +76,11 @@ std::string drive_lines(const Mechanism& mechanism) {
 
 /// Whether the mechanism has errors of frames `first` to `last` of a limb.
 bool has_errors(const Mechanism& mechanism, std::size_t limb, std::size_t first, std::size_t last) {
-  return std::ranges::any_of(mechanism.slots, [&](const ErrorSlot& slot) {
-    return slot.limb == limb && slot.frame >= first && slot.frame <= last;
-  });
+  const auto is_there = [&](const chain::ErrorTerm& term) {
+    return term.limb == limb && term.frame >= first && term.frame <= last;
+  };
+  return std::ranges::any_of(mechanism.terms,
+                             [&](const chain::ErrorTerms& terms) { return std::ranges::any_of(terms, is_there); });
 }
 
 /// A line for each limb, if some limbs begin or end at other bodies.
@@ -202,9 +204,9 @@ std::string structure_text(const Mechanism& mechanism) {
       "the\n  {}, in the axes there: the {} goes the other way.\n",
       end, end);
   text += fmt::format("  Angles of a limb's first and last frame turn about the {}.\n",
-                      mechanism.errors_at_joints ? "points of its first and last joint"
-                      : mechanism.is_branched()  ? "origins of the bodies there"
-                                                 : "origins of base and platform");
+                      mechanism.about == ErrorsAbout::joint ? "points of its first and last joint"
+                      : mechanism.is_branched()             ? "origins of the bodies there"
+                                                            : "origins of base and platform");
   for (const EachLimb& each : mechanism.each) text += "  " + each.text + ".\n";
   return text;
 }

@@ -39,6 +39,7 @@ ModelDescription describe(const MechanismFile& file, const Mechanism& mechanism,
   description.workspace_note = "This workspace is the mechanism file's.";
   description.factors = mechanism.factors;
   description.factor_sets = mechanism.sets;
+  description.features = mechanism.features;
   description.joints = displacement_names(mechanism);
   for (const Chart& chart : charts) description.charts.push_back(chart.description());
   description.fidelities = {"exact", "first-order"};

@@ -98,10 +98,10 @@ std::vector<Factor> factors() {
   return list;
 }
 
-std::vector<chain::ErrorSlot> error_slots() {
-  std::vector<chain::ErrorSlot> slots;
-  for (const Entry& entry : entries()) slots.push_back({entry.limb, entry.frame, (entry.column + 3) % 6});
-  return slots;
+std::vector<chain::ErrorTerms> error_terms() {
+  std::vector<chain::ErrorTerms> terms;
+  for (const Entry& entry : entries()) terms.push_back({{entry.limb, entry.frame, (entry.column + 3) % 6}});
+  return terms;
 }
 
 std::vector<FactorSet> factor_sets() {

@@ -12,7 +12,7 @@ namespace poesy::two_upr_rpu {
 std::vector<Factor> factors();
 
 /// The frame entry of each factor, in the order of factors().
-std::vector<chain::ErrorSlot> error_slots();
+std::vector<chain::ErrorTerms> error_terms();
 
 /// The sets: all (71), deforming (25: limbs 1 and 3, Section 6.1), deforming-all (41: Table 7), benign (30).
 std::vector<FactorSet> factor_sets();

@@ -33,7 +33,7 @@ chain::DeformationModel deformation_model(const Geometry& geometry, std::vector<
     return std::vector<double>(q.begin(), q.end());
   };
   return {.chain = parallel_chain(geometry),
-          .slots = error_slots(),
+          .terms = error_terms(),
           .joint_displacements = displacements,
           .points = std::move(points),
           .platform = {},

@@ -200,12 +200,12 @@ lie::Matrix6<double> weight(const chain::ParallelChain& chain, std::span<const d
 chain::Branch branch_of(const Model& model, const Group& group, std::size_t sample) {
   const chain::ParallelChain chain = two_upr_rpu::parallel_chain({});
   const auto q = two_upr_rpu::joint_displacements({}, {group.pose[0], group.pose[1], group.pose[2]});
-  const std::vector<chain::ErrorSlot> slots = two_upr_rpu::error_slots();
+  const std::vector<chain::ErrorTerms> terms = two_upr_rpu::error_terms();
   const std::vector<double> values = group.errors_of(sample);
   std::vector<chain::FrameError<double>> errors(chain.frames(), chain::FrameError<double>::Zero());
-  for (std::size_t f = 0; f < slots.size(); ++f) {
-    const std::size_t frame = 5 * slots[f].limb + slots[f].frame;
-    errors[frame][static_cast<Eigen::Index>(slots[f].component)] = values[f];
+  for (std::size_t f = 0; f < terms.size(); ++f) {
+    const std::size_t frame = 5 * terms[f].front().limb + terms[f].front().frame;
+    errors[frame][static_cast<Eigen::Index>(terms[f].front().component)] = values[f];
   }
   return chain::follow_branch(chain, q, errors, weight(chain, q, is_by_platform(model)));
 }

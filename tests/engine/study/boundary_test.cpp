@@ -59,6 +59,7 @@ TEST(Boundary, OfOneCoordinateIsTheEndsOfIntervals) {
       [](std::span<const double> pose) { return pose[0] <= 0.25 || (pose[0] >= 0.5 && pose[0] <= 0.7); });
   const SelectedPoses selected = boundary_poses(test::unit_cube(Select::boundary, 4, 1), two_pieces);
   std::vector<double> ends = selected.poses.column(0);
+  ASSERT_EQ(ends.size(), 4u);
   std::ranges::sort(ends);
   EXPECT_EQ(ends[0], 0.0);
   EXPECT_NEAR(ends[1], 0.25, 1e-15);

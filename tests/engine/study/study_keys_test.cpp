@@ -52,6 +52,10 @@ Catalog catalog() {
   two.front().description.responses.push_back({"third", Dimension::length, "never solved"});
   two.front().build = [](auto geometry, auto) { return std::make_unique<CalibratedFake>(geometry[0]); };
   two.front().description.fidelities = {"exact", "first-order"};
+  Feature rod{.name = "rod_1", .label = "rod", .limb = 1, .frame = 0, .kind = FeatureKind::distance};
+  rod.middle = {FactorIndex(2)};
+  rod.location = Zone{"tolerance", 1e-3, {}};
+  two.front().description.features = {rod};
   CatalogEntry by_platform = two.front();
   by_platform.description.metric = "platform";
   by_platform.build = [](auto, auto) { return std::make_unique<FakeByPlatform>(); };
@@ -126,6 +130,12 @@ std::vector<std::string> studies() {
                   "angular = { distribution = \"truncated-normal\", sigma = \"1 deg\", limits = [0, \"2 deg\"] }\n"
                   "override = { delta_1 = { distribution = \"uniform\", limits = \"8 h6\" }, "
                   "delta_2 = { distribution = \"triangular\", limits = [\"-1 mm\", 0] } }\n");
+  const auto with_zones = [](std::string text, const std::string& use) {
+    return text.insert(text.find("override = "), "zones = { distribution = \"normal\", " + use + " }\n");
+  };
+  by_platform = with_zones(by_platform, "cpk = 1.33");
+  both = with_zones(both, "within = 0.99");
+  measured = with_zones(measured, "sigmas = 3");
   const std::string background = "background = { factors = \"benign\", linear = \"2 mm\", angular = \"2 deg\" }\n";
   return {
       head + "[poses]\nselect = \"interior\"\ncount = 3\n" + box +

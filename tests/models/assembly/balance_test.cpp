@@ -148,7 +148,7 @@ TEST(AssemblyBalance, EnergyChangesByForcesOnErrorsDrives) {
   for_each_case([](const AssemblyModel& model, const Nominal& pose) {
     const FirstOrder first_order(model.assembly, pose, model.ranks);
     Eigen::MatrixXd twists(row_of(model.assembly.limbs.size()),
-                           static_cast<Index>(model.slots.size() + model.report.drives.size()));
+                           static_cast<Index>(model.terms.size() + model.report.drives.size()));
     twists << error_twists(model, pose), drive_twists(model, pose);
     std::vector<double> sizes = random_errors(model, 0.1, 7);
     sizes.resize(static_cast<std::size_t>(twists.cols()), 0.1 * kMillimetre);

@@ -55,14 +55,14 @@ TEST(Loops, DeterminantChangesByItsSlopes) {
     const Matrix columns = motion_columns(model.assembly, pose.limbs, root) * loops.motions();
     const Matrix twists = error_twists(model, pose);
     ErrorFrames frames(model);
-    for (std::size_t f = 0; f < model.slots.size(); ++f) {
-      const chain::ErrorSlot& slot = model.slots[f];
-      const Screw twist = twists.block<6, 1>(6 * static_cast<Index>(slot.limb), static_cast<Index>(f));
+    for (std::size_t f = 0; f < model.terms.size(); ++f) {
+      const chain::ErrorTerm& term = model.terms[f].front();
+      const Screw twist = twists.block<6, 1>(6 * static_cast<Index>(term.limb), static_cast<Index>(f));
       Vector open = Vector::Zero(columns.rows());
-      open.segment<6>(6 * static_cast<Index>(slot.limb)) = root * twist;
+      open.segment<6>(6 * static_cast<Index>(term.limb)) = root * twist;
       const Vector gives = loops.motions() * (columns.transpose() * open);
       const auto log_of_determinant = [&](double error) {
-        std::vector<double> errors(model.slots.size(), 0.0);
+        std::vector<double> errors(model.terms.size(), 0.0);
         errors[f] = error;
         const Moved at = moved(model.assembly, pose, frames.with(errors), error * gives);
         const Matrix B = motion_columns(model.assembly, at.limbs, root) * loops.motions();
@@ -70,7 +70,7 @@ TEST(Loops, DeterminantChangesByItsSlopes) {
       };
       constexpr double kStep = 1e-5;
       const double expected = (log_of_determinant(kStep) - log_of_determinant(-kStep)) / (2.0 * kStep);
-      EXPECT_NEAR(slopes[slot.limb][slot.frame].dot(twist), expected, 1e-6 * (1.0 + std::abs(expected)))
+      EXPECT_NEAR(slopes[term.limb][term.frame].dot(twist), expected, 1e-6 * (1.0 + std::abs(expected)))
           << one.name << ", error " << f;
     }
   }

@@ -79,8 +79,8 @@ inline std::vector<double> random_errors(const AssemblyModel& model, double size
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   std::vector<double> errors;
-  for (const chain::ErrorSlot& slot : model.slots) {
-    errors.push_back(size * (slot.component < 3 ? kDegree : kMillimetre) * normal(random));
+  for (const chain::ErrorTerms& terms : model.terms) {
+    errors.push_back(size * (terms.front().component < 3 ? kDegree : kMillimetre) * normal(random));
   }
   return errors;
 }

@@ -48,9 +48,9 @@ TEST_P(AssemblyOracle, HomeFrames) {
   ASSERT_EQ(mechanism.limbs.size(), expected()["limbs"].size());
   for (std::size_t e = 0; e < mechanism.limbs.size(); ++e) {
     const json& limb = expected()["limbs"][e];
-    EXPECT_EQ(mechanism.limbs[e].label, limb["label"]);
-    EXPECT_EQ(mechanism.bodies[mechanism.limbs[e].from].name, limb["from"]);
-    EXPECT_EQ(mechanism.bodies[mechanism.limbs[e].to].name, limb["to"]);
+    EXPECT_EQ(mechanism.limbs[e].label, limb["label"].get<std::string>());
+    EXPECT_EQ(mechanism.bodies[mechanism.limbs[e].from].name, limb["from"].get<std::string>());
+    EXPECT_EQ(mechanism.bodies[mechanism.limbs[e].to].name, limb["to"].get<std::string>());
     ASSERT_EQ(mechanism.limbs[e].joints.size(), limb["joints"].size());
     for (std::size_t j = 0; j < limb["joints"].size(); ++j) {
       const Joint& joint = mechanism.limbs[e].joints[j];

@@ -56,7 +56,7 @@ TEST(AssemblyProperties, TheUnitOfLengthChangesNothing) {
     std::vector<double> errors = random_errors(small, 0.1, 1);
     std::vector<double> pose = one.pose;
     Answers wanted = answers(small, pose, errors, fidelity);
-    for (std::size_t f = 0; f < errors.size(); ++f) errors[f] *= small.slots[f].component < 3 ? 1.0 : 1000.0;
+    for (std::size_t f = 0; f < errors.size(); ++f) errors[f] *= small.terms[f].front().component < 3 ? 1.0 : 1000.0;
     const file::MechanismFile read = file::read_mechanism_file(one.text(), "m.toml");
     for (std::size_t c = 0; c < pose.size(); ++c) {
       pose[c] *= read.platform.coordinates[c].component.size() == 1 ? 1000.0 : 1.0;
@@ -101,8 +101,8 @@ TEST(AssemblyProperties, TheBaseFrameChangesNothing) {
     const AssemblyModel model = made(one.text(), metric);
     std::vector<double> errors = random_errors(model, 0.1, 2);
     for (std::size_t f = 0; f < errors.size(); ++f) {  // errors in the base's axes are others in other axes
-      const chain::ErrorSlot& slot = model.slots[f];
-      if (slot.frame == 0 && model.assembly.limbs[slot.limb].from == kBase) errors[f] = 0.0;
+      const chain::ErrorTerm& term = model.terms[f].front();
+      if (term.frame == 0 && model.assembly.limbs[term.limb].from == kBase) errors[f] = 0.0;
     }
     const Answers wanted = answers(model, one.pose, errors, fidelity);
     Answers found = answers(moved(model, motion), one.pose, errors, fidelity);
@@ -122,7 +122,7 @@ AssemblyModel in_order(const AssemblyModel& model, const std::vector<std::size_t
     made.assembly.limbs[k] = model.assembly.limbs[order[k]];
     made.ranks[k] = model.ranks[order[k]];
   }
-  for (chain::ErrorSlot& slot : made.slots) slot.limb = place[slot.limb];
+  for (chain::ErrorTerms& terms : made.terms) terms.front().limb = place[terms.front().limb];
   for (ReportedJoint& joint : made.report.drives) joint.limb = place[joint.limb];
   for (ReportedJoint& joint : made.report.reactions) joint.limb = place[joint.limb];
   made.joint_displacements = [&model, order](std::span<const double> pose) {

@@ -41,8 +41,8 @@ inline constexpr double kMillimetre = 1e-3;
 
 inline std::vector<FrameEntry> factor_entries() {
   std::vector<FrameEntry> entries;
-  for (const ErrorSlot& slot : two_upr_rpu::error_slots()) {
-    entries.push_back({5 * slot.limb + slot.frame, slot.component});
+  for (const ErrorTerms& terms : two_upr_rpu::error_terms()) {
+    entries.push_back({5 * terms.front().limb + terms.front().frame, terms.front().component});
   }
   return entries;
 }

@@ -36,7 +36,7 @@ Example example(const std::vector<std::size_t>& joints, std::mt19937_64& engine)
     one.q[joints[0] * i + first] = 0.0;
     limb.joints[first] = {JointType::revolute, false, 0.01};
     for (std::size_t frame = 0; frame < limb.frames(); ++frame) {
-      for (std::size_t c = 0; c < 6; ++c) one.model.slots.push_back({i, frame, c});
+      for (std::size_t c = 0; c < 6; ++c) one.model.terms.push_back({{i, frame, c}});
     }
   }
   one.model.chain.meets = one.model.chain.passive_joints() == 6 * (joints.size() - 1);
@@ -87,7 +87,7 @@ struct Outcome {
 };
 
 Outcome evaluate(const Example& one, std::span<const double> values, std::size_t count, Fidelity fidelity) {
-  const std::size_t factors = one.model.slots.size();
+  const std::size_t factors = one.model.terms.size();
   std::vector<FactorIndex> varied;
   for (std::size_t f = 0; f < factors; ++f) varied.emplace_back(f);
   const std::size_t deformations = one.model.chain.meets ? 0 : 3;
@@ -107,7 +107,7 @@ TEST_P(PlatformMotion, IsTheMeanOfTheLimbs) {
   std::size_t compared = 0;
   for (const std::vector<std::size_t>& joints : {std::vector<std::size_t>{4, 4, 4}, {4, 4}, {5, 5, 5}, {5, 5, 5, 5}}) {
     const Example one = example(joints, engine);
-    const std::size_t factors = one.model.slots.size();
+    const std::size_t factors = one.model.terms.size();
     const std::vector<double> values = random_displacements(factors * kCount, 1e-3, engine);
     const Outcome found = evaluate(one, values, kCount, Fidelity::exact);
     for (std::size_t b = 0; b < kCount; ++b) {
@@ -127,7 +127,7 @@ TEST_P(PlatformMotion, IsTheMeanOfTheLimbs) {
 TEST_P(PlatformMotion, ToFirstOrderIsTheLimitOfSmallErrors) {
   std::mt19937_64 engine(8);
   const Example one = example({4, 4, 4}, engine);
-  const std::size_t factors = one.model.slots.size();
+  const std::size_t factors = one.model.terms.size();
   const std::vector<double> values = random_displacements(factors, 1e-6, engine);
   const Outcome exact = evaluate(one, values, 1, Fidelity::exact);
   const Outcome linear = evaluate(one, values, 1, Fidelity::first_order);

@@ -27,10 +27,10 @@ Example example(const std::vector<std::size_t>& joints, std::mt19937_64& engine)
   one.model.chain = closed_chain(joints, PassiveJoints::mixed, one.q, engine);
   for (std::size_t i = 0; i < joints.size(); ++i) {
     for (std::size_t frame = 0; frame <= joints[i]; ++frame) {
-      for (std::size_t c = 0; c < 6; ++c) one.model.slots.push_back({i, frame, c});
+      for (std::size_t c = 0; c < 6; ++c) one.model.terms.push_back({{i, frame, c}});
     }
   }
-  one.model.slots.back().scale = -2.0;
+  one.model.terms.back().front().scale = -2.0;
   one.model.chain.meets = one.model.chain.passive_joints() == 6 * (joints.size() - 1);
   one.model.points = {{0.2, 0.0, 0.0}, {-0.1, 0.2, 0.0}, {0.0, -0.1, 0.1}, {0.1, 0.1, -0.2}};
   one.model.platform = PlatformReport{{}, one.model.points};
@@ -47,7 +47,7 @@ const std::vector<std::vector<std::size_t>> kShapes{{4, 4}, {4, 4, 4}, {5, 5, 5}
 
 /// How each factor [F] displaces the points, over the root of their number, by the kernels: [3 x points, F].
 Eigen::MatrixXd displacements_of(const Example& one) {
-  const std::size_t factors = one.model.slots.size();
+  const std::size_t factors = one.model.terms.size();
   const std::size_t before = one.model.chain.meets ? 0 : 3;
   std::vector<FactorIndex> varied;
   for (std::size_t f = 0; f < factors; ++f) varied.emplace_back(f);
@@ -78,12 +78,12 @@ Eigen::MatrixXd displacements_of(const Example& one) {
 /// The factors that do what a unit of each drive does: errors along its axis of the frame behind it.
 std::vector<Eigen::Index> drives_of(const DeformationModel& model) {
   std::vector<Eigen::Index> list;
-  for (std::size_t f = 0; f < model.slots.size(); ++f) {
-    const ErrorSlot& slot = model.slots[f];
-    if (slot.frame == 0) continue;
-    const Joint& joint = model.chain.limbs[slot.limb].joints[slot.frame - 1];
+  for (std::size_t f = 0; f < model.terms.size(); ++f) {
+    const ErrorTerm& term = model.terms[f].front();
+    if (term.frame == 0) continue;
+    const Joint& joint = model.chain.limbs[term.limb].joints[term.frame - 1];
     const std::size_t axis = joint.type == JointType::prismatic ? 5 : 2;
-    if (joint.actuated && !joint.fixed && slot.component == axis) list.push_back(static_cast<Eigen::Index>(f));
+    if (joint.actuated && !joint.fixed && term.component == axis) list.push_back(static_cast<Eigen::Index>(f));
   }
   return list;
 }
@@ -150,12 +150,12 @@ struct OwnLimb {
     return weighed;
   }
 
-  Screw by_error(const ErrorSlot& slot) const {
-    return weighed(slot.scale * twist_by([&](double step) {
+  Screw by_error(const ErrorTerm& term) const {
+    return weighed(term.scale * twist_by([&](double step) {
                      std::vector<lie::Transform<double>> frames = limb.home;
                      FrameError<double> error = FrameError<double>::Zero();
-                     error[static_cast<Eigen::Index>(slot.component)] = step;
-                     frames[slot.frame] = frame_with_error(limb, slot.frame, error);
+                     error[static_cast<Eigen::Index>(term.component)] = step;
+                     frames[term.frame] = frame_with_error(limb, term.frame, error);
                      return platform_pose(limb, frames, q);
                    }));
   }
@@ -181,13 +181,13 @@ TEST(ChainSeparation, DrivePartIsInTheNearestMotionOfTheLimbsOwnJoints) {
     const Separation found = separate(one);
     const Eigen::MatrixXd effects = displacements_of(one);
     const std::vector<Eigen::Index> drives = drives_of(one.model);
-    for (std::size_t f = 0; f < one.model.slots.size(); ++f) {
-      const ErrorSlot& slot = one.model.slots[f];
-      const OwnLimb own(one, slot.limb);
+    for (std::size_t f = 0; f < one.model.terms.size(); ++f) {
+      const ErrorTerm& term = one.model.terms[f].front();
+      const OwnLimb own(one, term.limb);
       const Eigen::VectorXd by =
-          own.by_joints().completeOrthogonalDecomposition().solve(Eigen::VectorXd(own.by_error(slot)));
+          own.by_joints().completeOrthogonalDecomposition().solve(Eigen::VectorXd(own.by_error(term)));
       const auto drive = std::ranges::find(own.limb.joints, true, &Joint::actuated) - own.limb.joints.begin();
-      const Eigen::VectorXd by_drive = by[drive] * effects.col(drives[slot.limb]);
+      const Eigen::VectorXd by_drive = by[drive] * effects.col(drives[term.limb]);
       const Eigen::VectorXd effect = effects.col(static_cast<Eigen::Index>(f));
       const double tolerance = 1e-6 * (1.0 + effect.norm() + by_drive.norm());
       EXPECT_NEAR(found.drive[f], by_drive.norm(), tolerance) << f;
@@ -237,10 +237,10 @@ TEST(ChainSeparation, DependsOnNoUnitAndNoBaseFrame) {
     one.model.platform->points = one.model.points;
     const Separation found = separate(one);
     for (const auto part : {&Separation::drive, &Separation::constraint, &Separation::effect, &Separation::residual}) {
-      for (std::size_t f = 0; f < one.model.slots.size(); ++f) {
-        if (one.model.slots[f].frame == 0) continue;  // these errors are along the base's axes
-        const double expected = (truth.*part)[f] * (one.model.slots[f].component < 3 ? kScale : 1.0);
-        const double effect = truth.effect[f] * (one.model.slots[f].component < 3 ? kScale : 1.0);
+      for (std::size_t f = 0; f < one.model.terms.size(); ++f) {
+        if (one.model.terms[f].front().frame == 0) continue;  // these errors are along the base's axes
+        const double expected = (truth.*part)[f] * (one.model.terms[f].front().component < 3 ? kScale : 1.0);
+        const double effect = truth.effect[f] * (one.model.terms[f].front().component < 3 ? kScale : 1.0);
         EXPECT_NEAR((found.*part)[f], expected, 1e-9 * (effect + expected)) << f;
       }
     }
@@ -255,7 +255,7 @@ TEST(ChainSeparation, SingularPoseIsOpen) {
   limb.home[4] = {};  // both slide along one line
   const Separation found = separate(one);
   for (const auto part : {&Separation::drive, &Separation::constraint, &Separation::effect, &Separation::residual}) {
-    ASSERT_EQ((found.*part).size(), one.model.slots.size());
+    ASSERT_EQ((found.*part).size(), one.model.terms.size());
     EXPECT_TRUE(std::ranges::all_of(found.*part, [](double value) { return std::isnan(value); }));
   }
 }

@@ -119,8 +119,8 @@ TEST(Factors, AllAreSixForEachFixedFrame) {
   EXPECT_EQ(m.factors.back().name, "delta_3_5_z");
   EXPECT_EQ(m.factors.back().limb, 3u);
   EXPECT_EQ(m.factors.back().frame, 5u);
-  EXPECT_EQ(m.slots.back().limb, 2u);
-  EXPECT_EQ(m.slots.back().component, 5u);
+  EXPECT_EQ(m.terms.back().front().limb, 2u);
+  EXPECT_EQ(m.terms.back().front().component, 5u);
   EXPECT_EQ(m.factors[21].description,
             "limb 1, joint S (2 of 3) against joint S (1 of 3): linear error along x of frame 3");
   ASSERT_EQ(m.sets.size(), 1u);
@@ -132,7 +132,7 @@ TEST(Factors, AListKeepsItsOrder) {
   const Mechanism m = from_file("upr2-rpu");
   ASSERT_EQ(m.factors.size(), 71u);
   EXPECT_EQ(m.factors[0].name, "delta_1_0_x");
-  EXPECT_EQ(m.slots[0].component, 3u);
+  EXPECT_EQ(m.terms[0].front().component, 3u);
   EXPECT_EQ(m.factors[3].name, "epsilon_1_0_y");
 }
 
@@ -146,8 +146,8 @@ TEST(Factors, NamesOfTheFileAndItsSets) {
   EXPECT_EQ(m.factors[0].axis, "");
   EXPECT_EQ(m.factors[4].axis, "y");
   EXPECT_EQ(m.factors[9].dimension, Dimension::angle);
-  EXPECT_EQ(m.slots[9].limb, 1u);
-  EXPECT_EQ(m.slots[9].scale, 0.5);
+  EXPECT_EQ(m.terms[9].front().limb, 1u);
+  EXPECT_EQ(m.terms[9].front().scale, 0.5);
   ASSERT_EQ(m.sets.size(), 3u);
   EXPECT_EQ(m.sets[1].name, "lengths");
   EXPECT_EQ(m.sets[2].factors.size(), 6u);

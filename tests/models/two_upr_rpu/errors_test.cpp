@@ -44,15 +44,15 @@ TEST(Errors, AreTheNinetyWithoutThoseThePaperExcludes) {
 
 TEST(Errors, SlotsSayWhatTheNamesSay) {
   const std::vector<Factor> list = factors();
-  const std::vector<chain::ErrorSlot> slots = error_slots();
-  ASSERT_EQ(list.size(), slots.size());
+  const std::vector<chain::ErrorTerms> terms = error_terms();
+  ASSERT_EQ(list.size(), terms.size());
   for (std::size_t f = 0; f < list.size(); ++f) {
     const bool linear = list[f].dimension == Dimension::length;
-    const std::string name = std::string(linear ? "delta_" : "epsilon_") + std::to_string(slots[f].limb + 1) + "_" +
-                             std::to_string(slots[f].frame) + "_" + "xyz"[slots[f].component % 3];
+    const std::string name = std::string(linear ? "delta_" : "epsilon_") + std::to_string(terms[f].front().limb + 1) +
+                             "_" + std::to_string(terms[f].front().frame) + "_" + "xyz"[terms[f].front().component % 3];
     EXPECT_EQ(list[f].name, name);
-    EXPECT_EQ(linear, slots[f].component >= 3);
-    EXPECT_EQ(list[f].limb, slots[f].limb + 1);
+    EXPECT_EQ(linear, terms[f].front().component >= 3);
+    EXPECT_EQ(list[f].limb, terms[f].front().limb + 1);
   }
 }
 

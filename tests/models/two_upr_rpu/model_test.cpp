@@ -113,16 +113,16 @@ TEST(Description, JointsHaveTheDimensionOfTheirKind) {
 TEST(Oracle, LimbPosesWithErrorsAtNominalDisplacements) {
   const auto model = published();
   const chain::ParallelChain chain = parallel_chain({});
-  const std::vector<chain::ErrorSlot> slots = error_slots();
+  const std::vector<chain::ErrorTerms> terms = error_terms();
   for (const json& reference : oracle_cases()) {
     const std::vector<double> errors = errors_of(reference, model->description());
     const std::vector<double> q = model->joint_displacements(pose_of(reference));
     for (std::size_t i = 0; i < 3; ++i) {
       std::array<chain::FrameError<double>, 5> frame_errors;
       frame_errors.fill(chain::FrameError<double>::Zero());
-      for (std::size_t f = 0; f < slots.size(); ++f) {
-        if (slots[f].limb != i) continue;
-        frame_errors[slots[f].frame][static_cast<Eigen::Index>(slots[f].component)] = errors[f];
+      for (std::size_t f = 0; f < terms.size(); ++f) {
+        if (terms[f].front().limb != i) continue;
+        frame_errors[terms[f].front().frame][static_cast<Eigen::Index>(terms[f].front().component)] = errors[f];
       }
       std::vector<lie::Transform<double>> frames;
       for (std::size_t j = 0; j < 5; ++j) frames.push_back(chain::frame_with_error(chain.limbs[i], j, frame_errors[j]));

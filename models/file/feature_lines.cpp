@@ -1,0 +1,254 @@
+#include "models/file/feature_lines.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "engine/base/text.h"
+#include "models/file/file_rows.h"
+
+namespace poesy::file {
+namespace {
+
+void check_modifiers(const StudyValue& value, const std::string& text) {
+  for (const std::string_view sign : {"\u24c2", "\u24c1", "(M)", "(L)"}) {
+    if (text.find(sign) == std::string::npos) continue;
+    value.fail("has the modifier " + std::string(sign) + ", which depends on the actual size, which is not modelled",
+               "remove it; the zone is then the smallest that it allows");
+  }
+}
+
+/// What a zone's table says.
+struct WrittenZone {
+  std::optional<Expression> size;
+  std::string datums;
+};
+
+const Keys<WrittenZone, Nothing>& zone_keys() {
+  static const Keys<WrittenZone, Nothing> keys{
+      .paths = {"limb.features.ZONE"},
+      .meaning = "A zone with its datums.",
+      .rows = {needed("zone", kept("length", expression, &WrittenZone::size), "\"0.05 mm\"",
+                      "Its width, or its diameter around an axis or a point."),
+               optional("datums", text_at(&WrittenZone::datums), "none",
+                        "The datums of the drawing, for tables: \"A|B\". The feature is toleranced in the frame of "
+                        "its part.")}};
+  return keys;
+}
+
+void read_zone(std::string_view key, const StudyValue& value, FeatureLines& feature) {
+  WrittenZone written;
+  if (value.is_section()) {
+    read_keys(zone_keys(), value.section(), written, Nothing{});
+  } else {
+    written.size = expression(value);
+  }
+  check_modifiers(value, written.size->text);
+  if (written.size->text == "general") {
+    throw InputError(written.size->place, written.size->key + " is a general tolerance, which has no value here",
+                     "write the length that the standard gives, because nothing is assumed in silence");
+  }
+  feature.zones.push_back({key, *written.size, written.datums});
+}
+
+template <std::size_t kPosition>
+void read_zone_at(const StudyValue& value, FeatureLines& feature) {
+  read_zone(zone_traits()[kPosition].key, value, feature);
+}
+
+void read_at(const StudyValue& value, FeatureLines& feature) {
+  if (value.is_text()) {
+    feature.at_point = reference(value);
+  } else {
+    feature.at = point(value);
+  }
+}
+
+void read_size(const StudyValue& value, FeatureLines& feature) {
+  for (const StudyValue& side : value.list(2, "write its sides along x and y, e.g. [\"60 mm\", \"40 mm\"]")) {
+    feature.size.push_back(expression(side));
+  }
+}
+
+std::string read_along(const StudyValue& value) {
+  constexpr std::array<std::string_view, 2> kAxes{"x", "y"};
+  return std::string(kAxes[value.word(kAxes)]);
+}
+
+/// Throws for the sign of a form.
+void refuse_form(const StudyValue& value, FeatureLines&) {
+  value.fail("is the form of one surface, which rigid parts do not have",
+             "remove it, or give the location or the orientation of the feature");
+}
+
+std::optional<std::size_t> read_axis(const StudyValue& value) {
+  return static_cast<std::size_t>(value.whole_number(1, 3));
+}
+
+template <std::size_t... kPositions>
+std::vector<Row<FeatureLines>> zone_rows(std::index_sequence<kPositions...>) {
+  constexpr std::string_view kMeaning =
+      "A zone of the drawing: a length, or { zone = \"0.05 mm\", datums = \"A|B\" }. A feature has at most one of "
+      "location and one of orientation.";
+  return {optional("", read_by("length or table", &read_zone_at<kPositions>), "none", kMeaning)...};
+}
+
+/// The kinds of features that a zone may have.
+std::vector<std::string_view> bearers(std::string_view zone) {
+  if (zone == "tolerance") return {"distance"};
+  if (zone == "flatness" || zone == "profile") return {"plane"};
+  if (zone_traits(zone).of == ZoneClass::orientation || zone == "runout") return {"axis", "plane"};
+  return {"axis", "plane", "point"};
+}
+
+const Keys<FeatureLines, Nothing>& feature_keys() {
+  using F = FeatureLines;
+  static const Keys<F, Nothing> keys = [] {
+    const std::vector<std::string_view> placed{"axis", "plane", "point"};
+    Keys<F, Nothing> made{
+        .paths = {"limb.features"},
+        .meaning =
+            "A feature of a part of the limb, at home and in the base frame. It makes errors, all lengths: of an axis "
+            "NAME_x, NAME_y (its middle) and NAME_lean_x, NAME_lean_y (its far end against its near end); of a plane "
+            "NAME_z and NAME_lift_x, NAME_lift_y (an edge; the other one goes down by as much); of a point NAME_x, "
+            "NAME_y, NAME_z; of a distance NAME. The limb's number is behind them.",
+        .chooser = "kind",
+        .owner = "a feature of kind",
+        .rows = {
+            needed("kind",
+                   word_at<FeatureWord>({{FeatureWord::axis, "a bore, a pin or a rail"},
+                                         {FeatureWord::plane, "a face, or the middle plane of a slot"},
+                                         {FeatureWord::point, "the centre of a ball"},
+                                         {FeatureWord::distance, "a length, as of a rod"}},
+                                        &F::kind),
+                   "\"axis\"", "What it is."),
+            needed("name", kept("text", read_name, &F::name), "\"bore\"", "Its name, once in a limb."),
+            needed("joint", kept("text", reference, &F::joint), "\"A\"", "The joint of the limb to which it belongs."),
+            optional("axis", kept("integer", read_axis, &F::axis),
+                     "the first axis; with part = \"after\" the last one of S and C",
+                     "Which axis of a joint that has several."),
+            optional("part",
+                     word_at<PartSide>(
+                         {{PartSide::before, "the part towards `from`"}, {PartSide::after, "the part towards `to`"}},
+                         &F::part),
+                     "`\"before\"`", "The part that bears it, in whose frame its errors are."),
+            optional("at", read_by("point", read_at), "the joint's point",
+                     "Its middle: [x, y, z], or the name of a joint or point."),
+            needed("length", kept("length", expression, &F::length), "\"30 mm\"", "The length of the axis.", {"axis"}),
+            optional("size", read_by("list of lengths", read_size), "", "Sides of a rectangular plane along x and y.",
+                     {"plane"}),
+            optional("diameter", kept("length", expression, &F::diameter), "", "Without `size`: of a round plane.",
+                     {"plane"}),
+            needed("direction", kept("direction", direction, &F::direction), "[1, 0, 0]",
+                   "Along which the distance is measured: its far end is at the joint.", {"distance"}),
+            optional("z", kept("direction", direction, &F::z), "the joint's axis",
+                     "Along the axis, or normal to the plane.", placed),
+            optional("x", kept("direction", direction, &F::x), "that of the joint's frame",
+                     "Its x axis, made perpendicular to z.", placed),
+            optional("shape",
+                     word_at<ZoneShape>({{ZoneShape::usual, "around the axis or the point"},
+                                         {ZoneShape::planes, "between two planes; `along` is across them"}},
+                                        &F::shape),
+                     "`\"usual\"`", "The shape of its zones.", {"axis", "point"}),
+            optional("along", kept("text", read_along, &F::along), "", "With shape = \"planes\": \"x\" or \"y\".",
+                     {"axis", "point"})}};
+    std::vector<Row<F>> zones = zone_rows(std::make_index_sequence<11>());
+    for (std::size_t k = 0; k < zones.size(); ++k) {
+      zones[k].name = zone_traits()[k].key;
+      zones[k].only_for = bearers(zones[k].name);
+      made.rows.push_back(std::move(zones[k]));
+    }
+    for (const std::string_view form : {"straightness", "roundness", "cylindricity"}) {
+      made.rows.push_back(
+          optional(form, read_by("none", refuse_form), "", "Refused, because rigid parts have no form."));
+    }
+    return made;
+  }();
+  return keys;
+}
+
+/// Throws for two zones of one class, and for a flatness beside another zone.
+void check_zones(const FeatureLines& feature) {
+  for (std::size_t k = 0; k < feature.zones.size(); ++k) {
+    const ZoneLines& zone = feature.zones[k];
+    for (std::size_t other = 0; other < k; ++other) {
+      const ZoneLines& first = feature.zones[other];
+      const FeatureKind kind = kind_of(feature);
+      const bool is_same = zone_class(zone.key, kind) == zone_class(first.key, kind);
+      const bool has_flatness = zone.key == "flatness" || first.key == "flatness";
+      if (!is_same && !has_flatness) continue;
+      throw InputError(
+          zone.size.place,
+          feature.key + " '" + feature.name + "' has " + std::string(first.key) + " and " + std::string(zone.key),
+          has_flatness ? "remove the flatness, because the other zone contains the form"
+                       : "keep the one that decides: a feature has one zone of location and one of "
+                         "orientation");
+    }
+  }
+}
+
+/// Throws for keys of the size and the shape that do not fit together.
+void check_shape(const FeatureLines& feature) {
+  const auto fail = [&](const std::string& problem, std::string_view remedy) {
+    throw InputError(feature.place, feature.key + " '" + feature.name + "' " + problem, remedy);
+  };
+  if (feature.kind == FeatureWord::plane && feature.size.empty() == !feature.diameter) {
+    fail(feature.diameter ? "has size and diameter" : "has no size",
+         "write size = [\"60 mm\", \"40 mm\"] for a rectangle, or diameter = \"50 mm\"");
+  }
+  const bool has_planes = feature.shape == ZoneShape::planes;
+  if (has_planes && feature.along.empty()) fail("has zones between planes", "write along = \"x\" or \"y\"");
+  if (!has_planes && !feature.along.empty()) fail("has along", "write shape = \"planes\" too, or remove it");
+  const bool is_rectangle = feature.kind == FeatureWord::plane && !feature.diameter;
+  for (const ZoneLines& zone : feature.zones) {
+    if (is_rectangle && (zone.key == "runout" || zone.key == "total_runout")) {
+      fail("has " + std::string(zone.key) + ", for which a pointer turns on a round face", "write its diameter");
+    }
+  }
+}
+
+}  // namespace
+
+std::string_view name(FeatureWord kind) {
+  constexpr std::array<std::string_view, 4> kNames{"axis", "plane", "point", "distance"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::string_view name(PartSide side) { return side == PartSide::before ? "before" : "after"; }
+
+std::string_view name(ZoneShape shape) { return shape == ZoneShape::usual ? "usual" : "planes"; }
+
+std::vector<FeatureLines> read_features(const StudyValue& value) {
+  std::vector<FeatureLines> list;
+  for (const StudyValue& element : value.list()) {
+    FeatureLines feature;
+    feature.key = element.full_name();
+    feature.place = element.place();
+    const StudySection section = element.section();
+    read_keys(feature_keys(), section, feature, Nothing{});
+    const StudyValue name = section.require("name");
+    check_new({feature.name, name.full_name(), name.place()}, list, "feature of this limb");
+    check_shape(feature);
+    check_zones(feature);
+    list.push_back(std::move(feature));
+  }
+  return list;
+}
+
+FeatureKind kind_of(const FeatureLines& lines) {
+  switch (lines.kind) {
+    case FeatureWord::axis:
+      return FeatureKind::axis;
+    case FeatureWord::plane:
+      return lines.diameter ? FeatureKind::round : FeatureKind::rectangle;
+    case FeatureWord::point:
+      return FeatureKind::point;
+    case FeatureWord::distance:
+      break;
+  }
+  return FeatureKind::distance;
+}
+
+StudyTables feature_tables() { return {described(feature_keys()), described(zone_keys())}; }
+
+}  // namespace poesy::file

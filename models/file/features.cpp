@@ -1,0 +1,238 @@
+#include "models/file/features.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/base/text.h"
+#include "models/file/factors.h"
+
+namespace poesy::file {
+namespace {
+
+using Matrix3 = lie::Matrix3<double>;
+using Eigen::Index;
+
+/// A share of a column below this is rounding.
+constexpr double kRounding = 1e-13;
+
+/// Where a feature is, in the base frame at home.
+struct FeatureFrame {
+  Matrix3 axes;    ///< columns x, y, z
+  Vector3 middle;  ///< m
+};
+
+/// The frame of a limb that a feature displaces.
+struct FeaturePart {
+  std::size_t frame;  ///< position
+  Transform datum;    ///< base_T_part at home
+  bool inverse;       ///< whether the feature moves the part against what is behind it
+};
+
+/// An error of a feature: how it displaces the feature's middle and turns it, per metre, in the feature's axes.
+struct FeatureError {
+  std::string_view name;  ///< "lean_x"; empty: the feature's own
+  Vector3 turn;           ///< rad/m
+  Vector3 shift;          ///< m/m
+  bool is_tilt;           ///< whether it turns
+  std::string text;       ///< "leans to x: its far end against its near end, 500 mm apart"
+};
+
+std::string millimetres(double metres) { return fmt::format("{:.6g} mm", 1e3 * metres); }
+
+FeatureError shift(std::string_view name, Index axis, std::string text) {
+  return {name, Vector3::Zero(), Vector3::Unit(axis), false, std::move(text)};
+}
+
+/// The errors of all features of this kind and size, in order.
+std::vector<FeatureError> all_errors(FeatureKind kind, const std::array<double, 2>& size) {
+  const auto lean = [&](std::string_view name, const Vector3& turn, std::string_view to) {
+    return FeatureError{
+        name, turn / size[0], Vector3::Zero(), true,
+        fmt::format("leans to {}: its far end against its near end, {} apart", to, millimetres(size[0]))};
+  };
+  const auto lift = [&](std::string_view name, const Vector3& turn, std::size_t k, std::string_view to) {
+    return FeatureError{name, 2.0 * turn / size[k], Vector3::Zero(), true,
+                        fmt::format("lifts towards {}: the edge up, the other one, {} away, down by as much", to,
+                                    millimetres(size[k]))};
+  };
+  const Vector3 x = Vector3::UnitX();
+  const Vector3 y = Vector3::UnitY();
+  switch (kind) {
+    case FeatureKind::axis:
+      return {shift("x", 0, "its middle is off along x"), shift("y", 1, "its middle is off along y"),
+              lean("lean_x", y, "x"), lean("lean_y", -x, "y")};
+    case FeatureKind::rectangle:
+    case FeatureKind::round:
+      return {shift("z", 2, "is off along its normal"), lift("lift_x", -y, 0, "x"), lift("lift_y", x, 1, "y")};
+    case FeatureKind::point:
+      return {shift("x", 0, "is off along x"), shift("y", 1, "is off along y"), shift("z", 2, "is off along z")};
+    case FeatureKind::distance:
+      break;
+  }
+  return {shift("", 0, "is too long")};
+}
+
+/// The errors that the zones of a feature let it have.
+std::vector<FeatureError> errors_of(const FeatureLines& lines, const Feature& feature) {
+  std::vector<FeatureError> all = all_errors(feature.kind, feature.size);
+  const bool only_turns = feature.orientation && !feature.location;
+  std::erase_if(all, [&](const FeatureError& error) {
+    const bool is_across = feature.one_direction && !error.name.ends_with(lines.along);
+    return is_across || (only_turns && !error.is_tilt);
+  });
+  return all;
+}
+
+class FeatureBuilder {
+ public:
+  FeatureBuilder(const Numbers& numbers, const LimbLines& limb, Mechanism& mechanism)
+      : numbers_(numbers), limb_(limb), mechanism_(mechanism) {}
+
+  /// Adds the features of the copies, of which the first is limb `first` of the mechanism.
+  void add(std::size_t first) {
+    for (std::size_t copy = 0; copy < limb_.copies.count; ++copy) {
+      for (const FeatureLines& lines : limb_.features) add_one(lines, first, copy);
+    }
+  }
+
+ private:
+  /// The elementary joint of the limb, from 0.
+  std::size_t joint_of(const FeatureLines& lines) const {
+    std::size_t first = 0;
+    for (const JointLines& joint : limb_.joints) {
+      const std::size_t count = elements(joint.kind);
+      if (joint.name != lines.joint->name) {
+        first += count;
+        continue;
+      }
+      if (lines.axis) {
+        if (*lines.axis <= count) return first + *lines.axis - 1;
+        throw InputError(lines.place,
+                         fmt::format("{}.axis is {}, but joint '{}' has {}", lines.key, *lines.axis, joint.name,
+                                     count == 1 ? "one axis" : fmt::format("{} axes", count)),
+                         "write the number of one of its axes");
+      }
+      const bool takes_last = lines.part == PartSide::after && joint.kind != JointKind::universal;
+      return takes_last ? first + count - 1 : first;
+    }
+    throw InputError(lines.joint->place,
+                     lines.joint->key + " '" + printable(lines.joint->name) + "' is no joint of this limb",
+                     suggestion(lines.joint->name, names(limb_.joints)));
+  }
+
+  FeaturePart part_of(const FeatureLines& lines, const Limb& limb, std::size_t joint) const {
+    const bool is_after = lines.part == PartSide::after;
+    if (!is_after) {
+      return {joint, joint == 0 ? mechanism_.bodies[limb.from].home : limb.joints[joint - 1].at_home, false};
+    }
+    const bool is_last = joint + 1 == limb.joints.size();
+    return {joint + 1, is_last ? mechanism_.bodies[limb.to].home : limb.joints[joint].at_home, !is_last};
+  }
+
+  Vector3 middle_of(const FeatureLines& lines, const Limb& first, std::size_t joint) const {
+    if (lines.at) return numbers_.point(*lines.at);
+    if (!lines.at_point) return first.joints[joint].at_home.p;
+    const Reference& name = *lines.at_point;
+    const auto other = std::ranges::find(first.joints, name.name, &Joint::name);
+    if (other != first.joints.end()) return other->at_home.p;
+    std::vector<std::string_view> known = names(limb_.joints);
+    for (const std::vector<NamedPoint>* list : {&limb_.points, &numbers_.file().points}) {
+      const auto found = std::ranges::find(*list, name.name, &NamedPoint::name);
+      if (found != list->end()) return numbers_.point(found->point);
+      for (const NamedPoint& one : *list) known.push_back(one.name);
+    }
+    throw InputError(name.place, name.key + " '" + printable(name.name) + "' is no joint of this limb and no point",
+                     suggestion(name.name, known));
+  }
+
+  FeatureFrame frame_in_first(const FeatureLines& lines, const Limb& first, std::size_t joint) const {
+    const Matrix3& of_joint = first.joints[joint].at_home.R;
+    const Vector3 middle = middle_of(lines, first, joint);
+    if (lines.direction) {
+      const Vector3 x = numbers_.direction(*lines.direction);
+      const Vector3 other = parallel(x, Vector3::UnitZ()) ? Vector3::UnitX() : Vector3::UnitZ();
+      return {frame_of(x, perpendicular(other, x)), middle};
+    }
+    const Vector3 z = lines.z ? numbers_.direction(*lines.z) : Vector3(of_joint.col(2));
+    const Vector3 x = lines.x ? numbers_.direction(*lines.x) : Vector3(of_joint.col(0));
+    if (!parallel(x, z)) return {frame_of(perpendicular(x, z), z), middle};
+    throw InputError(lines.x ? lines.x->place : lines.z->place, lines.key + " '" + lines.name + "' has x parallel to z",
+                     "write another x");
+  }
+
+  /// Sizes and zones, without the number of a limb.
+  Feature described(const FeatureLines& lines) const {
+    Feature feature{.name = {}, .label = lines.name, .limb = 0, .frame = 0, .kind = kind_of(lines)};
+    feature.one_direction = lines.shape == ZoneShape::planes;
+    if (lines.length) feature.size[0] = numbers_.positive(*lines.length, kLength);
+    if (lines.diameter) feature.size.fill(numbers_.positive(*lines.diameter, kLength));
+    for (std::size_t k = 0; k < lines.size.size(); ++k) feature.size[k] = numbers_.positive(lines.size[k], kLength);
+    for (const ZoneLines& zone : lines.zones) {
+      const Zone made{zone.key, numbers_.positive(zone.size, kLength), zone.datums};
+      const bool turns_only = zone_class(zone.key, feature.kind) == ZoneClass::orientation;
+      (turns_only ? feature.orientation : feature.location) = made;
+    }
+    return feature;
+  }
+
+  chain::ErrorTerms terms(const FeatureError& error, const FeatureFrame& at, const FeaturePart& part,
+                          std::size_t limb) const {
+    const Transform inside = part.datum.inverse() * Transform{at.axes, at.middle};
+    const Vector3 turn = inside.R * error.turn;
+    const Vector3 arm = inside.p.cross(turn);
+    const Vector3 shift = inside.R * error.shift + arm;
+    const double shift_size = std::max(error.shift.norm(), inside.p.norm() * turn.norm());
+    chain::ErrorTerms list;
+    for (std::size_t component = 0; component < 6; ++component) {
+      const auto axis = static_cast<Index>(component % 3);
+      const double entry = component < 3 ? turn[axis] : shift[axis];
+      const double size = component < 3 ? turn.norm() : shift_size;
+      if (std::abs(entry) <= kRounding * size) continue;
+      list.push_back({limb, part.frame, component, part.inverse ? -entry : entry});
+    }
+    return list;
+  }
+
+  void add_one(const FeatureLines& lines, std::size_t first, std::size_t copy) {
+    const Limb& limb = mechanism_.limbs[first + copy];
+    const std::size_t joint = joint_of(lines);
+    FeatureFrame at = frame_in_first(lines, mechanism_.limbs[first], joint);
+    const Transform turn = turned(limb_.copies, copy);
+    at = {turn.R * at.axes, turn.R * at.middle};
+    const FeaturePart part = part_of(lines, limb, joint);
+    Feature feature = described(lines);
+    const std::string number = std::to_string(first + copy + 1);
+    feature.name = lines.name + "_" + number;
+    feature.limb = first + copy + 1;
+    feature.frame = part.frame;
+    for (const FeatureError& error : errors_of(lines, feature)) {
+      (error.is_tilt ? feature.tilt : feature.middle).emplace_back(mechanism_.factors.size());
+      std::string name = lines.name;
+      if (!error.name.empty()) name += "_" + std::string(error.name);
+      Factor factor{name + "_" + number, Dimension::length, feature.limb, part.frame,
+                    fmt::format("{} of limb {} {}", lines.name, limb.label, error.text)};
+      add_error(std::move(factor), terms(error, at, part, first + copy), {lines.name, lines.key, lines.place},
+                mechanism_);
+    }
+    mechanism_.features.push_back(std::move(feature));
+  }
+
+  const Numbers& numbers_;
+  const LimbLines& limb_;
+  Mechanism& mechanism_;
+};
+
+}  // namespace
+
+void add_features(const Numbers& numbers, Mechanism& mechanism) {
+  std::size_t first = 0;
+  for (const LimbLines& limb : numbers.file().limbs) {
+    FeatureBuilder(numbers, limb, mechanism).add(first);
+    first += limb.copies.count;
+  }
+}
+
+}  // namespace poesy::file
