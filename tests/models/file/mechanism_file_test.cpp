@@ -222,7 +222,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:11:1: the metric has no meaning: the points are on one line, about which the platform may turn "
            "unseen; write points = [...] in [platform], three or more that are on no line"},
           {"joints = [", "joints = []\nx = [",
-           "m.toml:21:1: unknown key 'x' in [limb[0]]; known: name, from, to, copies, points, joints, links, "
+           "m.toml:21:1: unknown key 'x' in [limb[0]]; known: name, from, to, copies, points, joints, links, features, "
            "compliance"},
           {"frames = \"all\"", "frames = \"none\"",
            "m.toml:27:10: errors.frames is 'none'; write \"all\", or a list of names and patterns"},
