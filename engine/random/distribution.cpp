@@ -198,10 +198,32 @@ POESY_EACH_INSTRUCTION_SET void triangular_quantiles(double half_width, std::spa
 /// The shift of the half in which a share lies.
 [[gnu::always_inline]] inline double shift_of_half(double shift, double u) { return std::copysign(shift, u - 0.5); }
 
+bool is_symmetric(Distribution::Shape shape) {
+  return shape != Distribution::Shape::measured && shape != Distribution::Shape::given;
+}
+
+/// The value of a share u, of values that are equally likely.
+double value_of_share(std::span<const double> values, double u) {
+  const auto place = static_cast<std::size_t>(u * static_cast<double>(values.size()));
+  return values[std::min(place, values.size() - 1)];
+}
+
 void expect_positive(const char* parameter, double value) {
   if (!(value > 0.0) || !std::isfinite(value)) {
     throw std::invalid_argument(std::string(parameter) + " must be a finite number above zero");
   }
+}
+
+void expect_values(std::span<const double> values, std::size_t least_number) {
+  if (values.size() < least_number) {
+    throw std::invalid_argument("values must be at least " + std::to_string(least_number) + ", not " +
+                                std::to_string(values.size()));
+  }
+  if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+    throw std::invalid_argument("values must be finite numbers");
+  }
+  const auto [least, greatest] = std::ranges::minmax(values);
+  if (least == greatest) throw std::invalid_argument("values must not all be equal");
 }
 
 /// sigma sqrt(1 - 2 a phi(a) / (2 Phi(a) - 1)) with a = half_width / sigma.
@@ -284,20 +306,27 @@ Distribution Distribution::triangular(double half_width) {
 }
 
 Distribution Distribution::measured(std::vector<double> values) {
-  if (values.size() < kLeastMeasured) {
-    throw std::invalid_argument("values must be at least " + std::to_string(kLeastMeasured) + ", not " +
-                                std::to_string(values.size()));
-  }
-  if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
-    throw std::invalid_argument("values must be finite numbers");
-  }
-  const auto [least, greatest] = std::ranges::minmax(values);
-  if (least == greatest) throw std::invalid_argument("values must not all be equal");
+  expect_values(values, kLeastMeasured);
   SmoothedValues parts(std::move(values));
   Distribution made(Shape::measured, 0.0, std::max(std::abs(parts.least()), std::abs(parts.greatest())),
                     parts.standard_deviation());
   made.mean_ = parts.mean();
   made.parts_ = std::move(parts);
+  return made;
+}
+
+Distribution Distribution::given(std::vector<double> values) {
+  expect_values(values, 2);
+  std::ranges::sort(values);
+  const auto n = static_cast<double>(values.size());
+  double mean = 0.0;
+  for (const double value : values) mean += value / n;
+  double squares = 0.0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  Distribution made(Shape::given, 0.0, std::max(std::abs(values.front()), std::abs(values.back())),
+                    std::sqrt(squares / (n - 1.0)));
+  made.mean_ = mean;
+  made.given_ = std::move(values);
   return made;
 }
 
@@ -307,7 +336,7 @@ Distribution Distribution::shifted(double shift) const {
   if (!(shift >= 0.0) || !std::isfinite(deviation)) {
     throw std::invalid_argument("shift must be a finite number, not below zero");
   }
-  if (shape_ == Shape::measured && shift > 0.0) throw std::invalid_argument("shift is not for measured values");
+  if (!is_symmetric(shape_) && shift > 0.0) throw std::invalid_argument("shift is not for measured values");
   Distribution made = *this;
   if (shift == 0.0) return made;
   made.shift_ = shift;
@@ -318,7 +347,7 @@ Distribution Distribution::shifted(double shift) const {
 Distribution Distribution::about(double centre) const {
   POESY_EXPECTS(centre_ == 0.0);
   if (!std::isfinite(centre)) throw std::invalid_argument("mean must be a finite number");
-  if (shape_ == Shape::measured && centre != 0.0) throw std::invalid_argument("mean is not for measured values");
+  if (!is_symmetric(shape_) && centre != 0.0) throw std::invalid_argument("mean is not for measured values");
   Distribution made = *this;
   if (centre == 0.0) return made;
   made.centre_ = centre;
@@ -350,6 +379,8 @@ double Distribution::centred_quantile(double u) const {
       return quantile_of(TriangularTail{half_width_}, u);
     case Shape::measured:
       return parts_->quantile(u);
+    case Shape::given:
+      return value_of_share(given_, u);
   }
   throw std::logic_error("unknown shape of distribution");
 }
@@ -386,6 +417,9 @@ void Distribution::centred_transform(std::span<double> uniforms) const {
     case Shape::measured:
       for (double& u : uniforms) u = parts_->quantile(u);
       return;
+    case Shape::given:
+      for (double& u : uniforms) u = value_of_share(given_, u);
+      return;
   }
   throw std::logic_error("unknown shape of distribution");
 }
@@ -413,6 +447,8 @@ std::string_view name(Distribution::Shape shape) {
       return "triangular";
     case measured:
       return "measured";
+    case given:
+      return "given";
   }
   throw std::logic_error("unknown shape of distribution");
 }

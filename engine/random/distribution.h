@@ -11,12 +11,12 @@
 
 namespace poesy {
 
-/// The distribution of one error: its quantile function, mean and standard deviation. All shapes but the measured one
-/// are symmetric about their centre, which is zero unless about() moves it.
+/// The distribution of one error: its quantile function, mean and standard deviation. All shapes but measured and given
+/// values are symmetric about their centre, which is zero unless about() moves it.
 class Distribution {
  public:
   /// Shapes of the density.
-  enum class Shape { normal, truncated_normal, uniform, triangular, measured };
+  enum class Shape { normal, truncated_normal, uniform, triangular, measured, given };
 
   /// The least number of measured values for a distribution.
   static constexpr std::size_t kLeastMeasured = 8;
@@ -34,14 +34,18 @@ class Distribution {
   /// equal.
   static Distribution measured(std::vector<double> values);
 
+  /// The values themselves, each as often: those of machines that are given instead of drawn. Its standard deviation is
+  /// that of the values (n - 1). At least two values, finite, not all equal.
+  static Distribution given(std::vector<double> values);
+
   /// The same shape about a mean that is off by shift >= 0 (m or rad), as often up as down: half of all errors scatter
   /// about -shift and half about +shift. A zero shift gives the same bits. Throws std::invalid_argument for a negative
-  /// shift, and for measured values, whose mean is measured too. Precondition: it has no shift yet.
+  /// shift, and for measured and given values, which have a mean. Precondition: it has no shift yet.
   Distribution shifted(double shift) const;
 
   /// The same distribution moved, so that its middle is at `centre` (m or rad). A zero centre gives the same bits.
-  /// Throws std::invalid_argument for a number that is not finite, and for measured values, whose mean is measured too.
-  /// Precondition: its centre is 0.
+  /// Throws std::invalid_argument for a number that is not finite, and for measured and given values, which have a
+  /// mean. Precondition: its centre is 0.
   Distribution about(double centre) const;
 
   Shape shape() const { return shape_; }   ///< The shape of the density.
@@ -51,8 +55,8 @@ class Distribution {
   double shift() const { return shift_; }  ///< Offset of the mean, as often up as down; 0 unless it is shifted.
   /// Largest possible magnitude; infinity for the normal.
   double largest() const { return half_width_ + shift_ + std::abs(centre_); }
-  double centre() const { return centre_; }  ///< The middle of a symmetric shape; 0 for measured values.
-  double mean() const { return mean_; }      ///< The mean: the centre, or that of measured values.
+  double centre() const { return centre_; }  ///< The middle of a symmetric shape; 0 for others.
+  double mean() const { return mean_; }      ///< The mean: the centre, or that of the values.
   /// The standard deviation about the mean: after truncation; for measured values with n - 1; with a shift, sqrt(s^2 +
   /// shift^2) where s is that without it.
   double standard_deviation() const { return standard_deviation_; }
@@ -67,6 +71,9 @@ class Distribution {
   /// Replaces each normal score z, a standard normal, by the value at the same share: centre + sigma z for the normal,
   /// otherwise the quantile of Phi(z).
   void transform_scores(std::span<double> scores) const;
+
+  /// The given values, ascending; empty for other shapes.
+  std::span<const double> given_values() const { return given_; }
 
   /// Whether shape, parameters, shift, centre and measured values are the same.
   friend bool operator==(const Distribution&, const Distribution&) = default;
@@ -92,6 +99,7 @@ class Distribution {
   double mean_ = 0.0;
   double standard_deviation_;
   std::optional<SmoothedValues> parts_;
+  std::vector<double> given_;
 };
 
 /// The quantile of a normal with standard deviation sigma at the share u, to a few units in the last place. Odd about u
@@ -102,7 +110,8 @@ double normal_quantile(double sigma, double u);
 /// inside (0, 1). It is fastest if few of them are below 2^-54.
 void normal_quantiles(double sigma, std::span<double> shares);
 
-/// The word in a study file: "normal", "truncated-normal", "uniform", "triangular", "measured".
+/// The word in a study file: "normal", "truncated-normal", "uniform", "triangular", "measured"; "given" where machines
+/// are.
 std::string_view name(Distribution::Shape shape);
 
 }  // namespace poesy

@@ -51,6 +51,7 @@ WeightedPoints weighted_points(const Distribution& distribution) {
       return found;
     case normal:
     case truncated_normal:
+    case given:
       break;
   }
   throw std::logic_error("weighted points of a density that is not linear in pieces");

@@ -90,7 +90,7 @@ UnitSolver::UnitSolver(const Plan& plan, const Model& model, std::size_t varied)
       iterations_(Plan::kUnitSamples) {}
 
 void UnitSolver::draw_uniforms(const WorkUnit& unit, std::size_t slot, std::span<double> row) const {
-  fill_uniforms(plan_->address(slot, unit.pose), unit.first, row);
+  plan_->draw_uniforms(slot, unit.pose, unit.first, row);
 }
 
 EffectBins UnitSolver::draw_in_bins(const WorkUnit& unit) {

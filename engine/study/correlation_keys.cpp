@@ -166,6 +166,11 @@ CorrelatedErrors read_block(const StudyValue& value, const Study& study, const R
     factors.fail("has '" + study.model().factors[factor.value].name + "', whose distribution has a shift",
                  "leave it out here, or remove its shift: errors with one cannot be correlated");
   }
+  for (const FactorIndex factor : block.factors) {
+    if (study.errors.by_factor[factor.value].shape() != Distribution::Shape::given) continue;
+    factors.fail("has '" + study.model().factors[factor.value].name + "', a column of errors.machines",
+                 "leave it out here: the rows show which errors go together");
+  }
   check_draws(factors, block.factors, study);
   const StudyValue correlation = section.require("correlation");
   if (correlation.is_text()) {

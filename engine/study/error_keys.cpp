@@ -55,6 +55,7 @@ Distribution centred_distribution_of(const Parameters& parameters) {
     case Shape::triangular:
       return Distribution::triangular(parameters.half_width);
     case Shape::measured:
+    case Shape::given:
       break;
   }
   if (parameters.values.size() > kMostMeasured) {
@@ -391,6 +392,120 @@ void read_override(const StudyValue& value, Study& study, const Reading& reading
   }
 }
 
+/// The most numbers of given machines, because they become part of every result.
+constexpr std::size_t kMostGiven = 200'000;
+
+/// A table of given machines, in a resolved study.
+struct GivenRows {
+  std::vector<std::string> columns = {};
+  std::vector<std::vector<double>> rows = {};  ///< SI
+};
+
+KeyValue<GivenRows> columns_value() {
+  const auto read = [](const StudyValue& value, GivenRows& given) {
+    for (const StudyValue& one : value.list()) given.columns.push_back(one.text());
+  };
+  return {.type = "list of texts", .read = read};
+}
+
+KeyValue<GivenRows> rows_value() {
+  const auto read = [](const StudyValue& value, GivenRows& given) {
+    for (const StudyValue& row : value.list()) {
+      given.rows.emplace_back();
+      for (const StudyValue& one : row.list()) given.rows.back().push_back(one.number());
+      if (given.rows.back().size() == given.columns.size()) continue;
+      row.fail(fmt::format("has {} numbers, but there are {} columns", given.rows.back().size(), given.columns.size()),
+               "write one number for each column");
+    }
+  };
+  return {.type = "list of lists of numbers", .read = read};
+}
+
+const InnerRows<GivenRows>& machines_keys() {
+  static const InnerRows<GivenRows> keys{
+      .paths = {"errors.machines"},
+      .meaning = "The errors of given machines, instead of a file. A resolved study has them.",
+      .rows = {InnerRow<GivenRows>{.name = "columns",
+                                   .value = columns_value(),
+                                   .missing = "write the names of errors, e.g. {}",
+                                   .example = "[\"delta_1\"]",
+                                   .meaning = "Names of errors."},
+               InnerRow<GivenRows>{.name = "rows",
+                                   .value = rows_value(),
+                                   .missing = "write a list of numbers for each machine, e.g. {}",
+                                   .example = "[[0.001], [-0.002]]",
+                                   .meaning = "A list for each machine: its errors in the order of columns, SI."}}};
+  return keys;
+}
+
+ErrorTable table_of(const StudyValue& value, const ModelDescription& model) {
+  GivenRows given;
+  const StudySection section = value.section();
+  read_keys(machines_keys(), section, given, Nothing());
+  ErrorTable table{.factors = {}, .values = {}, .rows = given.rows.size()};
+  for (const StudyValue& column : section.require("columns").list()) {
+    const auto factor = model.find_factor(column.text());
+    if (!factor)
+      column.fail("is '" + printable(column.text()) + "', which is no error of the mechanism",
+                  suggestion(column.text(), names(model.factors)));
+    table.factors.push_back(*factor);
+  }
+  for (const std::vector<double>& row : given.rows) table.values.insert(table.values.end(), row.begin(), row.end());
+  return table;
+}
+
+/// Takes the columns of given machines as the distributions of their errors.
+void take_machines(const StudyValue& value, ErrorTable table, Study& study) {
+  if (table.values.size() > kMostGiven) {
+    value.fail(fmt::format("has {} numbers", table.values.size()),
+               fmt::format("a study has at most {} numbers of given machines", kMostGiven));
+  }
+  for (const FactorIndex factor : table.factors) {
+    const std::string column = "has the column '" + study.model().factors[factor.value].name + "', ";
+    if (study.errors.is_per_pose(factor)) {
+      value.fail(column + "which [errors] draws per pose", "remove the column, or its draws = \"per pose\"");
+    }
+    try {
+      study.errors.by_factor[factor.value] = Distribution::given(table.column(factor));
+    } catch (const std::invalid_argument& reason) {
+      value.fail(column + "whose " + reason.what(),
+                 "remove it; an error that is the same in all machines is held by analysis.background");
+    }
+  }
+  study.analysis.samples = table.rows;
+  study.errors.machines = std::move(table);
+}
+
+/// Reads the machines of a file, or of a table in the study. Files are opened only for a run.
+void read_machines(const StudyValue& value, Study& study, const Reading& reading) {
+  if (value.is_section()) return take_machines(value, table_of(value, study.model()), study);
+  const std::string file = value.text();
+  if (reading.use != StudyUse::run) return;
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  ErrorTable table = read_errors(beside_study(reading.root.section("errors"), file), *model);
+  if (std::string doubt = bare_error_text(file, table, study); !doubt.empty()) study.doubts.push_back(std::move(doubt));
+  take_machines(value, std::move(table), study);
+}
+
+std::string machines_lines(const Study& study) {
+  if (!study.errors.machines) return {};
+  const ErrorTable& table = *study.errors.machines;
+  std::string text = "machines.columns = " + factor_list_text(table.factors, study.model()) + "\nmachines.rows = [\n";
+  for (std::size_t row = 0; row < table.rows; ++row) {
+    std::vector<std::string> numbers;
+    for (std::size_t v = 0; v < table.factors.size(); ++v) {
+      numbers.push_back(shortest(table.values[row * table.factors.size() + v]));
+    }
+    text += "  " + list_text(numbers) + ",\n";
+  }
+  return text + "]\n";
+}
+
+/// Whether the error is that of given machines.
+bool is_given(const Study& study, std::size_t f) {
+  return study.errors.by_factor[f].shape() == Distribution::Shape::given;
+}
+
 /// The values as a TOML list over several lines, to keep lines of a study file short.
 std::string values_text(std::span<const double> values, Dimension dimension, ValueText value) {
   constexpr std::size_t kOfLine = 5;
@@ -417,6 +532,8 @@ std::string error_text(const StatedError& error, Dimension dimension, ValueText 
     case Shape::triangular:
       text += half_width();
       break;
+    case Shape::given:
+      break;  // in the table of machines
     case Shape::measured:
       text += ", values = " + values_text(distribution.parts()->values(), dimension, value);
       break;
@@ -433,7 +550,8 @@ StatedError commonest_error(const Study& study, Dimension dimension) {
   const std::vector<std::optional<double>> zones = sigmas_by_zones(study);
   std::vector<StatedError> all;
   for (std::size_t f = 0; f < factors.size(); ++f) {
-    if (factors[f].dimension == dimension && !zones[f]) all.push_back(stated_error(study.errors, f));
+    if (factors[f].dimension != dimension || zones[f] || is_given(study, f)) continue;
+    all.push_back(stated_error(study.errors, f));
   }
   const auto uses = [&](const StatedError& error) { return std::ranges::count(all, error); };
   const auto commonest = std::ranges::max_element(all, {}, uses);
@@ -455,7 +573,7 @@ std::string override_lines(const Study& study) {
     const Factor& factor = study.model().factors[f];
     const StatedError own = stated_error(study.errors, f);
     const StatedError& usual = factor.dimension == Dimension::length ? linear : angular;
-    if (own == (zones[f] ? StatedError{Distribution::normal(*zones[f])} : usual)) continue;
+    if (is_given(study, f) || own == (zones[f] ? StatedError{Distribution::normal(*zones[f])} : usual)) continue;
     text += factor.name + " = " + error_text(own, factor.dimension, exact_value) + "\n";
   }
   return text.empty() ? "" : "\n[errors.override]\n" + text;
@@ -467,6 +585,11 @@ std::string shown_override(const TemplateLines& lines, const Study& study) {
   return lines.explained("errors", "override",
                          fmt::format("# override = {{ {} = {{ distribution = \"uniform\", half_width = {} }} }}",
                                      factor.name, example_size(factor.dimension, 0.5)));
+}
+
+std::string shown_machines(const TemplateLines& lines, const Study&) {
+  return lines.explanation_lines("errors", "machines") + lines.keys_lines("errors.machines") +
+         "# machines = \"parts.csv\"\n";
 }
 
 template <Dimension kDimension>
@@ -502,6 +625,12 @@ void check_distributions(const StudySection& root, const Study& study, const Mod
   const std::vector<std::optional<double>> zones = sigmas_by_zones(study);
   for (const FactorIndex factor : study.analysis.factors) {
     const Distribution& distribution = study.errors.by_factor[factor.value];
+    if (distribution.shape() == Distribution::Shape::given) {
+      if (const auto problem = beyond_bound(model, factor, distribution.largest(), "an error")) {
+        refuse_error(root.section("errors"), "machines", *problem);
+      }
+      continue;
+    }
     const auto refuse = [&](const std::optional<std::string>& problem, std::span<const std::string_view> at) {
       if (!problem) return;
       refuse_distribution(root, model.description().factors[factor.value], zones[factor.value].has_value(), *problem,
@@ -534,18 +663,31 @@ void check_calibrated(const StudySection& analysis, const Study& study) {
 }  // namespace
 
 const StudyRows& errors_keys() {
-  static const StudyRows keys{.paths = {"errors"},
-                              .meaning = "How the errors that vary scatter, by their dimension.",
-                              .rows = {usual_row<Dimension::length>("Distribution of every length."),
-                                       usual_row<Dimension::angle>("Distribution of every angle."), zones_row(),
-                                       StudyRow{.name = "override",
-                                                .value = {.type = "table"},
-                                                .usual = "none",
-                                                .meaning = "Errors with a distribution of their own.",
-                                                .reader = read_override,
-                                                .lines = override_lines,
-                                                .shown = shown_override},
-                                       correlated_row()}};
+  static const StudyRows keys{
+      .paths = {"errors"},
+      .meaning = "How the errors that vary scatter, by their dimension.",
+      .rows = {usual_row<Dimension::length>("Distribution of every length."),
+               usual_row<Dimension::angle>("Distribution of every angle."), zones_row(),
+               StudyRow{.name = "override",
+                        .value = {.type = "table"},
+                        .usual = "none",
+                        .meaning = "Errors with a distribution of their own.",
+                        .reader = read_override,
+                        .lines = override_lines,
+                        .late = 1,
+                        .shown = shown_override},
+               StudyRow{.name = "machines",
+                        .value = {.type = "text or table"},
+                        .usual = "drawn",
+                        .example = "\"parts.csv\"",
+                        .meaning = "Machines that are given, for a Monte Carlo study with draws = "
+                                   "\"per machine\": a CSV file with a row for each machine and "
+                                   "columns as `poesy evaluate --errors` reads them, relative to "
+                                   "the study's folder. Errors without a column are drawn.",
+                        .reader = read_machines,
+                        .lines = machines_lines,
+                        .shown = shown_machines},
+               correlated_row()}};
   return keys;
 }
 
@@ -560,6 +702,7 @@ StudyTables errors_tables() {
                                 "letters and '?' for one; the last key of the file that fits an error counts."}}},
           described(distribution_keys()),
           zones_table(),
+          described(machines_keys()),
           correlated_table()};
 }
 
@@ -576,6 +719,27 @@ void read_errors_section(Study& study, const Reading& reading) {
     study.errors.by_factor.push_back(default_distribution(factor.dimension));
   }
   read_keys(errors_keys(), reading.root.section("errors"), study, reading);
+}
+
+void check_machines(const Study& study, const Reading& reading) {
+  if (!study.errors.machines) return;
+  const StudyValue machines = reading.root.section("errors").require("machines");
+  const StudyKind& kind = *study.analysis.kind;
+  if (kind.varies != Varies::together || study.analysis.draws != Draws::per_machine || kind.draws_machines_anew) {
+    machines.fail("is set, but this study does not take machines as they are",
+                  "take kind = \"monte-carlo\" with draws = \"per machine\", or remove it");
+  }
+  for (const FactorIndex factor : study.errors.machines->factors) {
+    if (std::ranges::find(study.analysis.factors, factor) != study.analysis.factors.end()) continue;
+    machines.fail("has the column '" + study.model().factors[factor.value].name + "', which the study does not vary",
+                  "name it in analysis.factors, or remove the column");
+  }
+  const std::size_t rows = study.errors.machines->rows;
+  if (study.analysis.samples <= rows) return;
+  reading.root.section("analysis")
+      .require("samples")
+      .fail(fmt::format("asks for {} machines, but errors.machines has {}", study.analysis.samples, rows),
+            "write no more, or leave it out to take all of them");
 }
 
 void refuse_error(const StudySection& section, std::string_view key, const std::string& problem) {

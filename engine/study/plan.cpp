@@ -1,6 +1,7 @@
 #include "engine/study/plan.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "engine/base/contract.h"
@@ -30,6 +31,20 @@ std::vector<CorrelatedSlots> correlated_slots(const Study& study) {
   return blocks;
 }
 
+/// [rows] The uniforms of which the distribution of a given error makes its values, row by row; empty if it is drawn.
+std::vector<double> given_uniforms(const ErrorModel& errors, FactorIndex factor) {
+  if (errors.by_factor[factor.value].shape() != Distribution::Shape::given) return {};
+  const std::vector<double> values = errors.machines->column(factor);
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t row) { return values[row]; });
+  std::vector<double> uniforms(values.size());
+  for (std::size_t place = 0; place < order.size(); ++place) {
+    uniforms[order[place]] = (static_cast<double>(place) + 0.5) / static_cast<double>(values.size());
+  }
+  return uniforms;
+}
+
 }  // namespace
 
 Plan::Plan(const Study& study, PoseSet poses)
@@ -51,6 +66,14 @@ Plan::Plan(const Study& study, PoseSet poses)
   for (std::size_t slot = 0; slot < factors_.size() && draws_ == Draws::per_machine; ++slot) {
     if (study.errors.is_per_pose(factors_[slot])) per_pose_.push_back(slot);
   }
+  for (const FactorIndex factor : factors_) given_.push_back(given_uniforms(study.errors, factor));
+}
+
+void Plan::draw_uniforms(std::size_t slot, PoseIndex pose, SampleIndex first, std::span<double> row) const {
+  const std::vector<double>& given = given_[slot];
+  if (given.empty()) return fill_uniforms(address(slot, pose), first, row);
+  POESY_EXPECTS(first.value + row.size() <= given.size());
+  std::ranges::copy(std::span(given).subspan(first.value, row.size()), row.begin());
 }
 
 bool Plan::is_per_pose(std::size_t slot) const { return std::ranges::binary_search(per_pose_, slot); }

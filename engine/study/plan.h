@@ -71,6 +71,9 @@ class Plan {
     const bool is_fixed = draws_ == Draws::per_machine && !is_per_pose(slot);
     return {seed_, Purpose::error_samples, factors_[slot], is_fixed ? PoseIndex(0) : pose};
   }
+  /// Fills a row with the uniforms of consecutive samples, from which the errors of factors()[slot] are computed: those
+  /// of its address, or of given machines the places of their values among all rows.
+  void draw_uniforms(std::size_t slot, PoseIndex pose, SampleIndex first, std::span<double> row) const;
   const PoseSet& poses() const { return poses_; }  ///< The poses, in the order of the study.
   std::span<const FactorIndex> factors() const {
     return factors_;
@@ -109,6 +112,7 @@ class Plan {
   std::uint64_t seed_;
   Draws draws_;
   std::vector<std::size_t> per_pose_;
+  std::vector<std::vector<double>> given_;  ///< [P][rows] uniforms of given machines; empty for errors that are drawn
   SolverOptions solver_;
   NotConverged not_converged_;
 };

@@ -19,6 +19,7 @@
 #include "engine/model/own_responses.h"
 #include "engine/random/distribution.h"
 #include "engine/study/poses/pose_selection.h"
+#include "engine/study/table_file.h"
 
 namespace poesy {
 
@@ -63,6 +64,8 @@ struct ErrorModel {
   std::vector<CorrelatedErrors> correlated = {};   ///< no factor is in two of them
   /// Ascending: errors that a machine draws anew at each pose, with Draws::per_machine; its other errors are fixed.
   std::vector<FactorIndex> per_pose = {};
+  /// Errors of machines that are given: row s is machine s, whose other errors are drawn. by_factor has the columns.
+  std::optional<ErrorTable> machines = {};
 
   bool is_per_pose(FactorIndex factor) const;  ///< Whether a machine draws this error anew at each pose.
 };

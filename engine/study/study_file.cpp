@@ -102,6 +102,7 @@ Study study_from(const Reading& reading) {
   if (reading.use == StudyUse::run) {
     check_fidelities(study, reading);
     check_correlated(study, reading);
+    check_machines(study, reading);
     check_background(study, reading);
   }
   check_size(root, study);

@@ -76,6 +76,7 @@ struct StudyKind {
   std::span<const std::string_view> keys;  ///< keys of [analysis], in the order of templates
   Varies varies = Varies::none;            ///< which factors vary together
   bool compares_fidelities = false;        ///< whether it can compare two fidelities
+  bool draws_machines_anew = false;        ///< whether it tries several sets of machines, which cannot be given
   bool decides_by_samples = false;         ///< whether changing `samples` invalidates a checkpoint
   std::string_view usual_factors = {};     ///< set of factors if a study names none; "all" for a model without it
   std::string_view usual_background = {};  ///< set of constant errors in templates, for models that have it
@@ -181,6 +182,8 @@ StudyTable zones_table();
 std::vector<std::optional<double>> sigmas_by_zones(const Study& study);
 /// Throws InputError at the block's place if correlated errors do not vary together.
 void check_correlated(const Study& study, const Reading& reading);
+/// Throws InputError if machines are given to a study that does not draw machines, or more samples are asked for.
+void check_machines(const Study& study, const Reading& reading);
 /// The path of a file that the study names relative to its folder.
 std::string beside_study(const StudySection& section, const std::string& file);
 /// Reads a factor set, "all", or a list of names without repetition.

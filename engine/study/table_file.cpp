@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "engine/base/contract.h"
 #include "engine/base/text.h"
 #include "engine/study/study.h"
 #include "engine/study/text_file.h"
@@ -357,6 +358,16 @@ TimedPoints read_trajectory(const std::string& path, const ModelDescription& mod
     throw InputError(lines.next_place(), "the trajectory has only one row", "write at least two rows, or use a pose");
   }
   return points;
+}
+
+std::vector<double> ErrorTable::column(FactorIndex factor) const {
+  const auto place = std::ranges::find(factors, factor);
+  POESY_EXPECTS(place != factors.end());
+  std::vector<double> found;
+  for (auto at = static_cast<std::size_t>(place - factors.begin()); at < values.size(); at += factors.size()) {
+    found.push_back(values[at]);
+  }
+  return found;
 }
 
 ErrorTable read_errors(const std::string& path, const Model& model) {

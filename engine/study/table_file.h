@@ -24,6 +24,9 @@ struct ErrorTable {
   std::size_t rows = 0;              ///< S
   RowLabels labels{};                ///< labels of the rows; empty if they have none
   std::vector<bool> bare{};          ///< [V] whether the file states no unit; empty if no file was read
+
+  /// [S] The values of a factor. Precondition: it is among `factors`.
+  std::vector<double> column(FactorIndex factor) const;
 };
 
 /// Measured values, SI.

@@ -169,6 +169,44 @@ strut_3 = { distribution = "triangular", half_width = "5 um", mean = "-2 um" }
             numpy.testing.assert_allclose(file["factors/mean"][:], -13.5e-6, rtol=1e-12)
             numpy.testing.assert_allclose(file["factors/sigma"][:], 13.5e-6 / numpy.sqrt(3), rtol=1e-12)
 
+    def test_given_machines(self):
+        """Rows of a file, whose other struts are drawn: good ones counted by hand from what replay draws."""
+        rows = numpy.random.default_rng(3).uniform(-7e-6, 7e-6, (2400, 2))
+        table = "part,strut_2 [um],strut_1\n" + "".join(f"p{n},{1e6 * a!r},{b!r}\n" for n, (a, b) in enumerate(rows.tolist()))
+        self.write("parts.csv", table)
+        study = STUDY.replace(UNIFORM, UNIFORM + '\nmachines = "parts.csv"').replace(f"samples = {MACHINES}\n", "")
+        found = self.yield_of(study)
+        for n in range(0, 2400, 240):
+            drawn = self.errors_of(sample=n, pose=n // 240)
+            self.assertAlmostEqual(float(drawn["strut_2"]), rows[n, 0], delta=1e-20)
+            self.assertEqual(float(drawn["strut_1"]), rows[n, 1])
+        with h5py.File(self.folder / "out.h5") as file:
+            self.assertEqual(file["yield/machines"][()], 2400)
+            self.assertEqual(list(file["factors/distribution"].asstr())[:3], ["given", "given", "uniform"])
+            self.assertTrue(numpy.isnan(file["yield/gradient"][:2]).all())
+        generator = numpy.random.default_rng(5)
+        good = []
+        for _ in range(50):
+            struts = generator.uniform(-5e-6, 5e-6, (2400, 6))
+            struts[:, 1], struts[:, 0] = rows.T
+            good.append((numpy.abs(struts @ tilt_of_struts().T) <= 0.6).all(axis=1).mean())
+        self.assertLess(abs(found["value"] - numpy.mean(good)), 3.9 * numpy.std(good) + 1 / 2400)
+        # Part of the rows, in any shards and with any threads; another table is another study.
+        expected = self.content_hash()
+        for shard in range(1, 4):
+            self.succeeds("run", "study.toml", "-o", f"part-{shard}.h5", "--quiet", "--shard", f"{shard}/3", "--threads", shard)
+        self.succeeds("merge", *(f"part-{shard}.h5" for shard in range(1, 4)), "-o", "merged.h5")
+        self.assertEqual(self.content_hash("merged.h5"), expected)
+        self.succeeds("run", "study.toml", "-o", "again.h5", "--quiet", "--keep-checkpoint")
+        self.write("parts.csv", table.replace(table.split("\n")[1], "p0,0.5,0"))
+        done = self.poesy("run", "study.toml", "-o", "again.h5", "--quiet", "--resume")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(b"another study", done.stderr)
+        self.write("parts.csv", table.replace("p7,", "p7,x"))
+        done = self.poesy("run", "study.toml", "-o", "wrong.h5", "--quiet")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(b"parts.csv:9:4", done.stderr)
+
     def test_another_draw_is_another_study(self):
         self.write("hexapod.toml", MECHANISM)
         first = STUDY.replace(f"samples = {MACHINES}", "samples = 1500")

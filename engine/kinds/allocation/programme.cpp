@@ -59,7 +59,7 @@ std::vector<Process> processes_of(const AllocatedPart& part, const Model& model)
   return {{law, part.lo, bounded(part.hi, part.lo)}};
 }
 
-/// Errors with this shape, this standard deviation and a shifted mean, SI. Precondition: the shape is not measured.
+/// Errors with this shape, this standard deviation and a shifted mean, SI. Precondition: the shape is symmetric.
 Distribution error_of(const Distribution& shape, double sigma, double shift) {
   const double without_shift =
       std::sqrt(shape.standard_deviation() * shape.standard_deviation() - shape.shift() * shape.shift());
@@ -74,6 +74,7 @@ Distribution error_of(const Distribution& shape, double sigma, double shift) {
         return Distribution::triangular(std::sqrt(6.0) * sigma);
       case Distribution::Shape::normal:
       case Distribution::Shape::measured:
+      case Distribution::Shape::given:
         break;
     }
     return Distribution::normal(sigma);

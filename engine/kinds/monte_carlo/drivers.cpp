@@ -144,7 +144,8 @@ Table change_table(const StoredResult& result, const YieldResult& yield) {
   if (unknown > 0) {
     table.notes.emplace_back(
         "not told: where an error is correlated and not all errors of its block are normal, where its mean is shifted, "
-        "where one error that is not normal makes the rejects alone and no linear map is found, or no machine is "
+        "where it is a column of given machines, where one error that is not normal makes the rejects alone and no "
+        "linear map is found, or no machine is "
         "rejected");
   }
   if (yield.rejects > 0 && yield.rejects < kFewRejects) {

@@ -24,6 +24,8 @@ ErrorScore score_of(const Distribution& distribution) {
       const WeightedPoints points = weighted_points(distribution);
       return PolynomialScore(points.points, points.weights);
     }
+    case given:
+      return {};  // these values have no size
   }
   throw std::logic_error("unknown shape of distribution");
 }

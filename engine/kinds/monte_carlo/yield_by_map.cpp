@@ -8,7 +8,6 @@
 
 #include "engine/base/nan.h"
 #include "engine/kinds/monte_carlo/yield.h"
-#include "engine/random/stream.h"
 #include "engine/random/weighted_points.h"
 #include "engine/stats/indices.h"
 #include "engine/stats/linear_limits.h"
@@ -94,7 +93,7 @@ std::vector<std::optional<MappedError>> mapped_errors(const MachineTable& table)
 Array<double, axis::Factor, axis::Sample> errors_of(const Plan& plan, std::size_t first, std::size_t count) {
   Array<double, axis::Factor, axis::Sample> values({plan.factors().size(), count});
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {
-    fill_uniforms(plan.address(p, PoseIndex(0)), SampleIndex(first), values.row(p));
+    plan.draw_uniforms(p, PoseIndex(0), SampleIndex(first), values.row(p));
   }
   plan.transform(values.all(), count);
   return values;

@@ -62,6 +62,27 @@ TEST(DistributionAboutAMean, RefusesWhatMakesNoSense) {
   EXPECT_THROW(Distribution::normal(1.0).about(std::numeric_limits<double>::infinity()), std::invalid_argument);
   EXPECT_THROW(Distribution::normal(1.0).about(std::nan("")), std::invalid_argument);
   EXPECT_THROW(Distribution::measured({1, 2, 3, 4, 5, 6, 7, 8}).about(0.1), std::invalid_argument);
+  EXPECT_THROW(Distribution::given({1, 2}).about(0.1), std::invalid_argument);
+  EXPECT_THROW(Distribution::given({1, 2}).shifted(0.1), std::invalid_argument);
+}
+
+TEST(GivenValues, AreEquallyLikely) {
+  const Distribution given = Distribution::given({3.0, -1.0, 2.0, 2.0});
+  EXPECT_EQ(given.mean(), 1.5);
+  EXPECT_DOUBLE_EQ(given.standard_deviation(), std::sqrt((2.25 + 6.25 + 0.25 + 0.25) / 3.0));
+  EXPECT_EQ(given.largest(), 3.0);
+  std::vector<double> draws{1e-9, 0.2, 0.3, 0.5, 0.7, 0.75, 1.0 - 0x1p-53};
+  const std::vector<double> expected{-1.0, -1.0, 2.0, 2.0, 2.0, 3.0, 3.0};
+  for (std::size_t k = 0; k < draws.size(); ++k) EXPECT_EQ(given.quantile(draws[k]), expected[k]);
+  given.transform(draws);
+  EXPECT_EQ(draws, expected);
+  EXPECT_NE(given, Distribution::given({3.0, -1.0, 2.0, 1.0}));
+}
+
+TEST(GivenValues, AreRefusedWhereTheyMakeNoSense) {
+  EXPECT_THROW(Distribution::given({1.0}), std::invalid_argument);
+  EXPECT_THROW(Distribution::given({1.0, 1.0}), std::invalid_argument);
+  EXPECT_THROW(Distribution::given({1.0, std::nan("")}), std::invalid_argument);
 }
 
 }  // namespace

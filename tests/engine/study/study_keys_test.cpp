@@ -136,12 +136,21 @@ std::vector<std::string> studies() {
   by_platform = with_zones(by_platform, "cpk = 1.33");
   both = with_zones(both, "within = 0.99");
   measured = with_zones(measured, "sigmas = 3");
+  const auto machines_of = [&](const std::string& machines) {
+    std::string given = head;
+    given.insert(given.find("[solver]"), "machines = " + machines + "\n");
+    return given +
+           "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per "
+           "machine\"\n";
+  };
   const std::string background = "background = { factors = \"benign\", linear = \"2 mm\", angular = \"2 deg\" }\n";
   return {
       head + "[poses]\nselect = \"interior\"\ncount = 3\n" + box +
           "[analysis]\nkind = \"sensitivity\"\nfactors = [\"delta_1\"]\nsamples = 50\nconf_level = 0.9\n" + background +
           "reference = { factor = \"delta_1\", tolerance = \"2 mm\" }\n",
       between + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
+      machines_of("\"machines.csv\""),
+      machines_of("{ columns = [\"delta_2\"], rows = [[0.001], [0.002]] }"),
       from_file + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
       by_platform + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
       both + "[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n[analysis]\nlinearity = 0.02\n",
@@ -316,6 +325,7 @@ std::string read(const std::string& text) {
   static const std::string poses = folder.write("poses.csv", "z,beta,gamma\n-0.2,0,0\n");
   static const std::string parts =
       folder.write("parts.csv", "part,hole [mm]\na,1\nb,2\nc,3\nd,4\ne,5\nf,6\ng,7\nh,8\n");
+  static const std::string machines = folder.write("machines.csv", "delta_2 [mm]\n1\n2\n");
   static const std::string mechanism = folder.write("mechanism.toml", "of no interest");
   static const std::string curve = folder.write("curve.csv", "t,z,beta,gamma\n0,-0.2,0,0\n1,-0.2,0.1,0\n");
   return resolved_text(read_study(folder.write("study.toml", text), kCatalog, StudyUse::run));
