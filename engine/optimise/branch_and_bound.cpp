@@ -28,12 +28,50 @@ struct Node {
   bool operator<(const Node& other) const { return std::tie(other.bound, other.number) < std::tie(bound, number); }
 };
 
+/// The cost of the largest sizes of a process that use no more of any limit than those of a response; infinite if there
+/// are none. The use of a limit grows with the size of the inner part, and with that of the outer part beyond what the
+/// inner part needs.
+double cost_within(const SizedProcess& process, const BestResponse& most, Stacking stacking) {
+  const auto cost = [&](const CostLaw& law, double size) { return law.at(tolerance_of(size, stacking)); };
+  if (!process.inner) return cost(process.cost, std::fmin(process.hi, most.size));
+  const InnerProcess& inner = *process.inner;
+  const double within = std::fmin(inner.hi, std::fmin(most.inner.size, inner.share * process.hi));
+  const double beyond = inner.left_out ? 0.0 : std::fmax(0.0, most.size - most.inner.size / inner.share);
+  const double size = std::fmin(process.hi, within / inner.share + beyond);
+  if (size < process.lo || (!inner.left_out && within < inner.lo)) return kInfinity;
+  return cost(process.cost, size) + (inner.left_out ? 0.0 : cost(inner.cost, within));
+}
+
+/// The size of the inner part of a pair in a process of one size.
+double inner_size(const SizedProcess& process) {
+  return process.inner->left_out ? process.inner->share * process.lo : process.inner->lo;
+}
+
+/// The cost of a process of one size.
+double single_cost(const SizedProcess& process, Stacking stacking) {
+  const double own = process.cost.at(tolerance_of(process.lo, stacking));
+  if (!process.inner || process.inner->left_out) return own;
+  return own + process.inner->cost.at(tolerance_of(inner_size(process), stacking));
+}
+
+/// Another process of one size for a part.
+struct Raise {
+  double saving;        ///< of cost
+  std::size_t part;     ///< position of the part
+  std::size_t process;  ///< position of its process
+};
+
+/// How much the cost of sizes differs within a mix.
+double spread_of(const BestResponse& part) {
+  return part.price * part.deviation + std::abs(part.inner.price) * part.inner.deviation;
+}
+
 class BranchAndBound {
  public:
   BranchAndBound(const AllocationProblem& problem, const SizedProblem& sized, const SearchOptions& options)
       : problem_(problem), sized_(sized), options_(options), dual_path_(sized) {}
 
-  LeastCost run();
+  std::optional<LeastCost> run();
 
  private:
   double cutoff() const;
@@ -44,6 +82,7 @@ class BranchAndBound {
   bool is_feasible(const std::vector<ProcessRange>& allowed) const;
   Choice round_down(const std::vector<ProcessRange>& allowed, const PathPoint& point) const;
   void raise_greedily(Choice& choice) const;
+  std::vector<Raise> raises(const Choice& choice) const;
   void prune_by_bound(std::vector<ProcessRange>& allowed, const PathPoint& point, double bound);
   void branch(const std::vector<ProcessRange>& allowed, const PathPoint& point, double bound);
 
@@ -91,11 +130,10 @@ double BranchAndBound::solve_leaf(const Choice& choice) {
 
 /// Whether the smallest sizes keep every limit.
 bool BranchAndBound::is_feasible(const std::vector<ProcessRange>& allowed) const {
-  std::vector<double> lo;
-  for (std::size_t i = 0; i < allowed.size(); ++i) lo.push_back(sized_.processes[i][allowed[i].first].lo);
+  const std::vector<double> lo = lowest(sized_, allowed);
   const double most = 1.0 - 4.0 * rounding_margin(lo.size());
   for (std::size_t l = 0; l < sized_.limits; ++l) {
-    if (!sized_.tight[l] && dot(sized_.row(l), lo) > most) return false;
+    if (!sized_.tight[l] && least_use(sized_, l, allowed, lo) > most) return false;
   }
   return true;
 }
@@ -109,8 +147,8 @@ Choice BranchAndBound::round_down(const std::vector<ProcessRange>& allowed, cons
     double least = kInfinity;
     for (std::size_t p = allowed[i].first; p < allowed[i].last; ++p) {
       const SizedProcess& process = sized_.processes[i][p];
-      if (process.lo > point.parts[i].size) break;
-      const double cost = process.cost.at(tolerance_of(std::fmin(process.hi, point.parts[i].size), sized_.stacking));
+      if (process.lo > point.parts[i].size && !process.inner) break;
+      const double cost = cost_within(process, point.parts[i], sized_.stacking);
       if (cost < least) std::tie(cheapest, least) = std::tuple(p, cost);
     }
     choice.push_back(cheapest);
@@ -118,16 +156,15 @@ Choice BranchAndBound::round_down(const std::vector<ProcessRange>& allowed, cons
   return choice;
 }
 
-/// Improves a choice of single values greedily: the part that saves most takes its next larger value, as long as the
-/// limits allow it.
+/// Improves a choice of single values greedily: the part that saves most takes its next larger value, or a pair any
+/// cheaper ones, as long as the limits allow it.
 void BranchAndBound::raise_greedily(Choice& choice) const {
-  const auto at = [&](std::size_t i, std::size_t up) -> const SizedProcess& {
-    return sized_.processes[i][choice[i] + up];
-  };
-  std::vector<double> sizes;
+  std::vector<double> sizes(choice.size());
   for (std::size_t i = 0; i < choice.size(); ++i) {
-    if (!at(i, 0).single()) return;
-    sizes.push_back(at(i, 0).lo);
+    const SizedProcess& process = sized_.processes[i][choice[i]];
+    if (!process.single()) return;
+    sizes[i] += process.lo;
+    if (process.inner) sizes[process.inner->part] += inner_size(process);
   }
   std::vector<double> left;
   for (std::size_t l = 0; l < sized_.limits; ++l) {
@@ -135,25 +172,42 @@ void BranchAndBound::raise_greedily(Choice& choice) const {
   }
   for (bool raised = true; raised;) {
     raised = false;
-    std::vector<std::pair<double, std::size_t>> savings;
-    for (std::size_t i = 0; i < choice.size(); ++i) {
-      if (choice[i] + 1 == sized_.processes[i].size() || !at(i, 1).single()) continue;
-      const auto cost = [&](const SizedProcess& p) { return p.cost.at(tolerance_of(p.lo, sized_.stacking)); };
-      const double saving = cost(at(i, 0)) - cost(at(i, 1));
-      if (saving > 0.0) savings.emplace_back(-saving, i);
-    }
-    std::ranges::sort(savings);
-    for (const auto& [saving, i] : savings) {
-      const double more = at(i, 1).lo - at(i, 0).lo;
+    for (const Raise& raise : raises(choice)) {
+      const SizedProcess& to = sized_.processes[raise.part][raise.process];
+      const SizedProcess& from = sized_.processes[raise.part][choice[raise.part]];
+      const auto more = [&](std::size_t l) {
+        const double own = sized_.row(l)[raise.part] * (to.lo - from.lo);
+        return to.inner ? own + sized_.row(l)[to.inner->part] * (inner_size(to) - inner_size(from)) : own;
+      };
       std::size_t l = 0;
-      while (l < left.size() && sized_.row(l)[i] * more <= left[l]) ++l;
+      while (l < left.size() && more(l) <= left[l]) ++l;
       if (l < left.size()) continue;
-      for (l = 0; l < left.size(); ++l) left[l] -= sized_.row(l)[i] * more;
-      ++choice[i];
+      for (l = 0; l < left.size(); ++l) left[l] -= more(l);
+      choice[raise.part] = raise.process;
       raised = true;
       break;
     }
   }
+}
+
+/// The ways to make one part of a choice of single values coarser and cheaper, the best first.
+std::vector<Raise> BranchAndBound::raises(const Choice& choice) const {
+  std::vector<Raise> found;
+  for (std::size_t i = 0; i < choice.size(); ++i) {
+    const auto& processes = sized_.processes[i];
+    const bool is_pair = processes.front().inner.has_value();
+    const std::size_t last = is_pair ? processes.size() : std::min(choice[i] + 2, processes.size());
+    for (std::size_t p = is_pair ? 0 : choice[i] + 1; p < last; ++p) {
+      if (!processes[p].single()) continue;
+      const double saving =
+          single_cost(processes[choice[i]], sized_.stacking) - single_cost(processes[p], sized_.stacking);
+      if (saving > 0.0) found.push_back({saving, i, p});
+    }
+  }
+  std::ranges::sort(found, [](const Raise& a, const Raise& b) {
+    return std::tie(b.saving, a.part, a.process) < std::tie(a.saving, b.part, b.process);
+  });
+  return found;
 }
 
 /// Removes processes at the ends of the ranges that cannot belong to one of the best choices.
@@ -162,8 +216,8 @@ void BranchAndBound::prune_by_bound(std::vector<ProcessRange>& allowed, const Pa
   for (std::size_t i = 0; i < allowed.size(); ++i) {
     const BestResponse& part = point.parts[i];
     const auto exceeds_cutoff = [&](std::size_t p) {
-      const double with =
-          bound + (process_response(sized_.processes[i][p], part.price, sized_.stacking).lagrangian - part.lagrangian);
+      const double with = bound + (process_response(sized_.processes[i][p], part.prices(), sized_.stacking).lagrangian -
+                                   part.lagrangian);
       if (with < most) return false;
       close(with);
       return true;
@@ -178,7 +232,7 @@ void BranchAndBound::branch(const std::vector<ProcessRange>& allowed, const Path
   std::size_t part = allowed.size();
   double most = -1.0;
   for (std::size_t i = 0; i < allowed.size(); ++i) {
-    const double open = point.parts[i].price * point.parts[i].deviation;
+    const double open = spread_of(point.parts[i]);
     if (allowed[i].size() > 1 && open > most) std::tie(part, most) = std::tuple(i, open);
   }
   if (part == allowed.size()) {
@@ -221,10 +275,8 @@ void BranchAndBound::expand(const Node& node) {
   branch(allowed, point, bound);
 }
 
-LeastCost BranchAndBound::run() {
-  std::vector<ProcessRange> all;
-  for (const auto& processes : sized_.processes) all.push_back({0, processes.size()});
-  push(-kInfinity, std::move(all), {});
+std::optional<LeastCost> BranchAndBound::run() {
+  push(-kInfinity, all_processes(sized_), {});
   while (!open_.empty() && (nodes_ < options_.max_nodes || best_.empty())) {
     if (open_.top().bound >= cutoff()) break;
     const Node node = open_.top();
@@ -233,8 +285,8 @@ LeastCost BranchAndBound::run() {
     expand(node);
   }
   if (!open_.empty()) close(open_.top().bound);
-  const ConvexSolution& best =
-      best_.front();  // not empty, because the search ends without a solution only after solving all choices
+  if (best_.empty()) return std::nullopt;
+  const ConvexSolution& best = best_.front();
   LeastCost found{
       best.allocation, std::fmin(closed_, best.allocation.cost), {}, best.multiplier, relaxed_, {0, 0.0}, {}, nodes_};
   for (std::size_t k = 1; k < best_.size(); ++k) found.next.push_back(best_[k].allocation);
@@ -243,7 +295,8 @@ LeastCost BranchAndBound::run() {
 
 }  // namespace
 
-LeastCost branch_and_bound(const AllocationProblem& problem, const SizedProblem& sized, const SearchOptions& options) {
+std::optional<LeastCost> branch_and_bound(const AllocationProblem& problem, const SizedProblem& sized,
+                                          const SearchOptions& options) {
   return BranchAndBound(problem, sized, options).run();
 }
 

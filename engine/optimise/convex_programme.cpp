@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/optimise/dual_path.h"
+#include "engine/optimise/pairs.h"
 
 namespace poesy {
 namespace {
@@ -17,10 +18,36 @@ const Process& process_of(const AllocationProblem& problem, const SizedProblem& 
 }
 
 /// The tolerance of a size; exactly a bound's if the size is at the bound.
-double tolerance_within(const Process& process, const SizedProcess& sized, double size, Stacking stacking) {
-  if (size <= sized.lo) return size == size_of(process.hi, stacking) ? process.hi : process.lo;
-  const double tolerance = tolerance_of(size, stacking);
-  return size == size_of(process.hi, stacking) ? process.hi : std::clamp(tolerance, process.lo, process.hi);
+double tolerance_within(const Process& process, double size, Stacking stacking) {
+  if (size == size_of(process.hi, stacking)) return process.hi;
+  if (size <= size_of(process.lo, stacking)) return process.lo;
+  return std::clamp(tolerance_of(size, stacking), process.lo, process.hi);
+}
+
+/// Sets the tolerances of inner parts.
+void set_inner(const AllocationProblem& problem, const SizedProblem& sized, std::span<const double> sizes,
+               std::span<double> tolerance) {
+  for (const Within& pair : sized.pairs) {
+    const InnerProcess& inner = *sized.processes[pair.outer].front().inner;
+    const double most = tolerance_of(pair.share, sized.stacking) * tolerance[pair.outer];
+    const double size = sizes[pair.inner];
+    tolerance[pair.inner] =
+        inner.left_out ? most : tolerance_within(problem.parts[pair.inner][inner.index], size, sized.stacking);
+  }
+}
+
+/// The lowest sizes [N]. Those of a pair have the proportion of `sizes`, as far as bounds allow it, because the lowest
+/// inner part may use more of a limit than a larger one.
+std::vector<double> lowest_like(const SizedProblem& sized, std::span<const double> sizes) {
+  std::vector<double> lo;
+  for (const auto& processes : sized.processes) lo.push_back(processes.front().lo);
+  for (const Within& pair : sized.pairs) {
+    const InnerProcess& inner = *sized.processes[pair.outer].front().inner;
+    const double most = inner.left_out ? pair.share * lo[pair.outer] : std::fmin(inner.hi, pair.share * lo[pair.outer]);
+    const double like = sizes[pair.outer] > 0.0 ? sizes[pair.inner] / sizes[pair.outer] * lo[pair.outer] : most;
+    lo[pair.inner] = inner.left_out ? most : std::fmin(most, std::fmax(inner.lo, like));
+  }
+  return lo;
 }
 
 /// The tolerances of sizes [N] after moving them towards the lowest bounds. keep: the share of the distance that is
@@ -28,18 +55,22 @@ double tolerance_within(const Process& process, const SizedProcess& sized, doubl
 std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedProblem& sized,
                                   std::span<const double> sizes, double keep) {
   std::vector<double> tolerance(sizes.size());
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const SizedProcess& process = sized.processes[i].front();
-    const double size = keep == 1.0 ? sizes[i] : process.lo + keep * (sizes[i] - process.lo);
-    tolerance[i] = tolerance_within(process_of(problem, sized, i), process, size, sized.stacking);
+  std::vector<double> kept(sizes.begin(), sizes.end());
+  if (keep != 1.0) {
+    const std::vector<double> lo = lowest_like(sized, sizes);
+    for (std::size_t i = 0; i < sizes.size(); ++i) kept[i] = lo[i] + keep * (sizes[i] - lo[i]);
   }
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    tolerance[i] = tolerance_within(process_of(problem, sized, i), kept[i], sized.stacking);
+  }
+  set_inner(problem, sized, kept, tolerance);
   return tolerance;
 }
 
 /// The largest share of the distance from the lowest bounds that keeps the limits.
 double share_within(const SizedProblem& sized, std::span<const double> sizes) {
   const double room = 1.0 - 4.0 * rounding_margin(sized.parts());
-  const std::vector<double> lo = lowest(sized);
+  const std::vector<double> lo = lowest_like(sized, sizes);
   double share = 1.0;
   for (std::size_t l = 0; l < sized.limits; ++l) {
     const double least = dot(sized.row(l), lo);
@@ -62,7 +93,16 @@ std::optional<std::vector<double>> tolerances_within(const AllocationProblem& pr
 
 double cost_of(const AllocationProblem& problem, const SizedProblem& sized, std::span<const double> tolerance) {
   double cost = 0.0;
-  for (std::size_t i = 0; i < tolerance.size(); ++i) cost += process_of(problem, sized, i).cost.at(tolerance[i]);
+  const auto is_inner = [&](std::size_t part) {
+    return std::ranges::any_of(sized.pairs, [&](const Within& pair) { return pair.inner == part; });
+  };
+  for (std::size_t i = 0; i < tolerance.size(); ++i) {
+    if (!is_inner(i)) cost += process_of(problem, sized, i).cost.at(tolerance[i]);
+  }
+  for (const Within& pair : sized.pairs) {
+    const InnerProcess& inner = *sized.processes[pair.outer].front().inner;
+    if (!inner.left_out) cost += inner.cost.at(tolerance[pair.inner]);
+  }
   return cost;
 }
 
@@ -97,7 +137,7 @@ void add_tight_limits(const AllocationProblem& problem, const SizedProblem& size
     double multiplier = 0.0;
     for (std::size_t i = 0; i < sized.parts(); ++i) {
       const Process& process = process_of(problem, sized, i);
-      if (sized.row(l)[i] == 0.0 || process.lo == process.hi) continue;
+      if (sized.row(l)[i] == 0.0 || process.lo == process.hi || is_in_pair(sized, i)) continue;
       double others = process.cost.curve(sized.processes[i].front().lo, sized.stacking).slope;
       for (std::size_t k = 0; k < found.working_set.size(); ++k) {
         others += found.multipliers[k] * sized.row(found.working_set[k])[i];
@@ -125,7 +165,7 @@ std::vector<double> limit_multipliers(const ToleranceLimits& limits, std::span<c
 
 std::optional<ConvexSolution> solve_convex(const AllocationProblem& problem, const SizedProblem& sized,
                                            std::span<const std::size_t> working_set) {
-  std::vector<double> sizes = lowest(sized);
+  std::vector<double> sizes = lowest_like(sized, std::vector<double>(sized.parts()));
   DualCertificate found = certify(sized, {}, {});
   const auto single = [](const auto& processes) { return processes.front().single(); };
   if (!std::ranges::all_of(sized.processes, single)) {
@@ -140,6 +180,11 @@ std::optional<ConvexSolution> solve_convex(const AllocationProblem& problem, con
   ConvexSolution solution;
   solution.allocation.tolerance = *std::move(tolerance);
   for (const auto& processes : sized.processes) solution.allocation.process.push_back(processes.front().index);
+  for (const Within& pair : sized.pairs) {
+    const InnerProcess& inner = *sized.processes[pair.outer].front().inner;
+    solution.allocation.process[pair.inner] = inner.index;
+    if (inner.left_out) solution.allocation.left_out.push_back(pair.inner);
+  }
   solution.allocation.cost = cost_of(problem, sized, solution.allocation.tolerance);
   found = without_negligible(sized, found, solution.allocation.cost);
   add_tight_limits(problem, sized, found);

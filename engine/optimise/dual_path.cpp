@@ -22,16 +22,11 @@ constexpr int kMaxNewtonSteps = 60;      ///< for one maximum
 constexpr int kMaxLineSearchSteps = 60;  ///< along one direction
 constexpr int kMaxIterations = 400;      ///< maxima, and additions to the working set
 constexpr std::size_t kAddedAtOnce = 4;  ///< violated limits that join the working set in one iteration
-constexpr double kNegligibleExponent = 40.0;  ///< a process this many mu above the best one has no weight
-
-double inverse_curvature(const SizedProcess& process, double size, Stacking stacking) {
-  return size > process.lo && size < process.hi ? 1.0 / process.cost.curve(size, stacking).curvature : 0.0;
-}
 
 /// The scale of the part of a mix's cost that tolerances can change.
 double changeable(std::span<const SizedProcess> processes, ProcessRange allowed, const BestResponse& part) {
   double least = kInfinity;
-  for (std::size_t p = allowed.first; p < allowed.last; ++p) least = std::fmin(least, processes[p].cost.fixed());
+  for (std::size_t p = allowed.first; p < allowed.last; ++p) least = std::fmin(least, processes[p].fixed_cost());
   return std::fmax(0.0, part.cost - least);
 }
 
@@ -89,67 +84,28 @@ void solve(const std::vector<double>& factor, std::vector<double>& x) {
 
 }  // namespace
 
-ProcessResponse process_response(const SizedProcess& process, double price, Stacking stacking) {
-  const double size = process.size_at(price, stacking);
-  const double cost = process.cost.at(tolerance_of(size, stacking));
-  return {size, cost, cost + price * size};
-}
-
-BestResponse best_response(std::span<const SizedProcess> processes, ProcessRange allowed, double price, double mu,
-                           Stacking stacking) {
-  POESY_EXPECTS(allowed.size() > 0 && allowed.last <= processes.size());
-  const ProcessResponse first = process_response(processes[allowed.first], price, stacking);
-  BestResponse part{price, first.size, 0.0, first.cost, first.lagrangian, 0.0, allowed.first};
-  if (allowed.size() == 1) {
-    part.inverse_curvature = inverse_curvature(processes[allowed.first], first.size, stacking);
-    return part;
-  }
-  for (std::size_t p = allowed.first + 1; p < allowed.last; ++p) {
-    const double lagrangian = process_response(processes[p], price, stacking).lagrangian;
-    if (lagrangian >= part.lagrangian) continue;
-    part.lagrangian = lagrangian;
-    part.main = p;
-  }
-  double weights = 0.0;
-  double inverse = 0.0;
-  double cost = 0.0;
-  double shift = 0.0;  // shift of sizes by that of the main process, because a variance needs differences
-  double square = 0.0;
-  const double size = processes[part.main].size_at(price, stacking);
-  for (std::size_t p = allowed.first; p < allowed.last; ++p) {
-    const ProcessResponse one = process_response(processes[p], price, stacking);
-    const double exponent = (one.lagrangian - part.lagrangian) / mu;
-    if (!(exponent < kNegligibleExponent)) continue;
-    const double weight = std::exp(-exponent);
-    weights += weight;
-    inverse += weight * inverse_curvature(processes[p], one.size, stacking);
-    cost += weight * one.cost;
-    shift += weight * (one.size - size);
-    square += weight * (one.size - size) * (one.size - size);
-  }
-  const double mean = shift / weights;
-  const double variance = std::fmax(0.0, square / weights - mean * mean);
-  part.size = size + mean;
-  part.cost = cost / weights;
-  part.inverse_curvature = inverse / weights + variance / mu;
-  part.deviation = std::sqrt(variance);
-  return part;
-}
-
 double lower_bound(const SizedProblem& problem, std::span<const ProcessRange> allowed,
                    std::span<const std::size_t> working_set, std::span<const double> multipliers) {
   double bound = 0.0;
   double magnitude = 0.0;
   for (std::size_t i = 0; i < problem.parts(); ++i) {
-    double price = 0.0;
-    for (std::size_t k = 0; k < working_set.size(); ++k) price += multipliers[k] * problem.row(working_set[k])[i];
+    Prices prices{0.0};
+    double inner_magnitude = 0.0;
+    for (std::size_t k = 0; k < working_set.size(); ++k) prices.own += multipliers[k] * problem.row(working_set[k])[i];
+    if (const auto& inner = problem.processes[i].front().inner) {
+      for (std::size_t k = 0; k < working_set.size(); ++k) {
+        const double price = multipliers[k] * problem.row(working_set[k])[inner->part];
+        prices.inner += price;
+        inner_magnitude += std::abs(price);
+      }
+    }
     ProcessResponse best{0.0, 0.0, kInfinity};
     for (std::size_t p = allowed[i].first; p < allowed[i].last; ++p) {
-      const ProcessResponse one = process_response(problem.processes[i][p], price, problem.stacking);
+      const ProcessResponse one = process_response(problem.processes[i][p], prices, problem.stacking);
       if (one.lagrangian < best.lagrangian) best = one;
     }
     bound += best.lagrangian;
-    magnitude += std::abs(best.cost) + price * best.size;
+    magnitude += std::abs(best.cost) + prices.own * best.size + inner_magnitude * best.inner_size;
   }
   for (const double multiplier : multipliers) bound -= multiplier;
   magnitude = std::accumulate(multipliers.begin(), multipliers.end(), magnitude);
@@ -163,7 +119,8 @@ DualPath::DualPath(const SizedProblem& problem, std::vector<std::size_t> working
       room_(1.0 - rounding_margin(problem.parts())),
       is_in_set_(problem.tight),  // tight limits never join, because their parts are already fixed
       responses_(problem.parts()),
-      sizes_(problem.parts()) {
+      sizes_(problem.parts()),
+      inner_prices_(problem.parts()) {
   for (const std::size_t limit : working_set) {
     if (!is_in_set_[limit]) add_limit(limit);
   }
@@ -190,9 +147,14 @@ void DualPath::update_responses(double mu) {
   for (std::size_t k = 0; k < working_set_.size(); ++k) {
     for (std::size_t i = 0; i < parts; ++i) sizes_[i] += multipliers_[k] * effects_[k * parts + i];
   }
+  for (const Within& pair : problem_.pairs) inner_prices_[pair.outer] = sizes_[pair.inner];
   for (std::size_t i = 0; i < parts; ++i) {
-    responses_[i] = best_response(problem_.processes[i], allowed_[i], sizes_[i], mu, problem_.stacking);
+    const Prices prices{sizes_[i], inner_prices_[i]};
+    responses_[i] = best_response(problem_.processes[i], allowed_[i], prices, mu, problem_.stacking);
     sizes_[i] = responses_[i].size;
+  }
+  for (const Within& pair : problem_.pairs) {
+    responses_[pair.inner].size = sizes_[pair.inner] = responses_[pair.outer].inner.size;
   }
   slack_.resize(working_set_.size());
   for (std::size_t k = 0; k < working_set_.size(); ++k) {
@@ -217,17 +179,31 @@ bool DualPath::centre(double mu) {
   return is_centred(mu);
 }
 
-/// Newton's direction in units of the multipliers: (P A G A' P + mu I) d = mu - P slack, with P = diag(multipliers), G
-/// = diag(inverse curvature). Returns false if the direction is not finite because numbers overflow.
-bool DualPath::find_newton_direction(double mu) {
-  const std::size_t count = working_set_.size();
+/// [K x N] P A G, with P = diag(multipliers) and the inverse curvatures G, which are diagonal except for pairs.
+std::vector<double> DualPath::scaled_effects() const {
   const std::size_t parts = problem_.parts();
-  std::vector<double> scaled(count * parts);
-  for (std::size_t k = 0; k < count; ++k) {
+  std::vector<double> scaled(effects_.size());
+  for (std::size_t k = 0; k < working_set_.size(); ++k) {
     for (std::size_t i = 0; i < parts; ++i) {
       scaled[k * parts + i] = multipliers_[k] * effects_[k * parts + i] * responses_[i].inverse_curvature;
     }
+    for (const Within& pair : problem_.pairs) {
+      const InnerResponse& inner = responses_[pair.outer].inner;
+      const double own = multipliers_[k] * effects_[k * parts + pair.outer];
+      const double within = multipliers_[k] * effects_[k * parts + pair.inner];
+      scaled[k * parts + pair.outer] += within * inner.cross;
+      scaled[k * parts + pair.inner] = own * inner.cross + within * inner.inverse_curvature;
+    }
   }
+  return scaled;
+}
+
+/// Newton's direction in units of the multipliers: (P A G A' P + mu I) d = mu - P slack. Returns false if the direction
+/// is not finite because numbers overflow.
+bool DualPath::find_newton_direction(double mu) {
+  const std::size_t count = working_set_.size();
+  const std::size_t parts = problem_.parts();
+  const std::vector<double> scaled = scaled_effects();
   std::vector<double> matrix(count * count);
   direction_.resize(count);
   for (std::size_t r = 0; r < count; ++r) {
@@ -318,7 +294,8 @@ PathPoint DualPath::follow(std::span<const ProcessRange> allowed, std::span<cons
     for (std::size_t i = 0; i < responses_.size(); ++i) {
       changes += changeable(problem_.processes[i], allowed[i], responses_[i]);
     }
-    const bool mixes = std::ranges::any_of(responses_, [](const BestResponse& part) { return part.deviation > 0.0; });
+    const bool mixes = std::ranges::any_of(
+        responses_, [](const BestResponse& part) { return part.deviation > 0.0 || part.inner.deviation > 0.0; });
     const double gap = (1.5 * static_cast<double>(working_set_.size()) + entropy) * mu;
     const bool ended =
         gap <= kRelativeGap * changes || mu <= kSmallestMu * scale || (mixes && mu <= kSmallestMixingMu * changes);

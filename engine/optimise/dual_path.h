@@ -5,46 +5,13 @@
 #include <span>
 #include <vector>
 
+#include "engine/optimise/best_response.h"
 #include "engine/optimise/sized_problem.h"
 
 /// The Lagrange dual of the least cost, and its central path. For given multipliers of the limits, each part's best
 /// size is independent of the others, and the sum of the parts' costs and of multiplier x (use - room) is a lower bound
 /// on the least cost.
 namespace poesy {
-
-/// The processes of a part that are allowed: [first, last) of its list, at least one.
-struct ProcessRange {
-  std::size_t first;  ///< position in SizedProblem::processes
-  std::size_t last;   ///< one past the last position
-
-  std::size_t size() const { return last - first; }  ///< The number of processes.
-};
-
-/// The best size of one process at a price on its size.
-struct ProcessResponse {
-  double size;        ///< in [lo, hi]
-  double cost;        ///< cost of that size
-  double lagrangian;  ///< cost + price x size, which is least at this size
-};
-
-/// The best response of a process. Precondition: price >= 0.
-ProcessResponse process_response(const SizedProcess& process, double price, Stacking stacking);
-
-/// The best response of a part at given multipliers. If several processes are allowed it is a mix of them.
-struct BestResponse {
-  double price = 0.0;              ///< price of a unit of its size: sum over the limits of multiplier x effect
-  double size = 0.0;               ///< mean of the mix
-  double inverse_curvature = 0.0;  ///< decrease of the size per unit of price
-  double cost = 0.0;               ///< mean of the mix
-  double lagrangian = 0.0;         ///< least cost + price x size over all sizes of all processes
-  double deviation = 0.0;          ///< standard deviation of the sizes of the mix
-  std::size_t main = 0;            ///< position of the process with the largest weight
-};
-
-/// The best response of a part to a price on its size. Processes are mixed by weights exp(-lagrangian / mu), as in a
-/// Boltzmann distribution of temperature mu.
-BestResponse best_response(std::span<const SizedProcess> processes, ProcessRange allowed, double price, double mu,
-                           Stacking stacking);
 
 /// A lower bound on the cost from any multipliers [K] >= 0 of the limits `working_set` [K]: no tolerances within these
 /// bounds and the limits cost less. It is lowered by what rounding may have added.
@@ -64,7 +31,8 @@ struct PathTarget {
 /// The end of the path.
 struct PathPoint {
   /// [N] Their sizes keep all limits, unless rounding ended the path too soon; this may happen if the lowest bounds
-  /// leave hardly any room of a limit.
+  /// leave hardly any room of a limit. The inner part of a pair has a size only: the response of the outer part is that
+  /// of both.
   std::vector<BestResponse> parts;
   std::vector<double> multipliers;  ///< [K] in the order of DualPath::working_set()
   double lower_bound = 0.0;         ///< lower_bound() at these multipliers
@@ -92,6 +60,7 @@ class DualPath {
   void add_limit(std::size_t limit);
   void begin(std::span<const double> start, double mu);
   void update_responses(double mu);
+  std::vector<double> scaled_effects() const;
   bool is_centred(double mu) const;
   bool centre(double mu);
   bool find_newton_direction(double mu);
@@ -110,6 +79,7 @@ class DualPath {
   std::vector<double> direction_;        ///< [K] Newton's step over the multipliers
   std::vector<BestResponse> responses_;  ///< [N]
   std::vector<double> sizes_;            ///< [N]
+  std::vector<double> inner_prices_;     ///< [N] price of the inner part of a pair; 0 for other parts
 };
 
 }  // namespace poesy

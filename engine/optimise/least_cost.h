@@ -26,10 +26,22 @@ Process fixed_process(double tolerance, double cost = 0.0);
 /// One process for each available tolerance, such as the grades of a standard, with the cost of a law.
 std::vector<Process> available_values(const CostLaw& cost, std::span<const double> tolerances);
 
+/// A pair of parts, of which the inner one has at most a share of the size of the outer one. An example is an
+/// orientation zone within a location zone: T_o^2 <= T^2 / 2. Effects of the inner part may be negative, because a
+/// finer orientation leaves more of the location to the middle of the feature; effects of the outer part, and outer +
+/// share x inner, are not.
+struct Within {
+  std::size_t inner;     ///< position of the part whose size is bounded
+  std::size_t outer;     ///< position of the part that bounds it
+  double share;          ///< size of the inner part <= share x size of the outer part; 0 < share
+  bool may_be_left_out;  ///< the inner part may also have exactly this size and cost nothing
+};
+
 /// The problem: N parts, each with one or more processes, under L limits.
 struct AllocationProblem {
   ToleranceLimits limits;                   ///< limits on N parts; there may be none
   std::vector<std::vector<Process>> parts;  ///< [N] processes of each part, of which one is chosen
+  std::vector<Within> pairs = {};           ///< pairs of parts; a part is in one pair at most
 };
 
 /// When branch and bound ends, and what it returns. Unused if no part has a choice of processes.
@@ -53,6 +65,8 @@ struct Allocation {
   std::vector<std::size_t> process;  ///< [N] position among the processes of each part
   std::vector<double> tolerance;     ///< [N] SI; they keep every limit, also in rounded sums
   double cost;                       ///< sum over all parts
+  /// Inner parts of pairs that are left out. `tolerance` has the largest that the outer parts allow; `process` is 0.
+  std::vector<std::size_t> left_out = {};
 };
 
 /// The tolerances at least cost and the proof that nothing costs less.
@@ -87,11 +101,12 @@ using AllocationOutcome = std::variant<LeastCost, Infeasible, Unbounded>;
 /// roots, exponentials and powers.
 ///
 /// The problem is infeasible if the lowest bounds need more than the room of a limit, or if they leave no room for a
-/// part whose cost is then infinite. If they leave hardly any room, rounding determines the gap, up to 1e-13 of the sum
-/// of multiplier x room.
+/// part whose cost is then infinite. With pairs it is also infeasible if no sizes within bounds keep all limits at
+/// once. If they leave hardly any room, rounding determines the gap, up to 1e-13 of the sum of multiplier x room.
 ///
-/// Preconditions: room and effects are finite, effects are not negative, every part has a process, lo <= hi, hi > 0 if
-/// the law divides by T; max_nodes > 0.
+/// Preconditions: room and effects are finite, effects are not negative (but see Within), every part has a process, lo
+/// <= hi, hi > 0 if the law divides by T; max_nodes > 0. Pairs: limits are sums of squares; some process of the inner
+/// part fits in one of the outer part, or may be left out; a process of a constant cost has one size.
 AllocationOutcome least_cost(const AllocationProblem& problem, const SearchOptions& options = {});
 
 }  // namespace poesy

@@ -14,8 +14,9 @@ namespace poesy {
 struct ToleranceLimits {
   Stacking stacking = Stacking::root_sum_square;  ///< how effects add up
   std::size_t parts = 0;                          ///< N
-  std::vector<double> effects;  ///< [L x N] >= 0: effect of one unit of size, such as a^2, or |a| in the worst case
-  std::vector<double> room;     ///< [L] the largest combined effect of all parts
+  /// [L x N] effect of one unit of size, such as a^2, or |a| in the worst case; >= 0, except for inner parts (Within)
+  std::vector<double> effects;
+  std::vector<double> room;  ///< [L] the largest combined effect of all parts
 
   std::size_t count() const { return room.size(); }  ///< L
   std::span<const double> row(std::size_t l) const {

@@ -23,5 +23,5 @@ poesy_test(least_cost_test LABELS unit
                    engine/optimise/tolerance_limits_test.cpp
            LINKS poesy_optimise)
 poesy_test(least_cost_property_test LABELS property DATA
-           SOURCES engine/optimise/least_cost_property_test.cpp
+           SOURCES engine/optimise/least_cost_property_test.cpp engine/optimise/pairs_test.cpp
            LINKS poesy_optimise)
