@@ -1,0 +1,258 @@
+#include "engine/drawing/worst_case.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "engine/base/contract.h"
+#include "engine/drawing/zone_scatter.h"
+
+namespace poesy::drawing {
+namespace {
+
+constexpr int kMostRounds = 1000;  ///< of the search for a point
+constexpr double kRest = 1e-15;    ///< a pull below this share of the weights is rest
+
+/// A vector across an axis; a zone between planes has its second component 0.
+struct Across {
+  double x = 0.0;
+  double y = 0.0;
+
+  double length() const { return std::hypot(x, y); }
+};
+
+Across operator+(const Across& a, const Across& b) { return {a.x + b.x, a.y + b.y}; }
+Across operator-(const Across& a, const Across& b) { return {a.x - b.x, a.y - b.y}; }
+Across operator*(double s, const Across& a) { return {s * a.x, s * a.y}; }
+
+Across unit(const Across& a) {
+  const double length = a.length();
+  return length > 0.0 ? 1.0 / length * a : Across{};
+}
+
+double sign(double value) { return value < 0.0 ? -1.0 : 1.0; }
+
+Across across(const OfErrors& slopes, std::size_t first, std::size_t count) {
+  Across made;
+  if (count > 0) made.x = slopes[first];
+  if (count > 1) made.y = slopes[first + 1];
+  return made;
+}
+
+void append(const Across& errors, std::size_t count, OfErrors& list) {
+  if (count > 0) list.push_back(errors.x);
+  if (count > 1) list.push_back(errors.y);
+}
+
+/// The point that minimises w0 |q| + w (|q - p1| + |q - p2|).
+Across weighted_median(const Across& p1, const Across& p2, double w0, double w) {
+  const std::array<Across, 3> points{Across{}, p1, p2};
+  const std::array<double, 3> weights{w0, w, w};
+  const auto cost = [&](const Across& q) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) sum += weights[k] * (q - points[k]).length();
+    return sum;
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    Across pull;
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (j != k) pull = pull + weights[j] * unit(points[j] - points[k]);
+    }
+    if (pull.length() <= weights[k]) return points[k];
+  }
+  Across q = 1.0 / (w0 + 2.0 * w) * (w * p1 + w * p2);
+  for (int round = 0; round < kMostRounds; ++round) {
+    Across gradient;
+    Across pulled;  // Weiszfeld's step, which is slow and always gets nearer
+    double inverse = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Across away = q - points[k];
+      const double length = std::max(away.length(), std::numeric_limits<double>::min());
+      const Across u = 1.0 / length * away;
+      const double weight = weights[k] / length;
+      gradient = gradient + weights[k] * u;
+      pulled = pulled + weight * points[k];
+      inverse += weight;
+      xx += weight * u.y * u.y;
+      xy -= weight * u.x * u.y;
+      yy += weight * u.x * u.x;
+    }
+    if (gradient.length() <= kRest * (w0 + 2.0 * w)) break;
+    const double determinant = xx * yy - xy * xy;
+    const Across newton = q - Across{(yy * gradient.x - xy * gradient.y) / determinant,
+                                     (xx * gradient.y - xy * gradient.x) / determinant};
+    const Across slow = 1.0 / inverse * pulled;
+    q = cost(newton) < cost(slow) ? newton : slow;
+  }
+  return q;
+}
+
+/// The two ends of an axis, as displacements across it.
+struct Ends {
+  Across far;
+  Across near;
+};
+
+/// The ends in discs of this radius, with a lean of at most `lean`, that make far . a + near . b largest.
+Ends extreme_ends(const Across& a, const Across& b, double radius, double lean) {
+  const Ends free{radius * unit(a), radius * unit(b)};
+  if ((free.far - free.near).length() <= lean) return free;
+  const Across minus_b = -1.0 * b;
+  const Across q = weighted_median(minus_b, a, lean, radius);
+  const bool at_near = (q - minus_b).length() <= 1e-15 * (q.length() + b.length());
+  const Across tilt = lean * unit(q);
+  if (at_near) return {radius * unit(a - q), radius * unit(a - q) - tilt};
+  const Across near = radius * unit(q + b);
+  return {near + tilt, near};
+}
+
+Extreme extreme_axis(const Feature& feature, const OfErrors& slopes) {
+  const std::size_t middles = feature.middle.size();
+  const std::size_t tilts = feature.tilt.size();
+  const Across a_m = across(slopes, 0, middles);
+  const Across a_lean = across(slopes, middles, tilts);
+  Extreme found;
+  if (!feature.location) {
+    const Across lean = feature.orientation ? feature.orientation->size * unit(a_lean) : Across{};
+    append({}, middles, found.errors);
+    append(lean, tilts, found.errors);
+    return found;
+  }
+  const double most = feature.orientation ? feature.orientation->size : 2.0 * feature.location->size;
+  const Ends ends = extreme_ends(0.5 * a_m + a_lean, 0.5 * a_m - a_lean, 0.5 * feature.location->size, most);
+  append(0.5 * (ends.far + ends.near), middles, found.errors);
+  append(ends.far - ends.near, tilts, found.errors);
+  return found;
+}
+
+Extreme extreme_plane(const Feature& feature, const OfErrors& slopes) {
+  const std::size_t middles = feature.middle.size();
+  const double a_z = middles > 0 ? slopes[0] : 0.0;
+  const Across a_lift = across(slopes, middles, feature.tilt.size());
+  const bool is_round = feature.kind == FeatureKind::round;
+  const bool first = std::abs(a_lift.x) >= std::abs(a_lift.y);
+  const Across direction = is_round ? unit(a_lift) : first ? Across{sign(a_lift.x), 0.0} : Across{0.0, sign(a_lift.y)};
+  const double pull = is_round ? a_lift.length() : std::max(std::abs(a_lift.x), std::abs(a_lift.y));
+  const double half = feature.location ? 0.5 * feature.location->size : 0.0;
+  double lift = feature.orientation ? 0.5 * feature.orientation->size : half;
+  if (feature.location) lift = pull > std::abs(a_z) ? std::min(lift, half) : 0.0;
+  Extreme found;
+  if (middles > 0) found.errors.push_back(feature.location ? (half - lift) * sign(a_z) : 0.0);
+  append(lift * direction, feature.tilt.size(), found.errors);
+  return found;
+}
+
+Extreme extreme_point(const Feature& feature, const OfErrors& slopes) {
+  const double radius = feature.location ? 0.5 * feature.location->size : 0.0;
+  const double length = std::sqrt(std::inner_product(slopes.begin(), slopes.end(), slopes.begin(), 0.0));
+  Extreme found;
+  for (const double slope : slopes) found.errors.push_back(length > 0.0 ? radius * slope / length : 0.0);
+  return found;
+}
+
+Extreme extreme_distance(const Feature& feature, const OfErrors& slopes) {
+  return {{feature.location ? feature.location->size * sign(slopes[0]) : 0.0}, 0.0};
+}
+
+double sum_of(const OfErrors& squares, std::size_t first, std::size_t count) {
+  return std::accumulate(squares.begin() + static_cast<std::ptrdiff_t>(first),
+                         squares.begin() + static_cast<std::ptrdiff_t>(first + count), 0.0);
+}
+
+/// Unit vectors from which the ascent starts: of opposite ones only one.
+std::vector<std::array<double, 3>> starts(std::size_t components) {
+  std::vector<std::array<double, 3>> list;
+  constexpr int kHalf = 2;
+  for (int x = -kHalf; x <= kHalf; ++x) {
+    for (int y = -kHalf; y <= kHalf; ++y) {
+      for (int z = 0; z <= kHalf; ++z) {
+        std::array<double, 3> made{double(x), components > 1 ? double(y) : 0.0, components > 2 ? double(z) : 0.0};
+        const double length = std::hypot(made[0], made[1], made[2]);
+        if (length == 0.0) continue;
+        for (double& one : made) one /= length;
+        if (std::ranges::find(list, made) == list.end()) list.push_back(made);
+      }
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+Extreme extreme(const Feature& feature, const OfErrors& slopes) {
+  POESY_EXPECTS(slopes.size() == feature.middle.size() + feature.tilt.size());
+  Extreme found;
+  switch (feature.kind) {
+    case FeatureKind::axis:
+      found = extreme_axis(feature, slopes);
+      break;
+    case FeatureKind::rectangle:
+    case FeatureKind::round:
+      found = extreme_plane(feature, slopes);
+      break;
+    case FeatureKind::point:
+      found = extreme_point(feature, slopes);
+      break;
+    case FeatureKind::distance:
+      found = extreme_distance(feature, slopes);
+      break;
+  }
+  found.value = std::inner_product(slopes.begin(), slopes.end(), found.errors.begin(), 0.0);
+  return found;
+}
+
+ZoneSquares zone_squares(const Feature& feature, double sigmas, const OfErrors& squares) {
+  const FeatureSigmas sigma = feature_sigmas(feature, sigmas);
+  const double middle = sum_of(squares, 0, feature.middle.size());
+  const double tilt = sum_of(squares, feature.middle.size(), feature.tilt.size());
+  const auto square = [](double value) { return value * value; };
+  const double even = middle * square(sigma.middle.value_or(0.0)) + tilt * square(sigma.tilt.value_or(0.0));
+  const bool may_divide = feature.location && !feature.tilt.empty();
+  if (!may_divide) return {even, even};
+  Feature shifted = feature;
+  shifted.orientation = Zone{"parallelism", 0.0, {}};
+  const double only_middle = middle * square(*feature_sigmas(shifted, sigmas).middle);
+  const double widest =
+      feature.orientation ? std::min(feature.orientation->size, feature.location->size) : feature.location->size;
+  Feature turned = feature;
+  turned.location.reset();
+  turned.orientation = Zone{"parallelism", widest, {}};
+  const double share = square(widest / feature.location->size);
+  const double mostly_tilt = (1.0 - share) * only_middle + tilt * square(*feature_sigmas(turned, sigmas).tilt);
+  return {even, std::max(only_middle, mostly_tilt)};
+}
+
+LargestLength largest_length(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes) {
+  LargestLength best;
+  if (features.empty()) return best;
+  const std::size_t components = slopes.front().size();
+  POESY_EXPECTS(components >= 1 && components <= 3);
+  for (std::array<double, 3> direction : starts(components)) {
+    double length = 0.0;
+    for (int round = 0; round < 200; ++round) {
+      std::array<double, 3> sum{};
+      std::vector<double> parts;
+      for (std::size_t q = 0; q < features.size(); ++q) {
+        OfErrors along(slopes[q].front().size(), 0.0);
+        for (std::size_t c = 0; c < components; ++c) {
+          for (std::size_t e = 0; e < along.size(); ++e) along[e] += direction[c] * slopes[q][c][e];
+        }
+        const Extreme found = extreme(features[q], along);
+        for (std::size_t c = 0; c < components; ++c) {
+          sum[c] += std::inner_product(found.errors.begin(), found.errors.end(), slopes[q][c].begin(), 0.0);
+        }
+        parts.push_back(found.value);
+      }
+      const double next = std::hypot(sum[0], sum[1], sum[2]);
+      if (next > best.length) best = {next, parts};
+      if (!(next > length * (1.0 + 1e-14))) break;
+      length = next;
+      for (std::size_t c = 0; c < 3; ++c) direction[c] = sum[c] / next;
+    }
+  }
+  return best;
+}
+
+}  // namespace poesy::drawing
