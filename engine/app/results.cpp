@@ -267,7 +267,10 @@ std::optional<RunOutcome> run_to_file(const Job& job) {
   std::optional<StudyResult> result = run_study(job.study, job.model, job.poses.poses, job.options);
   if (!job.checkpoints().complete()) return std::nullopt;
   const bool writes = job.options.team == nullptr || job.options.team->leads();
-  if (writes && result) write_result(job.path, job.study, job.poses, std::move(result->found), outcome_of(job).facts);
+  if (writes && result) {
+    write_result(job.path, job.study, job.poses, std::move(result->found), outcome_of(job).facts,
+                 result->drawing ? &*result->drawing : nullptr);
+  }
   RunOutcome outcome = outcome_of(job);
   if (result) {
     outcome.verdicts = result->verdicts;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <optional>
 
@@ -12,6 +13,7 @@
 namespace poesy::drawing {
 namespace {
 
+constexpr int kStarts = 24;        ///< directions from which the largest length is sought
 constexpr int kMostRounds = 1000;  ///< of the search for a point
 constexpr double kRest = 1e-15;    ///< a pull below this share of the weights is rest
 
@@ -161,20 +163,16 @@ double sum_of(const OfErrors& squares, std::size_t first, std::size_t count) {
                          squares.begin() + static_cast<std::ptrdiff_t>(first + count), 0.0);
 }
 
-/// Unit vectors from which the ascent starts: of opposite ones only one.
+/// Unit vectors from which the ascent starts, spread evenly over half of all directions.
 std::vector<std::array<double, 3>> starts(std::size_t components) {
+  if (components == 1) return {{1.0, 0.0, 0.0}};
   std::vector<std::array<double, 3>> list;
-  constexpr int kHalf = 2;
-  for (int x = -kHalf; x <= kHalf; ++x) {
-    for (int y = -kHalf; y <= kHalf; ++y) {
-      for (int z = 0; z <= kHalf; ++z) {
-        std::array<double, 3> made{double(x), components > 1 ? double(y) : 0.0, components > 2 ? double(z) : 0.0};
-        const double length = std::hypot(made[0], made[1], made[2]);
-        if (length == 0.0) continue;
-        for (double& one : made) one /= length;
-        if (std::ranges::find(list, made) == list.end()) list.push_back(made);
-      }
-    }
+  for (int k = 0; k < kStarts; ++k) {
+    const double share = (k + 0.5) / kStarts;
+    const double turn = components == 2 ? std::numbers::pi * share : 2.0 * std::numbers::pi * std::numbers::phi * k;
+    const double height = components == 2 ? 0.0 : share;
+    const double radius = std::sqrt(1.0 - height * height);
+    list.push_back({radius * std::cos(turn), radius * std::sin(turn), height});
   }
   return list;
 }
@@ -209,19 +207,15 @@ ZoneSquares zone_squares(const Feature& feature, double sigmas, const OfErrors& 
   const double tilt = sum_of(squares, feature.middle.size(), feature.tilt.size());
   const auto square = [](double value) { return value * value; };
   const double even = middle * square(sigma.middle.value_or(0.0)) + tilt * square(sigma.tilt.value_or(0.0));
-  const bool may_divide = feature.location && !feature.tilt.empty();
-  if (!may_divide) return {even, even};
+  const bool is_divided_freely = feature.location && !feature.orientation && !feature.tilt.empty();
+  if (!is_divided_freely) return {even, even};
   Feature shifted = feature;
   shifted.orientation = Zone{"parallelism", 0.0, {}};
   const double only_middle = middle * square(*feature_sigmas(shifted, sigmas).middle);
-  const double widest =
-      feature.orientation ? std::min(feature.orientation->size, feature.location->size) : feature.location->size;
   Feature turned = feature;
   turned.location.reset();
-  turned.orientation = Zone{"parallelism", widest, {}};
-  const double share = square(widest / feature.location->size);
-  const double mostly_tilt = (1.0 - share) * only_middle + tilt * square(*feature_sigmas(turned, sigmas).tilt);
-  return {even, std::max(only_middle, mostly_tilt)};
+  turned.orientation = Zone{"parallelism", feature.location->size, {}};
+  return {even, std::max(only_middle, tilt * square(*feature_sigmas(turned, sigmas).tilt))};
 }
 
 LargestLength largest_length(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes) {

@@ -25,14 +25,15 @@ Extreme extreme(const Feature& feature, const OfErrors& slopes);
 /// of squared slopes over the components of a response.
 struct ZoneSquares {
   double even;   ///< as feature_sigmas() divides its zone of location
-  double worst;  ///< as the worst division into middle and tilt
+  double worst;  ///< as the worst division of a location without orientation: the middle alone, or the tilt alone
 };
+/// squares: of each error of the feature.
 ZoneSquares zone_squares(const Feature& feature, double sigmas, const OfErrors& squares);
 
 /// The largest length of a sum over features of vectors, one column of slopes for each error; by ascent from many
 /// directions, which finds the largest in practice and proves no bound.
 struct LargestLength {
-  double length = 0.0;
+  double length = 0.0;             ///< the largest that was found
   std::vector<double> by_feature;  ///< the part of each feature in that direction
 };
 

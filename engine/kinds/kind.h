@@ -26,7 +26,8 @@ struct StudyResult {
   std::any found;                         ///< of the kind's own type: SensitivityResult, for instance
   std::optional<LimitVerdicts> verdicts;  ///< verdicts on the limits that the study states; empty without limits
   std::vector<std::string> row_names;     ///< names of the rows of errors to which a verdict may refer
-  std::optional<Study> confirming = std::nullopt;  ///< a study that confirms the result, if there is one
+  std::optional<Study> confirming = std::nullopt;       ///< a study that confirms the result, if there is one
+  std::optional<DrawingResult> drawing = std::nullopt;  ///< what features do, if they scatter in their zones
 
   /// The result. Precondition: it is of this type.
   template <class Found>

@@ -9,8 +9,8 @@
 namespace poesy {
 
 void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, std::any found,
-                  const RunFacts& facts) {
-  write_result(path, study.analysis.kind->name, kind_of(study).file, study, poses, std::move(found), facts);
+                  const RunFacts& facts, const DrawingResult* drawing) {
+  write_result(path, study.analysis.kind->name, kind_of(study).file, study, poses, std::move(found), facts, drawing);
 }
 
 StoredResult read_result(const std::string& path) {

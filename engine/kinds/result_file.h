@@ -13,9 +13,9 @@ namespace poesy {
 
 /// Writes the result of a study. found: of the kind's own type; it is moved, and its lists are freed as they are
 /// written. The file is written under a temporary name, synced and renamed, so it appears complete or not at all.
-/// Throws FileError and then leaves an existing file as it was.
+/// Throws FileError and then leaves an existing file as it was. drawing: null, or what the features of a drawing do.
 void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, std::any found,
-                  const RunFacts& facts);
+                  const RunFacts& facts, const DrawingResult* drawing = nullptr);
 
 /// Reads a result file. Throws FileError if it is not one, or has another major version. A file that was changed after
 /// it was written is read, and the result says so.

@@ -3,16 +3,21 @@
 #include <string>
 
 #include "engine/base/error.h"
+#include "engine/kinds/drawing_study.h"
 #include "engine/kinds/registry.h"
 #include "engine/study/study_file.h"
 
 namespace poesy {
+
 std::optional<StudyResult> run_study(const Study& study, const Model& model, const PoseSet& poses,
                                      const RunOptions& options) {
   Checkpoints not_kept;
   RunOptions with_checkpoints = options;
   if (options.checkpoints == nullptr) with_checkpoints.checkpoints = &not_kept;
-  return kind_of(study).run.run({.study = study, .model = model, .poses = poses, .options = with_checkpoints});
+  const StudyRun run{.study = study, .model = model, .poses = poses, .options = with_checkpoints};
+  std::optional<StudyResult> result = kind_of(study).run.run(run);
+  if (result) result->drawing = drawing_result(run);
+  return result;
 }
 
 std::optional<StudyResult> run_study(const Study& study, const RunOptions& options) {

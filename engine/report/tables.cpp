@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/report/display.h"
+#include "engine/report/drawing_table.h"
 #include "engine/report/report_kind.h"
 #include "engine/stats/proportion.h"
 
@@ -182,12 +183,27 @@ std::string default_ranking(const StoredResult& result) {
   return result.responses[first == order.end() ? order.front() : *first].name;
 }
 
+namespace {
+
+/// The features by their effect on the response that ranks.
+std::optional<Table> features_table(const StoredResult& result, const TableOptions& options) {
+  const std::string name = options.ranked_by.empty() ? default_ranking(result) : options.ranked_by;
+  const auto response = std::ranges::find(result.responses, name, &NamedUnit::name);
+  if (response == result.responses.end()) return std::nullopt;
+  return drawing_table(result, static_cast<std::size_t>(response - result.responses.begin()));
+}
+
+}  // namespace
+
 std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options) {
   std::vector<Table> tables = kind.tables(result, options);
   auto limits = limits_table(result);
   // A kind that shows more of its yield has this table itself.
   if (limits && std::ranges::find(tables, limits->name, &Table::name) == tables.end()) {
     tables.insert(tables.begin(), *std::move(limits));
+  }
+  if (auto features = features_table(result, options)) {
+    tables.insert(tables.begin() + (tables.empty() ? 0 : 1), *std::move(features));
   }
   if (auto measured = measured_table(result)) tables.push_back(*std::move(measured));
   if (auto stated = stated_table(result)) tables.push_back(*std::move(stated));

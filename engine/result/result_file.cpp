@@ -7,6 +7,7 @@
 
 #include "engine/base/array.h"
 #include "engine/base/error.h"
+#include "engine/result/drawing_parts.h"
 #include "engine/result/result_parts.h"
 #include "engine/storage/checkpoint.h"
 #include "engine/storage/content_hash.h"
@@ -295,9 +296,11 @@ std::string valid_hash(const StoredResult& result) { return result.changed ? std
 const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(named.unit)); }
 
 void write_result(const std::string& path, std::string_view name, const FileKind& kind, const Study& study,
-                  const SelectedPoses& poses, std::any found, const RunFacts& facts) {
-  compose_file(path, kResultFile, name, study, poses, facts,
-               [&](ResultBuilder& result) { kind.write(result, study, found); });
+                  const SelectedPoses& poses, std::any found, const RunFacts& facts, const DrawingResult* drawing) {
+  compose_file(path, kResultFile, name, study, poses, facts, [&](ResultBuilder& result) {
+    kind.write(result, study, found);
+    if (drawing != nullptr) write_drawing(result, *drawing);
+  });
 }
 
 std::string check_result_path(const std::string& path, std::span<const std::string> inputs) {
@@ -312,6 +315,7 @@ StoredResult read_result(const std::string& path, FindFileKind find_kind) {
     const FileKind* kind = find_kind(result.kind);
     if (kind == nullptr) throw h5::Error("its kind '" + result.kind + "' is unknown");
     kind->read(file, result);
+    if (file.exists("/drawing")) result.drawing = read_drawing(file);
     return result;
   });
 }
@@ -325,6 +329,9 @@ Verification verify_result(const std::string& path) {
 std::vector<std::string> export_tables(const StoredResult& result, const FileKind& kind, const std::string& folder) {
   CsvTables tables{pose_table(result)};
   kind.append_tables(tables, result);
+  std::vector<std::string> responses;
+  for (const NamedUnit& response : result.responses) responses.push_back(response.name);
+  if (result.drawing) append_drawing_tables(tables, responses, *result.drawing);
   OutputFolder output(folder, valid_hash(result));
   for (const CsvTable& table : tables) output.claim(table.name + ".csv");
   std::vector<std::string> paths;

@@ -11,6 +11,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/units.h"
+#include "engine/result/drawing_result.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/result.h"
 #include "engine/stats/tolerance.h"
@@ -42,9 +43,10 @@ using FindFileKind = const FileKind* (*)(std::string_view name);
 
 /// Writes the result of a study of this kind. name: the kind's name in the file. The file is written under a temporary
 /// name, synced and renamed, so it appears complete or not at all. Throws FileError and then leaves an existing file as
-/// it was.
+/// it was. drawing: null, or what the features of a drawing do.
 void write_result(const std::string& path, std::string_view name, const FileKind& kind, const Study& study,
-                  const SelectedPoses& poses, std::any found, const RunFacts& facts);
+                  const SelectedPoses& poses, std::any found, const RunFacts& facts,
+                  const DrawingResult* drawing = nullptr);
 
 /// Returns the path to write to: the target of a symbolic link, or the path itself. Throws if a result cannot be
 /// written there, before anything is computed. InputError: the folder does not exist, the file is one of the inputs, or
@@ -113,6 +115,8 @@ struct StoredResult {
   std::optional<ConvergenceResult> convergence;  ///< set if the study had adaptive samples
   std::optional<LimitVerdicts> verdicts;         ///< set if the study states limits
   std::vector<std::string> row_names;            ///< names of the rows of errors in verdicts; empty: they have none
+
+  std::optional<DrawingResult> drawing;  ///< set if the mechanism has features that scatter in their zones
 
   std::any found;  ///< result of the kind, of its own type; see found_of()
 };

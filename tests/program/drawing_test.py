@@ -54,6 +54,30 @@ class Drawing(ProgramTest):
         # A mean square of a normal has a relative standard error of at most sqrt(2 / samples); alpha = 1e-6.
         self.assertLess(np.abs(rms / expected - 1.0).max(), 5.0 * np.sqrt(2.0 / samples) / 2.0)
 
+    def test_worst_case(self):
+        """To first order the worst case and the root mean squares are those of the other program."""
+        limits = 'limits = { tip_position = "0.12 mm" }'
+        with self.result("mc", f'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 500\n{limits}') as file:
+            names = [name.decode() for name in file["response"][:]]
+            features = [name.decode() for name in file["feature"][:]]
+            found = {name: file["drawing"][name][:] for name in ("rms", "rms_worst_division", "worst_case", "effect")}
+        for name in ("tip_x", "tip_y", "tip_z", "tip_position"):
+            expected = [pose[f"worst_{name}"] for pose in EXPECTED["poses"]]
+            np.testing.assert_allclose(found["worst_case"][names.index(name)], expected, rtol=1e-9)
+        tip = names.index("tip_position")
+        for of, key in (("rms", "rms_tip"), ("rms_worst_division", "rms_tip_worst_split")):
+            np.testing.assert_allclose(found[of][tip], [pose[key] for pose in EXPECTED["poses"]], rtol=1e-9)
+        for feature, effect in zip(features, found["effect"][tip]):
+            squares = [pose["zones"][feature]["rms_tip"] ** 2 for pose in EXPECTED["poses"]]
+            np.testing.assert_allclose(effect, np.sqrt(np.mean(squares)), rtol=1e-9, err_msg=feature)
+        shown = self.succeeds("show", "mc.h5", "--response", "tip_position")
+        self.assertIn("What the features of the drawing do to tip_position in their zones, to first order", shown)
+        self.assertIn("rod_bore_3  -                  parallelism 0.03 A", shown)
+        self.assertIn("worst case, with all features in their zones, to first order: 0.7656 mm", " ".join(shown.split()))
+        self.succeeds("export", "mc.h5", "-d", "tables")
+        lines = (self.folder / "tables" / "features.csv").read_text().splitlines()
+        self.assertEqual(len(lines), 1 + len(names) * len(features))
+
     def test_division(self):
         """Threads, shards and a stop change no bit."""
         analysis = 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 3000\nlimits = { tip_position = "0.12 mm" }'

@@ -1,0 +1,245 @@
+#include "engine/kinds/drawing_study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/nan.h"
+#include "engine/drawing/worst_case.h"
+#include "engine/drawing/zone_scatter.h"
+
+namespace poesy {
+namespace {
+
+using drawing::OfErrors;
+
+namespace axis {
+using namespace poesy::axis;
+using Side = Axis<"side">;  ///< An error's step up and its step down.
+}  // namespace axis
+
+constexpr std::string_view kNone = "-";
+
+/// Steps of differences over standard deviations: neither what bends nor what rounds is more than 1e-9 of a slope.
+constexpr double kDifferenceStep = 1.0 / 16.0;
+
+/// The features of which all errors vary.
+std::vector<Feature> varied_features(const Study& study) {
+  const auto varies = [&](FactorIndex error) {
+    return std::ranges::find(study.analysis.factors, error) != study.analysis.factors.end();
+  };
+  std::vector<Feature> list;
+  for (const Feature& feature : study.model().features) {
+    const bool has_zone = feature.location || feature.orientation;
+    if (has_zone && std::ranges::all_of(feature.middle, varies) && std::ranges::all_of(feature.tilt, varies)) {
+      list.push_back(feature);
+    }
+  }
+  return list;
+}
+
+std::vector<FactorIndex> errors_of(const Feature& feature) {
+  std::vector<FactorIndex> list = feature.middle;
+  list.insert(list.end(), feature.tilt.begin(), feature.tilt.end());
+  return list;
+}
+
+/// Slopes of all responses by the errors of features at one pose.
+class Slopes {
+ public:
+  /// Positions of the two sides.
+  /// @{
+  static constexpr std::size_t kUp = 0;
+  static constexpr std::size_t kDown = 1;
+  /// @}
+
+  Slopes(const StudyRun& run, const std::vector<Feature>& features)
+      : evaluator_(run.model.evaluator(run.study.solver)), constant_(run.study.model().factors.size(), 0.0) {
+    for (const Feature& feature : features) {
+      first_.push_back(errors_.size());
+      for (const FactorIndex error : errors_of(feature)) {
+        errors_.push_back(error);
+        steps_.push_back(kDifferenceStep * run.study.errors.by_factor[error.value].standard_deviation());
+      }
+    }
+    first_.push_back(errors_.size());
+    const std::size_t count = errors_.size();
+    values_ = Array<double, axis::Factor, axis::Side, axis::Sample>({count, 2, count}, 0.0);
+    for (std::size_t e = 0; e < count; ++e) {
+      values_(e, kUp, e) = steps_[e];
+      values_(e, kDown, e) = -steps_[e];
+    }
+    found_ = Array<double, axis::Response, axis::Side, axis::Sample>({run.study.model().responses.size(), 2, count});
+    status_ = Array<SolveStatus, axis::Side, axis::Sample>({2, count});
+    iterations_.resize(2 * count);
+  }
+
+  void set_pose(std::span<const double> pose) {
+    evaluator_->evaluate({pose, constant_, errors_, values_.all(), iterations_.size()},
+                         {found_.all(), status_.all(), iterations_, {}});
+  }
+
+  /// The slopes of a signed response by the errors of a feature; NaN where a pose is not solved.
+  OfErrors of(std::size_t response, std::size_t feature) const {
+    OfErrors list;
+    for (std::size_t e = first_[feature]; e < first_[feature + 1]; ++e) {
+      const bool is_solved = solved(status_(kUp, e)) && solved(status_(kDown, e));
+      const double change = found_(response, kUp, e) - found_(response, kDown, e);
+      list.push_back(is_solved ? change / (2.0 * steps_[e]) : kNaN);
+    }
+    return list;
+  }
+
+ private:
+  std::unique_ptr<Evaluator> evaluator_;
+  std::vector<double> constant_;
+  std::vector<FactorIndex> errors_;
+  std::vector<std::size_t> first_;  ///< [features + 1] where the errors of a feature begin
+  std::vector<double> steps_;
+  Array<double, axis::Factor, axis::Side, axis::Sample> values_;
+  Array<double, axis::Response, axis::Side, axis::Sample> found_;
+  Array<SolveStatus, axis::Side, axis::Sample> status_;
+  std::vector<std::uint32_t> iterations_;
+};
+
+/// The signed responses behind a response; none if it is no linear function and no norm of some.
+std::vector<std::size_t> components(const ModelDescription& model, std::size_t response) {
+  const Response& one = model.responses[response];
+  if (one.has_no_sign || one.components.size() > 3) return {};
+  return one.components.empty() ? std::vector{response} : one.components;
+}
+
+std::string kind_name(FeatureKind kind) {
+  switch (kind) {
+    case FeatureKind::axis:
+      return "axis";
+    case FeatureKind::rectangle:
+      return "rectangle";
+    case FeatureKind::round:
+      return "round";
+    case FeatureKind::point:
+      return "point";
+    case FeatureKind::distance:
+      break;
+  }
+  return "distance";
+}
+
+std::string key_of(const std::optional<Zone>& zone) { return std::string(zone ? zone->key : kNone); }
+std::string datums_of(const std::optional<Zone>& zone) {
+  return zone && !zone->datums.empty() ? zone->datums : std::string(kNone);
+}
+
+/// The result with the features, and NaN for what they do.
+DrawingResult described(const StudyRun& run, const std::vector<Feature>& features) {
+  DrawingResult made;
+  const std::size_t count = features.size();
+  for (auto* texts :
+       {&made.label, &made.kind, &made.location, &made.location_datums, &made.orientation, &made.orientation_datums}) {
+    *texts = DrawingResult::Texts({count});
+  }
+  for (auto* sizes : {&made.length, &made.location_zone, &made.orientation_zone, &made.sigmas}) {
+    *sizes = DrawingResult::Sizes({count}, 0.0);
+  }
+  made.limb = Array<std::uint64_t, axis::Feature>({count}, 0);
+  for (std::size_t q = 0; q < count; ++q) {
+    const Feature& one = features[q];
+    made.names.push_back(one.name);
+    made.label(q) = one.label;
+    made.limb(q) = one.limb;
+    made.kind(q) = kind_name(one.kind);
+    made.length(q) = one.size[0];
+    made.location(q) = key_of(one.location);
+    made.location_zone(q) = one.location ? one.location->size : 0.0;
+    made.location_datums(q) = datums_of(one.location);
+    made.orientation(q) = key_of(one.orientation);
+    made.orientation_zone(q) = one.orientation ? one.orientation->size : 0.0;
+    made.orientation_datums(q) = datums_of(one.orientation);
+    made.sigmas(q) = drawing::sigmas_of(one, *run.study.errors.zones);
+  }
+  const std::size_t responses = run.study.model().responses.size();
+  for (auto* list : {&made.effect, &made.share, &made.worst_share}) {
+    *list = DrawingResult::OfFeatures({responses, count}, kNaN);
+  }
+  for (auto* list : {&made.rms, &made.rms_worst_division, &made.worst_case}) {
+    *list = DrawingResult::AtPoses({responses, run.poses.size()}, kNaN);
+  }
+  return made;
+}
+
+/// What features do to one response, over the poses so far.
+struct OverPoses {
+  std::vector<double> squares;     ///< [features] sums of mean squares
+  double worst = -1.0;             ///< largest worst case
+  std::vector<double> at_worst{};  ///< [features] its parts
+};
+
+/// Adds a pose. slopes: [features][components].
+void add_pose(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes, std::size_t r,
+              std::size_t m, OverPoses& sums, DrawingResult& result) {
+  double even = 0.0;
+  double worst = 0.0;
+  for (std::size_t q = 0; q < features.size(); ++q) {
+    OfErrors squares(slopes[q].front().size(), 0.0);
+    for (const OfErrors& component : slopes[q]) {
+      for (std::size_t e = 0; e < squares.size(); ++e) squares[e] += component[e] * component[e];
+    }
+    const drawing::ZoneSquares found = drawing::zone_squares(features[q], result.sigmas(q), squares);
+    sums.squares[q] += found.even;
+    even += found.even;
+    worst += found.worst;
+  }
+  result.rms(r, m) = std::sqrt(even);
+  result.rms_worst_division(r, m) = std::sqrt(worst);
+  if (!std::isfinite(even)) return;
+  drawing::LargestLength largest = drawing::largest_length(features, slopes);
+  result.worst_case(r, m) = largest.length;
+  if (largest.length <= sums.worst) return;
+  sums.worst = largest.length;
+  sums.at_worst = std::move(largest.by_feature);
+}
+
+void finish(const OverPoses& sums, std::size_t r, DrawingResult& result) {
+  double all = 0.0;
+  for (const double square : sums.squares) all += square;
+  const auto poses = static_cast<double>(result.rms.length<axis::Pose>());
+  for (std::size_t q = 0; q < sums.squares.size(); ++q) {
+    result.effect(r, q) = std::sqrt(sums.squares[q] / poses);
+    result.share(r, q) = sums.squares[q] / all;
+    if (sums.worst > 0.0) result.worst_share(r, q) = sums.at_worst[q] / sums.worst;
+  }
+}
+
+}  // namespace
+
+std::optional<DrawingResult> drawing_result(const StudyRun& run) {
+  const Study& study = run.study;
+  if (!study.errors.zones || study.analysis.kind->varies == Varies::none) return std::nullopt;
+  const std::vector<Feature> features = varied_features(study);
+  if (features.empty()) return std::nullopt;
+  const ModelDescription& model = study.model();
+  DrawingResult result = described(run, features);
+  Slopes slopes(run, features);
+  std::vector<OverPoses> sums(model.responses.size(), {std::vector<double>(features.size(), 0.0)});
+  for (std::size_t m = 0; m < run.poses.size(); ++m) {
+    slopes.set_pose(run.poses[PoseIndex(m)]);
+    for (std::size_t r = 0; r < model.responses.size(); ++r) {
+      const std::vector<std::size_t> signed_ones = components(model, r);
+      if (signed_ones.empty()) continue;
+      std::vector<std::vector<OfErrors>> of_features(features.size());
+      for (std::size_t q = 0; q < features.size(); ++q) {
+        for (const std::size_t component : signed_ones) of_features[q].push_back(slopes.of(component, q));
+      }
+      add_pose(features, of_features, r, m, sums[r], result);
+    }
+  }
+  for (std::size_t r = 0; r < model.responses.size(); ++r) {
+    if (!components(model, r).empty()) finish(sums[r], r, result);
+  }
+  return result;
+}
+
+}  // namespace poesy

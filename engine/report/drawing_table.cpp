@@ -1,0 +1,78 @@
+#include "engine/report/drawing_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "engine/report/display.h"
+
+namespace poesy {
+namespace {
+
+/// "position 0.05 A|B", or "-".
+std::string zone_text(const std::string& key, double size, const std::string& datums) {
+  if (key == "-") return key;
+  const bool is_size = key == "tolerance";
+  return fmt::format("{}{:.6g}{}", is_size ? "+-" : key + " ", 1e3 * size, datums == "-" ? "" : " " + datums);
+}
+
+double largest(std::span<const double> values) {
+  double most = 0.0;
+  for (const double value : values) most = std::fmax(most, value);
+  return most;
+}
+
+double root_mean_square(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+}  // namespace
+
+std::optional<Table> drawing_table(const StoredResult& result, std::size_t response) {
+  if (!result.drawing) return std::nullopt;
+  const DrawingResult& found = *result.drawing;
+  const NamedUnit& named = result.responses[response];
+  const Unit& unit = display(named);
+  if (!std::isfinite(found.effect(response, 0))) return std::nullopt;
+  const auto in_unit = [&](double si) { return response_text(named, si); };
+  Table table{
+      .name = "features",
+      .caption = fmt::format("What the features of the drawing do to {} in their zones, to first order", named.name),
+      .columns = {},
+      .notes = {fmt::format("effect: root mean square by the feature alone, over the poses; all of them together: "
+                            "{}, and {} where each location is divided between middle and tilt as is worst",
+                            in_unit(root_mean_square(found.rms.row(response))),
+                            in_unit(root_mean_square(found.rms_worst_division.row(response)))),
+                fmt::format("worst case, with all features in their zones, to first order: {}; the last column is "
+                            "each feature's part of it at the pose where it is largest",
+                            in_unit(largest(found.worst_case.row(response)))),
+                "zones in mm; other errors are not in these numbers"},
+      .ranked = true};
+  std::vector<std::size_t> rows(found.features());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  std::ranges::stable_sort(rows, std::ranges::greater(), [&](std::size_t q) { return found.effect(response, q); });
+  fill(table, rows,
+       {{text_column("feature", "feature"), [&](std::size_t q) { return text_cell(found.names[q]); }},
+        {text_column("location", "location or size"),
+         [&](std::size_t q) {
+           return text_cell(zone_text(found.location(q), found.location_zone(q), found.location_datums(q)));
+         }},
+        {text_column("orientation", "orientation"),
+         [&](std::size_t q) {
+           return text_cell(zone_text(found.orientation(q), found.orientation_zone(q), found.orientation_datums(q)));
+         }},
+        {number_column("effect", "effect", unit.name),
+         [&, response](std::size_t q) { return value_cell(found.effect(response, q), named); }},
+        {percent_column("share", "share"),
+         [&, response](std::size_t q) { return percent_cell(found.share(response, q)); }},
+        {percent_column("worst_share", "of the worst case", 1),
+         [&, response](std::size_t q) { return percent_cell(found.worst_share(response, q)); }}});
+  return table;
+}
+
+}  // namespace poesy
