@@ -173,6 +173,10 @@ int evaluate(const EvaluateOptions& options) {
     throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.poses.size()),
                      "--paired needs one row of errors for each pose");
   }
+  if (options.paired && any_over_poses(study.analysis.limits)) {
+    throw InputError({options.study}, "a limit is over the poses of a machine, but --paired has each row at one pose",
+                     "leave out --paired, or write a limit at each pose");
+  }
   check_size(options, poses.poses, errors);
   std::string path;
   std::optional<RunLock> lock;

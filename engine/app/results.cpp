@@ -26,6 +26,7 @@
 #include "engine/result/result_parts.h"
 #include "engine/result/shard_file.h"
 #include "engine/storage/file_writer.h"
+#include "engine/study/limit_keys.h"
 #include "engine/study/study_kind.h"
 #include "models/registry.h"
 
@@ -138,9 +139,9 @@ ExitCode judge_limits(const Study& study, const StoredResult& result, const std:
     if (one.passed) continue;
     const NamedUnit& response = result.responses[one.response];
     const Dimension dimension = dimension_of(response.unit);
-    say(Message::error,
-        fmt::format("{}: {} is {}, above its limit of {}; {}", study_path, response.name,
-                    readable_text({one.value, dimension}, 4), readable_text({one.limit, dimension}), remedy));
+    say(Message::error, fmt::format("{}: {} is {}, {} its limit of {}; {}", study_path, response.name,
+                                    readable_text({one.value, dimension}, 4), one.limit.is_plain() ? "above" : "beyond",
+                                    limit_text(one.limit, dimension), remedy));
   }
   return verdicts.passed() ? kDone : kLimitNotKept;
 }

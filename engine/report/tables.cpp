@@ -7,10 +7,12 @@
 #include <limits>
 
 #include "engine/base/error.h"
+#include "engine/base/nan.h"
 #include "engine/report/display.h"
 #include "engine/report/drawing_table.h"
 #include "engine/report/report_kind.h"
 #include "engine/stats/proportion.h"
+#include "engine/study/limit_keys.h"
 
 namespace poesy {
 namespace {
@@ -83,6 +85,34 @@ std::string with_parts_text(const YieldVerdict& yield) {
       "Interval of machines and measured parts: {} to {} (resampled parts, {}); low, high count machines "
       "alone",
       percent_text(yield.with_parts->low), percent_text(yield.with_parts->high), percent_text(yield.conf_level));
+}
+
+/// An end of a limit; empty where there is none.
+Cell end_cell(double end, const NamedUnit& response) {
+  return number_cell((std::isfinite(end) ? end : kNaN) / display(response).si, kDigits);
+}
+
+/// Adds a column with the lower ends and one with the limits in words, if a limit is more than a magnitude at each
+/// pose. The last rows of the table are those of the limits.
+void add_limit_words(const StoredResult& result, std::span<const LimitVerdict> limits, Table& table) {
+  if (std::ranges::all_of(limits, [](const LimitVerdict& one) { return one.limit.is_plain(); })) return;
+  const std::size_t before = table.rows.size() - limits.size();
+  table.columns.push_back(number_column("from", "from", "", 1));
+  table.columns.push_back(text_column("limit_text", "the limit", 1));
+  table.notes.emplace_back(
+      "from, limit: the ends of the values that are good, or in limit alone a magnitude or the largest spread over the "
+      "poses of a machine; between two ends a value counts with its sign");
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    if (row < before) {
+      table.rows[row].insert(table.rows[row].end(), {text_cell(""), text_cell("")});
+      continue;
+    }
+    const LimitVerdict& one = limits[row - before];
+    const NamedUnit& response = result.responses[one.response];
+    table.rows[row].push_back(end_cell(one.limit.is_spread() ? kNaN : one.limit.from(), response));
+    table.rows[row].push_back(
+        text_cell(limit_text(one.limit, [&](double value) { return response_text(response, value); })));
+  }
 }
 
 /// The usual yield of tolerances: three sigma of a normal error.
@@ -246,10 +276,11 @@ Table yield_table(const StoredResult& result, const LimitVerdicts& verdicts) {
     const Unit& unit = display(result.responses[one.response]);
     std::vector<Cell> row{text_cell(result.responses[one.response].name)};
     add_share(row, one.within, yield);
-    row.push_back(number_cell(one.limit / unit.si, kDigits));
+    row.push_back(end_cell(one.limit.to(), result.responses[one.response]));
     row.push_back(text_cell(unit.name));
     table.rows.push_back(std::move(row));
   }
+  add_limit_words(result, verdicts.limits, table);
   if (yield.unsolved > 0) table.notes.push_back(unsolved_note(yield));
   if (yield.with_parts) table.notes.push_back(with_parts_text(yield));
   if (!result.measured.names.empty()) table.notes.push_back(few_parts_text(result, yield.conf_level, yield.asked));
@@ -348,9 +379,17 @@ std::optional<Table> limits_table(const StoredResult& result) {
     kept += one.passed ? 1 : 0;
     table.rows.push_back({text_cell(one.passed ? "PASS" : "FAIL"), text_cell(result.responses[one.response].name),
                           text_cell(unit.name), text_cell(judged_by(*verdicts)),
-                          number_cell(one.value / unit.si, kDigits), number_cell(one.limit / unit.si, kDigits),
+                          number_cell(one.value / unit.si, kDigits),
+                          end_cell(one.limit.to(), result.responses[one.response]),
                           percent_cell(share_of(one.within, one.tried)), text_cell(place(result, one))});
   }
+  if (verdicts->rows_within && verdicts->limits.size() > 1) {
+    const std::uint64_t rows = verdicts->limits.front().tried;
+    table.notes.push_back(fmt::format("{} of {} are within all limits ({})", count_text(*verdicts->rows_within),
+                                      counted(rows, "row", "rows"),
+                                      percent_text(share_of(*verdicts->rows_within, rows))));
+  }
+  add_limit_words(result, verdicts->limits, table);
   const std::size_t all = verdicts->limits.size();
   table.caption = kept == all ? fmt::format("PASS: {} kept", all == 1 ? "the limit is" : "all limits are")
                               : fmt::format("FAIL: {} of {} not kept", all - kept, counted(all, "limit", "limits"));

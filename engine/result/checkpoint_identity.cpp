@@ -23,8 +23,11 @@ CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const s
   rest.seed = 0;
   rest.title.clear();
   rest.max_not_converged = 1.0;  // is checked only at the end of a run
-  // Limits are judged at the end too, unless machines are counted under them.
-  if (study.analysis.draws == Draws::per_pose) rest.analysis.limits.clear();
+  // Limits are judged at the end too, unless machines are counted under them. Those on magnitudes are judged by numbers
+  // that do not depend on the limit, others by the draws near their ends.
+  if (study.analysis.draws == Draws::per_pose) {
+    std::erase_if(rest.analysis.limits, [](const ResponseLimit& limit) { return limit.allowed.is_magnitude(); });
+  }
   if (!study.analysis.kind->decides_by_samples) rest.analysis.samples = 0;
   return {.poesy_version = poesy_version(),
           .git_commit = git_commit(),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "engine/study/study_kind.h"
 
@@ -51,20 +52,79 @@ constexpr std::string_view kByRow = "row";  ///< the word of `judge` for an eval
 
 const Axes kLimited{"limited_response"};
 
+/// A verdict as a file has it.
+struct LimitRow {
+  double value = 0.0;
+  double limit = 0.0;
+  bool passed = false;
+  std::uint64_t tried = 0;
+  std::uint64_t within = 0;
+  std::optional<std::size_t> pose = std::nullopt;
+  std::optional<std::size_t> row = std::nullopt;
+  double from = 0.0;
+  double pose_share = 1.0;
+  bool spread = false;
+};
+
 /// The fields of limits, in the order of the columns of limits.csv.
-const Fields<LimitVerdict> kLimitFields{
-    {"value", &LimitVerdict::value, kLimited, kResponseUnit,
+const Fields<LimitRow> kLimitFields{
+    {"value", &LimitRow::value, kLimited, kResponseUnit,
      "What is compared with it, a magnitude; infinite or NaN where too few samples were solved, NaN where nothing is "
      "compared"},
-    {"limit", &LimitVerdict::limit, kLimited, kResponseUnit, "The limit"},
-    {"passed", &LimitVerdict::passed, kLimited, "1", "1: the limit is kept; 0: it is not"},
-    {"tried", &LimitVerdict::tried, kLimited, "1",
+    {"limit", &LimitRow::limit, kLimited, kResponseUnit, "The limit"},
+    {"passed", &LimitRow::passed, kLimited, "1", "1: the limit is kept; 0: it is not"},
+    {"tried", &LimitRow::tried, kLimited, "1",
      "Draws at all poses together; by yield machines; of an evaluation its rows of errors"},
-    {"within", &LimitVerdict::within, kLimited, "1",
+    {"within", &LimitRow::within, kLimited, "1",
      "Of these, those within the limit, a machine or a row at each of its poses; what was not solved is not"},
-    {"pose", &LimitVerdict::pose, kLimited, "1", "Pose of the value, from 0; -1 where it is of all poses"},
-    {"row", &LimitVerdict::row, kLimited, "1",
-     "Row of errors, or case, of the value, from 0; -1 where there are none"}};
+    {"pose", &LimitRow::pose, kLimited, "1", "Pose of the value, from 0; -1 where it is of all poses"},
+    {"row", &LimitRow::row, kLimited, "1", "Row of errors, or case, of the value, from 0; -1 where there are none"}};
+
+/// The fields of files with a limit that is more than a magnitude at each pose.
+const Fields<LimitRow> kEndFields{
+    {"from", &LimitRow::from, kLimited, kResponseUnit,
+     "Lower end of the limit, of which /limits/limit is then the upper end: minus infinity or infinity for none, and "
+     "-limit where magnitudes or spreads are limited. Otherwise /limits/value is a value with its sign. A file without "
+     "this dataset has limits on magnitudes at each pose"},
+    {"pose_share", &LimitRow::pose_share, kLimited, "1",
+     "Share of the poses of a machine at which the limit is to be kept"},
+    {"spread", &LimitRow::spread, kLimited, "1",
+     "1: the limit is on the largest less the smallest value over the poses of a machine; 0: on values"}};
+
+LimitRow limit_row(const LimitVerdict& one) {
+  return {one.value, one.limit.to(), one.passed,       one.tried,         one.within,
+          one.pose,  one.row,        one.limit.from(), one.limit.share(), one.limit.is_spread()};
+}
+
+std::vector<LimitRow> rows_of(const LimitVerdicts& verdicts) {
+  std::vector<LimitRow> rows;
+  std::ranges::transform(verdicts.limits, std::back_inserter(rows), limit_row);
+  return rows;
+}
+
+bool has_ends(const LimitVerdicts& verdicts) {
+  return !std::ranges::all_of(verdicts.limits, [](const LimitVerdict& one) { return one.limit.is_plain(); });
+}
+
+/// The verdict of a row, with a limit on magnitudes.
+LimitVerdict verdict_of(const LimitRow& row) {
+  return {.limit = row.limit,
+          .value = row.value,
+          .passed = row.passed,
+          .tried = row.tried,
+          .within = row.within,
+          .pose = row.pose,
+          .row = row.row};
+}
+
+/// The limit of a row, whose ends were read. Throws h5::Error if there is no such limit.
+ValueLimit limit_of(const LimitRow& row) {
+  const bool is_possible = row.from < row.limit && row.pose_share > 0.0 && row.pose_share <= 1.0 &&
+                           !(row.spread && (row.pose_share < 1.0 || row.from != -row.limit));
+  if (!is_possible) throw h5::Error("/limits has a limit that cannot be stated");
+  if (row.spread) return ValueLimit::of_spread(row.limit);
+  return ValueLimit::between(row.from, row.limit).at_share(row.pose_share);
+}
 
 constexpr std::string_view kLimitsMeaning =
     "How each limit of [analysis.limits] was kept. judge: what is compared with it: rms, the root mean square over the "
@@ -393,7 +453,9 @@ void add_limits(ResultBuilder& result, const ModelDescription& model, const std:
   file.set_attribute("/limits", "judge", std::string(verdicts->judge ? name(*verdicts->judge) : kByRow));
   if (verdicts->judge == Judge::share) file.set_attribute("/limits", "share", verdicts->share);
   result.add("/limits/response", kLimited, names, label);
-  write_columns(result, "/limits", kLimitFields, verdicts->limits);
+  const std::vector<LimitRow> rows = rows_of(*verdicts);
+  write_columns(result, "/limits", kLimitFields, rows);
+  if (has_ends(*verdicts)) write_columns(result, "/limits", kEndFields, rows);
 }
 
 std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResult& result) {
@@ -405,9 +467,15 @@ std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResul
   if (word == kJudges.end() && judge != kByRow) throw h5::Error("/limits has the unknown judge '" + judge + "'");
   if (verdicts.judge == Judge::share) verdicts.share = file.attribute<double>("/limits", "share").at(0);
   const auto names = read_along<std::string>(file, "/limits/response", kLimited);
-  verdicts.limits = read_columns(file, "/limits", kLimitFields);
+  const std::vector<LimitRow> rows = read_columns(file, "/limits", kLimitFields);
+  std::vector<LimitRow> ends;
+  if (file.exists("/limits/from")) ends = read_columns(file, "/limits", kEndFields);
   for (std::size_t k = 0; k < names.size(); ++k) {
-    LimitVerdict& one = verdicts.limits[k];
+    LimitVerdict& one = verdicts.limits.emplace_back(verdict_of(rows[k]));
+    if (!ends.empty()) {
+      ends[k].limit = rows[k].limit;
+      one.limit = limit_of(ends[k]);
+    }
     one.response = position_in(result.responses, names[k], "/limits names an unknown response", &NamedUnit::name);
     if ((one.pose && *one.pose >= result.poses.size()) || (one.row && *one.row >= one.tried)) {
       throw h5::Error("/limits names a place that does not exist");
@@ -425,10 +493,14 @@ void append_limit_table(CsvTables& tables, const StoredResult& result) {
                  limits.size(),
                  {},
                  {"unit", [response](std::size_t line) { return response(line).unit; }}};
-  for (const FieldRow<LimitVerdict>& field : kLimitFields) {
-    table.columns.push_back(
-        list_column(field.name, limits, [&](const LimitVerdict& one) { return number_at(field, one, 0); }));
-  }
+  const auto add = [&](const Fields<LimitRow>& fields) {
+    for (const FieldRow<LimitRow>& field : fields) {
+      table.columns.push_back(list_column(
+          field.name, limits, [&](const LimitVerdict& one) { return number_at(field, limit_row(one), 0); }));
+    }
+  };
+  add(kLimitFields);
+  if (has_ends(*result.verdicts)) add(kEndFields);
   tables.push_back(std::move(table));
 }
 

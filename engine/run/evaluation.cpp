@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string_view>
 
@@ -139,6 +140,37 @@ struct TableJob {
   }
 };
 
+/// One row as a limit judges it.
+struct JudgedRow {
+  bool within = false;
+  double value = kNaN;                             ///< number that is judged, of the poses that count; NaN without any
+  std::optional<std::size_t> pose = std::nullopt;  ///< its pose, if it belongs to one
+};
+
+JudgedRow judge_row(const ResponseLimit& limit, const EvaluationResult& found, Pairing pairing, NotConverged policy,
+                    std::size_t row) {
+  const bool paired = pairing == Pairing::row_by_row;
+  const std::size_t first = paired ? row : 0;
+  const std::size_t poses = paired ? 1 : found.poses();
+  const std::size_t sample = paired ? 0 : row;
+  std::vector<double> values;
+  for (std::size_t m = first; m < first + poses; ++m) {
+    const double value = found.response(limit.response, m, sample);
+    if (!counts(found.status(m, sample), policy)) continue;
+    values.push_back(limit.allowed.is_magnitude() ? std::abs(value) : value);
+  }
+  JudgedRow judged{poses > 0 && values.size() == poses && limit.allowed.keeps(values, poses)};
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  judged.value = limit.allowed.deciding(values, poses);
+  if (limit.allowed.is_spread()) return judged;
+  for (std::size_t m = first; m < first + poses && !judged.pose; ++m) {
+    const double value = found.response(limit.response, m, sample);
+    const bool is_it = (limit.allowed.is_magnitude() ? std::abs(value) : value) == judged.value;
+    if (is_it && counts(found.status(m, sample), policy)) judged.pose = m;
+  }
+  return judged;
+}
+
 }  // namespace
 
 SolveCounts EvaluationResult::total() const { return solves_of(*this, 0, status.size()); }
@@ -155,28 +187,26 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
 
 LimitVerdicts judge_rows(std::span<const ResponseLimit> limits, const EvaluationResult& found, Pairing pairing,
                          NotConverged policy) {
-  const bool paired = pairing == Pairing::row_by_row;
-  const std::size_t rows = paired ? found.poses() : found.samples();
+  const std::size_t rows = pairing == Pairing::row_by_row ? found.poses() : found.samples();
   LimitVerdicts verdicts;
+  std::vector<std::uint8_t> good(rows, 1);
   for (const ResponseLimit& limit : limits) {
-    LimitVerdict verdict{.response = limit.response, .limit = limit.most, .value = kNaN, .tried = rows};
+    LimitVerdict verdict{.response = limit.response, .limit = limit.allowed, .value = kNaN, .tried = rows};
+    double worst = -std::numeric_limits<double>::infinity();
     for (std::size_t row = 0; row < rows; ++row) {
-      bool within = found.poses() > 0;
-      for (std::size_t m = paired ? row : 0; m < (paired ? row + 1 : found.poses()); ++m) {
-        const std::size_t sample = paired ? 0 : row;
-        const double magnitude = std::abs(found.response(limit.response, m, sample));
-        const bool counted = counts(found.status(m, sample), policy);
-        within = within && counted && magnitude <= limit.most;
-        if (!counted || std::isnan(magnitude) || magnitude <= verdict.value) continue;
-        verdict.value = magnitude;
-        verdict.pose = m;
-        verdict.row = row;
-      }
-      if (within) ++verdict.within;
+      const JudgedRow judged = judge_row(limit, found, pairing, policy, row);
+      if (judged.within) ++verdict.within;
+      if (!judged.within) good[row] = 0;
+      if (std::isnan(judged.value) || limit.allowed.badness(judged.value) <= worst) continue;
+      worst = limit.allowed.badness(judged.value);
+      verdict.value = judged.value;
+      verdict.pose = judged.pose;
+      verdict.row = row;
     }
     verdict.passed = verdict.within == verdict.tried;
     verdicts.limits.push_back(verdict);
   }
+  verdicts.rows_within = static_cast<std::uint64_t>(std::ranges::count(good, 1));
   return verdicts;
 }
 

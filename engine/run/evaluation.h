@@ -48,8 +48,9 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
                                                const ErrorTable& errors, Pairing pairing, const RunOptions& options,
                                                Outcomes outcomes = Outcomes::with_details);
 
-/// Judges limits by an evaluation, row by row. A row (a case) is within a limit if its largest magnitude over all its
-/// poses is, and if each of these solves counts (see counts()). A limit is kept if every row is within it.
+/// Judges limits by an evaluation, row by row. A row (a case) is a machine: it is within a limit if the number by which
+/// it is judged is (ValueLimit::deciding), and if each of its solves counts (see counts()). A limit is kept if every
+/// row is within it. Precondition: no limit is over poses if rows are paired with them.
 LimitVerdicts judge_rows(std::span<const ResponseLimit> limits, const EvaluationResult& found, Pairing pairing,
                          NotConverged policy);
 

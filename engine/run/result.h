@@ -124,11 +124,13 @@ struct ConvergenceResult {
   std::vector<std::uint64_t> samples;       ///< [P] samples at each pose
 };
 
-/// The verdict on a limit of a response (engine/run/evaluation.h). SI; values are magnitudes.
+/// The verdict on a limit of a response (engine/run/evaluation.h). SI.
 struct LimitVerdict {
   std::size_t response = 0;  ///< position among the responses
-  double limit = 0.0;        ///< limit that the study states
-  double value = 0.0;        ///< number that is compared with it; infinite or NaN if too few samples were solved
+  ValueLimit limit = 0.0;    ///< limit that the study states
+  /// Number that is compared with it: a magnitude for a limit on magnitudes, a spread for one on the spread, otherwise
+  /// a value; infinite or NaN if too few samples were solved.
+  double value = 0.0;
   bool passed = false;       ///< whether the limit is kept
   std::uint64_t tried = 0;   ///< draws at all poses together; for an evaluation its rows
   std::uint64_t within = 0;  ///< those within the limit; a row must be within it at each of its poses
@@ -166,6 +168,8 @@ struct LimitVerdicts {
   std::optional<Judge> judge = std::nullopt;
   double share = 0.0;                ///< for Judge::share: the share of the draws at each pose
   std::vector<LimitVerdict> limits;  ///< in the order of the responses
+  /// Of an evaluation: the rows that are within all limits; none if they were not counted.
+  std::optional<std::uint64_t> rows_within = std::nullopt;
   /// For Judge::yield, which judges all limits together; the verdicts in `limits` on each alone then decide nothing.
   std::optional<YieldVerdict> yield = std::nullopt;
 

@@ -44,7 +44,7 @@ LinearLimit with_fewest_rows(const LinearLimit& limit) {
       Eigen::Map<const Matrix>(limit.slope.data(), rows, all.cols() - 1);
   const auto [squares, axes] = linalg::eigen_decomposition(all * all.transpose());
   const Matrix turned = axes.transpose() * all;
-  LinearLimit found{0, limit.most, {}, {}};
+  LinearLimit found{0, limit.limit, {}, {}};
   for (Eigen::Index k = 0; k < rows; ++k) {
     if (!(squares[k] > kLeast * squares[rows - 1])) continue;
     ++found.rows;
@@ -67,7 +67,13 @@ LinearLimits::Machines LinearLimits::machines(std::span<const double> errors, st
   const std::size_t block = errors.size() / errors_;
   Machines found{std::vector<std::uint8_t>(block), std::vector<double>(errors.size(), -kFar),
                  std::vector<double>(errors.size(), kFar)};
-  for (const LinearLimit& limit : limits_) add_limit(limit, errors, reach, found);
+  for (const LinearLimit& limit : limits_) {
+    if (limit.limit.is_magnitude()) {
+      add_limit(limit, errors, reach, found);
+    } else {
+      add_ends(limit, errors, reach, found);
+    }
+  }
   // At this point the range is in terms of the error's change.
   for (std::size_t k = 0; k < errors.size(); ++k) {
     found.low[k] += errors[k];
@@ -76,13 +82,9 @@ LinearLimits::Machines LinearLimits::machines(std::span<const double> errors, st
   return found;
 }
 
-// |y + a d|^2 <= L^2 holds for d between the roots of a^2 d^2 + 2 (y a) d + y^2 - L^2.
-void LinearLimits::add_limit(const LinearLimit& limit, std::span<const double> errors, std::span<const double> reach,
-                             Machines& found) const {
-  const std::size_t block = found.rejected.size();
-  const double most = limit.most * limit.most;
+std::vector<double> LinearLimits::values_of(const LinearLimit& limit, std::span<const double> errors) const {
+  const std::size_t block = errors.size() / errors_;
   std::vector<double> y(limit.rows * block);
-  std::vector<double> square(block);
   for (std::size_t k = 0; k < limit.rows; ++k) {
     double* const row = &y[k * block];
     std::fill_n(row, block, limit.offset[k]);
@@ -91,6 +93,47 @@ void LinearLimits::add_limit(const LinearLimit& limit, std::span<const double> e
       const double* const error = &errors[p * block];
       for (std::size_t b = 0; b < block; ++b) row[b] += slope * error[b];
     }
+  }
+  return y;
+}
+
+// from <= y + a d <= to holds for d between (from - y) / a and (to - y) / a.
+void LinearLimits::add_ends(const LinearLimit& limit, std::span<const double> errors, std::span<const double> reach,
+                            Machines& found) const {
+  POESY_EXPECTS(limit.rows == 1);
+  const std::size_t block = found.rejected.size();
+  const std::vector<double> y = values_of(limit, errors);
+  const auto holds = [&](double value) { return limit.limit.holds(value); };
+  for (std::size_t b = 0; b < block; ++b) {
+    if (!holds(y[b])) found.rejected[b] = 1;
+  }
+  for (std::size_t p = 0; p < errors_; ++p) {
+    if (reach[p] == 0.0) continue;
+    const double slope = limit.slope[p];
+    double* const low = &found.low[p * block];
+    double* const high = &found.high[p * block];
+    for (std::size_t b = 0; b < block; ++b) {
+      if (slope == 0.0) {
+        if (!holds(y[b])) low[b] = std::numeric_limits<double>::infinity();
+        continue;
+      }
+      const double at_from = (limit.limit.from() - y[b]) / slope;
+      const double at_to = (limit.limit.to() - y[b]) / slope;
+      low[b] = std::max(low[b], std::min(at_from, at_to));
+      high[b] = std::min(high[b], std::max(at_from, at_to));
+    }
+  }
+}
+
+// |y + a d|^2 <= L^2 holds for d between the roots of a^2 d^2 + 2 (y a) d + y^2 - L^2.
+void LinearLimits::add_limit(const LinearLimit& limit, std::span<const double> errors, std::span<const double> reach,
+                             Machines& found) const {
+  const std::size_t block = found.rejected.size();
+  const double most = limit.limit.to() * limit.limit.to();
+  const std::vector<double> y = values_of(limit, errors);
+  std::vector<double> square(block);
+  for (std::size_t k = 0; k < limit.rows; ++k) {
+    const double* const row = &y[k * block];
     for (std::size_t b = 0; b < block; ++b) square[b] += row[b] * row[b];
   }
   double largest = 0.0;
@@ -105,7 +148,8 @@ void LinearLimits::add_limit(const LinearLimit& limit, std::span<const double> e
     for (std::size_t k = 0; k < limit.rows; ++k) {
       slope2 += limit.slope[k * errors_ + p] * limit.slope[k * errors_ + p];
     }
-    if (std::sqrt(largest) + std::sqrt(slope2) * reach[p] <= limit.most) continue;  // no machine can reach the limit
+    if (std::sqrt(largest) + std::sqrt(slope2) * reach[p] <= limit.limit.to())
+      continue;  // no machine can reach the limit
     std::ranges::fill(product, 0.0);
     for (std::size_t k = 0; k < limit.rows; ++k) {
       const double slope = limit.slope[k * errors_ + p];

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/value_limit.h"
+
 namespace poesy {
 
 /// The distribution of an error of any shape, from its quantile function.
@@ -32,10 +34,10 @@ class ErrorRange {
   double centre_;
 };
 
-/// A limit on the norm of a vector at one pose: |offset + slope e| <= most.
+/// A limit on the norm of a vector at one pose, |offset + slope e|, or on the value of a vector with one component.
 struct LinearLimit {
   std::size_t rows;            ///< components of the vector
-  double most;                 ///< upper bound of the norm
+  ValueLimit limit;            ///< of the norm; if it is not on the magnitude, of the one component
   std::vector<double> offset;  ///< [rows]
   std::vector<double> slope;   ///< [rows x P] derivatives by the errors, SI
 };
@@ -64,8 +66,12 @@ class LinearLimits {
   Machines machines(std::span<const double> errors, std::span<const double> reach) const;
 
  private:
+  /// [rows x B] The vector of each machine.
+  std::vector<double> values_of(const LinearLimit& limit, std::span<const double> errors) const;
   void add_limit(const LinearLimit& limit, std::span<const double> errors, std::span<const double> reach,
                  Machines& found) const;
+  void add_ends(const LinearLimit& limit, std::span<const double> errors, std::span<const double> reach,
+                Machines& found) const;
 
   std::size_t errors_;
   std::vector<LinearLimit> limits_;

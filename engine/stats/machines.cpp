@@ -30,22 +30,22 @@ void rejects_state(Archive& archive, Rejects& rejects, const Rejects& among, std
   archive.expect(rejects.strict - rejects.lenient <= unsolved, "has rejects without a reason");
 }
 
-/// Adds one response at a pose to the results of some machines: whether they keep the limit, their largest magnitudes
-/// and sums of squares. Machines whose sample does not count are left unchanged.
+/// Adds one response at a pose to the results of some machines: whether they are within the limit, their largest
+/// magnitudes and sums of squares. Machines whose sample does not count are left unchanged.
 struct ResponseAtPose {
   std::span<const double> values;
   std::span<const std::uint8_t> counts;
-  double limit;
+  const ValueLimit& limit;
   std::span<double> largest;
   std::span<double> squares;
-  std::span<std::uint8_t> beyond;  ///< 1 if the limit is broken at this pose or an earlier one
+  std::span<std::uint8_t> beyond;  ///< 1 if the machine is beyond the limit at this pose or an earlier one
 
   Rejects add() const {
     std::uint64_t broken = 0;
     std::uint64_t unsolved = 0;
     for (std::size_t b = 0; b < values.size(); ++b) {
       const double magnitude = counts[b] != 0 ? std::abs(values[b]) : 0.0;
-      const auto is_beyond = static_cast<std::uint8_t>(!(magnitude <= limit));
+      const auto is_beyond = static_cast<std::uint8_t>(counts[b] != 0 && !limit.holds(values[b]));
       largest[b] = std::max(largest[b], magnitude);
       squares[b] += magnitude * magnitude;
       beyond[b] |= is_beyond;
@@ -88,22 +88,68 @@ MachineCounts MachineCounts::of_none(std::size_t responses, std::size_t poses) {
   return counts;
 }
 
-MachineBlock::MachineBlock(std::span<const double> limits, std::size_t machines)
+MachineBlock::MachineBlock(std::span<const ValueLimit> limits, std::size_t machines)
     : limits_(limits.begin(), limits.end()),
       solved_(machines, 1),
       largest_({limits.size(), machines}),
       squares_({limits.size(), machines}),
-      beyond_({limits.size(), machines}) {}
+      beyond_({limits.size(), machines}),
+      values_(limits.size()) {}
 
 void MachineBlock::add_pose(std::span<const double> responses, std::span<const std::uint8_t> counts) {
   const ArrayView<const double, axis::Response, axis::Sample> values(responses, largest_.lengths());
   POESY_EXPECTS(counts.size() == machines());
   for (std::size_t b = 0; b < counts.size(); ++b) solved_[b] &= static_cast<std::uint8_t>(counts[b] != 0);
   std::vector<Rejects>& rejects = at_pose_.emplace_back();
+  const ValueLimit none;
+  bool keeps_values = false;
   for (std::size_t r = 0; r < limits_.size(); ++r) {
+    const ValueLimit& limit = limits_[r].is_spread() ? none : limits_[r];
     rejects.push_back(
-        ResponseAtPose{values.row(r), counts, limits_[r], largest_.row(r), squares_.row(r), beyond_.row(r)}.add());
+        ResponseAtPose{values.row(r), counts, limit, largest_.row(r), squares_.row(r), beyond_.row(r)}.add());
+    if (limits_[r].is_plain()) continue;
+    keeps_values = true;
+    values_[r].insert(values_[r].end(), values.row(r).begin(), values.row(r).end());
   }
+  if (keeps_values) counts_.insert(counts_.end(), counts.begin(), counts.end());
+}
+
+std::vector<double> MachineBlock::values_of(std::size_t response, std::size_t machine) const {
+  std::vector<double> values;
+  for (std::size_t at = machine; at < counts_.size(); at += machines()) {
+    if (counts_[at] != 0) values.push_back(values_[response][at]);
+  }
+  return values;
+}
+
+bool MachineBlock::is_beyond(std::size_t response, std::size_t machine) const {
+  if (!limits_[response].is_over_poses()) return beyond_(response, machine) != 0;
+  std::vector<double> values = values_of(response, machine);
+  return !limits_[response].keeps(values, poses());
+}
+
+Rejects MachineBlock::rejects_over_poses(std::size_t response, std::size_t pose) const {
+  const ValueLimit& limit = limits_[response];
+  Rejects rejects;
+  for (std::size_t b = 0; b < machines(); ++b) {
+    const std::size_t at = pose * machines() + b;
+    const bool is_solved = counts_[at] != 0;
+    const bool is_reject =
+        is_solved && !limit.is_spread() && !limit.holds(values_[response][at]) && is_beyond(response, b);
+    add(rejects, {is_reject || !is_solved ? 1U : 0U, is_reject ? 1U : 0U});
+  }
+  return rejects;
+}
+
+std::vector<double> MachineBlock::deciding(std::size_t response) const {
+  POESY_EXPECTS(!limits_[response].is_plain());
+  std::vector<double> numbers(machines(), kNaN);
+  for (std::size_t b = 0; b < machines(); ++b) {
+    if (solved_[b] == 0) continue;
+    std::vector<double> values = values_of(response, b);
+    numbers[b] = limits_[response].deciding(values, poses());
+  }
+  return numbers;
 }
 
 MachineCounts MachineBlock::counts() const {
@@ -116,15 +162,17 @@ MachineCounts MachineBlock::counts() const {
     const bool unsolved = solved_[b] == 0;
     bool beyond_any = false;
     for (std::size_t r = 0; r < responses; ++r) {
-      const bool beyond = beyond_(r, b) != 0;
+      const bool beyond = is_beyond(r, b);
       beyond_any |= beyond;
       add(counts.by_limit(r), {beyond || unsolved ? 1U : 0U, beyond ? 1U : 0U});
     }
     counts.unsolved += unsolved ? 1 : 0;
     add(counts.all, {beyond_any || unsolved ? 1U : 0U, beyond_any ? 1U : 0U});
   }
-  for (std::size_t m = 0; m < poses(); ++m) {
-    for (std::size_t r = 0; r < responses; ++r) counts.at_pose(r, m) = at_pose_[m][r];
+  for (std::size_t r = 0; r < responses; ++r) {
+    for (std::size_t m = 0; m < poses(); ++m) {
+      counts.at_pose(r, m) = limits_[r].is_over_poses() ? rejects_over_poses(r, m) : at_pose_[m][r];
+    }
   }
   return counts;
 }
@@ -133,7 +181,7 @@ std::vector<std::uint8_t> MachineBlock::rejected() const {
   std::vector<std::uint8_t> rejected(machines());
   for (std::size_t b = 0; b < machines(); ++b) rejected[b] = static_cast<std::uint8_t>(solved_[b] == 0);
   for (std::size_t r = 0; r < limits_.size(); ++r) {
-    for (std::size_t b = 0; b < machines(); ++b) rejected[b] |= beyond_(r, b);
+    for (std::size_t b = 0; b < machines(); ++b) rejected[b] |= static_cast<std::uint8_t>(is_beyond(r, b));
   }
   return rejected;
 }

@@ -7,6 +7,7 @@
 
 #include "engine/base/archive.h"
 #include "engine/base/array.h"
+#include "engine/base/value_limit.h"
 
 /// Machines that are used at all poses. A machine is one set of errors, and it is good if it keeps every limit at every
 /// pose. The machines of a block are its samples.
@@ -25,9 +26,11 @@ struct Rejects {
 struct MachineCounts {
   std::uint64_t machines = 0;               ///< machines that were tried
   std::uint64_t unsolved = 0;               ///< machines with a sample that does not count, at one pose or more
-  Rejects all;                              ///< machines that break any limit at any pose
-  Array<Rejects, axis::Response> by_limit;  ///< machines that break this limit at any pose
-  Array<Rejects, axis::Response, axis::Pose> at_pose;  ///< machines that break this limit at this pose
+  Rejects all;                              ///< machines that break any limit
+  Array<Rejects, axis::Response> by_limit;  ///< machines that break this limit
+  /// Machines that break this limit and are beyond it at this pose; for a limit on the spread only those that are not
+  /// solved there.
+  Array<Rejects, axis::Response, axis::Pose> at_pose;
 
   /// Adds the counts of other machines, in any order. An empty object takes the lengths of the other.
   void merge(const MachineCounts& other);
@@ -40,14 +43,14 @@ struct MachineCounts {
 };
 
 /// Collects the outcomes of a block of machines, pose after pose. It takes 17 bytes for each response of a machine,
-/// whatever the number of poses. A machine with a sample that does not count at some pose is rejected (strict). Its
-/// largest magnitude and root mean square are NaN, because those over the other poses would flatter it. Leave these
-/// machines, which solved() names, out of distributions and state their number (MachineCounts::unsolved).
+/// whatever the number of poses; for a response whose limit is not plain also 8 bytes for each pose. A machine with a
+/// sample that does not count at some pose is rejected (strict). Its largest magnitude and root mean square are NaN,
+/// because those over the other poses would flatter it. Leave these machines, which solved() names, out of
+/// distributions and state their number (MachineCounts::unsolved).
 class MachineBlock {
  public:
-  /// limits: [R] on the magnitude of each response, >= 0, infinite for none; a value equal to its limit keeps it.
-  /// machines: their number.
-  MachineBlock(std::span<const double> limits, std::size_t machines);
+  /// limits: [R] one for each response, infinite for none. machines: their number.
+  MachineBlock(std::span<const ValueLimit> limits, std::size_t machines);
 
   /// Adds the outcomes at the next pose. responses: [R x B], row-major as in OutcomeBlock. counts: [B] 1 if the sample
   /// counts; 0 if not, and its responses are ignored.
@@ -63,16 +66,28 @@ class MachineBlock {
   std::span<const std::uint8_t> solved() const { return solved_; }
   /// Largest magnitudes over the poses; NaN if the machine is not solved at each of them.
   Array<double, axis::Response, axis::Sample> largest() const;
+  /// [B] The numbers by which the machines are judged (ValueLimit::deciding); NaN if a machine is not solved at each
+  /// pose. Precondition: the limit of the response is not plain.
+  std::vector<double> deciding(std::size_t response) const;
   /// Root mean squares over the poses; NaN if the machine is not solved at each of them. Precondition: poses() > 0.
   Array<double, axis::Response, axis::Sample> root_mean_square() const;
 
  private:
-  std::vector<double> limits_;                           ///< [R]
+  /// The values of a machine at the poses where its sample counts.
+  std::vector<double> values_of(std::size_t response, std::size_t machine) const;
+  /// Whether the limit is broken at the poses where the machine's sample counts.
+  bool is_beyond(std::size_t response, std::size_t machine) const;
+  /// The rejects at a pose for a limit over poses.
+  Rejects rejects_over_poses(std::size_t response, std::size_t pose) const;
+
+  std::vector<ValueLimit> limits_;                       ///< [R]
   std::vector<std::uint8_t> solved_;                     ///< [B] 1 if all samples of the machine count
   Array<double, axis::Response, axis::Sample> largest_;  ///< over the poses where the machine is solved
   Array<double, axis::Response, axis::Sample> squares_;  ///< sums of squares over the poses where the machine is solved
-  Array<std::uint8_t, axis::Response, axis::Sample> beyond_;  ///< 1 if the limit is broken at some pose
+  Array<std::uint8_t, axis::Response, axis::Sample> beyond_;  ///< 1 if the machine is beyond the limit at some pose
   std::vector<std::vector<Rejects>> at_pose_;                 ///< [poses][R]
+  std::vector<std::vector<double>> values_;                   ///< [R] values [poses x B], if the limit is not plain
+  std::vector<std::uint8_t> counts_;  ///< [poses x B] 1 if the sample counts; empty if all limits are plain
 };
 
 }  // namespace poesy

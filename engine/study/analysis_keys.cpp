@@ -6,6 +6,7 @@
 
 #include "engine/base/name_pattern.h"
 #include "engine/base/text.h"
+#include "engine/study/limit_keys.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
 
@@ -200,24 +201,7 @@ std::string shown_calibrated(const TemplateLines& lines, const Study& study) {
   return study.model().separation ? lines.usual("analysis", "calibrated") : "";
 }
 
-/// Reads limits, in the order of the model's responses.
-void read_response_limits(const StudyValue& value, Study& study, const Reading&) {
-  const std::vector<Response>& responses = study.model().responses;
-  read_named(value.section(), responses, "response", [&](std::size_t r, const StudyValue& own) {
-    study.analysis.limits.push_back({r, own.positive_quantity(responses[r].dimension)});
-  });
-  if (study.analysis.limits.empty()) value.fail("states no limit", "write a response with its limit, or leave it out");
-}
-
-/// Writes each limit on its own line, as for adaptive samples.
-std::string response_limits_lines(const Study& study) {
-  std::string text;
-  for (const ResponseLimit& limit : study.analysis.limits) {
-    const Response& response = study.model().responses[limit.response];
-    text += fmt::format("limits.{} = {}\n", response.name, exact_value(limit.most, response.dimension));
-  }
-  return text;
-}
+void read_limits(const StudyValue& value, Study& study, const Reading&) { read_response_limits(value, study); }
 
 std::string shown_limits(const TemplateLines& lines, const Study& study) {
   return template_limits(lines, study.model(), "# ");
@@ -288,7 +272,7 @@ std::vector<StudyRow> shared_rows() {
                .meaning =
                    "Limits of responses. The run ends with PASS or FAIL for each of them, and with exit code 6 if "
                    "one is not kept.",
-               .reader = read_response_limits,
+               .reader = read_limits,
                .lines = response_limits_lines,
                .late = 1,
                .shown = shown_limits},
@@ -391,7 +375,8 @@ std::string example_limits(const ModelDescription& model) {
 std::string template_limits(const TemplateLines& lines, const ModelDescription& model, std::string_view sign) {
   if (model.responses.empty()) return {};
   return comment(fmt::format("Responses: {}", fmt::join(names(model.responses), " "))) +
-         lines.explained("analysis", "limits", fmt::format("{}limits = {}", sign, example_limits(model)));
+         lines.explained("analysis", "limits", fmt::format("{}limits = {}", sign, example_limits(model))) +
+         lines.explanation_lines("analysis.limits", "RESPONSE") + lines.keys_lines("analysis.limits.RESPONSE");
 }
 
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual) {
@@ -431,17 +416,10 @@ StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<c
   describe_kinds(table, kinds);
   std::ranges::find(table.rows, "factors", &StudyRow::name)->usual = usual_factors_text(kinds);
   std::ranges::stable_sort(table.rows, {}, [&](const StudyRow& row) { return std::ranges::find(order, row.name); });
-  StudyTables tables{
-      described(table),
-      {.paths = {"analysis.limits"},
-       .meaning = "'poesy models MODEL' lists the responses.",
-       .keys = {{.name = "RESPONSE",
-                 .type = "quantity",
-                 .bounds = "greater than 0",
-                 .usual = "none",
-                 .meaning = "A value of this response is good up to here; one that has a sign, by its magnitude."}}},
-      described(adaptive_keys()),
-      described(background_keys())};
+  StudyTables tables{described(table)};
+  for (StudyTable& limits : limit_tables()) tables.push_back(std::move(limits));
+  tables.push_back(described(adaptive_keys()));
+  tables.push_back(described(background_keys()));
   for (const StudyKind* kind : kinds) {
     if (kind->tables == nullptr) continue;
     for (StudyTable& inner : kind->tables()) tables.push_back(std::move(inner));

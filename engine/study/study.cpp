@@ -89,6 +89,16 @@ std::vector<double> background_errors(const std::optional<Background>& backgroun
   return errors;
 }
 
+std::vector<ValueLimit> limits_by_response(std::span<const ResponseLimit> limits, std::size_t responses) {
+  std::vector<ValueLimit> list(responses);
+  for (const ResponseLimit& limit : limits) list[limit.response] = limit.allowed;
+  return list;
+}
+
+bool any_over_poses(std::span<const ResponseLimit> limits) {
+  return std::ranges::any_of(limits, [](const ResponseLimit& limit) { return limit.allowed.is_over_poses(); });
+}
+
 double error_size(const Distribution& distribution) {
   if (std::isfinite(distribution.half_width())) return distribution.largest();
   return distribution.standard_deviation() + std::abs(distribution.centre());

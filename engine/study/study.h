@@ -14,6 +14,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/base/index.h"
+#include "engine/base/value_limit.h"
 #include "engine/drawing/zone_scatter.h"
 #include "engine/model/model.h"
 #include "engine/model/own_responses.h"
@@ -84,11 +85,17 @@ struct AdaptiveSamples {
   double relative_error = 0.0;  ///< wanted half-width of an interval at conf_level, over the magnitude of its quantity
 };
 
-/// An upper limit on the magnitude of a response. A value equal to the limit keeps it.
+/// A limit on a response.
 struct ResponseLimit {
   std::size_t response;  ///< position among the model's
-  double most;           ///< the limit, SI, > 0
+  ValueLimit allowed;    ///< the values that it allows, SI
 };
+
+/// [R] The limits by response, without a limit where the study states none. responses: their number.
+std::vector<ValueLimit> limits_by_response(std::span<const ResponseLimit> limits, std::size_t responses);
+
+/// Whether one of the limits is over the poses of a machine (ValueLimit::is_over_poses).
+bool any_over_poses(std::span<const ResponseLimit> limits);
 
 /// When errors that vary together are drawn.
 enum class Draws {

@@ -61,7 +61,15 @@ const Group<Result> kAllocation{
      {"limit", &Result::limit, kResponseUnit, "Limit of the response; NaN for none"},
      {"saving", &Result::saving, kCostUnit,
       "What a limit wider by one percent at all poses would save, to first order; NaN for a response without a "
-      "limit"}}};
+      "limit"},
+     {"limit_from", &Result::limit_from, kResponseUnit,
+      "Lower end of the limit, minus infinity for none, NaN for a response without a limit; where a file has it, "
+      "/allocation/limit of a limit that is not on the magnitude is the least distance over the poses from the "
+      "response "
+      "of the mechanism with perfect parts to the nearer end",
+      Presence::where_computed},
+     {"limit_to", &Result::limit_to, kResponseUnit, "Upper end of the limit, infinity for none; NaN likewise",
+      Presence::where_computed}}};
 
 const Group<Result> kCurve{
     "/allocation/curve",

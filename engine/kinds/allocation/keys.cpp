@@ -10,6 +10,7 @@
 #include "engine/kinds/allocation/parts.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/stats/proportion.h"
+#include "engine/study/limit_keys.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
@@ -201,12 +202,26 @@ void require_all(const Study& study, const StudySection& section) {
   static_cast<void>(section.require("parts", "write [[analysis.parts]] with factors, e.g. factors = \"linear\""));
 }
 
+/// Refuses limits over the poses of a machine.
+void check_limits(const Study& study, const StudySection& section) {
+  for (const ResponseLimit& limit : study.analysis.limits) {
+    if (!limit.allowed.is_over_poses()) continue;
+    limit_value(section, study, limit)
+        .fail(fmt::format("is {}, but tolerances are found by mean squares at each pose alone, which do not show it",
+                          limit.allowed.is_spread() ? "a limit on the spread over the poses"
+                                                    : "to be kept at a share of the poses"),
+              "write a limit on a response at each pose, or one that is relative_to a pose; a study of kind "
+              "\"monte-carlo\" finds the yield under this limit");
+  }
+}
+
 void complete_allocation(Study& study, const Reading& reading) {
   const StudySection section = reading.root.section("analysis");
   AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
   study.analysis.draws = Draws::per_machine;
   if (!section.find("samples")) study.analysis.samples = usual_samples(asked.yield);
   check_samples(study, section);
+  check_limits(study, section);
   if (reading.use == StudyUse::run) require_all(study, section);
   const bool costs = std::ranges::any_of(asked.parts, has_cost);
   const auto aim = section.find("aim");

@@ -1,14 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "engine/base/archive.h"
+#include "engine/kinds/allocation/relative_limits.h"
 #include "engine/model/model.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
@@ -38,7 +37,7 @@ inline void loads_state(Archive& archive, std::vector<double>& loads, std::size_
 class LoadSolver : protected UnitSolver {
  protected:
   /// Refers to all three arguments.
-  LoadSolver(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits)
+  LoadSolver(const Plan& plan, const Model& model, const RelativeLimits& limits)
       : UnitSolver(plan, model, plan.factors().size()), limits_(limits) {}
 
   /// Draws the errors of these machines at the first pose into values_ [P x B]. machines: ascending numbers, at most
@@ -69,10 +68,10 @@ class LoadSolver : protected UnitSolver {
       if (!counts(outcomes.status[b], plan_->not_converged())) missing[b] = 1;
     }
     for (std::size_t k = 0; k < limits_.size(); ++k) {
-      const double* const y = &outcomes.responses[limits_[k].response * count];
+      const double* const y = &outcomes.responses[limits_.response(k) * count];
       for (std::size_t b = 0; b < count; ++b) {
         if (!counts(outcomes.status[b], plan_->not_converged())) continue;
-        const double load = over_limit(std::abs(y[b]), limits_[k].most);
+        const double load = limits_.load(k, pose, y[b]);
         loads[b] = std::max(loads[b], load);
         if (load > 1.0) beyond[k * count + b] = 1;
       }
@@ -80,7 +79,7 @@ class LoadSolver : protected UnitSolver {
     return outcomes;
   }
 
-  std::span<const ResponseLimit> limits_;  ///< [K]
+  const RelativeLimits& limits_;  ///< K limits
 
  private:
   /// Fills the row of an error with the uniforms of these machines at a pose.
@@ -93,12 +92,6 @@ class LoadSolver : protected UnitSolver {
       draw_uniforms(run, error, std::span(values_).subspan(error * count + from, to - from));
       from = to;
     }
-  }
-
-  /// value / limit, but at most 1 for a value up to the limit, whatever the rounding.
-  static double over_limit(double value, double limit) {
-    const double load = value / limit;
-    return value <= limit ? std::min(load, 1.0) : std::max(load, std::nextafter(1.0, 2.0));
   }
 };
 

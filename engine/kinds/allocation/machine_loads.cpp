@@ -57,7 +57,7 @@ struct LoadSums : MachineLoads {
 /// Solves one piece of work at a time. Owns the scratch of one thread.
 class LoadEvaluator : private LoadSolver {
  public:
-  LoadEvaluator(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, const Machines& machines)
+  LoadEvaluator(const Plan& plan, const Model& model, const RelativeLimits& limits, const Machines& machines)
       : LoadSolver(plan, model, limits), machines_(machines) {}
 
   LoadSums operator()(std::size_t piece) {
@@ -107,7 +107,7 @@ class LoadEvaluator : private LoadSolver {
 struct LoadJob {
   const Plan& plan;
   const Model& model;
-  std::span<const ResponseLimit> limits;
+  RelativeLimits limits;
   Machines machines;
 
   static constexpr std::string_view kName = "machine loads";
@@ -123,12 +123,12 @@ struct LoadJob {
 
 std::optional<MachineLoads> machine_loads(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                           const RunOptions& options) {
-  return fold_units(LoadJob{plan, model, limits, {plan.samples(), {}}}, options);
+  return fold_units(LoadJob{plan, model, {plan, model, limits}, {plan.samples(), {}}}, options);
 }
 
 std::optional<MachineLoads> machine_loads(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                           std::span<const std::uint32_t> machines, const RunOptions& options) {
-  return fold_units(LoadJob{plan, model, limits, {machines.size(), machines}}, options);
+  return fold_units(LoadJob{plan, model, {plan, model, limits}, {machines.size(), machines}}, options);
 }
 
 }  // namespace poesy

@@ -50,8 +50,7 @@ struct Pieces {
 /// Solves pieces. Owns the scratch of one thread.
 class AddedSquaresEvaluator : private UnitSolver {
  public:
-  AddedSquaresEvaluator(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
-                        const Pieces& pieces)
+  AddedSquaresEvaluator(const Plan& plan, const Model& model, const RelativeLimits& limits, const Pieces& pieces)
       : UnitSolver(plan, model, plan.factors().size()), limits_(limits), pieces_(pieces) {
     const std::size_t errors = plan.factors().size();
     draws_.resize(errors * pieces.draws);
@@ -60,7 +59,7 @@ class AddedSquaresEvaluator : private UnitSolver {
       draw_uniforms(all, p, std::span(draws_).subspan(p * pieces.draws, pieces.draws));
     }
     plan.transform(draws_, pieces.draws);
-    for (const ResponseLimit& limit : limits) rounding_.push_back(model.rounding(limit.response));
+    for (std::size_t k = 0; k < limits.size(); ++k) rounding_.push_back(model.rounding(limits.response(k)));
   }
 
   AddedSquares operator()(std::size_t n) {
@@ -112,18 +111,22 @@ class AddedSquaresEvaluator : private UnitSolver {
     const std::size_t samples = outcomes.status.size();
     for (std::size_t k = 0; k < limits_.size(); ++k) {
       double& sum = found.added[k * plan_->factors().size() + p];
+      const PoseIndex pose = pieces_.pose(n);
       if (!is_solved) {
-        sum += kUnsolvedOverLimit * kUnsolvedOverLimit * limits_[k].most * limits_[k].most;
+        const double room = limits_.room(k, pose);
+        sum += kUnsolvedOverLimit * kUnsolvedOverLimit * room * room;
         continue;
       }
-      const auto y = outcomes.responses.subspan(limits_[k].response * samples + pair * kNodes, kNodes);
+      const auto values = outcomes.responses.subspan(limits_.response(k) * samples + pair * kNodes, kNodes);
+      const double centre = limits_.centre(k, pose);
+      const std::array y{values[0] - centre, values[1] - centre, values[2] - centre};
       if (alone && p == 0) found.base[k] = y[1] * y[1];
       const bool moves = std::max(std::abs(y[0] - y[1]), std::abs(y[2] - y[1])) > rounding_[k];
       if (moves) sum += 0.5 * (y[0] * y[0] + y[2] * y[2]) - y[1] * y[1];
     }
   }
 
-  std::span<const ResponseLimit> limits_;
+  const RelativeLimits& limits_;
   const Pieces& pieces_;
   std::vector<double> draws_;     ///< [P x draws] of all errors, SI
   std::vector<double> rounding_;  ///< [K]
@@ -176,7 +179,7 @@ struct SquareSums {
 struct SquareJob {
   const Plan& plan;
   const Model& model;
-  std::span<const ResponseLimit> limits;
+  RelativeLimits limits;
   Pieces pieces;
 
   static constexpr std::string_view kName = "mean squares";
@@ -191,7 +194,7 @@ struct SquareJob {
 };
 
 MeanSquares mean_squares_of(const SquareSums& sums, const Plan& plan) {
-  MeanSquares found{sums.base, std::vector<double>(sums.alone.size())};
+  MeanSquares found{sums.base, std::vector<double>(sums.alone.size()), {}};
   for (std::size_t row = 0; row < sums.base.size(); ++row) {
     for (std::size_t p = 0; p < sums.errors; ++p) {
       const std::size_t at = row * sums.errors + p;
@@ -209,10 +212,14 @@ MeanSquares mean_squares_of(const SquareSums& sums, const Plan& plan) {
 
 std::optional<MeanSquares> mean_squares(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                         std::size_t draws, const RunOptions& options) {
-  const SquareJob job{plan, model, limits, {plan.poses().size(), draws}};
+  const SquareJob job{plan, model, {plan, model, limits}, {plan.poses().size(), draws}};
   const auto sums = fold_units(job, options);
   if (!sums) return std::nullopt;
-  return mean_squares_of(*sums, plan);
+  MeanSquares found = mean_squares_of(*sums, plan);
+  for (std::size_t k = 0; k < limits.size(); ++k) {
+    for (std::size_t m = 0; m < job.pieces.poses; ++m) found.room.push_back(job.limits.room(k, PoseIndex(m)));
+  }
+  return found;
 }
 
 std::uint64_t mean_square_solves(const Plan& plan, std::size_t draws) {

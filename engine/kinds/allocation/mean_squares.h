@@ -12,11 +12,13 @@
 
 namespace poesy {
 
-/// The mean squares of the limited responses, and their derivatives by the variances of the errors. A row is a limit at
+/// The mean squares of the limited responses about the values from which their limits are counted (RelativeLimits), and
+/// their derivatives by the variances of the errors. A row is a limit at
 /// a pose, limit by limit: L rows, P errors that vary.
 struct MeanSquares {
   std::vector<double> value;  ///< [L] SI squared
   std::vector<double> slope;  ///< [L x P] by the variance of each error, >= 0
+  std::vector<double> room;   ///< [L] SI; the root mean square that would be the limit (RelativeLimits::room)
 };
 
 /// The number of draws that show what an error adds among the others.

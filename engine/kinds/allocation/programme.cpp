@@ -210,14 +210,12 @@ double ToleranceProgramme::cost_of(const TolerancePoint& point) const {
 
 ToleranceLimits ToleranceProgramme::limits(const MeanSquares& squares, std::span<const double> at, double share,
                                            double wider) const {
-  const std::vector<ResponseLimit>& stated = study_.analysis.limits;
-  const std::size_t poses = squares.value.size() / stated.size();
   ToleranceLimits limits{.stacking = Stacking::root_sum_square,
                          .parts = size(),
                          .effects = part_effects(squares.slope, study_.analysis.factors.size(), drawn_),
                          .room = std::vector<double>(squares.value.size())};
   for (std::size_t l = 0; l < limits.count(); ++l) {
-    const double most = share * wider * stated[l / poses].most;
+    const double most = share * wider * squares.room[l];
     limits.room[l] = most * most - squares.value[l] + limits.need(l, at);
   }
   return limits;

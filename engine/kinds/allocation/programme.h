@@ -66,8 +66,8 @@ class ToleranceProgramme {
   AtBound at_bound(std::size_t part, double tolerance, std::size_t process) const;
   /// The cost of a part; 0 where none is stated.
   double cost(std::size_t part, double tolerance, std::size_t process) const;
-  /// Limits on the mean square that parts add: room = (share x limit x wider)^2 - contribution of fixed errors. at: [N]
-  /// the tolerances at which the mean squares were measured.
+  /// Limits on the mean square that parts add: room = (share x MeanSquares::room x wider)^2 - contribution of fixed
+  /// errors. at: [N] the tolerances at which the mean squares were measured.
   ToleranceLimits limits(const MeanSquares& squares, std::span<const double> at, double share,
                          double wider = 1.0) const;
   /// The tolerances that are best for the study's aim.

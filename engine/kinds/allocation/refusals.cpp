@@ -8,7 +8,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/units.h"
+#include "engine/kinds/allocation/relative_limits.h"
 #include "engine/kinds/allocation/search_stages.h"
+#include "engine/study/limit_keys.h"
 
 namespace poesy::allocation {
 
@@ -23,27 +25,51 @@ std::string row_text(const StudyRun& run, std::size_t row) {
 
 }  // namespace
 
+void refuse_perfect_beyond(const SearchProblem& problem) {
+  const Study& study = problem.run.study;
+  const PoseSet& poses = problem.run.poses;
+  const RelativeLimits limits(Plan(study, poses), problem.run.model, study.analysis.limits);
+  for (std::size_t row = 0; row < limits.size() * poses.size(); ++row) {
+    const ResponseLimit& limit = study.analysis.limits[row / poses.size()];
+    const Dimension dimension = study.model().responses[limit.response].dimension;
+    const PoseIndex pose(row % poses.size());
+    if (limits.room(row / poses.size(), pose) > 0.0) continue;
+    throw InputError({},
+                     fmt::format("the limit of {} on {} cannot be kept: without the errors of the parts it is {}",
+                                 limit_text(limit.allowed, dimension), row_text(problem.run, row),
+                                 readable_text({limits.centre(row / poses.size(), pose), dimension}, 4)),
+                     "a mechanism whose parts are perfect must be inside the limit; write a limit that holds it, or "
+                     "change the background");
+  }
+}
+
 void refuse_infeasible(const SearchProblem& problem, const Infeasible& infeasible) {
   const Study& study = problem.run.study;
-  const ResponseLimit& limit = study.analysis.limits[infeasible.limit / problem.run.poses.size()];
+  const PoseSet& poses = problem.run.poses;
+  const std::size_t k = infeasible.limit / poses.size();
+  const ResponseLimit& limit = study.analysis.limits[k];
   const Response& response = study.model().responses[limit.response];
-  const double fixed = limit.most * limit.most - infeasible.room;  // the effect of errors that belong to no part
+  const RelativeLimits limits(Plan(study, poses), problem.run.model, study.analysis.limits);
+  const double room = limits.room(k, PoseIndex(infeasible.limit % poses.size()));
+  const double fixed = room * room - infeasible.room;  // the effect of errors that belong to no part
   const auto text = [&](double square) {
     return readable_text({std::sqrt(std::max(0.0, square)), response.dimension}, 4);
   };
-  const std::string limit_text = readable_text({limit.most, response.dimension}, 6);
+  const std::string stated = limit_text(limit.allowed, [&](double value) {
+    return readable_text({value, response.dimension}, 6);
+  });
   const std::string row = row_text(problem.run, infeasible.limit);
   if (infeasible.room <= 0.0) {
     throw InputError({},
                      fmt::format("the limit of {} on {} cannot be kept: the background and the errors of no part alone "
                                  "give a root mean square of {}",
-                                 limit_text, row, text(fixed)),
+                                 stated, row, text(fixed)),
                      "widen the limit, make these errors smaller, or list them as parts");
   }
   throw InputError({},
                    fmt::format("the limit of {} on {} cannot be kept: with every tolerance at its lowest the root mean "
                                "square is {}",
-                               limit_text, row, text(fixed + infeasible.need)),
+                               stated, row, text(fixed + infeasible.need)),
                    "widen the limit, or lower the bounds of parts");
 }
 

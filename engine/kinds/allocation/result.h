@@ -141,7 +141,14 @@ struct AllocationResult {
 
   AtPoses multiplier;  ///< what one unit more of the limit at this pose alone would save
   AtPoses limit_use;   ///< predicted root mean square over the root mean square that the tightest limit allows
-  Array<double, axis::Response> limit;   ///< SI
+  /// SI; of a limit that is not on the magnitude, the least distance over the poses from the response of the mechanism
+  /// with perfect parts to the nearer end.
+  Array<double, axis::Response> limit;
+  /// The ends of the limits, SI, infinite for none; empty if all limits are on magnitudes.
+  /// @{
+  Array<double, axis::Response> limit_from;
+  Array<double, axis::Response> limit_to;
+  /// @}
   Array<double, axis::Response> saving;  ///< what a limit wider by one percent at all poses would save, to first order
 
   Aim aim = Aim::least_cost;  ///< what the study optimised

@@ -109,29 +109,40 @@ void add_parts(const SearchProblem& problem, const FoundTolerances& search, cons
 }
 
 /// Fills in the results of each limit.
-void add_limits(const SearchProblem& problem, const Candidate& candidate, const ToleranceLimits& limits,
+void add_limits(const SearchProblem& problem, const FoundTolerances& search, const ToleranceLimits& limits,
                 AllocationResult& found) {
+  const Candidate& candidate = search.design.candidate;
+  const MeanSquares& squares = search.linearisation.squares;
   const std::vector<ResponseLimit>& stated = problem.run.study.analysis.limits;
   const std::vector<double>& multiplier = candidate.chosen.multiplier;
   const std::size_t responses = problem.run.study.model().responses.size();
   const std::size_t poses = problem.run.poses.size();
   found.limit = found.saving = Array<double, axis::Response>({responses}, kNaN);
   found.multiplier = found.limit_use = AllocationResult::AtPoses({responses, poses}, kNaN);
+  if (!std::ranges::all_of(stated, [](const ResponseLimit& one) { return one.allowed.is_magnitude(); })) {
+    found.limit_from = found.limit_to = found.limit;
+  }
   for (std::size_t k = 0; k < stated.size(); ++k) {
-    const auto [r, most] = std::pair(stated[k].response, stated[k].most);
-    found.limit(r) = most;
-    const double allowed = candidate.share * most;
+    const std::size_t r = stated[k].response;
+    if (!found.limit_from.empty()) {
+      found.limit_from(r) = stated[k].allowed.from();
+      found.limit_to(r) = stated[k].allowed.to();
+    }
+    const std::span rooms = std::span(squares.room).subspan(k * poses, poses);
+    const double least = *std::ranges::min_element(rooms);
+    found.limit(r) = least;
     double sum = 0.0;
     for (std::size_t m = 0; m < poses; ++m) {
       const std::size_t row = k * poses + m;
+      const double allowed = candidate.share * rooms[m];
       const double square = allowed * allowed - limits.room[row] + limits.need(row, candidate.point.tolerance);
       found.limit_use(r, m) = std::sqrt(std::max(0.0, square)) / allowed;
       if (multiplier.empty()) continue;
       // The room is (share x limit)^2 less the effect of the fixed errors.
       found.multiplier(r, m) = multiplier[row] * 2.0 * candidate.share * allowed;
-      sum += found.multiplier(r, m);
+      sum += found.multiplier(r, m) * (rooms[m] / least);
     }
-    if (!multiplier.empty()) found.saving(r) = 0.01 * most * sum;
+    if (!multiplier.empty()) found.saving(r) = 0.01 * least * sum;
   }
 }
 
@@ -169,7 +180,7 @@ AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& 
   const ToleranceLimits limits = limits_of(problem, search);
   AllocationResult found;
   add_parts(problem, search, limits, found);
-  add_limits(problem, candidate, limits, found);
+  add_limits(problem, search, limits, found);
   add_curves(problem, search, found);
   found.aim = problem.options.aim;
   found.calibrated = study.mechanism.calibrated;
@@ -200,7 +211,7 @@ LimitVerdicts verdicts_of(const Study& study, const MachineLoads& fresh, const Y
     const std::uint64_t within = certificate.machines - fresh.beyond[k];
     const double share = static_cast<double>(within) / static_cast<double>(certificate.machines);
     verdicts.limits.push_back({.response = limit.response,
-                               .limit = limit.most,
+                               .limit = limit.allowed,
                                .value = kNaN,
                                .passed = share >= certificate.asked,
                                .tried = certificate.machines,

@@ -47,6 +47,7 @@ void StageLog::add(std::string name, const Candidate& candidate, std::uint64_t m
 }
 
 std::optional<FoundTolerances> find_tolerances(const SearchProblem& problem) {
+  refuse_perfect_beyond(problem);
   try {
     FoundTolerances found;
     auto [linearisation, design] =

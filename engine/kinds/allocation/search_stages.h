@@ -122,6 +122,8 @@ Probed use_remaining_yield(const SearchProblem& problem, ToleranceDesign from, S
 
 /// @name Refusals, which throw InputError
 /// @{
+/// Refuses a study whose perfect mechanism is beyond a limit at some pose.
+void refuse_perfect_beyond(const SearchProblem& problem);
 [[noreturn]] void refuse_infeasible(const SearchProblem& problem, const Infeasible& infeasible);
 [[noreturn]] void refuse_unbounded(const SearchProblem& problem, const Unbounded& unbounded);
 /// Refuses a study whose lowest tolerances have too many rejects.

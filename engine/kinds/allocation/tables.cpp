@@ -12,6 +12,7 @@
 #include "engine/kinds/allocation/summary.h"
 #include "engine/model/calibrated.h"
 #include "engine/report/display.h"
+#include "engine/study/limit_keys.h"
 
 namespace poesy {
 namespace {
@@ -194,6 +195,16 @@ Table use_table(const StoredResult& result) {
     table.notes.emplace_back(
         "1 % wider saves: of the cost, if this limit is wider by 1 % at all poses, to first order; saved per unit: if "
         "it is one unit wider at one pose alone, the one where that saves most");
+  }
+  for (const std::size_t r : limited_responses(found)) {
+    const bool has_ends =
+        !found.limit_from.empty() && found.limit_from(r) < found.limit_to(r);  // a file may be damaged
+    if (!has_ends || found.limit_from(r) == -found.limit_to(r)) continue;
+    const auto text = [&](double value) { return response_text(result.responses[r], value); };
+    table.notes.push_back(fmt::format(
+        "{}: {}; limit: the least distance of the mechanism with perfect parts from the "
+        "nearer end",
+        result.responses[r].name, limit_text(ValueLimit::between(found.limit_from(r), found.limit_to(r)), text)));
   }
   fill(table, limited_responses(found), columns);
   return table;

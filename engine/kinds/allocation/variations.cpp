@@ -57,8 +57,7 @@ struct VariedLoads {
 /// Solves one piece of work at a time. Owns the scratch of one thread.
 class VariationEvaluator : private LoadSolver {
  public:
-  VariationEvaluator(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
-                     const VariedMachines& varied)
+  VariationEvaluator(const Plan& plan, const Model& model, const RelativeLimits& limits, const VariedMachines& varied)
       : LoadSolver(plan, model, limits), varied_(varied) {}
 
   VariedLoads operator()(std::size_t piece) {
@@ -156,7 +155,7 @@ class VariationEvaluator : private LoadSolver {
 struct VariationJob {
   const Plan& plan;
   const Model& model;
-  std::span<const ResponseLimit> limits;
+  RelativeLimits limits;
   VariedMachines varied;
 
   static constexpr std::string_view kName = "variations";
@@ -191,7 +190,7 @@ std::optional<std::vector<double>> try_variations(const Plan& plan, const Model&
                                                   std::span<const ResponseLimit> limits,
                                                   std::span<const std::uint32_t> machines,
                                                   std::span<const Variation> variations, const RunOptions& options) {
-  const VariationJob job{plan, model, limits, {machines, variations}};
+  const VariationJob job{plan, model, {plan, model, limits}, {machines, variations}};
   const auto loads = fold_units(job, options);
   if (!loads) return std::nullopt;
   return by_variation(job.varied, loads->load);

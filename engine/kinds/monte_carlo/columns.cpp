@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
@@ -22,20 +23,20 @@ RankInterval among(const RankInterval& ranks, std::uint64_t trials, std::uint64_
   return {static_cast<std::uint64_t>(low), ranks.high > trials ? count + 1 : static_cast<std::uint64_t>(high)};
 }
 
-/// The number of samples whose magnitude is within a limit. A bucket that the limit divides counts by its middle.
-std::uint64_t count_within(const QuantileSketch& samples, double limit) {
+/// The number of samples that a limit allows. A bucket that the limit divides counts by its middle.
+std::uint64_t count_within(const QuantileSketch& samples, const ValueLimit& limit) {
   std::uint64_t within = 0;
   for (const Bucket& bucket : samples.buckets()) {
     const double middle = 0.5 * bucket.lower + 0.5 * bucket.upper;
-    if (std::abs(middle) <= limit) within += bucket.count;
+    if (limit.holds(middle)) within += bucket.count;
   }
   return within;
 }
 
-/// Sets `value` and `pose` of the verdict by the pose with the largest share_magnitude.
+/// Sets `value` and `pose` of the verdict by the pose with the worst share_magnitude.
 void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
   const std::span at_poses = found.share_magnitude.row(verdict.response);
-  const auto worst = std::ranges::max_element(at_poses);
+  const auto worst = std::ranges::max_element(at_poses, {}, [&](double value) { return verdict.limit.badness(value); });
   verdict.value = *worst;
   verdict.pose = static_cast<std::size_t>(worst - at_poses.begin());
 }
@@ -43,7 +44,9 @@ void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
 }  // namespace
 
 MonteCarloColumns::MonteCarloColumns(std::size_t poses, std::size_t responses, const Analysis& analysis)
-    : asked_(asked_of<MonteCarloOptions>(analysis)), mean_intervals_(analysis.conf_level) {
+    : asked_(asked_of<MonteCarloOptions>(analysis)),
+      limits_(limits_by_response(analysis.limits, responses)),
+      mean_intervals_(analysis.conf_level) {
   const std::size_t levels = asked_.quantiles.size();
   result_.conf_level = analysis.conf_level;
   result_.quantile_relative_error = QuantileSketch::kRelativeError;
@@ -109,8 +112,22 @@ void MonteCarloColumns::set_quantiles(std::size_t response, std::size_t pose, co
   result_.quantile_error(response, pose) = quantiles.error;
   if (asked_.judge != Judge::share) return;
   const std::uint64_t rank = quantile_rank(asked_.share, tried);
-  result_.share_magnitude(response, pose) =
-      rank <= sketch.count() ? sketch.magnitudes().order_statistic(rank) : std::numeric_limits<double>::infinity();
+  result_.share_magnitude(response, pose) = value_at_rank(sketch, limits_[response], rank);
+}
+
+double value_at_rank(const QuantileSketch& values, const ValueLimit& limit, std::uint64_t rank) {
+  if (rank > values.count()) return limit.is_magnitude() ? std::numeric_limits<double>::infinity() : kNaN;
+  if (limit.is_magnitude()) return values.magnitudes().order_statistic(rank);
+  std::vector<std::pair<double, std::uint64_t>> middles;  // of the buckets, with their counts
+  for (const Bucket& bucket : values.buckets()) {
+    middles.emplace_back(0.5 * bucket.lower + 0.5 * bucket.upper, bucket.count);
+  }
+  std::ranges::stable_sort(middles, {}, [&](const auto& middle) { return limit.badness(middle.first); });
+  for (const auto& [value, count] : middles) {
+    if (rank <= count) return value;
+    rank -= count;
+  }
+  return kNaN;
 }
 
 void MonteCarloColumns::set_overall(std::size_t response, const Moments& moments, const QuantileSketch& sketch,
@@ -151,14 +168,14 @@ LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, do
   LimitVerdicts verdicts{.judge = judge, .share = share, .limits = {}};
   const std::uint64_t tried = found.total().total();
   for (const ResponseLimit& limit : limits) {
-    LimitVerdict verdict{.response = limit.response, .limit = limit.most, .tried = tried};
-    verdict.within = count_within(overall[limit.response], limit.most);
+    LimitVerdict verdict{.response = limit.response, .limit = limit.allowed, .tried = tried};
+    verdict.within = count_within(overall[limit.response], limit.allowed);
     if (judge == Judge::rms) {
       verdict.value = found.overall_rms(limit.response);
     } else {
       take_worst_pose(found, verdict);
     }
-    verdict.passed = verdict.value <= limit.most;
+    verdict.passed = limit.allowed.holds(verdict.value);
     verdicts.limits.push_back(verdict);
   }
   return verdicts;

@@ -39,6 +39,7 @@ class MonteCarloColumns {
   const std::vector<RankInterval>& ranks_of(std::uint64_t samples);
 
   MonteCarloOptions asked_;
+  std::vector<ValueLimit> limits_;  ///< [R]
   MonteCarloResult result_;
   MeanIntervals mean_intervals_;
   std::uint64_t ranked_samples_ = 0;  ///< number of samples for which ranks_ was computed
@@ -55,6 +56,10 @@ struct QuantilesOf {
   void copy(std::span<double> values, std::span<double> low, std::span<double> high) const;
 };
 
+/// The value of the given rank, from 1, when values are sorted by ValueLimit::badness; a magnitude, if the limit is on
+/// magnitudes. Beyond every limit with fewer values: infinite, or NaN if the limit is not on magnitudes.
+double value_at_rank(const QuantileSketch& values, const ValueLimit& limit, std::uint64_t rank);
+
 /// Computes quantiles. buckets: the samples; levels: the quantiles; ranks: those of the intervals' ends.
 QuantilesOf quantiles_of(std::span<const Bucket> buckets, std::span<const double> levels,
                          std::span<const RankInterval> ranks);
@@ -68,10 +73,10 @@ void fill_histogram(std::span<const Bucket> buckets, std::span<double> edges, st
 
 /// Judges the limits of a Monte Carlo study by its result. A limit is kept
 /// - by Judge::rms, if the response's root mean square over the samples of all poses that count is within it;
-/// - by Judge::share, if at every pose at least that share of all draws is within it: if the largest of the poses'
+/// - by Judge::share, if at every pose at least that share of all draws is within it: if the worst of the poses'
 ///   share_magnitude is. Draws that do not count are not within it.
 /// overall: [R] the samples of all poses that count. Preconditions: found.overall_rms is set; found.share_magnitude is
-/// set for Judge::share; judge is rms or share.
+/// set for Judge::share; judge is rms or share; by rms all limits are on magnitudes, and none is over poses.
 LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
                           const MonteCarloResult& found, std::span<const QuantileSketch> overall);
 

@@ -98,6 +98,10 @@ Table share_table(const StoredResult& result, const YieldResult& yield, const st
     add("share_ci_low_" + response, "low", yield.mean_square_share_ci_low.row(r), r == first ? 0 : 2);
     add("share_ci_high_" + response, "high", yield.mean_square_share_ci_high.row(r), r == first ? 0 : 2);
     table.notes.push_back(linear_note(result, yield, r));
+    if (const LimitVerdict* verdict = verdict_on(result, r); verdict != nullptr && verdict->limit.is_spread()) {
+      table.notes.push_back(response +
+                            ": with its sign, less its mean over the poses, which does not change its spread");
+    }
   }
   const auto share = [&](std::size_t p) { return yield.mean_square_share(first, p); };
   fill(table, largest_first(positions(result.factors.size()), share), columns);

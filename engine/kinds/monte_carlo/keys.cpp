@@ -2,6 +2,7 @@
 
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/stats/proportion.h"
+#include "engine/study/limit_keys.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
@@ -132,6 +133,26 @@ void check_yield(const Study& study, const StudySection& section) {
               "take " + std::to_string(needed) + " samples or more, or ask for a smaller yield");
 }
 
+/// Refuses limits that cannot be judged as the study asks.
+void check_limits(const Study& study, const StudySection& section) {
+  const Judge by = asked_of<MonteCarloOptions>(study.analysis).judge;
+  for (const ResponseLimit& limit : study.analysis.limits) {
+    if (limit.allowed.is_over_poses() && by != Judge::yield) {
+      limit_value(section, study, limit)
+          .fail(limit.allowed.is_spread() ? "limits the spread over the poses of a machine, which a draw at one pose "
+                                            "does not have"
+                                          : "is to be kept at a share of the poses of a machine, which a draw at one "
+                                            "pose does not have",
+                "write draws = \"per machine\", and judge = \"yield\" or none");
+    }
+    if (limit.allowed.is_magnitude() || by != Judge::rms) continue;
+    limit_value(section, study, limit)
+        .fail("is not a limit on the magnitude, but limits are judged by the root mean square, which has no sign",
+              "write draws = \"per machine\", or judge = \"share\" and share = 0.9973, or one upper limit on the "
+              "magnitude");
+  }
+}
+
 void complete(Study& study, const Reading& reading) {
   const StudySection section = reading.root.section("analysis");
   const auto judge = section.find("judge");
@@ -142,6 +163,7 @@ void complete(Study& study, const Reading& reading) {
                 "write draws = \"per machine\"");
   }
   check_share(study, section);
+  check_limits(study, section);
   check_yield(study, section);
   if (judge && !section.find("limits")) {
     judge->fail("is set, but the study states no limit", "write [analysis.limits], or leave it out");

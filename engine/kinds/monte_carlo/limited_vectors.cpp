@@ -24,7 +24,10 @@ LimitedVectors::LimitedVectors(const Plan& plan, const Model& model, const Analy
   const std::size_t details = components_of(description.details);
   if (plan.poses().size() == 0) return;
   for (const ResponseLimit& limit : analysis.limits) {
-    LimitedVector vector{limit.response, limit.most, description.responses[limit.response].components, rows_, 0};
+    const Response& response = description.responses[limit.response];
+    const bool is_centred = limit.allowed.is_spread() && !response.is_magnitude();
+    if (is_centred && !plan.per_pose().empty()) continue;  // a fit at each pose does not know the mean over the poses
+    LimitedVector vector{limit.response, limit.allowed, response.components, rows_, 0, is_centred};
     const std::size_t numbers = model.norm_of_details(limit.response, plan.poses()[PoseIndex(0)]).size();
     if (numbers > 0) {
       vector.rows = numbers / details;

@@ -20,20 +20,23 @@ using VectorRow = Axis<"vector_row">;              ///< Components of the vector
 }  // namespace axis
 
 /// The vector whose norm is a limited response. Its components are linear in the errors to first order. For a response
-/// with a sign, the response itself is its only component.
+/// with a sign, the response itself is its only component; if its spread is limited, less its mean over the poses,
+/// which does not change the spread.
 struct LimitedVector {
   std::size_t response;                ///< the limited response
-  double most;                         ///< its limit
+  ValueLimit limit;                    ///< its limit
   std::vector<std::size_t> responses;  ///< responses that are its components; empty: Model::norm_of_details makes them
   std::size_t first_row;               ///< position of its first component among those of all limited vectors
   std::size_t rows;                    ///< number of components
+  bool is_centred;                     ///< whether it is taken less its mean over the poses
 };
 
 /// The vectors of all limited responses of a study, and how their components are computed from the outcomes of solves.
 /// They are fitted at each pose.
 class LimitedVectors {
  public:
-  /// Refers to the plan and the model. There are no vectors if the study states no limit, or if fits at all poses would
+  /// Refers to the plan and the model. There is none for a centred response if machines draw errors anew at each pose.
+  /// There are no vectors if the study states no limit, or if fits at all poses would
   /// take more than some tens of megabytes.
   LimitedVectors(const Plan& plan, const Model& model, const Analysis& analysis);
 

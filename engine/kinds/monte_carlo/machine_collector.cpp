@@ -9,19 +9,21 @@
 
 namespace poesy {
 
-MachineCollector::Counts::Counts(std::size_t responses, std::size_t poses)
-    : at_pose({poses, responses}),
-      largest(responses),
-      rms(responses),
-      solves(poses),
-      failed(poses),
-      machines(MachineCounts::of_none(responses, poses)) {}
+MachineCollector::Counts::Counts(const MachineTable& table)
+    : at_pose({table.plan().poses().size(), table.responses()}),
+      largest(table.responses()),
+      rms(table.responses()),
+      judged(table.judged().size()),
+      solves(table.plan().poses().size()),
+      failed(table.plan().poses().size()),
+      machines(MachineCounts::of_none(table.responses(), table.plan().poses().size())) {}
 
 void MachineCollector::Counts::add(const MachineUnit& unit) {
   const auto add_block = [](QuantileSketch& sketch, const NumberBlock& block) { sketch.add(block); };
   for_each_pair(at_pose, unit.at_pose, add_block);
   for_each_pair(largest, unit.largest, add_block);
   for_each_pair(rms, unit.rms, add_block);
+  for_each_pair(judged, unit.judged, add_block);
   merge_each(solves, unit.solves);
   merge_each(failed, unit.failed);
   rejected.insert(rejected.end(), unit.rejected.begin(), unit.rejected.end());
@@ -32,6 +34,7 @@ void MachineCollector::Counts::merge(const Counts& later) {
   merge_each(at_pose, later.at_pose);
   merge_each(largest, later.largest);
   merge_each(rms, later.rms);
+  merge_each(judged, later.judged);
   merge_each(solves, later.solves);
   merge_each(failed, later.failed);
   rejected.insert(rejected.end(), later.rejected.begin(), later.rejected.end());
@@ -40,7 +43,7 @@ void MachineCollector::Counts::merge(const Counts& later) {
 
 void MachineCollector::Counts::state(Archive& archive, const MachineTable& table, const NumberRange& range) {
   const std::size_t count = range.end - range.first;
-  archive.objects(at_pose, largest, rms);
+  archive.objects(at_pose, largest, rms, judged);
   ends_state(archive, solves, failed, count, range.first, range.end);
   rejected_state(archive, rejected, table, range);
   archive.object(machines);
@@ -48,7 +51,7 @@ void MachineCollector::Counts::state(Archive& archive, const MachineTable& table
 }
 
 MachineCollector::MachineCollector(const MachineTable& table, const Analysis& analysis)
-    : table_(&table), analysis_(&analysis), counts_(table.responses(), table.plan().poses().size()) {}
+    : table_(&table), analysis_(&analysis), counts_(table) {}
 
 void MachineCollector::add(std::size_t n, MachineUnit&& unit) {
   counts_.add(unit);
@@ -122,7 +125,7 @@ MonteCarloResult MachineCollector::result() && {
   if (analysis_->limits.empty()) return std::move(found);
   if (asked.judge == Judge::yield) {
     found.verdicts = judge_machines(analysis_->limits, asked.yield, *found.machines->yield, total_of(counts_.solves),
-                                    counts_.machines, counts_.largest);
+                                    counts_.machines, judged_values());
     return std::move(found);
   }
   std::vector<QuantileSketch> overall(table_->responses());
@@ -131,6 +134,12 @@ MonteCarloResult MachineCollector::result() && {
   }
   found.verdicts = judge_draws(analysis_->limits, asked.judge, asked.share, found, overall);
   return std::move(found);
+}
+
+std::vector<QuantileSketch> MachineCollector::judged_values() const {
+  std::vector<QuantileSketch> values = counts_.largest;
+  for (std::size_t k = 0; k < counts_.judged.size(); ++k) values[table_->judged()[k]] = counts_.judged[k];
+  return values;
 }
 
 void MachineCollector::state(Archive& archive, const NumberRange& units) {
@@ -145,7 +154,7 @@ void MachineCollector::state(Archive& archive, const NumberRange& units) {
   }
   const NumberRange machines{units.first * each, units.end * each};
   if (!archive.reads()) return counts_.state(archive, *table_, machines);
-  Counts counts(table_->responses(), poses());
+  Counts counts(*table_);
   counts.state(archive, *table_, machines);
   counts_.merge(counts);
 }

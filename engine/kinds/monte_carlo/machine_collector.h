@@ -38,12 +38,13 @@ class MachineCollector {
     Array<QuantileSketch, axis::Pose, axis::Response> at_pose;
     std::vector<QuantileSketch> largest;  ///< [R]
     std::vector<QuantileSketch> rms;      ///< [R]
+    std::vector<QuantileSketch> judged;   ///< what machines are judged by, for MachineTable::judged()
     std::vector<SolveCounts> solves;      ///< [M]
     std::vector<FailedSamples> failed;    ///< [M]
     std::vector<std::uint8_t> rejected;   ///< 1 or 0 for each machine that MachineTable::kept() counts
     MachineCounts machines;
 
-    Counts(std::size_t responses, std::size_t poses);
+    explicit Counts(const MachineTable& table);
     void add(const MachineUnit& unit);
     /// Adds those of later machines. Precondition: the machines of `later` come after those of this object.
     void merge(const Counts& later);
@@ -54,6 +55,8 @@ class MachineCollector {
   std::size_t poses() const { return table_->plan().poses().size(); }
   /// Sets the numbers that depend on the moments and sketches of the samples.
   void set_columns(const MachineSums& sums, MonteCarloResult& found, class MonteCarloColumns& columns) const;
+  /// [R] What machines are judged by; of a response with a plain limit, or with none, their largest magnitudes.
+  std::vector<QuantileSketch> judged_values() const;
   MachineResult machines(const MachineSums& sums, std::span<const BinSpread> spreads) const;
   EffectResult effects(const MachineSums& sums, std::span<const BinSpread> spreads) const;
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <stdexcept>
 
 #include "engine/base/contract.h"
@@ -64,7 +63,8 @@ ErrorScores scores_of(const Plan& plan, const ErrorScores& all, Draws draws) {
   return scores;
 }
 
-/// The number of machines for which the gradient takes a second or so.
+/// The number of machines for which the gradient takes a second or so. A linear map judges poses one by one, so it says
+/// nothing about limits over poses.
 std::size_t kept_machines(const Plan& plan, const LimitedVectors& vectors, const ErrorScores& scores) {
   constexpr std::size_t kMostWork = 1'000'000'000;  // number of products
   constexpr std::size_t kWorkOfRange = 10;          // products for the range of one error at one limit
@@ -83,14 +83,16 @@ MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis&
     : plan_(&plan),
       responses_(model.description().responses.size()),
       has_limits_(!analysis.limits.empty()),
-      limits_(responses_, std::numeric_limits<double>::infinity()),
+      limits_(limits_by_response(analysis.limits, responses_)),
       scores_(scores_of(plan)),
       fixed_scores_(scores_of(plan, scores_, Draws::per_machine)),
       pose_scores_(scores_of(plan, scores_, Draws::per_pose)),
       vectors_(plan, model, analysis),
-      kept_(kept_machines(plan, vectors_, scores_)) {
+      kept_(any_over_poses(analysis.limits) ? 0 : kept_machines(plan, vectors_, scores_)) {
   POESY_EXPECTS(plan.draws() == Draws::per_machine);
-  for (const ResponseLimit& limit : analysis.limits) limits_[limit.response] = limit.most;
+  for (std::size_t r = 0; r < responses_; ++r) {
+    if (!limits_[r].is_plain()) judged_.push_back(r);
+  }
   for (std::size_t r = 0; r < responses_; ++r) rounding_.push_back(model.rounding(r));
   if (has_limits_) parts_ = part_groups(plan);
   effect_poses_ = poesy::effect_poses(plan.poses().size(), responses_, errors());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -38,10 +39,14 @@ class MachineTable {
   /// Whether the unit is full.
   bool is_whole(std::size_t n) const { return unit(n).count == unit_machines(plan_->poses().size()); }
 
-  bool has_limits() const { return has_limits_; }  ///< Whether machines may be rejected.
-  std::span<const double> limits() const {
-    return limits_;
-  }  ///< [R] Limits on the magnitudes of responses, infinite for none.
+  bool has_limits() const { return has_limits_; }                 ///< Whether machines may be rejected.
+  std::span<const ValueLimit> limits() const { return limits_; }  ///< [R] The limit of each response, if it has one.
+  /// Whether each limit is judged at each pose alone, and none over the poses of a machine.
+  bool judges_each_pose() const {
+    return std::ranges::none_of(limits_, [](const ValueLimit& limit) { return limit.is_over_poses(); });
+  }
+  /// The limited responses whose limits are not plain, ascending. It is stored of each machine by what it is judged.
+  std::span<const std::size_t> judged() const { return judged_; }
   std::size_t errors() const { return scores_.each.size(); }  ///< The number of errors, P.
   /// The scores of the errors, from which the gradient of the yield by their sizes is computed. An error that is
   /// correlated with others has one only if they are all normal.
@@ -80,7 +85,8 @@ class MachineTable {
   const Plan* plan_;
   std::size_t responses_;
   bool has_limits_;
-  std::vector<double> limits_;
+  std::vector<ValueLimit> limits_;
+  std::vector<std::size_t> judged_;
   ErrorScores scores_;
   ErrorScores fixed_scores_;
   ErrorScores pose_scores_;

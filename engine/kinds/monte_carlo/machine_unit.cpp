@@ -46,7 +46,7 @@ MachineSums::MachineSums(const MachineTable& table)
       rms(table.responses()),
       table_(&table) {
   if (table.has_limits()) scores.emplace(table.fixed_scores());
-  if (table.has_limits() && table.has_per_pose()) pose_scores.emplace(table.pose_scores());
+  if (table.has_limits() && table.has_per_pose() && table.judges_each_pose()) pose_scores.emplace(table.pose_scores());
   if (table.has_per_pose()) fit_at_pose.resize(table.plan().poses().size());
   if (table.has_parts()) parts.emplace(table.parts());
   effects.assign(table.effects(), MainEffectSums(table.errors(), table.responses()));
@@ -93,6 +93,7 @@ MachineUnit::MachineUnit(const MachineTable& table, const NumberRange& range)
       at_pose({table.plan().poses().size(), table.responses()}),
       largest(table.responses()),
       rms(table.responses()),
+      judged(table.judged().size()),
       rejected(kept_of(table, range)),
       solves(table.plan().poses().size()),
       failed(table.plan().poses().size()),
@@ -100,7 +101,7 @@ MachineUnit::MachineUnit(const MachineTable& table, const NumberRange& range)
       machines_(range) {}
 
 void MachineUnit::state(Archive& archive) {
-  archive.objects(*sums, counts, at_pose, largest, rms);
+  archive.objects(*sums, counts, at_pose, largest, rms, judged);
   rejected_state(archive, rejected, *table_, machines_);
   ends_state(archive, solves, failed, machines_.end - machines_.first, machines_.first, machines_.end);
   total = total_of(solves);
@@ -165,6 +166,9 @@ void MachineUnitEvaluator::add_machines(const MachineBlock& block, const EffectB
     found.rms[r] = NumberBlock(rms_kept);
     found.sums->rms[r] = Moments::of(rms_kept);
   }
+  for (std::size_t k = 0; k < table_->judged().size(); ++k) {
+    found.judged[k] = NumberBlock(only(block.deciding(table_->judged()[k]), block.solved()));
+  }
   const std::size_t at_poses = table_->effect_poses().size();
   found.sums->effects[at_poses].add(bins, sum_, block.solved());
   found.sums->effects[at_poses + 1].add(bins, largest, block.solved());
@@ -177,8 +181,24 @@ void MachineUnitEvaluator::add_machines(const MachineBlock& block, const EffectB
     found.sums->pose_scores->add(deciding_.all(), poses_beyond_);
   }
   if (found.sums->parts) found.sums->parts->add(errors, rejected);
-  if (is_fitted_ && !table_->has_per_pose()) add_fit(block.solved(), found);
+  if (is_fitted_ && !table_->has_per_pose()) {
+    centre_rows();
+    add_fit(block.solved(), found);
+  }
   found.rejected = rejected;
+}
+
+void MachineUnitEvaluator::centre_rows() {
+  const std::size_t poses = plan_->poses().size();
+  const std::size_t machines = rows_.length<axis::Sample>();
+  for (const LimitedVector& vector : table_->vectors().each()) {
+    if (!vector.is_centred) continue;
+    for (std::size_t b = 0; b < machines; ++b) {
+      double mean = 0.0;
+      for (std::size_t m = 0; m < poses; ++m) mean += rows_(m, vector.first_row, b) / static_cast<double>(poses);
+      for (std::size_t m = 0; m < poses; ++m) rows_(m, vector.first_row, b) -= mean;
+    }
+  }
 }
 
 Array<double, axis::Factor, axis::Sample> MachineUnitEvaluator::standardised(std::size_t machines) const {
@@ -211,7 +231,7 @@ void MachineUnitEvaluator::note_rejects(const UnitOutcomes& outcomes, std::span<
   for (std::size_t b = 0; b < ok.size(); ++b) {
     bool is_beyond = ok[b] == 0;
     for (std::size_t r = 0; r < responses_ && !is_beyond; ++r) {
-      is_beyond = !(std::abs(responses(r, b)) <= table_->limits()[r]);
+      is_beyond = !table_->limits()[r].holds(responses(r, b));
     }
     if (!is_beyond || poses_beyond_[b] == 2) continue;
     if (++poses_beyond_[b] == 2) continue;

@@ -32,7 +32,7 @@ struct MachineSums {
   std::vector<Moments> rms;                            ///< [R] of the machines' root mean squares
   std::optional<ScoreSums> scores;                     ///< set if there are limits
   /// Of errors that machines draw anew at each pose, over machines that one pose alone rejects, by the errors at this
-  /// pose. Set if there are such errors and limits.
+  /// pose. Set if there are such errors and limits, which are judged at each pose.
   std::optional<ScoreSums> pose_scores;
   std::optional<LinearFitSums> fit;  ///< fit of the limited vectors at all poses, for the machines that are fitted
   /// [M] The same at each pose alone, instead of `fit`, if machines draw errors anew at each pose; otherwise empty.
@@ -68,6 +68,7 @@ struct MachineUnit {
   Array<NumberBlock, axis::Pose, axis::Response> at_pose;  ///< the samples that count, sorted for a sketch
   std::vector<NumberBlock> largest;                        ///< [R] of the machines that are solved at each pose
   std::vector<NumberBlock> rms;                            ///< [R] of the machines that are solved at each pose
+  std::vector<NumberBlock> judged;                         ///< what machines are judged by, for MachineTable::judged()
   std::vector<std::uint8_t> rejected;  ///< 1 or 0 for each of the machines that MachineTable::kept() counts
   std::vector<SolveCounts> solves;     ///< how the solves at each pose ended
   std::vector<FailedSamples> failed;   ///< the first failed samples at each pose
@@ -100,6 +101,8 @@ class MachineUnitEvaluator : private UnitSolver {
   void add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found);
   /// [P x B] The present errors, standardised.
   Array<double, axis::Factor, axis::Sample> standardised(std::size_t machines) const;
+  /// Subtracts the mean over the poses from the rows of vectors that are centred.
+  void centre_rows();
   /// Fits the limited vectors to these machines, whose rows at all poses are in rows_.
   void add_fit(std::span<const std::uint8_t> solved, MachineUnit& found) const;
   /// The same at one pose, whose samples count where `ok` is 1.

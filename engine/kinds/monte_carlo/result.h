@@ -164,7 +164,8 @@ struct MonteCarloResult {
   /// Bound on |quantile - order statistic| of each quantile at the pose; empty in results of version 0.2.
   AtPoses quantile_error;
   /// The magnitude that a share of the draws stays within, if limits are judged by that share, else empty. Draws that
-  /// do not count exceed every magnitude; infinite if they are too many.
+  /// do not count exceed every magnitude; infinite if they are too many. For a response whose limit has other ends: the
+  /// value of the draw that is worst of that share (value_at_rank); NaN if too many draws do not count.
   AtPoses share_magnitude;
 
   Overall overall_mean;                                ///< the same as mean, for the samples of all poses

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "engine/base/nan.h"
 #include "engine/kinds/monte_carlo/columns.h"
@@ -104,6 +103,7 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
     const std::size_t r = limit.response;
     set_estimate(good(counts.by_limit(r).strict), found.by_response, found.by_response_ci_low,
                  found.by_response_ci_high, r);
+    if (limit.allowed.is_spread()) continue;  // no pose alone decides
     std::ranges::transform(counts.at_pose.row(r), found.worst_pose_share.row(r).begin(),
                            [&](const Rejects& rejects) { return share(rejects.strict, n); });
   }
@@ -226,16 +226,18 @@ YieldVerdict judge_yield(const YieldResult& found, const SolveCounts& solves, do
 
 LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked, const YieldResult& found,
                              const SolveCounts& solves, const MachineCounts& counts,
-                             std::span<const QuantileSketch> largest) {
+                             std::span<const QuantileSketch> judged) {
   LimitVerdicts verdicts{.judge = Judge::yield, .limits = {}, .yield = judge_yield(found, solves, asked)};
   const std::uint64_t n = counts.machines;
   for (const ResponseLimit& limit : limits) {
-    LimitVerdict verdict{.response = limit.response, .limit = limit.most, .value = kNaN, .tried = n};
+    LimitVerdict verdict{.response = limit.response, .limit = limit.allowed, .value = kNaN, .tried = n};
     verdict.within = n - counts.by_limit(limit.response).strict;
     const std::uint64_t rank = asked == 0.0 ? n : quantile_rank(asked, n);
-    const QuantileSketch& values = largest[limit.response];
+    const QuantileSketch& values = judged[limit.response];
+    const bool is_sorted = limit.allowed.is_plain() || limit.allowed.is_spread();  // none is negative
     if (asked > 0.0) {
-      verdict.value = rank <= values.count() ? values.order_statistic(rank) : std::numeric_limits<double>::infinity();
+      verdict.value = is_sorted && rank <= values.count() ? values.order_statistic(rank)
+                                                          : value_at_rank(values, limit.allowed, rank);
     }
     verdict.passed = verdict.within >= rank;
     verdicts.limits.push_back(verdict);

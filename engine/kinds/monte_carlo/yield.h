@@ -66,10 +66,10 @@ EffectResult effect_result(std::span<const PoseIndex> poses, std::span<const Bin
 /// least that, not kept if the upper limit is below it. solves: those of the machines at all poses.
 YieldVerdict judge_yield(const YieldResult& found, const SolveCounts& solves, double asked);
 
-/// Judges the limits of a study with draws per machine, together and each alone. largest: [R] of the machines that are
-/// solved at each pose. counts: see yield_of(); solves: see judge_yield().
+/// Judges the limits of a study with draws per machine, together and each alone. judged: [R] what machines are judged
+/// by (ValueLimit::deciding), of those that are solved at each pose. counts: see yield_of(); solves: see judge_yield().
 LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked, const YieldResult& found,
                              const SolveCounts& solves, const MachineCounts& counts,
-                             std::span<const QuantileSketch> largest);
+                             std::span<const QuantileSketch> judged);
 
 }  // namespace poesy

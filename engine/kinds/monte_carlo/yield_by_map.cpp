@@ -48,7 +48,7 @@ LinearLimit limit_at(const MachineTable& table, const LinearFit& fit, const Limi
   const ArrayView<const double, axis::Pose, axis::VectorRow, axis::Factor> slopes(
       fit.slope, {table.plan().poses().size(), rows, fit.errors});
   const ArrayView<const double, axis::Pose, axis::VectorRow> offsets(fit.offset, {table.plan().poses().size(), rows});
-  LinearLimit limit{vector.rows, vector.most, {}, {}};
+  LinearLimit limit{vector.rows, vector.limit, {}, {}};
   for (std::size_t k = vector.first_row; k < vector.first_row + vector.rows; ++k) {
     limit.offset.push_back(offsets(pose, k));
     limit.slope.insert(limit.slope.end(), slopes.row(pose, k).begin(), slopes.row(pose, k).end());

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
+#include "engine/study/limit_keys.h"
 
 namespace poesy {
 
@@ -178,9 +180,12 @@ Section& add_how_sure(Page& page, std::string heading, double conf_level) {
 std::vector<Mark> limit_marks(const StoredResult& result, std::size_t response, bool has_negative) {
   const LimitVerdict* verdict = verdict_on(result, response);
   if (verdict == nullptr) return {};
-  const double limit = verdict->limit / display(result.responses[response]).si;
-  std::vector<Mark> marks{{"limit", limit, "above"}};
-  if (has_negative) marks.push_back({"limit", -limit, "below"});
+  const ValueLimit& limit = verdict->limit;
+  if (limit.is_spread()) return {};
+  const double si = display(result.responses[response]).si;
+  std::vector<Mark> marks;
+  if (std::isfinite(limit.to())) marks.push_back({"limit", limit.to() / si, "above"});
+  if (std::isfinite(limit.from()) && has_negative) marks.push_back({"limit", limit.from() / si, "below"});
   return marks;
 }
 
@@ -195,7 +200,8 @@ std::string limits_text(const StoredResult& result) {
   for (const LimitVerdict& one : result.verdicts->limits) {
     const NamedUnit& response = result.responses[one.response];
     text += fmt::format("{}{} {} its limit of {} with {}.", text.empty() ? "" : " ", response.name,
-                        one.passed ? "keeps" : "does not keep", response_text(response, one.limit),
+                        one.passed ? "keeps" : "does not keep",
+                        limit_text(one.limit, [&](double value) { return response_text(response, value); }),
                         response_text(response, one.value));
   }
   return text;

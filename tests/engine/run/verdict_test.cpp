@@ -34,7 +34,8 @@ std::vector<QuantileSketch> overall() {
   return sketches;
 }
 
-LimitVerdicts judged(Judge judge, double first, double second, const MonteCarloResult& found = draws()) {
+LimitVerdicts judged(Judge judge, const ValueLimit& first, const ValueLimit& second,
+                     const MonteCarloResult& found = draws()) {
   const std::vector<ResponseLimit> limits{{0, first}, {1, second}};
   return judge_draws(limits, judge, 0.5, found, overall());
 }
@@ -76,6 +77,32 @@ TEST(JudgeDraws, RefusesWhatIsNotKnown) {
   EXPECT_FALSE(judged(Judge::share, 1e9, 1.0, found).limits[0].passed);
 }
 
+/// The number of the given rank in the order of how bad numbers are.
+TEST(ValueAtRank, IsTheWorstOfTheShare) {
+  QuantileSketch sketch;
+  sketch.add(std::vector{-3.0, -1.0, 0.0, 0.5, 2.0, 4.0});
+  const ValueLimit ends = ValueLimit::between(-1.0, 3.0);  // 4 is beyond by 1, -3 by 2
+  EXPECT_EQ(value_at_rank(sketch, ends, 6), -3.0);
+  EXPECT_EQ(value_at_rank(sketch, ends, 5), 4.0);
+  EXPECT_EQ(value_at_rank(sketch, ends, 4), -1.0);
+  EXPECT_TRUE(std::isnan(value_at_rank(sketch, ends, 7)));
+  EXPECT_EQ(value_at_rank(sketch, 1.0, 5), 3.0);
+  EXPECT_EQ(value_at_rank(sketch, 1.0, 7), kInfinity);
+}
+
+TEST(JudgeDraws, BetweenTwoEndsByTheWorstPose) {
+  MonteCarloResult found = draws();
+  found.share_magnitude = {{2, 2}, {3.0, -1.5, 1.0, 0.75}};
+  const LimitVerdict beyond = judged(Judge::share, ValueLimit::between(-1.0, 4.0), 1.0, found).limits[0];
+  EXPECT_FALSE(beyond.passed);
+  EXPECT_EQ(beyond.value, -1.5);
+  EXPECT_EQ(beyond.pose, 1u);
+  EXPECT_TRUE(judged(Judge::share, ValueLimit::between(-2.0, 4.0), 1.0, found).limits[0].passed);
+  EXPECT_EQ(judged(Judge::share, 5.0, ValueLimit::between(-0.125, 0.3), found).limits[1].within, 3u);
+  found.share_magnitude(0, 0) = kNaN;
+  EXPECT_FALSE(judged(Judge::share, ValueLimit::between(-1e9, kInfinity), 1.0, found).limits[0].passed);
+}
+
 /// Three poses, two rows; row 1 is the larger one, with both signs.
 EvaluationResult evaluation() {
   EvaluationResult result;
@@ -84,7 +111,8 @@ EvaluationResult evaluation() {
   return result;
 }
 
-LimitVerdict judged(double limit, const EvaluationResult& found, NotConverged policy = NotConverged::exclude) {
+LimitVerdict judged(const ValueLimit& limit, const EvaluationResult& found,
+                    NotConverged policy = NotConverged::exclude) {
   const std::vector<ResponseLimit> limits{{0, limit}};
   return judge_rows(limits, found, Pairing::every_pose_with_every_row, policy).limits.at(0);
 }
@@ -100,6 +128,26 @@ TEST(JudgeRows, ByTheLargestMagnitudeOfEachRow) {
   EXPECT_EQ(missed.tried, 2u);
   EXPECT_EQ(missed.within, 1u);
   EXPECT_EQ(judged(5.0, evaluation()).within, 0u);
+}
+
+TEST(JudgeRows, ByTwoEndsByAShareOfThePosesAndByTheSpread) {
+  // Row 0 is 1, 2, 6 and row 1 is 10, -90, 20.
+  const LimitVerdict ends = judged(ValueLimit::between(-50.0, 20.0), evaluation());
+  EXPECT_EQ(ends.within, 1u);
+  EXPECT_EQ(ends.value, -90.0);
+  EXPECT_EQ(ends.row, 1u);
+  EXPECT_EQ(ends.pose, 1u);
+  EXPECT_EQ(judged(ValueLimit::between(-kInfinity, 20.0), evaluation()).within, 2u);
+  const LimitVerdict share = judged(ValueLimit::between(-50.0, 15.0).at_share(0.6), evaluation());
+  EXPECT_EQ(share.within, 1u);
+  EXPECT_EQ(share.value, 20.0);
+  EXPECT_EQ(share.pose, 2u);
+  EXPECT_TRUE(judged(ValueLimit::between(-50.0, 20.0).at_share(0.6), evaluation()).passed);
+  const LimitVerdict spread = judged(ValueLimit::of_spread(5.0), evaluation());
+  EXPECT_EQ(spread.within, 1u);
+  EXPECT_EQ(spread.value, 110.0);
+  EXPECT_EQ(spread.row, 1u);
+  EXPECT_FALSE(spread.pose);
 }
 
 /// A row that was not solved at a pose is not within any limit, though its other values are.

@@ -5,6 +5,7 @@
 #include <array>
 #include <boost/random/mersenne_twister.hpp>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "engine/random/distribution.h"
@@ -55,7 +56,8 @@ TEST(LinearLimits, TellInWhichRangeAMachineIsGood) {
     std::array<double, kErrors> one{};
     for (std::size_t p = 0; p < kErrors; ++p) one[p] = errors[p * kMachines + b];
     const auto is_good = [&] {
-      return std::ranges::all_of(limits, [&](const LinearLimit& limit) { return norm_of(limit, one) <= limit.most; });
+      return std::ranges::all_of(limits,
+                                 [&](const LinearLimit& limit) { return norm_of(limit, one) <= limit.limit.to(); });
     };
     EXPECT_EQ(found.rejected[b] == 0, is_good());
     rejects += found.rejected[b];
@@ -77,6 +79,41 @@ TEST(LinearLimits, TellInWhichRangeAMachineIsGood) {
   EXPECT_GT(nowhere, 0u);
 }
 
+/// The same for limits with two ends, or with one.
+TEST(LinearLimits, TellTheRangeBetweenTwoEnds) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::vector<LinearLimit> limits{{1, ValueLimit::between(-0.3, 1.1), {0.2}, {1.0, -0.5, 0.0}},
+                                        {1, ValueLimit::between(-kInfinity, 0.9), {0.0}, {0.5, 0.8, 0.0}},
+                                        {1, ValueLimit::between(-0.7, kInfinity), {0.1}, {-0.6, 0.4, 0.0}}};
+  constexpr std::size_t kMachines = 200;
+  boost::random::mt19937_64 engine(4);
+  std::vector<double> errors(3 * kMachines);
+  for (double& one : errors) one = 3.0 * uniform_from_bits(engine()) - 1.5;
+  const LinearLimits::Machines found = LinearLimits(3, limits).machines(errors, std::array{3.0, 3.0, 3.0});
+  for (std::size_t b = 0; b < kMachines; ++b) {
+    std::array<double, 3> one{errors[b], errors[kMachines + b], errors[2 * kMachines + b]};
+    const auto is_good = [&] {
+      return std::ranges::all_of(limits, [&](const LinearLimit& limit) {
+        const double y = limit.offset[0] + limit.slope[0] * one[0] + limit.slope[1] * one[1];
+        return limit.limit.from() <= y && y <= limit.limit.to();
+      });
+    };
+    EXPECT_EQ(found.rejected[b] == 0, is_good());
+    for (std::size_t p = 0; p < 3; ++p) {
+      const double low = found.low[p * kMachines + b];
+      const double high = found.high[p * kMachines + b];
+      const double own = one[p];
+      for (int step = -40; step <= 40; ++step) {
+        one[p] = own + 0.05 * step;
+        EXPECT_EQ(low < one[p] && one[p] < high, is_good()) << b << ' ' << p << ' ' << step;
+      }
+      one[p] = own;
+    }
+  }
+  EXPECT_GT(std::ranges::count(found.rejected, 1), 20);
+  EXPECT_GT(std::ranges::count(found.rejected, 0), 20);
+}
+
 TEST(LinearLimit, KeepsItsNormWithFewerRows) {
   boost::random::mt19937_64 engine(2);
   LinearLimit limit = example(engine)[1];
@@ -88,7 +125,7 @@ TEST(LinearLimit, KeepsItsNormWithFewerRows) {
   limit.rows = 5;
   const LinearLimit fewer = with_fewest_rows(limit);
   EXPECT_EQ(fewer.rows, 3u);
-  EXPECT_EQ(fewer.most, limit.most);
+  EXPECT_EQ(fewer.limit, limit.limit);
   for (int n = 0; n < 20; ++n) {
     std::array<double, 4> errors{};
     for (double& one : errors) one = 2.0 * uniform_from_bits(engine()) - 1.0;

@@ -26,7 +26,7 @@ using Flags = std::vector<std::uint8_t>;
 /// Two responses of four machines at two poses. Machine 0 is good, 1 breaks the first limit at pose 1, 2 is not
 /// solved at pose 0, 3 breaks both limits and is not solved at pose 1.
 MachineBlock four_machines() {
-  MachineBlock block(std::array{1.0, 10.0}, 4);
+  MachineBlock block(std::array<ValueLimit, 2>{1.0, 10.0}, 4);
   block.add_pose(std::array{0.5, -1.0, kNone, -1.5,  //
                             3.0, 4.0, kNone, 11.0},
                  Flags{1, 1, 0, 1});
@@ -67,7 +67,7 @@ TEST(MachineBlock, GivesLargestAndRootMeanSquareOfSolvedMachines) {
 }
 
 TEST(MachineBlock, WithoutALimitRejectsNothingButTheUnsolved) {
-  MachineBlock block(std::array{kInfinity}, 3);
+  MachineBlock block(std::array<ValueLimit, 1>{kInfinity}, 3);
   block.add_pose(std::array{1e300, kNone, -1e300}, Flags{1, 0, 1});
   const MachineCounts counts = block.counts();
   EXPECT_EQ(counts.all, (Rejects{1, 0}));
@@ -75,28 +75,99 @@ TEST(MachineBlock, WithoutALimitRejectsNothingButTheUnsolved) {
 }
 
 TEST(MachineBlock, RejectsWhatIsNotANumber) {
-  MachineBlock block(std::array{1.0}, 1);
+  MachineBlock block(std::array<ValueLimit, 1>{1.0}, 1);
   block.add_pose(std::array{kNone}, Flags{1});
   EXPECT_EQ(block.counts().all, (Rejects{1, 1}));
+}
+
+MachineCounts read_counts(ByteReader& from, std::size_t responses, std::size_t poses) {
+  MachineCounts counts = MachineCounts::of_none(responses, poses);
+  Archive archive(from);
+  counts.state(archive);
+  return counts;
+}
+
+/// Limits of every kind, judged by plain loops over the poses of each machine.
+TEST(MachineBlock, JudgesEveryKindOfLimitAsPlainLoopsDo) {
+  constexpr std::size_t kMachines = 400;
+  constexpr std::size_t kPoses = 10;
+  const std::array<ValueLimit, 6> limits{
+      ValueLimit::between(-0.8, 0.95), ValueLimit::between(-kInfinity, 0.9),
+      ValueLimit(0.9).at_share(0.9),   ValueLimit::between(-0.7, kInfinity).at_share(0.75),
+      ValueLimit::of_spread(1.7),      0.95};
+  boost::random::mt19937_64 engine(3);
+  std::vector<std::array<std::array<double, kPoses>, kMachines>> y(limits.size());
+  Flags counts(kPoses * kMachines);
+  for (auto& response : y) {
+    for (auto& machine : response) {
+      for (double& value : machine) value = 2.0 * static_cast<double>(engine() >> 11U) * 0x1p-53 - 1.0;
+    }
+  }
+  for (std::uint8_t& flag : counts) flag = static_cast<std::uint8_t>(engine() % 40 != 0);
+  MachineBlock block(limits, kMachines);
+  for (std::size_t m = 0; m < kPoses; ++m) {
+    std::vector<double> values;
+    for (const auto& response : y) {
+      for (const auto& machine : response) values.push_back(machine[m]);
+    }
+    block.add_pose(values, std::span(counts).subspan(m * kMachines, kMachines));
+  }
+  const auto is_good = [&](std::size_t r, std::size_t b) {
+    int low = 0;
+    int high = 0;
+    int solved = 0;
+    double least = kInfinity;
+    double most = -kInfinity;
+    for (std::size_t m = 0; m < kPoses; ++m) {
+      if (counts[m * kMachines + b] == 0) continue;
+      const double value = y[r][b][m];
+      ++solved;
+      least = std::min(least, value);
+      most = std::max(most, value);
+      low += value < limits[r].from() ? 1 : 0;
+      high += value > limits[r].to() ? 1 : 0;
+    }
+    const std::array<bool, 6> good{low + high == 0, high == 0,           low + high <= 1,
+                                   low <= 2,        most - least <= 1.7, low + high == 0};
+    return good[r];
+  };
+  const MachineCounts found = block.counts();
+  const Flags rejected = block.rejected();
+  for (std::size_t r = 0; r < limits.size(); ++r) {
+    std::uint64_t strict = 0;
+    std::uint64_t lenient = 0;
+    for (std::size_t b = 0; b < kMachines; ++b) {
+      lenient += is_good(r, b) ? 0 : 1;
+      strict += is_good(r, b) && block.solved()[b] == 1 ? 0 : 1;
+      EXPECT_TRUE(is_good(r, b) || rejected[b] == 1);
+      if (limits[r].is_plain() || block.solved()[b] == 0) continue;
+      EXPECT_EQ(limits[r].holds(block.deciding(r)[b]), is_good(r, b)) << r << ' ' << b;
+    }
+    EXPECT_EQ(found.by_limit(r), (Rejects{strict, lenient})) << r;
+    EXPECT_GT(lenient, kMachines / 20) << r;
+    EXPECT_LT(strict, 19 * kMachines / 20) << r;
+  }
+  EXPECT_EQ(read_all(written(found), [&](ByteReader& from) { return read_counts(from, limits.size(), kPoses); }),
+            found);
 }
 
 /// Outcomes of some machines, cut into blocks of this size.
 MachineCounts in_blocks(std::size_t block_size) {
   constexpr std::size_t kMachines = 600;
   constexpr std::size_t kPoses = 5;
-  constexpr std::array kLimits{0.9, 0.95, kInfinity};
+  const std::array<ValueLimit, 3> limits{0.9, 0.95, kInfinity};
   boost::random::mt19937_64 engine(7);
-  std::vector<double> responses(kPoses * kLimits.size() * kMachines);
+  std::vector<double> responses(kPoses * limits.size() * kMachines);
   Flags solved(kPoses * kMachines);
   for (double& response : responses) response = 2.0 * static_cast<double>(engine() >> 11U) * 0x1p-53 - 1.0;
   for (std::uint8_t& flag : solved) flag = static_cast<std::uint8_t>(engine() % 50 != 0);
   MachineCounts counts;
   for (std::size_t first = 0; first < kMachines; first += block_size) {
-    MachineBlock block(kLimits, block_size);
+    MachineBlock block(limits, block_size);
     for (std::size_t m = 0; m < kPoses; ++m) {
       std::vector<double> values;
-      for (std::size_t r = 0; r < kLimits.size(); ++r) {
-        const auto row = responses.begin() + static_cast<std::ptrdiff_t>((m * kLimits.size() + r) * kMachines + first);
+      for (std::size_t r = 0; r < limits.size(); ++r) {
+        const auto row = responses.begin() + static_cast<std::ptrdiff_t>((m * limits.size() + r) * kMachines + first);
         values.insert(values.end(), row, row + static_cast<std::ptrdiff_t>(block_size));
       }
       block.add_pose(values, std::span(solved).subspan(m * kMachines + first, block_size));
@@ -119,13 +190,6 @@ TEST(MachineCounts, OfNothingTakeAndLeave) {
   const MachineCounts same = counts;
   counts.merge({});
   EXPECT_EQ(counts, same);
-}
-
-MachineCounts read_counts(ByteReader& from, std::size_t responses, std::size_t poses) {
-  MachineCounts counts = MachineCounts::of_none(responses, poses);
-  Archive archive(from);
-  counts.state(archive);
-  return counts;
 }
 
 TEST(StoredMachineCounts, ComeBack) {

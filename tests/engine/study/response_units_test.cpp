@@ -37,9 +37,9 @@ std::string refusal(const Catalog& catalog, const std::string& limits) {
 TEST(ResponseUnits, LimitsAreForcesMomentsAndEnergies) {
   const Study study = with_limits(kMoment, "load = \"2 N mm\", other = \"3 mJ\"");
   ASSERT_EQ(study.analysis.limits.size(), 2u);
-  EXPECT_DOUBLE_EQ(study.analysis.limits[0].most, 2e-3);
-  EXPECT_DOUBLE_EQ(study.analysis.limits[1].most, 3e-3);
-  EXPECT_DOUBLE_EQ(with_limits(kForce, "load = \"5 kN\"").analysis.limits[0].most, 5e3);
+  EXPECT_DOUBLE_EQ(study.analysis.limits[0].allowed.to(), 2e-3);
+  EXPECT_DOUBLE_EQ(study.analysis.limits[1].allowed.to(), 3e-3);
+  EXPECT_DOUBLE_EQ(with_limits(kForce, "load = \"5 kN\"").analysis.limits[0].allowed.to(), 5e3);
   const std::string text = resolved_text(study);
   EXPECT_NE(text.find("limits.load = \"0.002 N m\"\nlimits.other = \"0.003 J\"\n"), std::string::npos) << text;
 }

@@ -504,9 +504,9 @@ TEST(StudyFile, TakesLimitsInTheOrderOfTheModelsResponses) {
                               .analysis;
   ASSERT_EQ(by_rms.limits.size(), 2u);
   EXPECT_EQ(by_rms.limits[0].response, 0u);
-  EXPECT_DOUBLE_EQ(by_rms.limits[0].most, 0.5 * kDegree);
+  EXPECT_DOUBLE_EQ(by_rms.limits[0].allowed.to(), 0.5 * kDegree);
   EXPECT_EQ(by_rms.limits[1].response, 1u);
-  EXPECT_DOUBLE_EQ(by_rms.limits[1].most, 0.03e-3);
+  EXPECT_DOUBLE_EQ(by_rms.limits[1].allowed.to(), 0.03e-3);
   EXPECT_EQ(asked_of<MonteCarloOptions>(by_rms).judge, Judge::rms);
   const Analysis by_share =
       study_of(with_limits("monte-carlo", "judge = \"share\"\nshare = 0.9973\nlimits.linear_deformation = \"1 mm\""))

@@ -169,6 +169,10 @@ std::vector<std::string> studies() {
           "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per machine\"\n"
           "judge = \"yield\"\nyield = 0.99\nlimits = { angular_deformation = \"1 deg\" }\n",
       head +
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per machine\"\n"
+          "limits = { angular_deformation = { from = \"-1 deg\", to = \"2 deg\", share = 0.9 }, linear_deformation = "
+          "{ spread = \"1 mm\" } }\n",
+      head +
           "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nfactors = \"deforming\"\nsamples = "
           "160\n"
           "conf_level = 0.9\ngroups = { a = [\"delta_1\"], b = \"epsilon_1\" }\nsecond_order = true\n"
@@ -434,6 +438,7 @@ TEST(StudyKeys, HaveTheBoundsThatTheyName) {
       Outside{"between 0 and 1", {"0", "1", "[0]", "[1]"}, "it must lie between 0 and 1"},
       Outside{"at least 8", {"7", "[\"1 mm\"]"}, "at least 8"},
       Outside{"symmetric, ones on its diagonal, positive definite", {"[[1, 2], [2, 1]]"}, "between -1 and 1"},
+      Outside{"above 0 and at most 1", {"0", "1.001"}, "above 0 and at most 1"},
       Outside{"from 0 to 1", {"-0.001", "1.001"}, "from 0 to 1"}};
   for (const Use& use : all_uses()) {
     if (use.key->bounds.empty()) continue;

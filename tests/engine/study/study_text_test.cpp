@@ -102,7 +102,7 @@ void expect_same(const Study& a, const Study& b) {
   ASSERT_EQ(a.analysis.limits.size(), b.analysis.limits.size());
   for (std::size_t k = 0; k < a.analysis.limits.size(); ++k) {
     EXPECT_EQ(a.analysis.limits[k].response, b.analysis.limits[k].response);
-    EXPECT_EQ(a.analysis.limits[k].most, b.analysis.limits[k].most);
+    EXPECT_EQ(a.analysis.limits[k].allowed, b.analysis.limits[k].allowed);
   }
   EXPECT_EQ(a.solver.tolerance, b.solver.tolerance);
   EXPECT_EQ(a.solver.max_iterations, b.solver.max_iterations);

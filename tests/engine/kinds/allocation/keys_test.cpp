@@ -92,7 +92,7 @@ TEST(StudyOfTolerances, HasDefaults) {
   EXPECT_EQ(study.analysis.draws, Draws::per_machine);
   EXPECT_EQ(study.analysis.factors.size(), 3u);
   ASSERT_EQ(study.analysis.limits.size(), 1u);
-  EXPECT_EQ(study.analysis.limits[0].most, 0.03e-3);
+  EXPECT_EQ(study.analysis.limits[0].allowed.to(), 0.03e-3);
   ASSERT_EQ(asked.parts.size(), 1u);
   const AllocatedPart& part = asked.parts.front();
   EXPECT_EQ(part.name, "delta_1");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -327,6 +328,48 @@ TEST(ToleranceSearch, RefusesALimitBelowWhatOtherErrorsGive) {
   study.study.analysis.limits = {{0, 0.1}};
   EXPECT_NE(refusal_of(study).find("the errors of no part alone give a root mean square of 0.15"), std::string::npos)
       << refusal_of(study);
+}
+
+/// Of a limit with two ends the nearer one decides, here nearly alone: the standard deviation of the sum is that whose
+/// normal share is the yield. Where the perfect mechanism is off zero, the limit is counted from there.
+TEST(ToleranceSearch, KeepsALimitWithTwoEnds) {
+  FunctionStudy study = weighted_sum_study();
+  study.study.analysis.limits = {{0, ValueLimit::between(-1.0, 3.0)}};
+  const StudyResult result = study.run();
+  const AllocationResult& found = result.as<AllocationResult>();
+  double variance = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) variance += std::pow(kCoefficients[i] * found.sigma(i), 2);
+  const double z =
+      -normal_quantile(1.0, static_cast<double>(found.design_most) / static_cast<double>(found.design_machines));
+  EXPECT_NEAR(std::sqrt(variance), 1.0 / z, 0.01 / z);
+  EXPECT_EQ(found.certificate.decision, YieldVerdict::Decision::kept);
+  EXPECT_EQ(result.verdicts->limits.at(0).limit, ValueLimit::between(-1.0, 3.0));
+  FunctionStudy moved(
+      3,
+      [](std::span<const double> x, double place, std::span<double> y) {
+        weighted_sum(x, place, y);
+        y[0] += 2.0;
+      },
+      1.0, 200'000);
+  moved.asked() = study.asked();
+  moved.study.analysis.limits = {{0, ValueLimit::between(1.0, 5.0)}};
+  const AllocationResult same = moved.find();
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(same.tolerance(i), found.tolerance(i), 1e-3 * found.tolerance(i));
+  moved.study.analysis.limits = {{0, ValueLimit::between(-1.0, 1.5)}};
+  EXPECT_NE(refusal_of(moved).find("without the errors of the parts it is 2"), std::string::npos) << refusal_of(moved);
+}
+
+/// A limit with one end, met by half as many rejects on one side.
+TEST(ToleranceSearch, KeepsALimitWithOneEnd) {
+  FunctionStudy study = weighted_sum_study();
+  study.study.analysis.limits = {{0, ValueLimit::between(-std::numeric_limits<double>::infinity(), 1.0)}};
+  const AllocationResult found = study.find();
+  double variance = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) variance += std::pow(kCoefficients[i] * found.sigma(i), 2);
+  const double z =
+      -normal_quantile(1.0, static_cast<double>(found.design_most) / static_cast<double>(found.design_machines));
+  EXPECT_NEAR(std::sqrt(variance), 1.0 / z, 0.01 / z);
+  EXPECT_EQ(found.certificate.decision, YieldVerdict::Decision::kept);
 }
 
 TEST(ToleranceSearch, RefusesLowestTolerancesThatAreTooCoarse) {

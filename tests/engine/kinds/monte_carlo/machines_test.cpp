@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/machine_table.h"
@@ -204,6 +205,96 @@ TEST(Machines, HaveAGradientByErrorsOfEveryShape) {
   }
 }
 
+double normal_share(double from, double to, double deviation) {
+  const auto below = [&](double y) { return 0.5 * std::erfc(-y / deviation / std::sqrt(2.0)); };
+  return below(to) - below(from);
+}
+
+/// -0.1 <= y <= 0.35 of a normal sum, whose closed form is known.
+TEST(Machines, FindTheYieldBetweenTwoEnds) {
+  constexpr std::size_t kMachines = 40'500;
+  constexpr double kFrom = -0.1;
+  constexpr double kTo = 0.35;
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 3, kMachines, {0.1, 0.05, 0.2});
+  study.analysis.limits = {{0, ValueLimit::between(kFrom, kTo)}};
+  asked_of<MonteCarloOptions>(study.analysis).yield = 0.7;
+  const MonteCarloResult found = run(study, LinearModel());
+  const YieldResult& yield = *found.machines->yield;
+  const double deviation = 0.1 * std::sqrt(3.0);
+  const double expected = normal_share(kFrom, kTo, deviation);
+  constexpr double kErrors = 3.9;  // alpha 1e-4
+  EXPECT_NEAR(yield.value, expected, kErrors * std::sqrt(expected * (1.0 - expected) / kMachines));
+  const auto density = [&](double y) {
+    return std::exp(-0.5 * y * y / (deviation * deviation)) / std::sqrt(2.0 * std::numbers::pi);
+  };
+  const double slope = (kFrom * density(kFrom) - kTo * density(kTo)) / (deviation * deviation);
+  for (std::size_t p = 0; p < 3; ++p) {
+    const double gradient = slope * LinearModel::kSlopes[p] * 0.1 / deviation;  // a_p t_p is 0.1 of each error
+    const double half = 0.5 * (yield.gradient_ci_high(p) - yield.gradient_ci_low(p));
+    EXPECT_NEAR(yield.gradient(p), gradient, half * kErrors / 1.96) << p;
+    EXPECT_LT(half, 0.1 * std::abs(gradient)) << p;
+  }
+  // The value of the machine that is the last of 70 %: as far beyond either end as 70 % are within.
+  const LimitVerdict& verdict = found.verdicts->limits.at(0);
+  const double out = verdict.value < 0.0 ? kFrom - verdict.value : verdict.value - kTo;
+  EXPECT_NEAR(normal_share(kFrom - out, kTo + out, deviation), 0.7, kErrors * std::sqrt(0.21 / kMachines));
+  EXPECT_EQ(verdict.within, kMachines - yield.rejects);
+}
+
+/// One uniform error between two ends, or below one: the map of the first machines gives slope and step.
+TEST(Machines, TellTheGradientBetweenTwoEnds) {
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 2, 20'000, {1e-4, 1e-4, 1e-4});
+  study.errors.by_factor[0] = Distribution::uniform(0.1);
+  for (const std::size_t p : {1U, 2U}) study.errors.by_factor[p] = Distribution::uniform(1e-9);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const auto& [limit, expected] :
+       {std::pair(ValueLimit::between(-0.02, 0.08), 0.5), std::pair(ValueLimit::between(-kInfinity, 0.08), 0.9)}) {
+    study.analysis.limits = {{0, limit}};
+    const YieldResult yield = *run(study, LinearModel()).machines->yield;
+    // The part of the yield that is lost as the width of the distribution grows: that of the ends inside it.
+    const double inside = expected == 0.5 ? 0.5 : 0.4;
+    EXPECT_NEAR(yield.gradient(0), -inside * std::sqrt(3.0) / 0.1, 0.02 * inside * std::sqrt(3.0) / 0.1);
+    EXPECT_NEAR(yield.change(0), -inside * (1.0 - 1.0 / 1.1), 1e-3);
+  }
+}
+
+/// Of a spread it is the part that changes from pose to pose that counts, and a score tells the gradient.
+TEST(Machines, JudgeTheSpreadOverThePoses) {
+  constexpr std::size_t kPoses = 5;
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, kPoses, 4'000, {1e-3, 2e-3, 5e-3});
+  study.errors.by_factor[1] = Distribution::uniform(3e-3);
+  study.analysis.limits = {{0, ValueLimit::of_spread(1e-4)}};
+  const PoseSet poses = select_poses(study.poses, test::FakeModel()).poses;
+  const MonteCarloResult found = run(study, test::FakeModel());
+  const YieldResult& yield = *found.machines->yield;
+  std::uint64_t rejects = 0;
+  for (std::size_t s = 0; s < study.analysis.samples; ++s) {
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (std::size_t m = 0; m < kPoses; ++m) {
+      double sum = 0.0;
+      for (std::size_t f = 0; f < 3; ++f) {
+        const StreamAddress address{study.seed, Purpose::error_samples, FactorIndex(f), PoseIndex(0)};
+        const double error =
+            study.errors.by_factor[f].quantile(uniform_from_bits(random_bits(address, SampleIndex(s))));
+        sum += test::FakeModel::weight(test::FakeModel::kArm, 0, f, poses[PoseIndex(m)]) * error;
+      }
+      least = std::min(least, std::abs(sum));
+      most = std::max(most, std::abs(sum));
+    }
+    rejects += most - least > 1e-4 ? 1 : 0;
+  }
+  EXPECT_EQ(yield.rejects, rejects);
+  EXPECT_GT(rejects, 400u);
+  EXPECT_LT(rejects, 3600u);
+  EXPECT_TRUE(std::isnan(yield.worst_pose_share(0, 0)));
+  EXPECT_LT(yield.gradient(1), yield.gradient_ci_high(1));
+  EXPECT_EQ(run(study, test::FakeModel(), 1).machines->yield->value, yield.value);
+}
+
 /// One error makes the rejects, and others hardly anything: slope and step are those of that error alone. Polynomials
 /// find a twelfth of the slope.
 TEST(Machines, TellTheGradientByAnErrorThatAloneMakesTheRejects) {
@@ -361,7 +452,7 @@ TEST(Machines, AgreeWithAllMachinesCountedOneByOne) {
         double sum = 0.0;
         for (std::size_t f = 0; f < 3; ++f)
           sum += test::FakeModel::weight(test::FakeModel::kArm, r, f, pose) * errors[f];
-        const bool beyond = std::abs(sum) > study.analysis.limits[r].most;
+        const bool beyond = std::abs(sum) > study.analysis.limits[r].allowed.to();
         at_pose(r, m) += beyond || !solved ? 1 : 0;
         bad = bad || (solved && beyond);
         most[r] = std::max(most[r], std::abs(sum));

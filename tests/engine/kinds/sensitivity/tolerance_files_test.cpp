@@ -171,7 +171,7 @@ TEST_F(ToleranceFiles, StudiesCarryTheLimitThatJudgesThem) {
     const Analysis analysis = read_back(path).analysis;
     ASSERT_EQ(analysis.limits.size(), 1U);
     EXPECT_EQ(analysis.limits[0].response, 0U);
-    EXPECT_EQ(analysis.limits[0].most, 1e-3);
+    EXPECT_EQ(analysis.limits[0].allowed.to(), 1e-3);
     EXPECT_EQ(asked_of<MonteCarloOptions>(analysis).judge, Judge::rms);
   }
 }

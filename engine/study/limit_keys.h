@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "engine/base/value_limit.h"
+#include "engine/model/model.h"
+#include "engine/schema/keys.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+
+/// Reads the limits of a study, in the order of the model's responses.
+void read_response_limits(const StudyValue& value, Study& study);
+
+/// The lines of the resolved text, one for each limit.
+std::string response_limits_lines(const Study& study);
+
+/// The tables of the keys of limits.
+StudyTables limit_tables();
+
+/// The place of a limit in the section [analysis], for messages. Precondition: the study was read from this section.
+StudyValue limit_value(const StudySection& analysis, const Study& study, const ResponseLimit& limit);
+
+/// A limit in words: "0.03 mm", "-0.02 mm to 0.1 mm", "at most 0.1 mm", "a spread of 0.08 mm", "0.02 deg at 99 % of the
+/// poses". value_text: a value of the response as text. Precondition: it is a limit.
+std::string limit_text(const ValueLimit& limit, const std::function<std::string(double)>& value_text);
+/// The same in the unit that people read.
+std::string limit_text(const ValueLimit& limit, Dimension dimension);
+
+}  // namespace poesy
