@@ -77,7 +77,7 @@ void VarianceOfBins(benchmark::State& state) {
 /// For each response of a machine at a pose.
 void AddMachinesAtPose(benchmark::State& state) {
   constexpr std::size_t kResponses = 4;
-  poesy::MachineBlock block(std::vector<double>(kResponses, 0.9), kSamples);
+  poesy::MachineBlock block(std::vector<poesy::ValueLimit>(kResponses, 0.9), kSamples);
   const std::vector<double> values = uniforms(kResponses, 1);
   for (auto _ : state) {
     block.add_pose(values, kAllCount);
