@@ -59,6 +59,12 @@ struct SketchedEnds {
   std::size_t to = 1;    ///< body where the limb ends; 1: the platform
 };
 
+/// A point of the platform with a name.
+struct SketchedPoint {
+  std::string name;    ///< name in the mechanism's file
+  SketchVector point;  ///< its place
+};
+
 /// A mechanism in a picture at one pose.
 struct Sketch {
   std::vector<std::vector<SketchedJoint>>
@@ -72,6 +78,7 @@ struct Sketch {
   bool errors_at_joints = false;           ///< whether angles of the first and last frames turn about joints
   bool z_is_down = false;                  ///< whether the base's z axis points to the ground
   std::vector<SketchedEnds> ends = {};     ///< [limbs]; empty: all limbs connect the base and the platform
+  std::vector<SketchedPoint> points = {};  ///< named points of the platform
   std::vector<SketchedBody> bodies = {};   ///< base, platform, and bodies between them; empty if there are none between
 
   /// The ends of a limb.

@@ -114,7 +114,7 @@ class Drawing {
     add_group(point, attributes, svg_text(offset, what));
   }
 
-  /// Draws the axes of the base, the bodies between their joints, the platform's origin and its tool.
+  /// Draws the axes of the base, the bodies between their joints, the platform's origin, its tool and its points.
   void bodies() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       SketchVector end{};
@@ -130,6 +130,10 @@ class Drawing {
     for (const SketchVector& tip : sketch_->tool) {
       add_line(sketch_->platform, tip, "class=\"tool\"");
       add_text(tip, {5, 4}, "tool", "class=\"frame-name\"");
+    }
+    for (const SketchedPoint& point : sketch_->points) {
+      add_line(sketch_->platform, point.point, "class=\"tool\"");
+      add_text(point.point, {5, 4}, point.name, "class=\"frame-name\"");
     }
   }
 

@@ -12,6 +12,7 @@ constexpr double kMargin = 30.0;  // pixels on all sides
 
 std::vector<SketchVector> points_of(const Sketch& sketch) {
   std::vector<SketchVector> points = sketch.tool;
+  for (const SketchedPoint& named : sketch.points) points.push_back(named.point);
   points.insert(points.end(), {sketch.platform, {0, 0, 0}});
   for (const auto& limb : sketch.limbs) {
     for (const SketchedJoint& joint : limb) points.push_back(joint.point);

@@ -9,7 +9,6 @@
 #include "models/chain/metric.h"
 #include "models/file/rigid_limbs.h"
 #include "models/file/structure.h"
-#include "models/file/tracked_model.h"
 
 namespace poesy::file {
 namespace {
@@ -92,6 +91,11 @@ class BranchedModel final : public TrackedModel {
     return assembly::assembly_trace(model_, pose, errors, options, fidelity_);
   }
 
+  lie::Matrix3<double> orientation(std::span<const double> pose) const override {
+    if (pose.empty()) return mechanism().platform.R;
+    return model_.at(pose).bodies[assembly::kPlatform].R;
+  }
+
   std::optional<Sketch> sketch(std::span<const double> pose) const override {
     Sketch sketch = sketch_of(mechanism());
     assembly::place(sketch, model_,
@@ -143,8 +147,8 @@ assembly::AssemblyModel assembly_model(const Mechanism& mechanism, std::shared_p
   return model;
 }
 
-std::unique_ptr<Model> branched_model(const MechanismFile& file, Checked found, assembly::Metric metric,
-                                      chain::Fidelity fidelity) {
+std::unique_ptr<TrackedModel> branched_model(const MechanismFile& file, Checked found, assembly::Metric metric,
+                                             chain::Fidelity fidelity) {
   return std::make_unique<BranchedModel>(file, std::move(found), metric, fidelity);
 }
 

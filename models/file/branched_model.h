@@ -5,6 +5,7 @@
 #include "models/assembly/model.h"
 #include "models/chain/block_solver.h"
 #include "models/file/rounding.h"
+#include "models/file/tracked_model.h"
 
 namespace poesy::file {
 
@@ -15,7 +16,7 @@ assembly::AssemblyModel assembly_model(const Mechanism& mechanism, std::shared_p
 
 /// The model of a mechanism that has bodies between its limbs, or stiffness. Throws InputError if rigid limbs
 /// over-constrain each other.
-std::unique_ptr<Model> branched_model(const MechanismFile& file, Checked found, assembly::Metric metric,
-                                      chain::Fidelity fidelity);
+std::unique_ptr<TrackedModel> branched_model(const MechanismFile& file, Checked found, assembly::Metric metric,
+                                             chain::Fidelity fidelity);
 
 }  // namespace poesy::file

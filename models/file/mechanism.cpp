@@ -101,6 +101,10 @@ class Builder {
     for (const CoordinateLines& coordinate : lines.coordinates) made.coordinates.push_back(coordinate_of(coordinate));
     check_drives(made);
     if (lines.tool) made.tool = numbers_.point(*lines.tool);
+    for (const NamedPoint& named : lines.named) {
+      const Vector3 place = numbers_.point(named.point);
+      made.named.push_back({named.name, {place.x(), place.y(), place.z()}});
+    }
     add_metric_points(made);
     made.load = load_of(numbers_, made);
     made.about = file_.about;

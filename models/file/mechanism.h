@@ -8,6 +8,7 @@
 
 #include "engine/model/feature.h"
 #include "engine/model/model.h"
+#include "engine/model/platform_points.h"
 #include "models/assembly/assembly.h"
 #include "models/chain/error_terms.h"
 #include "models/chain/limb.h"
@@ -133,6 +134,8 @@ struct Mechanism {
   double reach;                               ///< m: largest distance between the joints' points, before copies, and P
   Precision precision = {};                   ///< of its numbers
   assembly::Load load = {};                   ///< used if there is stiffness
+  /// Points of the platform whose displacements are reported.
+  std::vector<NamedPlatformPoint> named = {};
 
   /// Number of joints that have a displacement, over all limbs.
   std::size_t moving() const;

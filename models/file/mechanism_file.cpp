@@ -277,10 +277,30 @@ void read_workspace(const StudyValue& value, PlatformLines& platform) {
   }
 }
 
+/// Names that are no name of a point of the platform.
+constexpr std::array<std::string_view, 4> kOtherPoints{"base", "origin", "platform", "tip"};
+
+std::vector<NamedPoint> platform_points(const StudyValue& value) {
+  std::vector<NamedPoint> list = points(value);
+  for (const NamedPoint& named : list) {
+    if (std::ranges::find(kOtherPoints, named.name) == kOtherPoints.end()) continue;
+    throw InputError(named.point.place, named.point.key + " has the name of another point",
+                     named.name == "tip" ? "give it another name, or write it as tool" : "give it another name");
+  }
+  return list;
+}
+
 void read_metric_points(const StudyValue& value, PlatformLines& platform) {
+  if (!platform.points.empty()) value.fail("is a second list of the metric's points", "remove one of them");
   platform.place = value.place();
   for (const StudyValue& element : value.list()) platform.points.push_back(point(element));
   if (platform.points.size() < 3) value.fail("has fewer than three points", "give three that are on no line");
+}
+
+/// Reads named points from a table, or those of the metric from a list.
+void read_points(const StudyValue& value, PlatformLines& platform) {
+  if (!value.is_section()) return read_metric_points(value, platform);
+  platform.named = platform_points(value);
 }
 
 const Keys<PlatformLines, Nothing>& platform_keys() {
@@ -308,7 +328,10 @@ const Keys<PlatformLines, Nothing>& platform_keys() {
                  "The default workspace, with every coordinate."),
           optional("tool", kept("point", point, &P::tool), "none",
                    "A point of the platform frame whose displacement is reported in addition."),
-          optional("points", read_by("list of points", read_metric_points),
+          optional("points", read_by("table or list of points", read_points), "none",
+                   "Named points of the platform frame, [platform.points], whose displacements are reported behind the "
+                   "tool's; a list of points is read as `metric_points`."),
+          optional("metric_points", read_by("list of points", read_metric_points),
                    "the point of each limb's last joint that moves",
                    "Points of the platform frame by which mismatch of limbs is weighed."),
           optional("mass", kept("mass", expression, &P::mass), "none", "Its mass, on which gravity acts: \"3 kg\"."),
@@ -778,6 +801,9 @@ const StudyTables& mechanism_file_tables() {
         described(parameter_keys()),
         of_names({"points", "limb.points"}, "POINT", "point", "A point: [x, y, z]."),
         described(platform_keys()),
+        of_names({"platform.points"}, "POINT", "point",
+                 "A point of the platform frame, [x, y, z]: its displacement is reported as POINT_x, POINT_y, POINT_z "
+                 "and POINT_position."),
         of_names({"platform.coordinates"}, "COORDINATE", "text", "A coordinate's name, and which it is: x, ..., rz."),
         of_names({"platform.workspace"}, "COORDINATE", "list", "The lowest and the highest value of a coordinate.",
                  "write {}", "[\"-20 deg\", \"20 deg\"]"),
@@ -797,9 +823,16 @@ const StudyTables& mechanism_file_tables() {
   return tables;
 }
 
+namespace {
+
+toml::table parsed(const std::string& text, const std::string& path) {
+  return parse_toml(text, path, "correct this line; names of parameters and expressions stand in quotes");
+}
+
+}  // namespace
+
 MechanismFile read_mechanism_file(const std::string& text, const std::string& path) {
-  const toml::table table =
-      parse_toml(text, path, "correct this line; names of parameters and expressions stand in quotes");
+  const toml::table table = parsed(text, path);
   const StudySection root(table, "", {path, 1, 1}, mechanism_file_tables());
   MechanismFile file;
   file.path = path;

@@ -86,6 +86,7 @@ struct PlatformLines {
   std::vector<CoordinateLines> coordinates;  ///< in the order of a pose's numbers
   Place coordinates_place;                   ///< of their list
   std::optional<Triple> tool;                ///< tool point in the platform's frame
+  std::vector<NamedPoint> named;             ///< points whose displacements are reported, in the platform's frame
   std::vector<Triple> points;      ///< of the metric, in the platform's frame; none: derived from the ends of the limbs
   Place place;                     ///< of [platform] or its points
   std::optional<Expression> mass;  ///< none: 0

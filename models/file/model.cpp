@@ -1,6 +1,7 @@
 #include "models/file/model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -114,6 +115,11 @@ class ChainModel final : public TrackedModel {
     return chain::deformation_trace(model_, pose, errors, options);
   }
 
+  lie::Matrix3<double> orientation(std::span<const double> pose) const override {
+    if (pose.empty()) return mechanism().platform.R;
+    return model_.platform_points(model_.joint_displacements(pose))->platform.R;
+  }
+
   std::optional<Sketch> sketch(std::span<const double> pose) const override {
     Sketch sketch = sketch_of(mechanism());
     chain::place(sketch, model_,
@@ -159,6 +165,33 @@ struct Read {
 /// The basis of the responses: forces by stiffness, or mismatch by the platform's metric or by the published weight.
 enum class By { stiffness, platform, published };
 
+/// Throws if a point of the platform gives a response the name of another one.
+void check_points(const MechanismFile& file, const ModelDescription& model) {
+  for (const NamedPoint& named : file.platform.named) {
+    for (const std::string_view end : {"_x", "_y", "_z", "_position"}) {
+      const auto other = std::ranges::find(model.responses, named.name + std::string(end), &Response::name);
+      if (other == model.responses.end()) continue;
+      throw InputError(named.point.place,
+                       named.point.key + " gives a response '" + other->name + "', which there is already (" +
+                           other->description + ")",
+                       "give the point another name");
+    }
+  }
+}
+
+/// The model with the named points of its platform.
+std::unique_ptr<Model> with_points(std::unique_ptr<TrackedModel> model, const Read& read,
+                                   std::vector<NamedPlatformPoint> named, chain::Fidelity fidelity) {
+  check_points(read.file, model->description());
+  const TrackedModel* const tracked = model.get();
+  const auto orientation = [tracked](std::span<const double> pose) {
+    const lie::Matrix3<double> R = tracked->orientation(pose);
+    return std::array{R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)};
+  };
+  return with_platform_points(std::move(model), std::move(named), orientation,
+                              fidelity == chain::Fidelity::first_order);
+}
+
 /// The model for these values of the geometry. points: of the platform's metric; none: the file's own.
 std::unique_ptr<Model> built(const Read& read, std::span<const double> values, std::size_t fidelity, By by,
                              std::optional<std::vector<Vector3>> points = {}) {
@@ -168,13 +201,15 @@ std::unique_ptr<Model> built(const Read& read, std::span<const double> values, s
     if (!why.empty()) throw std::invalid_argument(why);
   }
   const auto wanted = static_cast<chain::Fidelity>(fidelity);
+  std::vector<NamedPlatformPoint> named = found.mechanism.named;
   if (found.mechanism.is_branched() || by == By::stiffness) {
     const auto metric = by == By::stiffness ? assembly::Metric::stiffness : assembly::Metric::platform;
     if (points) found.mechanism.points = *std::move(points);
-    return branched_model(read.file, std::move(found), metric, wanted);
+    return with_points(branched_model(read.file, std::move(found), metric, wanted), read, std::move(named), wanted);
   }
   std::vector<Vector3> own = by == By::platform ? points.value_or(found.mechanism.points) : std::vector<Vector3>();
-  return std::make_unique<ChainModel>(read.file, std::move(found), std::move(own), wanted);
+  return with_points(std::make_unique<ChainModel>(read.file, std::move(found), std::move(own), wanted), read,
+                     std::move(named), wanted);
 }
 
 CatalogEntry entry_by(const std::shared_ptr<const Read>& read, const std::string& path, By by) {

@@ -189,6 +189,11 @@ std::string structure_text(const Mechanism& mechanism) {
     }
   }
   text += frame_line("platform", "P", "", mechanism.platform);
+  for (const NamedPlatformPoint& point : mechanism.named) {
+    const Vector3 place(point.place[0], point.place[1], point.place[2]);
+    text +=
+        frame_line("point", point.name, "", mechanism.platform * Transform{lie::Matrix3<double>::Identity(), place});
+  }
   for (std::size_t b = kPlatform + 1; b < mechanism.bodies.size(); ++b) {
     text += frame_line("body", mechanism.bodies[b].name, "", mechanism.bodies[b].home);
   }

@@ -37,6 +37,7 @@ poesy_test(assembly_properties_test LABELS property
                    models/assembly/loops_test.cpp
                    models/assembly/properties_test.cpp
            LINKS poesy_models DATA)
+poesy_test(platform_points_test LABELS unit SOURCES models/file/platform_points_test.cpp LINKS poesy_models DATA)
 poesy_test(branched_file_test LABELS property SOURCES models/file/branched_file_test.cpp LINKS poesy_models DATA)
 poesy_test(file_poses_test LABELS property SOURCES models/file/charts_test.cpp models/file/workspace_test.cpp
            LINKS poesy_models DATA)

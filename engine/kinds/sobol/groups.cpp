@@ -62,8 +62,9 @@ std::optional<SignedVector> vector_of(const ModelDescription& model, std::size_t
   const auto y = find_response(model, stem + "y");
   const auto z = find_response(model, stem + "z");
   if (!y || !z) return std::nullopt;
-  for (const std::size_t other : {*y, *z}) {
-    if (model.responses[other].dimension != model.responses[x].dimension) return std::nullopt;
+  for (const std::size_t r : {x, *y, *z}) {
+    if (model.responses[r].dimension != model.responses[x].dimension) return std::nullopt;
+    if (model.responses[r].is_magnitude()) return std::nullopt;
   }
   return SignedVector{stem.empty() ? "displacement" : stem.substr(0, stem.size() - 1), {x, *y, *z}};
 }

@@ -43,6 +43,7 @@ bool finite(const Sketch& sketch) {
     return std::ranges::all_of(v, [](double c) { return std::isfinite(c); });
   };
   return is_finite(sketch.platform) && std::ranges::all_of(sketch.tool, is_finite) &&
+         std::ranges::all_of(sketch.points, is_finite, &SketchedPoint::point) &&
          std::ranges::all_of(sketch.limbs, [&](const auto& limb) {
            return std::ranges::all_of(limb, is_finite, &SketchedJoint::point);
          });
@@ -209,10 +210,11 @@ std::size_t frame_number(const Sketch& sketch, const SketchedError& error) {
   return number;
 }
 
-/// The largest displacement (m) of the platform's joints, its origin and the tool by a motion.
+/// The largest displacement (m) of the platform's joints, its origin, the tool and the points by a motion.
 double displacement(const Sketch& sketch, const SketchTwist& motion) {
   std::vector<SketchVector> points = sketch.tool;
   points.push_back(sketch.platform);
+  for (const SketchedPoint& named : sketch.points) points.push_back(named.point);
   for (const auto& limb : sketch.limbs) points.push_back(limb.back().point);
   double largest = 0.0;
   for (const SketchVector& p : points) {

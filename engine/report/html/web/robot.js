@@ -117,12 +117,12 @@ function displacedPlatforms(motions, svg, times) {
   const group = svgElement("g", { class: "displaced" });
   if (times === 0) return group;
   const platform = robotPoints(svg.querySelector(".platform"));
-  const tool = svg.querySelector(".tool");
+  const tools = [...svg.querySelectorAll(".tool")];
   for (const [i, motion] of motions.entries()) {
     const displaced = (p) => moved(p, times, displacement(motion, p));
     const style = motions.length === 1 ? "" : `--limb: var(--series-${(i % 8) + 1})`;
     group.append(robotPart("path", platform.map(displaced), { style }));
-    if (tool) group.append(robotPart("line", robotPoints(tool).map(displaced), { style }));
+    for (const tool of tools) group.append(robotPart("line", robotPoints(tool).map(displaced), { style }));
     if (motions.length > 1) group.append(robotPart("g", [displaced(platform[i])], { style }, `by ${i + 1}`));
   }
   return group;
