@@ -158,12 +158,23 @@ int solve(const EvaluateOptions& options, const Evaluated& all, const std::strin
                {"the result is kept; see /limits in " + path, "the result is kept: see /evaluate/status in " + path});
 }
 
+/// Throws if a response is relative to the pose before, where the errors are those of another row.
+void refuse_pose_before(const Study& study) {
+  for (const OwnResponse& own : study.mechanism.responses) {
+    if (!own.relative_to || !own.relative_to->is_previous()) continue;
+    throw InputError(own.relative_to->place,
+                     "'" + own.name + "' is relative to the pose before, which has other errors with --paired",
+                     "leave out --paired or this response, or write relative_to = a pose");
+  }
+}
+
 int evaluate(const EvaluateOptions& options) {
   const Study study = read_study(options.study, registry(), StudyUse::evaluate);
   if (study.mechanism.compared) {
     throw InputError(study.mechanism.place, "mechanism.fidelity is \"both\", but an evaluation solves at one fidelity",
                      fmt::format("write \"{}\"", fmt::join(study.model().fidelities, "\" or \"")));
   }
+  if (options.paired) refuse_pose_before(study);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const SelectedPoses poses = read_reachable_poses(options.poses, *model);
   if (!options.frames.empty()) return print_frames(options, *model, poses.poses);

@@ -93,8 +93,7 @@ ReplayedSample replay_given(const ReplayOptions& options, const StoredResult& re
   }
   const auto values = given.values.subspan(row * errors.factors.size(), errors.factors.size());
   errors.values.assign(values.begin(), values.end());
-  const auto pose = result.poses[PoseIndex(options.pose)];
-  return replay_row(stored.study.solver, model, PoseSet(pose.size(), {pose.begin(), pose.end()}), errors);
+  return replay_row(stored.study.solver, model, result.poses, PoseIndex(options.pose), errors);
 }
 
 ReplayedSample replay_of(const ReplayOptions& options, const StoredResult& result, const StoredStudy& stored,
@@ -185,6 +184,10 @@ std::string agreement_text(const ModelDescription& model, const ReplayedSample& 
   std::string text = fmt::format("status: {}\n", sample.status == trace.status ? "the same" : "not the same");
   for (std::size_t r = 0; r < model.responses.size(); ++r) {
     const Response& response = model.responses[r];
+    if (std::isnan(trace.responses[r]) && !std::isnan(sample.responses[r])) {
+      text += fmt::format("  {:<22} not shown, because it is relative to another pose\n", response.name);
+      continue;
+    }
     text += fmt::format("  {:<22} {}; difference {:.3g}\n", response.name,
                         value_text(trace.responses[r], response.dimension),
                         std::abs(trace.responses[r] - sample.responses[r]));

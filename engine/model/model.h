@@ -202,6 +202,9 @@ struct SampleBlock {
   /// With one varied factor: values beyond +-range are rare, and a model may prepare for those inside. 0: unknown. A
   /// sample's outcome depends on it only by rounding, and not on the other samples.
   double range = 0.0;
+  /// The pose before this one in the list of a study's poses, SI, for responses that are relative to it; empty: there
+  /// is none.
+  std::span<const double> previous = {};
 };
 
 /// The outcomes of a block of samples. The caller owns the memory.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -26,13 +27,28 @@ std::string terms_text(const OwnResponse& own, const ModelDescription& model) {
   return text;
 }
 
+/// "at x = 0 mm, y = 0 mm, z = 200 mm".
+std::string pose_text(const ReferencePose& reference, const ModelDescription& model) {
+  if (reference.is_previous()) return "at the pose before";
+  std::string text = "at ";
+  for (std::size_t c = 0; c < reference.pose.size(); ++c) {
+    const PoseCoordinate& coordinate = model.pose_coordinates[c];
+    text += (c > 0 ? ", " : "") + coordinate.name + " = " + readable_text({reference.pose[c], coordinate.dimension});
+  }
+  return text;
+}
+
 /// As the model has it.
 Response response_of(const OwnResponse& own, const ModelDescription& model) {
   Response response{own.name, own.dimension, own.description};
   if (response.description.empty()) {
-    response.description = (own.is_norm ? "root of the sum of squares of " : "sum of ") + terms_text(own, model) +
-                           ", a response of one's own";
+    const bool is_one = own.relative_to && own.terms.size() == 1;
+    response.description = (own.is_norm ? "root of the sum of squares of "
+                            : is_one    ? ""
+                                        : "sum of ") +
+                           terms_text(own, model) + ", a response of one's own";
   }
+  if (own.relative_to) response.description += ", less its value " + pose_text(*own.relative_to, model);
   response.has_no_sign = own.is_norm;
   bool has_signs = own.is_norm;
   for (const ResponseTerm& term : own.terms) {
@@ -45,19 +61,7 @@ Response response_of(const OwnResponse& own, const ModelDescription& model) {
   return response;
 }
 
-ModelDescription described(ModelDescription model, const std::vector<OwnResponse>& own) {
-  std::vector<std::size_t> first(own.size());
-  std::iota(first.begin(), first.end(), model.responses.size());
-  std::vector<Response> made;
-  for (const OwnResponse& one : own) made.push_back(response_of(one, model));
-  model.responses.insert(model.responses.end(), made.begin(), made.end());
-  for (std::vector<std::size_t>* shown : {&model.headline, &model.signed_headline}) {
-    if (!shown->empty()) shown->insert(shown->begin(), first.begin(), first.end());
-  }
-  return model;
-}
-
-/// Forms a response of each sample, `to`, from those of the model, rows [R x samples].
+/// Forms a response of each sample, `to`, from rows [R x samples].
 void form(const OwnResponse& own, std::span<const double> rows, std::span<double> to) {
   std::ranges::fill(to, 0.0);
   for (const ResponseTerm& term : own.terms) {
@@ -71,32 +75,178 @@ void form(const OwnResponse& own, std::span<const double> rows, std::span<double
   for (double& value : to) value = std::sqrt(value);
 }
 
-class EvaluatorOfOwn final : public Evaluator {
- public:
-  EvaluatorOfOwn(std::unique_ptr<Evaluator> inner, const std::vector<OwnResponse>& own, std::size_t responses)
-      : inner_(std::move(inner)), own_(own), responses_(responses) {}
+/// The worse of two ways in which solves of one machine ended; the first where both are as bad.
+SolveStatus worse(SolveStatus one, SolveStatus other) {
+  const auto badness = [](SolveStatus status) { return solved(status) ? 0 : usable(status) ? 1 : 2; };
+  return badness(other) > badness(one) ? other : one;
+}
 
-  void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
-    OutcomeBlock inner = outcomes;
-    inner.responses = outcomes.responses.first(responses_ * samples.count);
-    inner_->evaluate(samples, inner);
-    std::span<double> left = outcomes.responses.subspan(inner.responses.size());
-    for (const OwnResponse& own : own_) {
-      form(own, inner.responses, left.first(samples.count));
-      left = left.subspan(samples.count);
+/// The responses of one's own behind those of a model.
+class OwnRows {
+ public:
+  /// responses: the number of the model's.
+  OwnRows(const std::vector<OwnResponse>& own, std::size_t responses) : own_(&own), responses_(responses) {
+    for (const OwnResponse& one : own) {
+      if (!one.relative_to) continue;
+      const bool is_known = std::ranges::find(references_, one.relative_to->pose) != references_.end();
+      if (!is_known) references_.push_back(one.relative_to->pose);
+    }
+  }
+
+  /// The number of the model's responses.
+  std::size_t of_model() const { return responses_; }
+  /// The number of all.
+  std::size_t all() const { return responses_ + own_->size(); }
+  /// The poses to which responses are relative, each once; an empty one is the pose before.
+  const std::vector<std::vector<double>>& references() const { return references_; }
+  /// The position of the pose before among them; none if nothing is relative to it.
+  std::optional<std::size_t> previous() const {
+    const auto found = std::ranges::find_if(references_, &std::vector<double>::empty);
+    if (found == references_.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - references_.begin());
+  }
+
+  /// Forms those of `samples` samples in rows [all x samples], as if none were relative to a pose.
+  void form_all(std::span<double> rows, std::size_t samples) const {
+    for (std::size_t k = 0; k < own_->size(); ++k) form((*own_)[k], rows, row(rows, k, samples));
+  }
+
+  /// Subtracts from those that are relative to the reference what they are there; empty: sets them to 0.
+  void subtract(std::span<double> rows, std::size_t reference, std::span<const double> there,
+                std::size_t samples) const {
+    for (std::size_t k = 0; k < own_->size(); ++k) {
+      const OwnResponse& own = (*own_)[k];
+      if (!own.relative_to || own.relative_to->pose != references_[reference]) continue;
+      const std::span<double> to = row(rows, k, samples);
+      if (there.empty()) std::ranges::fill(to, 0.0);
+      for (std::size_t b = 0; b < samples && !there.empty(); ++b) {
+        to[b] -= there[(responses_ + k) * samples + b];
+      }
+    }
+  }
+
+  /// Forms those again that are made of relative ones.
+  void form_the_rest(std::span<double> rows, std::size_t samples) const {
+    for (std::size_t k = 0; k < own_->size(); ++k) {
+      if (!(*own_)[k].relative_to) form((*own_)[k], rows, row(rows, k, samples));
     }
   }
 
  private:
-  std::unique_ptr<Evaluator> inner_;
-  const std::vector<OwnResponse>& own_;
-  std::size_t responses_;  ///< of the model
+  std::span<double> row(std::span<double> rows, std::size_t own, std::size_t samples) const {
+    return rows.subspan((responses_ + own) * samples, samples);
+  }
+
+  const std::vector<OwnResponse>* own_;
+  std::size_t responses_;
+  std::vector<std::vector<double>> references_;
 };
+
+/// The samples of a block at one pose, solved. Machines are solved at one pose after the other, so that most blocks
+/// have the samples of the block before, and are solved at a reference pose once.
+struct SolvedBlock {
+  std::vector<double> pose;
+  std::vector<double> errors;
+  std::vector<FactorIndex> varied;
+  std::vector<double> values;
+  std::size_t count = 0;
+  double range = 0.0;
+  std::vector<double> responses;  ///< [all x B], as if none were relative to a pose
+  std::vector<SolveStatus> status;
+  std::vector<std::uint32_t> iterations;
+
+  bool is_of(std::span<const double> wanted, const SampleBlock& samples) const {
+    return count == samples.count && range == samples.range && std::ranges::equal(pose, wanted) &&
+           std::ranges::equal(errors, samples.errors) && std::ranges::equal(varied, samples.varied) &&
+           std::ranges::equal(values, samples.values);
+  }
+  void begin(std::span<const double> wanted, const SampleBlock& samples) {
+    pose.assign(wanted.begin(), wanted.end());
+    errors.assign(samples.errors.begin(), samples.errors.end());
+    varied.assign(samples.varied.begin(), samples.varied.end());
+    values.assign(samples.values.begin(), samples.values.end());
+    count = samples.count;
+    range = samples.range;
+  }
+};
+
+class EvaluatorOfOwn final : public Evaluator {
+ public:
+  EvaluatorOfOwn(std::unique_ptr<Evaluator> inner, const OwnRows& rows)
+      : inner_(std::move(inner)), rows_(&rows), there_(rows.references().size()) {}
+
+  void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
+    OutcomeBlock inner = outcomes;
+    inner.responses = outcomes.responses.first(rows_->of_model() * samples.count);
+    inner_->evaluate(samples, inner);
+    rows_->form_all(outcomes.responses, samples.count);
+    if (there_.empty()) return;
+    if (rows_->previous()) keep(samples, outcomes);
+    for (std::size_t n = 0; n < there_.size(); ++n) subtract(n, samples, outcomes);
+    rows_->form_the_rest(outcomes.responses, samples.count);
+    if (rows_->previous()) std::swap(there_[*rows_->previous()], here_);
+  }
+
+ private:
+  void subtract(std::size_t n, const SampleBlock& samples, const OutcomeBlock& outcomes) {
+    const std::span<const double> pose = rows_->previous() == n ? samples.previous : std::span(rows_->references()[n]);
+    if (pose.empty()) return rows_->subtract(outcomes.responses, n, {}, samples.count);
+    SolvedBlock& there = there_[n];
+    if (!there.is_of(pose, samples)) solve(pose, samples, there);
+    rows_->subtract(outcomes.responses, n, there.responses, samples.count);
+    for (std::size_t b = 0; b < samples.count; ++b) {
+      outcomes.status[b] = worse(outcomes.status[b], there.status[b]);
+    }
+  }
+
+  void solve(std::span<const double> pose, const SampleBlock& samples, SolvedBlock& block) {
+    block.begin(pose, samples);
+    block.responses.resize(rows_->all() * samples.count);
+    block.status.resize(samples.count);
+    block.iterations.resize(samples.count);
+    SampleBlock other = samples;
+    other.pose = pose;
+    other.previous = {};
+    inner_->evaluate(
+        other,
+        {std::span(block.responses).first(rows_->of_model() * samples.count), block.status, block.iterations, {}});
+    rows_->form_all(block.responses, samples.count);
+  }
+
+  /// Keeps this block, which is that of the pose before at the next pose.
+  void keep(const SampleBlock& samples, const OutcomeBlock& outcomes) {
+    here_.begin(samples.pose, samples);
+    here_.responses.assign(outcomes.responses.begin(), outcomes.responses.end());
+    here_.status.assign(outcomes.status.begin(), outcomes.status.end());
+  }
+
+  std::unique_ptr<Evaluator> inner_;
+  const OwnRows* rows_;
+  std::vector<SolvedBlock> there_;  ///< [references]
+  SolvedBlock here_;                ///< the present block, which the next one may be relative to
+};
+
+/// Throws InputError at its place if a response is relative to a pose that the model does not reach.
+void check_references(const std::vector<OwnResponse>& own, const Model& model) {
+  for (const OwnResponse& one : own) {
+    if (!one.relative_to || one.relative_to->is_previous()) continue;
+    const auto reason = model.unreachable(one.relative_to->pose);
+    if (!reason) continue;
+    throw InputError(one.relative_to->place,
+                     "'" + one.name + "' is relative to a pose that the mechanism does not reach: " + *reason,
+                     "take a pose of the workspace");
+  }
+}
 
 class ModelOfOwn final : public ForwardingModel {
  public:
   ModelOfOwn(std::unique_ptr<Model> model, std::vector<OwnResponse> own)
-      : ForwardingModel(std::move(model)), own_(std::move(own)), description_(described(inner(), own_)) {}
+      : ForwardingModel(std::move(model)),
+        own_(std::move(own)),
+        rows_(own_, inner().responses.size()),
+        description_(described(inner(), own_)) {
+    check_references(own_, *this);
+  }
 
   const ModelDescription& description() const override { return description_; }
 
@@ -107,14 +257,32 @@ class ModelOfOwn final : public ForwardingModel {
     return with_own(ForwardingModel::calibrated_evaluator(options));
   }
 
+  std::vector<std::string> remarks() const override {
+    std::vector<std::string> list = ForwardingModel::remarks();
+    for (const OwnResponse& own : own_) {
+      if (!own.relative_to) continue;
+      list.push_back(own.name + " is less its value " + pose_text(*own.relative_to, description_) +
+                     (own.relative_to->is_previous() ? "; at the first pose it is 0"
+                                                     : ": each machine is solved once more there, and has a solution "
+                                                       "nowhere if it has none there"));
+    }
+    return list;
+  }
+
+  /// What is relative to the pose before is NaN, because only one pose is given.
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
                                   const SolverOptions& options) const override {
-    std::optional<SolveTrace> trace = ForwardingModel::trace(pose, errors, options);
-    if (!trace) return trace;
-    const std::size_t known = trace->responses.size();
-    trace->responses.resize(known + own_.size());
-    const std::span<double> all(trace->responses);
-    for (std::size_t k = 0; k < own_.size(); ++k) form(own_[k], all.first(known), all.subspan(known + k, 1));
+    std::optional<SolveTrace> trace = formed_trace(pose, errors, options);
+    if (!trace || rows_.references().empty()) return trace;
+    for (std::size_t n = 0; n < rows_.references().size(); ++n) {
+      const std::vector<double>& reference = rows_.references()[n];
+      const std::optional<SolveTrace> there =
+          reference.empty() ? std::nullopt : formed_trace(reference, errors, options);
+      const std::vector<double> unknown(rows_.all(), std::numeric_limits<double>::quiet_NaN());
+      rows_.subtract(trace->responses, n, there ? there->responses : unknown, 1);
+      if (there) trace->status = worse(trace->status, there->status);
+    }
+    rows_.form_the_rest(trace->responses, 1);
     return trace;
   }
 
@@ -122,14 +290,13 @@ class ModelOfOwn final : public ForwardingModel {
     return is_own(response) ? std::vector<double>() : ForwardingModel::norm_of_details(response, pose);
   }
 
-  /// The sum of what its terms round to.
+  /// The sum of what its terms round to, at both poses if it is relative to one.
   double rounding(std::size_t response) const override {
     if (!is_own(response)) return ForwardingModel::rounding(response);
+    const OwnResponse& own = own_[response - inner().responses.size()];
     double sum = 0.0;
-    for (const ResponseTerm& term : own_[response - inner().responses.size()].terms) {
-      sum += std::abs(term.weight) * ForwardingModel::rounding(term.response);
-    }
-    return sum;
+    for (const ResponseTerm& term : own.terms) sum += std::abs(term.weight) * rounding(term.response);
+    return own.relative_to ? 2.0 * sum : sum;
   }
 
  private:
@@ -138,10 +305,20 @@ class ModelOfOwn final : public ForwardingModel {
 
   std::unique_ptr<Evaluator> with_own(std::unique_ptr<Evaluator> evaluator) const {
     if (evaluator == nullptr) return nullptr;
-    return std::make_unique<EvaluatorOfOwn>(std::move(evaluator), own_, inner().responses.size());
+    return std::make_unique<EvaluatorOfOwn>(std::move(evaluator), rows_);
+  }
+
+  std::optional<SolveTrace> formed_trace(std::span<const double> pose, std::span<const double> errors,
+                                         const SolverOptions& options) const {
+    std::optional<SolveTrace> trace = ForwardingModel::trace(pose, errors, options);
+    if (!trace) return trace;
+    trace->responses.resize(rows_.all());
+    rows_.form_all(trace->responses, 1);
+    return trace;
   }
 
   std::vector<OwnResponse> own_;
+  OwnRows rows_;
   ModelDescription description_;
 };
 
@@ -161,17 +338,32 @@ std::optional<Dimension> dimension_of(const ResponseTerm& term, const ModelDescr
   }
 }
 
+ModelDescription described(ModelDescription model, const std::vector<OwnResponse>& own) {
+  std::vector<std::size_t> first(own.size());
+  std::iota(first.begin(), first.end(), model.responses.size());
+  for (const OwnResponse& one : own) model.responses.push_back(response_of(one, model));
+  for (std::vector<std::size_t>* shown : {&model.headline, &model.signed_headline}) {
+    if (!shown->empty()) shown->insert(shown->begin(), first.begin(), first.end());
+  }
+  return model;
+}
+
+std::unique_ptr<Model> with_responses(std::unique_ptr<Model> model, std::vector<OwnResponse> own) {
+  if (own.empty()) return model;
+  return std::make_unique<ModelOfOwn>(std::move(model), std::move(own));
+}
+
 CatalogEntry with_responses(CatalogEntry entry, const std::vector<OwnResponse>& own) {
   if (own.empty()) return entry;
   entry.description = described(std::move(entry.description), own);
   entry.build = [build = std::move(entry.build), own](std::span<const double> geometry, std::size_t fidelity) {
-    return std::make_unique<ModelOfOwn>(build(geometry, fidelity), own);
+    return with_responses(build(geometry, fidelity), own);
   };
   if (entry.build_with_points) {
     entry.build_with_points = [build = std::move(entry.build_with_points), own](std::span<const double> geometry,
                                                                                 std::size_t fidelity,
                                                                                 std::span<const PlatformPoint> points) {
-      return std::make_unique<ModelOfOwn>(build(geometry, fidelity, points), own);
+      return with_responses(build(geometry, fidelity, points), own);
     };
   }
   return entry;

@@ -114,7 +114,8 @@ UnitOutcomes UnitSolver::solve(PoseIndex pose, std::span<const FactorIndex> vari
   const std::span outcome = std::span(outcome_).first(responses_ * count);
   const std::span status = std::span(status_).first(count);
   const std::span iterations = std::span(iterations_).first(count);
-  evaluator_->evaluate({plan_->poses()[pose], plan_->background(), varied, values, count, range},
+  const PoseSet& poses = plan_->poses();
+  evaluator_->evaluate({poses[pose], plan_->background(), varied, values, count, range, poses.before(pose)},
                        {outcome, status, iterations, details});
   return {values, outcome, status, iterations};
 }

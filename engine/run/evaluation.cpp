@@ -110,7 +110,8 @@ struct TableJob {
     take_rows(paired ? pose : first, count, scratch.values);
     scratch.responses.resize(result.responses() * count);
     scratch.details.resize(result.detail.length<axis::Component>() * count);
-    scratch.evaluator->evaluate({poses[PoseIndex(pose)], zeros, errors.factors, scratch.values, count},
+    const PoseIndex at(pose);
+    scratch.evaluator->evaluate({poses[at], zeros, errors.factors, scratch.values, count, 0.0, poses.before(at)},
                                 {scratch.responses, result.status.row(pose).subspan(first, count),
                                  result.iterations.row(pose).subspan(first, count), scratch.details});
     scatter(scratch, pose, first, count);

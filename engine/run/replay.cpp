@@ -36,10 +36,19 @@ ReplayedSample replay_sample(const Study& study, const Model& model, const PoseS
   return sample_of(evaluator.solve(unit), {plan.factors()[slot]}, std::move(errors));
 }
 
-ReplayedSample replay_row(const SolverOptions& solver, const Model& model, const PoseSet& pose, const ErrorTable& row) {
-  POESY_EXPECTS(pose.size() == 1 && row.rows == 1);
-  const auto found = run_evaluation(model, solver, pose, row, Pairing::row_by_row, {1, {}, {}}, Outcomes::responses);
-  return sample_of({row.values, found->response.all(), found->status.all(), found->iterations.all()}, row.factors,
+ReplayedSample replay_row(const SolverOptions& solver, const Model& model, const PoseSet& poses, PoseIndex pose,
+                          const ErrorTable& row) {
+  POESY_EXPECTS(pose.value < poses.size() && row.rows == 1);
+  const std::span<const double> before = poses.before(pose);
+  std::vector<double> both(before.begin(), before.end());
+  both.insert(both.end(), poses[pose].begin(), poses[pose].end());
+  const PoseSet last(poses.coordinates(), std::move(both));
+  const auto found =
+      run_evaluation(model, solver, last, row, Pairing::every_pose_with_every_row, {1, {}, {}}, Outcomes::responses);
+  const std::size_t m = last.size() - 1;
+  std::vector<double> responses;
+  for (std::size_t r = 0; r < found->responses(); ++r) responses.push_back(found->response(r, m, 0));
+  return sample_of({row.values, responses, found->status.row(m), found->iterations.row(m)}, row.factors,
                    std::vector<double>(model.description().factors.size(), 0.0));
 }
 

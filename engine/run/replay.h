@@ -24,7 +24,8 @@ struct ReplayedSample {
 ReplayedSample replay_sample(const Study& study, const Model& model, const PoseSet& poses, std::size_t slot,
                              PoseIndex pose, SampleIndex sample);
 
-/// Solves one row of an error table at one pose, with the same bits as run_evaluation().
-ReplayedSample replay_row(const SolverOptions& solver, const Model& model, const PoseSet& pose, const ErrorTable& row);
+/// Solves one row of an error table at a pose of a list, with the same bits as run_evaluation().
+ReplayedSample replay_row(const SolverOptions& solver, const Model& model, const PoseSet& poses, PoseIndex pose,
+                          const ErrorTable& row);
 
 }  // namespace poesy

@@ -77,6 +77,7 @@ struct StudyKind {
   Varies varies = Varies::none;            ///< which factors vary together
   bool compares_fidelities = false;        ///< whether it can compare two fidelities
   bool draws_machines_anew = false;        ///< whether it tries several sets of machines, which cannot be given
+  bool has_pose_before = false;            ///< whether the same errors are solved at all poses, whatever `draws` is
   bool decides_by_samples = false;         ///< whether changing `samples` invalidates a checkpoint
   std::string_view usual_factors = {};     ///< set of factors if a study names none; "all" for a model without it
   std::string_view usual_background = {};  ///< set of constant errors in templates, for models that have it
@@ -165,6 +166,8 @@ void read_solver(Study& study, const Reading& reading);
 
 /// The key [[response]].
 StudyRow response_row();
+/// Throws InputError at its place if a response is relative to the pose before in a study without machines.
+void check_pose_before(const Study& study);
 
 /// The distribution of errors of this dimension that have none of their own.
 Distribution usual_distribution(const Reading& reading, Dimension dimension);

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "engine/base/text.h"
+#include "engine/schema/own_response_keys.h"
 #include "engine/schema/toml_text.h"
 #include "models/file/file_rows.h"
 #include "models/file/mechanism.h"
@@ -727,6 +728,8 @@ const Keys<MechanismFile, Nothing>& file_keys() {
           needed("limb", kept("tables", limbs, &F::limbs), "[{ joints = }], or [[limb]] for each", "The limbs."),
           optional("load", kept("table", read_load, &F::load), "none",
                    "Loads, which act where the mechanism has stiffness; [mechanism.load] of a study replaces them."),
+          optional<F>("response", {.type = "tables"}, "none",
+                      "Responses of one's own, [[response]], with the keys that they have in a study."),
           optional("error", read_by("tables", read_named_errors), "none", "Errors with names of their own."),
           optional("errors", read_by("table", read_errors), "`{}`", "Errors of fixed frames."),
           optional("sets", read_by("table", read_sets), "none besides `all`",
@@ -818,6 +821,7 @@ const StudyTables& mechanism_file_tables() {
         of_names({"sets"}, "SET", "list", "A set: names or patterns of errors.")};
     for (StudyTable& part : part_tables()) list.push_back(std::move(part));
     for (StudyTable& one : feature_tables()) list.push_back(std::move(one));
+    for (StudyTable& own : own_response_tables()) list.push_back(std::move(own));
     return list;
   }();
   return tables;
@@ -830,6 +834,14 @@ toml::table parsed(const std::string& text, const std::string& path) {
 }
 
 }  // namespace
+
+std::vector<OwnResponse> read_own_responses(const std::string& text, const std::string& path,
+                                            const ModelDescription& model) {
+  const toml::table table = parsed(text, path);
+  const auto value = StudySection(table, "", {path, 1, 1}, mechanism_file_tables()).find("response");
+  if (!value) return {};
+  return poesy::read_own_responses(*value, model, PoseBefore::unknown);
+}
 
 MechanismFile read_mechanism_file(const std::string& text, const std::string& path) {
   const toml::table table = parsed(text, path);

@@ -10,6 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/model/model.h"
+#include "engine/model/own_responses.h"
 #include "engine/schema/keys.h"
 #include "models/file/feature_lines.h"
 #include "models/file/lines.h"
@@ -165,6 +166,10 @@ struct MechanismFile {
 
 /// The tables of a mechanism file with every key, for the reference.
 const StudyTables& mechanism_file_tables();
+
+/// Reads its responses of one's own for a model with this description; none if it has none. Throws InputError.
+std::vector<OwnResponse> read_own_responses(const std::string& text, const std::string& path,
+                                            const ModelDescription& model);
 
 /// Reads a mechanism file of format version 1. path: for messages. Throws InputError "FILE:LINE:COL: ..." for any
 /// mistake in the text or with the default geometry; a file that is returned also makes a Mechanism (mechanism.h).

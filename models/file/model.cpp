@@ -232,6 +232,8 @@ CatalogEntry entry_by(const std::shared_ptr<const Read>& read, const std::string
 }  // namespace
 
 std::string reference() {
+  StudyTables tables = mechanism_file_tables();
+  std::erase_if(tables, [](const StudyTable& table) { return table.paths.front().starts_with("response"); });
   return "\n# Mechanism files\n\n"
          "Every key of a mechanism's file, which `[mechanism] file` of a study names and which commands take in the "
          "place "
@@ -243,13 +245,42 @@ std::string reference() {
          "pi` and units\n  inside. Its dimension is checked. A bare 0 is any quantity; other bare numbers are "
          "numbers. A name behind a\n  number is a unit, `2 * g` twice a parameter.\n"
          "- A point is `[x, y, z]`; a direction `\"x\"`, `\"-z\"`, or three entries of one dimension.\n" +
-         tables_reference(mechanism_file_tables());
+         tables_reference(tables);
 }
 
 namespace {
 
+/// The same responses for a model with another metric, without those that it cannot form.
+std::vector<OwnResponse> by_names(const std::vector<OwnResponse>& own, const ModelDescription& from,
+                                  const ModelDescription& to) {
+  const ModelDescription named = described(from, own);
+  std::vector<std::string> known;
+  for (const Response& response : to.responses) known.push_back(response.name);
+  std::vector<OwnResponse> list;
+  for (OwnResponse one : own) {
+    const bool is_formed = std::ranges::all_of(one.terms, [&](ResponseTerm& term) {
+      const auto found = std::ranges::find(known, named.responses[term.response].name);
+      term.response = static_cast<std::size_t>(found - known.begin());
+      return found != known.end();
+    });
+    if (!is_formed || std::ranges::find(known, one.name) != known.end()) continue;
+    known.push_back(one.name);
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+/// The entry with these responses, by all its metrics; positions are those of `from`.
+CatalogEntry with_own(CatalogEntry entry, const std::vector<OwnResponse>& own, const ModelDescription& from) {
+  if (entry.other_metric != nullptr) {
+    entry.other_metric = std::make_shared<const CatalogEntry>(with_own(*entry.other_metric, own, from));
+  }
+  const std::vector<OwnResponse> formed = by_names(own, from, entry.description);
+  return with_responses(std::move(entry), formed);
+}
+
 /// The catalog entry of a file.
-CatalogEntry entry_of(MechanismFile file, const std::string& path) {
+CatalogEntry entry_of(MechanismFile file, const std::string& path, const std::string& text) {
   const std::vector<double> defaults = default_geometry(file);
   Checked found = checked(mechanism(file, defaults), Workspace::in_reach);
   const Mechanism& at_defaults = found.mechanism;
@@ -265,15 +296,19 @@ CatalogEntry entry_of(MechanismFile file, const std::string& path) {
     entry.other_metric = std::move(other);
     other = std::make_shared<const CatalogEntry>(std::move(entry));
   }
-  return *other;
+  const std::vector<OwnResponse> own = read_own_responses(text, path, other->description);
+  if (own.empty()) return *other;
+  static_cast<void>(with_responses(other->build(defaults, 0), own));  // throws if one is relative to no pose of it
+  return with_own(*other, own, other->description);
 }
 
 /// Adds to the entry, for all its metrics, the function that changes loads.
-CatalogEntry with_loads(CatalogEntry entry, const MechanismFile& file, const std::string& path) {
-  entry.with_load = [file, path](const StudyValue& value) {
+CatalogEntry with_loads(CatalogEntry entry, const MechanismFile& file, const std::string& path,
+                        const std::string& text) {
+  entry.with_load = [file, path, text](const StudyValue& value) {
     MechanismFile loaded = file;
     loaded.load = read_load(value);
-    CatalogEntry other = with_loads(entry_of(loaded, path), file, path);
+    CatalogEntry other = with_loads(entry_of(loaded, path, text), file, path, text);
     other.load = load_text(loaded.load);
     return other;
   };
@@ -284,7 +319,7 @@ CatalogEntry with_loads(CatalogEntry entry, const MechanismFile& file, const std
 
 CatalogEntry catalog_entry(const std::string& text, const std::string& path) {
   const MechanismFile file = read_mechanism_file(text, path);
-  return with_loads(entry_of(file, path), file, path);
+  return with_loads(entry_of(file, path, text), file, path, text);
 }
 
 }  // namespace poesy::file

@@ -17,7 +17,7 @@ import h5py
 
 from poesy_program import PROGRAM, least_to_work, main
 from resumption import (ADAPTIVE_STUDIES, ALLOCATION, CASES, COUPLING, FIDELITIES, IDENTIFICATION, MACHINES, MONTE_CARLO,
-                        SENSITIVITY, SOBOL, STUDIES, ResumptionTest)
+                        RELATIVE, SENSITIVITY, SOBOL, STUDIES, ResumptionTest)
 
 MPIRUN = shutil.which("mpirun")
 KILLS = int(os.environ.get("POESY_RANK_KILLS", "3"))
@@ -27,6 +27,7 @@ SMALLER = {
     "sensitivity": SENSITIVITY,
     "monte-carlo": MONTE_CARLO,
     "machines": MACHINES,
+    "relative responses": RELATIVE,
     "sobol": SOBOL,
     "allocation": ALLOCATION,
     "evaluate": CASES.replace("count = 4000", "count = 300"),

@@ -48,6 +48,28 @@ limits.linear_deformation = "0.5 mm"
 """
 # The gradient of their yield takes a linear map, and looks at the machines once more at the end.
 UNIFORM = MACHINES.replace('"normal", sigma = "1 mm"', '"uniform", half_width = "1 mm"')
+# Whose responses are those of two poses.
+RELATIVE = f"""\
+format = "poesy-study"
+version = 1
+mechanism = {{ model = "3-prs" }}
+poses = {{ count = {POSES * 5 // 4} }}
+errors = {{ linear = {{ distribution = "uniform", half_width = "0.1 mm" }} }}
+[[response]]
+name = "rise"
+point = "tip"
+direction = [0, 0, 1]
+relative_to = {{ alpha = 0, beta = 0, z = "650 mm" }}
+[[response]]
+name = "step"
+norm = ["theta_x", "theta_y"]
+relative_to = "previous"
+[analysis]
+kind = "monte-carlo"
+draws = "per machine"
+samples = 6200
+limits = {{ rise = "0.4 mm", step = "0.5 mrad" }}
+"""
 SOBOL = HEAD + """\
 [poses]
 count = 3
@@ -123,7 +145,7 @@ REPEATED = MACHINES.replace("[solver]", """\
 delta_3_1_y = { distribution = "triangular", limits = [0, "1 mm"] }
 [solver]""", 1)
 STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "machines": MACHINES, "uniform errors": UNIFORM,
-           "repeated machines": REPEATED, "sobol": SOBOL,
+           "repeated machines": REPEATED, "relative responses": RELATIVE, "sobol": SOBOL,
            "allocation": ALLOCATION, "evaluate": CASES, "identification": IDENTIFICATION,
            "coupling": COUPLING, "fidelities": FIDELITIES}
 ADAPTIVE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"

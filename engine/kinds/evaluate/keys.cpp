@@ -197,6 +197,7 @@ AtPose cases_at_pose(const Study& study) {
 const StudyKind kEvaluateStudy{.name = "evaluate",
                                .asks = "what named cases of fixed errors do",
                                .keys = kEvaluateKeys,
+                               .has_pose_before = true,
                                .overrides = "a case sets",
                                .rows = cases_rows,
                                .tables = case_tables,

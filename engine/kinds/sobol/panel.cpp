@@ -208,8 +208,10 @@ void PanelEvaluator::keep_scores(PanelSample sample, const OfSamples<axis::Facto
 void PanelEvaluator::solve(PoseIndex pose, const OfSamples<axis::Factor>& errors, Outcomes& outcomes) {
   const std::span values = outcomes.values.all();
   const std::span responses = values.first(panel_->responses * unit_.count);
-  evaluator_->evaluate({plan_->poses()[pose], plan_->background(), plan_->factors(), errors.all(), unit_.count},
-                       {responses, status_, iterations_, values.subspan(responses.size())});
+  const PoseSet& poses = plan_->poses();
+  evaluator_->evaluate(
+      {poses[pose], plan_->background(), plan_->factors(), errors.all(), unit_.count, 0.0, poses.before(pose)},
+      {responses, status_, iterations_, values.subspan(responses.size())});
   SolveCounts& solves = sums_.solves[pose.value];
   for (std::size_t b = 0; b < unit_.count; ++b) {
     solves.add(status_[b], iterations_[b]);

@@ -29,7 +29,13 @@ std::string pose_text(std::span<const double> pose, const ModelDescription& mode
 }  // namespace
 
 ArraySolver::ArraySolver(Study study)
-    : study_(std::move(study)), model_(build_model(study_.mechanism)), zeros_(description().factors.size(), 0.0) {}
+    : study_(std::move(study)), model_(build_model(study_.mechanism)), zeros_(description().factors.size(), 0.0) {
+  for (const OwnResponse& own : study_.mechanism.responses) {
+    if (!own.relative_to || !own.relative_to->is_previous()) continue;
+    throw InputError(own.relative_to->place, "'" + own.name + "' is relative to the pose before",
+                     "leave it out, and subtract its values at other poses in Python");
+  }
+}
 
 void ArraySolver::check_poses(std::span<const double> poses) const {
   const std::size_t coordinates = description().pose_coordinates.size();

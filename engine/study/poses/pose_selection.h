@@ -32,6 +32,10 @@ class PoseSet {
   std::span<const double> operator[](PoseIndex pose) const {
     return std::span(values_).subspan(pose.value * coordinates_, coordinates_);
   }
+  /// The pose before this one in the list; empty if it is the first.
+  std::span<const double> before(PoseIndex pose) const {
+    return pose.value == 0 ? std::span<const double>() : (*this)[PoseIndex(pose.value - 1)];
+  }
   /// [M] The values of one coordinate.
   std::vector<double> column(std::size_t coordinate) const {
     std::vector<double> values(size());

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +13,8 @@
 #include <vector>
 
 #include "bench/published_study.h"
+#include "engine/model/own_responses.h"
+#include "engine/model/platform_points.h"
 #include "engine/run/evaluate_unit.h"
 #include "models/registry.h"
 #include "tests/models/chain/block_samples.h"
@@ -130,6 +133,33 @@ TEST(Allocation, NoneInAWarmHybridMachine) {
       EXPECT_EQ(allocations_of(evaluate), 0u);
     }
   }
+}
+
+TEST(Allocation, NoneByResponsesOfOnesOwn) {
+  constexpr std::size_t kCount = 200;
+  const CatalogEntry& entry = *find(registry(), "3-prs");
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
+  const auto no_turn = [](std::span<const double>) { return std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1}; };
+  std::vector<OwnResponse> own{{"far", Dimension::length, false, {{2}}}, {"step", Dimension::length, false, {{3}}}};
+  own[0].relative_to = ReferencePose{{0.0, 0.0, 0.65}, {}};
+  own[1].relative_to = ReferencePose{};
+  const std::unique_ptr<Model> model = with_responses(
+      with_platform_points(entry.build(geometry, 0), {{"nozzle", {0.0, 0.0, 0.1}}}, no_turn, false), std::move(own));
+  const std::vector<FactorIndex>& varied = entry.description.find_set("all")->factors;
+  const std::vector<double> errors(varied.size(), 0.0), values(varied.size() * kCount, 1e-5);
+  std::vector<double> responses(model->description().responses.size() * kCount);
+  std::vector<SolveStatus> status(kCount);
+  std::vector<std::uint32_t> iterations(kCount);
+  const std::array<std::vector<double>, 2> poses{{{0.1, 0.0, 0.6}, {0.0, 0.1, 0.62}}};
+  const auto evaluator = model->evaluator({});
+  const auto evaluate = [&] {
+    evaluator->evaluate({poses[0], errors, varied, values, kCount}, {responses, status, iterations, {}});
+    evaluator->evaluate({poses[1], errors, varied, values, kCount, 0.0, poses[0]}, {responses, status, iterations, {}});
+  };
+  evaluate();
+  evaluate();
+  EXPECT_EQ(allocations_of(evaluate), 0u);
 }
 
 /// But for the list of failed samples, in the units that have any. Of small errors, see blocks().

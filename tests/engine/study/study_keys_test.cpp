@@ -49,7 +49,9 @@ Catalog catalog() {
     return entry;
   };
   two.front().description.separation = SeparationDescription{"of no interest", {}};
-  two.front().description.responses.push_back({"third", Dimension::length, "never solved"});
+  for (const char* name : {"third", "x", "y", "z"}) {
+    two.front().description.responses.push_back({name, Dimension::length, "never solved"});
+  }
   two.front().build = [](auto geometry, auto) { return std::make_unique<CalibratedFake>(geometry[0]); };
   two.front().description.fidelities = {"exact", "first-order"};
   Feature rod{.name = "rod_1", .label = "rod", .limb = 1, .frame = 0, .kind = FeatureKind::distance};
@@ -77,6 +79,11 @@ description = "never solved"
 [[response]]
 name = "two"
 sum = { linear_deformation = 1, third = -2 }
+relative_to = { z = "-0.2 m", beta = 0, gamma = 0 }
+[[response]]
+name = "three"
+point = "origin"
+direction = [0, 3, 4]
 [mechanism]
 model = "fake"
 geometry = { arm = "50 mm" }
