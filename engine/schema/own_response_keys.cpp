@@ -219,7 +219,8 @@ class OwnReader {
     const auto found = std::ranges::find(points, point.text(), &ReportedPoint::name);
     if (found == points.end()) {
       point.fail("names '" + printable(point.text()) + "', which is not a point whose displacement is reported",
-                 suggestion(point.text(), names(points)));
+                 points.empty() ? "the mechanism reports no displacement; make a norm or a sum of its responses"
+                                : suggestion(point.text(), names(points)));
     }
     std::array<double, 3> along{};
     const std::vector<StudyValue> list = value.list(3, "write three numbers, e.g. [0.6, 0, 0.8]");
