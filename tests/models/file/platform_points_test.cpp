@@ -68,9 +68,9 @@ double expect_like_tip(const ModelDescription& model, std::span<const double> fo
   return found[position_of(model, "tip_position")];
 }
 
-class PlatformPoints : public testing::TestWithParam<const char*> {};
+class Points : public testing::TestWithParam<const char*> {};
 
-TEST_P(PlatformPoints, MoveAsTheToolDoes) {
+TEST_P(Points, MoveAsTheToolDoes) {
   const CatalogEntry first = catalog_entry(with_points(GetParam()), "m.toml");
   for (const CatalogEntry* entry = &first; entry != nullptr; entry = entry->other_metric.get()) {
     for (const std::size_t fidelity : {0U, 1U}) {
@@ -99,7 +99,7 @@ TEST_P(PlatformPoints, MoveAsTheToolDoes) {
 }
 
 // Rotations of a radian: the formula by Rodrigues, of the platform's own displacement.
-TEST_P(PlatformPoints, FollowFromThePlatform) {
+TEST_P(Points, FollowFromThePlatform) {
   const CatalogEntry entry = catalog_entry(with_points(GetParam()), "m.toml");
   const std::unique_ptr<Model> model = build(entry);
   const ModelDescription& description = model->description();
@@ -122,7 +122,7 @@ TEST_P(PlatformPoints, FollowFromThePlatform) {
   EXPECT_GT(theta.norm(), 1e-4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, PlatformPoints,
+INSTANTIATE_TEST_SUITE_P(Files, Points,
                          testing::Values("rps3", "ups6", "upr2-rpu", "upr2-rpu-beams", "linear-delta",
                                          "delta-parallelogram", "lift-table"),
                          [](const auto& file) {
