@@ -49,6 +49,7 @@ struct Response {
   /// The components, if the response is the norm of a vector of responses: their positions among the model's.
   std::vector<std::size_t> components = {};
   bool has_no_sign = false;  ///< a norm of something else, or an energy
+  bool is_relative = false;  ///< whether it depends on another pose of the same machine
 
   /// Whether it is never below zero.
   bool is_magnitude() const { return has_no_sign || !components.empty(); }

@@ -50,10 +50,12 @@ Response response_of(const OwnResponse& own, const ModelDescription& model) {
   }
   if (own.relative_to) response.description += ", less its value " + pose_text(*own.relative_to, model);
   response.has_no_sign = own.is_norm;
+  response.is_relative = own.relative_to.has_value();
   bool has_signs = own.is_norm;
   for (const ResponseTerm& term : own.terms) {
     const Response& part = model.responses[term.response];
     response.mean_square_bound = std::max(response.mean_square_bound, part.mean_square_bound);
+    response.is_relative = response.is_relative || part.is_relative;
     has_signs = has_signs && !part.is_magnitude();
     response.components.push_back(term.response);
   }

@@ -267,7 +267,7 @@ class OwnReader {
   /// Throws if a term is, or depends on, a response that is relative to a pose.
   void check_terms(const StudyValue& value, const OwnResponse& own) const {
     for (const ResponseTerm& term : own.terms) {
-      if (std::ranges::find(relative_, term.response) == relative_.end()) continue;
+      if (!model_.responses[term.response].is_relative) continue;
       value.fail(
           "is of a response made of '" + model_.responses[term.response].name + "', which is relative to a pose itself",
           "leave out one of them");
@@ -300,10 +300,6 @@ class OwnReader {
   }
 
   void add(OwnResponse own) {
-    const auto is_relative = [&](const ResponseTerm& term) {
-      return std::ranges::find(relative_, term.response) != relative_.end();
-    };
-    if (own.relative_to || std::ranges::any_of(own.terms, is_relative)) relative_.push_back(model_.responses.size());
     model_ = described(std::move(model_), {own});
     own_.push_back(std::move(own));
   }
@@ -311,7 +307,6 @@ class OwnReader {
   ModelDescription model_;  ///< with those that were read
   PoseBefore before_;
   std::vector<OwnResponse> own_;
-  std::vector<std::size_t> relative_;  ///< positions of responses that depend on another pose
 };
 
 std::string form_text(const OwnResponse& own, const ModelDescription& model) {

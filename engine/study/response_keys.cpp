@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "engine/schema/own_response_keys.h"
 #include "engine/study/study_kind.h"
 
@@ -29,8 +31,18 @@ void read_responses(Study& study, const Reading& reading) {
   choice.entry = choice.with_responses.get();
 }
 
-void check_pose_before(const Study& study) {
-  if (study.analysis.draws == Draws::per_machine || study.analysis.kind->has_pose_before) return;
+void check_other_poses(const Study& study, const Reading& reading) {
+  const std::vector<FactorIndex>& varied = study.analysis.factors;
+  const bool is_machine = study.analysis.draws == Draws::per_machine;
+  const auto anew = std::ranges::find_if(varied, [&](FactorIndex f) { return study.errors.is_per_pose(f); });
+  const auto relative = std::ranges::find_if(study.model().responses, &Response::is_relative);
+  if (is_machine && anew != varied.end() && relative != study.model().responses.end()) {
+    throw InputError(reading.root.section("errors").place(),
+                     "machines draw '" + study.model().factors[anew->value].name + "' anew at each pose, and '" +
+                         relative->name + "' is less its value at another pose",
+                     "leave out draws = \"per pose\" or this response");
+  }
+  if (is_machine || study.analysis.kind->has_pose_before) return;
   for (const OwnResponse& own : study.mechanism.responses) {
     if (!own.relative_to || !own.relative_to->is_previous()) continue;
     throw InputError(own.relative_to->place,

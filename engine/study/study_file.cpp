@@ -104,7 +104,7 @@ Study study_from(const Reading& reading) {
     check_correlated(study, reading);
     check_machines(study, reading);
     check_background(study, reading);
-    check_pose_before(study);
+    check_other_poses(study, reading);
   }
   check_size(root, study);
   return study;

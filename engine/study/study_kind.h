@@ -166,8 +166,9 @@ void read_solver(Study& study, const Reading& reading);
 
 /// The key [[response]].
 StudyRow response_row();
-/// Throws InputError at its place if a response is relative to the pose before in a study without machines.
-void check_pose_before(const Study& study);
+/// Throws InputError if a response is relative to the pose before in a study without machines, or to any other pose if
+/// machines draw errors anew at each pose.
+void check_other_poses(const Study& study, const Reading& reading);
 
 /// The distribution of errors of this dimension that have none of their own.
 Distribution usual_distribution(const Reading& reading, Dimension dimension);

@@ -297,6 +297,17 @@ TEST(RelativeResponses, FailWhereAMachineFailsAtThePose) {
   }
 }
 
+TEST(RelativeResponses, TakeNoErrorsThatAreDrawnAnewAtEachPose) {
+  const std::string errors =
+      "[errors]\noverride = { a_x_1 = { distribution = \"normal\", sigma = \"1 um\", draws = \"per pose\" } }\n";
+  const auto study = [&](const std::string& responses) { return read(responses, kMachines + errors); };
+  EXPECT_EQ(test::refusal_of([&] { study(kRise); }), "");
+  const std::string refusal = test::refusal_of([&] { study(kRise + std::string(kZero)); });
+  EXPECT_NE(refusal.find("machines draw 'a_x_1' anew at each pose, and 'rise' is less its value at another pose"),
+            std::string::npos)
+      << refusal;
+}
+
 TEST(OwnResponses, AreRefusedWithPlaceAndRemedy) {
   const auto refused = [](const std::string& marked, const std::vector<std::string>& words,
                           const std::string& keys = kMachines) {
