@@ -181,6 +181,12 @@ std::vector<std::array<double, 3>> starts(std::size_t components) {
 
 Extreme extreme(const Feature& feature, const OfErrors& slopes) {
   POESY_EXPECTS(slopes.size() == feature.middle.size() + feature.tilt.size());
+  if (feature.clearance) {
+    Feature loose = feature;
+    loose.location = Zone{"position", feature.clearance->most, {}};
+    loose.clearance.reset();
+    return extreme(loose, slopes);
+  }
   Extreme found;
   switch (feature.kind) {
     case FeatureKind::axis:

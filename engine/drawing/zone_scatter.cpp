@@ -22,6 +22,14 @@ double middle_beside(double location, double orientation, double sigmas) {
   return std::sqrt((location - orientation) * (location + orientation)) / (2.0 * sigmas);
 }
 
+/// The ends of a pin are in discs whose diameter is the clearance; middle and lean are half their sum and their
+/// difference.
+FeatureSigmas clearance_sigmas(const Clearance& clearance) {
+  const double size = std::sqrt(clearance.mean_square);
+  const double of_end = size / (clearance.touches ? 2.0 * sqrt2 : 4.0);
+  return {of_end / sqrt2, of_end * sqrt2};
+}
+
 }  // namespace
 
 double widest_orientation(FeatureKind kind) {
@@ -38,6 +46,7 @@ double sigmas_of(const Feature& feature, const ZoneScatter& scatter) {
 }
 
 FeatureSigmas feature_sigmas(const Feature& feature, double sigmas) {
+  if (feature.clearance) return clearance_sigmas(*feature.clearance);
   FeatureSigmas found;
   if (feature.kind == FeatureKind::distance) {
     if (feature.location) found.middle = feature.location->size / sigmas;

@@ -26,7 +26,8 @@ struct FeatureSigmas {
   std::optional<double> tilt;    ///< of each error that turns it; none: no zone says it
 };
 
-/// The standard deviations by the feature's zones, where half a zone is so many of them.
+/// The standard deviations by the feature's zones, where half a zone is so many of them, or by its clearance: exact in
+/// the mean square.
 FeatureSigmas feature_sigmas(const Feature& feature, double sigmas);
 
 /// The largest zone of orientation, as a share of that of location, that limits more than the location alone does.

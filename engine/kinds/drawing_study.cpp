@@ -33,7 +33,7 @@ std::vector<Feature> varied_features(const Study& study) {
   };
   std::vector<Feature> list;
   for (const Feature& feature : study.model().features) {
-    const bool has_zone = feature.location || feature.orientation;
+    const bool has_zone = feature.clearance || ((feature.location || feature.orientation) && study.errors.zones);
     if (has_zone && std::ranges::all_of(feature.middle, varies) && std::ranges::all_of(feature.tilt, varies)) {
       list.push_back(feature);
     }
@@ -152,13 +152,13 @@ DrawingResult described(const StudyRun& run, const std::vector<Feature>& feature
     made.limb(q) = one.limb;
     made.kind(q) = kind_name(one.kind);
     made.length(q) = one.size[0];
-    made.location(q) = key_of(one.location);
-    made.location_zone(q) = one.location ? one.location->size : 0.0;
+    made.location(q) = one.clearance ? "clearance" : key_of(one.location);
+    made.location_zone(q) = one.clearance ? one.clearance->most : one.location ? one.location->size : 0.0;
     made.location_datums(q) = datums_of(one.location);
     made.orientation(q) = key_of(one.orientation);
     made.orientation_zone(q) = one.orientation ? one.orientation->size : 0.0;
     made.orientation_datums(q) = datums_of(one.orientation);
-    made.sigmas(q) = drawing::sigmas_of(one, *run.study.errors.zones);
+    made.sigmas(q) = one.clearance ? 0.0 : drawing::sigmas_of(one, *run.study.errors.zones);
   }
   const std::size_t responses = run.study.model().responses.size();
   for (auto* list : {&made.effect, &made.share, &made.worst_share}) {
@@ -217,7 +217,7 @@ void finish(const OverPoses& sums, std::size_t r, DrawingResult& result) {
 
 std::optional<DrawingResult> drawing_result(const StudyRun& run) {
   const Study& study = run.study;
-  if (!study.errors.zones || study.analysis.kind->varies == Varies::none) return std::nullopt;
+  if (study.analysis.kind->varies == Varies::none) return std::nullopt;
   const std::vector<Feature> features = varied_features(study);
   if (features.empty()) return std::nullopt;
   const ModelDescription& model = study.model();

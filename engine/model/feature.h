@@ -28,6 +28,13 @@ struct Zone {
   std::string datums;    ///< "A|B"; empty: none
 };
 
+/// The clearance of a pin in a bore, as a difference of diameters (m).
+struct Clearance {
+  double most;          ///< the largest
+  double mean_square;   ///< m^2, over the parts that are made
+  bool touches = true;  ///< whether the pin touches the bore; otherwise it is anywhere in it
+};
+
 /// A feature of a part with the errors by which it is displaced, all lengths (m).
 struct Feature {
   std::string name;                      ///< "rail_1"
@@ -40,6 +47,8 @@ struct Feature {
   std::vector<FactorIndex> middle = {};  ///< errors that move it: x, y of an axis; z of a plane; x, y, z; a distance
   std::vector<FactorIndex> tilt = {};    ///< errors that turn it: lean_x, lean_y of an axis; lift_x, lift_y of a plane
   std::optional<Zone> location = {};     ///< also the tolerance of a distance
+  /// Instead of zones: an axis is loose in its bore, at each pose in another way.
+  std::optional<Clearance> clearance = {};
   std::optional<Zone> orientation = {};  ///< of class orientation
 };
 

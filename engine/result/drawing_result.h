@@ -31,7 +31,7 @@ struct DrawingResult {
   Array<std::uint64_t, axis::Feature> limb;  ///< from 1
   Texts kind;                                ///< "axis", "rectangle", "round", "point" or "distance"
   Sizes length;                              ///< length of an axis, first side or diameter of a plane; else 0
-  Texts location;                            ///< key of the zone of location, or "tolerance"; "-": none
+  Texts location;                            ///< key of the zone of location, "tolerance" or "clearance"; "-": none
   Sizes location_zone;                       ///< as written
   Texts location_datums;                     ///< "A|B"; "-": none
   Texts orientation;                         ///< key of the zone of orientation; "-": none

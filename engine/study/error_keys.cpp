@@ -342,6 +342,7 @@ void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     if (study.model().factors[f].dimension == kDimension) set_error(error, f, study.errors);
   }
+  set_by_zones(study);
 }
 
 /// What [errors.override] says of a factor: the last key in the file that is its name or a pattern of it.
@@ -568,12 +569,14 @@ std::string override_lines(const Study& study) {
   const StatedError linear = commonest_error(study, Dimension::length);
   const StatedError angular = commonest_error(study, Dimension::angle);
   const std::vector<std::optional<double>> zones = sigmas_by_zones(study);
+  const std::vector<FactorIndex> loose = clearance_errors(study.model());
   std::string text;
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     const Factor& factor = study.model().factors[f];
     const StatedError own = stated_error(study.errors, f);
     const StatedError& usual = factor.dimension == Dimension::length ? linear : angular;
-    if (is_given(study, f) || own == (zones[f] ? StatedError{Distribution::normal(*zones[f])} : usual)) continue;
+    const Draws draws = std::ranges::binary_search(loose, FactorIndex(f)) ? Draws::per_pose : Draws::per_machine;
+    if (is_given(study, f) || own == (zones[f] ? StatedError{Distribution::normal(*zones[f]), draws} : usual)) continue;
     text += factor.name + " = " + error_text(own, factor.dimension, exact_value) + "\n";
   }
   return text.empty() ? "" : "\n[errors.override]\n" + text;
@@ -718,6 +721,7 @@ void read_errors_section(Study& study, const Reading& reading) {
   for (const Factor& factor : study.model().factors) {
     study.errors.by_factor.push_back(default_distribution(factor.dimension));
   }
+  set_by_zones(study);
   read_keys(errors_keys(), reading.root.section("errors"), study, reading);
 }
 

@@ -182,7 +182,11 @@ StudyTable correlated_table();
 StudyRow zones_row();
 StudyTable zones_table();
 /// @}
-/// [F] the standard deviations (m) that errors.zones gives; none of an error without it.
+/// The errors of clearances, ascending, which a machine has anew at each pose.
+std::vector<FactorIndex> clearance_errors(const ModelDescription& model);
+/// Sets the errors of features by errors.zones, and those of clearances, which are drawn anew at each pose.
+void set_by_zones(Study& study);
+/// [F] the standard deviations (m) that errors.zones and clearances give; none of an error without them.
 std::vector<std::optional<double>> sigmas_by_zones(const Study& study);
 /// Throws InputError at the block's place if correlated errors do not vary together.
 void check_correlated(const Study& study, const Reading& reading);

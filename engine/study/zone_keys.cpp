@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -88,10 +89,7 @@ void read_zones(const StudyValue& value, Study& study, const Reading&) {
                "write features = [...] with zones in its limbs, or remove it");
   }
   study.errors.zones = scatter_of(value);
-  const std::vector<std::optional<double>> sigmas = sigmas_by_zones(study);
-  for (std::size_t f = 0; f < sigmas.size(); ++f) {
-    if (sigmas[f]) study.errors.by_factor[f] = Distribution::normal(*sigmas[f]);
-  }
+  set_by_zones(study);
 }
 
 std::string zones_line(const Study& study) {
@@ -121,11 +119,35 @@ StudyRow zones_row() {
 
 StudyTable zones_table() { return described(scatter_keys()); }
 
+std::vector<FactorIndex> clearance_errors(const ModelDescription& model) {
+  std::vector<FactorIndex> list;
+  for (const Feature& feature : model.features) {
+    if (!feature.clearance) continue;
+    list.insert(list.end(), feature.middle.begin(), feature.middle.end());
+    list.insert(list.end(), feature.tilt.begin(), feature.tilt.end());
+  }
+  std::ranges::sort(list);
+  return list;
+}
+
+void set_by_zones(Study& study) {
+  const std::vector<std::optional<double>> sigmas = sigmas_by_zones(study);
+  std::vector<FactorIndex>& per_pose = study.errors.per_pose;
+  for (std::size_t f = 0; f < sigmas.size(); ++f) {
+    if (!sigmas[f]) continue;
+    study.errors.by_factor[f] = Distribution::normal(*sigmas[f]);
+    std::erase(per_pose, FactorIndex(f));
+  }
+  const std::vector<FactorIndex> loose = clearance_errors(study.model());
+  per_pose.insert(per_pose.end(), loose.begin(), loose.end());
+  std::ranges::sort(per_pose);
+}
+
 std::vector<std::optional<double>> sigmas_by_zones(const Study& study) {
   std::vector<std::optional<double>> list(study.model().factors.size());
-  if (!study.errors.zones) return list;
   for (const Feature& feature : study.model().features) {
-    const double sigmas = drawing::sigmas_of(feature, *study.errors.zones);
+    if (!study.errors.zones && !feature.clearance) continue;
+    const double sigmas = study.errors.zones ? drawing::sigmas_of(feature, *study.errors.zones) : 0.0;
     const drawing::FeatureSigmas found = drawing::feature_sigmas(feature, sigmas);
     set(feature.middle, found.middle, list);
     set(feature.tilt, found.tilt, list);

@@ -207,12 +207,40 @@ void check_shape(const FeatureLines& feature) {
   }
 }
 
+const Keys<ClearanceLines, Nothing>& clearance_keys() {
+  using C = ClearanceLines;
+  static const Keys<C, Nothing> keys{
+      .paths = {"limb.clearances"},
+      .meaning =
+          "The clearance of a pin in the bore of a joint: errors NAME_x, NAME_y, NAME_lean_x and NAME_lean_y as of an "
+          "axis, which a machine has anew at each pose.",
+      .rows = {
+          needed("name", kept("text", read_name, &C::axis, &FeatureLines::name), "\"play\"",
+                 "Its name, once among clearances and features of a limb."),
+          needed("joint", kept("text", reference, &C::axis, &FeatureLines::joint), "\"A\"", "The joint that is loose."),
+          optional("axis", kept("integer", read_axis, &C::axis, &FeatureLines::axis), "the first axis",
+                   "Which axis of a joint that has several."),
+          needed("length", kept("length", expression, &C::axis, &FeatureLines::length), "\"40 mm\"",
+                 "The length over which the pin is in the bore."),
+          optional("fit", text_at(&C::fit), "", "Size and fit of ISO 286: \"8 H7/g6\", holes H and shafts d to h."),
+          optional("least", kept("length", expression, &C::least), "", "Without `fit`: the least clearance."),
+          optional("most", kept("length", expression, &C::most), "", "Without `fit`: the largest clearance."),
+          optional("contact",
+                   word_at<Contact>({{Contact::boundary, "the pin touches the bore, in any direction"},
+                                     {Contact::uniform, "the pin is anywhere in the bore"}},
+                                    &C::contact),
+                   "`\"boundary\"`", "Where the pin is.")}};
+  return keys;
+}
+
 }  // namespace
 
 std::string_view name(FeatureWord kind) {
   constexpr std::array<std::string_view, 4> kNames{"axis", "plane", "point", "distance"};
   return kNames[static_cast<std::size_t>(kind)];
 }
+
+std::string_view name(Contact contact) { return contact == Contact::boundary ? "boundary" : "uniform"; }
 
 std::string_view name(PartSide side) { return side == PartSide::before ? "before" : "after"; }
 
@@ -249,6 +277,27 @@ FeatureKind kind_of(const FeatureLines& lines) {
   return FeatureKind::distance;
 }
 
-StudyTables feature_tables() { return {described(feature_keys()), described(zone_keys())}; }
+std::vector<ClearanceLines> read_clearances(const StudyValue& value) {
+  std::vector<ClearanceLines> list;
+  for (const StudyValue& element : value.list()) {
+    ClearanceLines clearance;
+    clearance.axis.key = element.full_name();
+    clearance.axis.place = element.place();
+    const StudySection section = element.section();
+    read_keys(clearance_keys(), section, clearance, Nothing{});
+    if (const auto fit = section.find("fit")) {
+      clearance.fit_place = fit->place();
+      for (const std::string_view key : {"least", "most"}) section.refuse(key, "a clearance with a fit");
+    } else if (!clearance.least || !clearance.most) {
+      element.fail("has no fit", "write fit = \"8 H7/g6\", or least = \"5 um\" and most = \"29 um\"");
+    }
+    list.push_back(std::move(clearance));
+  }
+  return list;
+}
+
+StudyTables feature_tables() {
+  return {described(feature_keys()), described(zone_keys()), described(clearance_keys())};
+}
 
 }  // namespace poesy::file

@@ -53,6 +53,23 @@ struct FeatureLines {
   std::vector<ZoneLines> zones;          ///< in the order of zone_traits()
 };
 
+/// Where the pin of a clearance is.
+enum class Contact { boundary, uniform };
+std::string_view name(Contact contact);  ///< "boundary" or "uniform".
+
+/// A clearance, as written.
+struct ClearanceLines {
+  FeatureLines axis;                    ///< its axis, without zones
+  std::string fit;                      ///< "8 H7/g6"; empty: the two lengths
+  Place fit_place;                      ///< of the fit
+  std::optional<Expression> least;      ///< difference of the diameters
+  std::optional<Expression> most;       ///< difference of the diameters
+  Contact contact = Contact::boundary;  ///< where the pin is
+};
+
+/// Reads `clearances = [ ... ]`.
+std::vector<ClearanceLines> read_clearances(const StudyValue& value);
+
 /// Its kind: a plane is a rectangle or round.
 FeatureKind kind_of(const FeatureLines& lines);
 

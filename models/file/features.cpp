@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "engine/base/text.h"
+#include "engine/fits/fit.h"
 #include "models/file/factors.h"
 
 namespace poesy::file {
@@ -94,7 +96,8 @@ class FeatureBuilder {
   /// Adds the features of the copies, of which the first is limb `first` of the mechanism.
   void add(std::size_t first) {
     for (std::size_t copy = 0; copy < limb_.copies.count; ++copy) {
-      for (const FeatureLines& lines : limb_.features) add_one(lines, first, copy);
+      for (const FeatureLines& lines : limb_.features) add_one(lines, described(lines), first, copy);
+      for (const ClearanceLines& lines : limb_.clearances) add_one(lines.axis, loose(lines), first, copy);
     }
   }
 
@@ -196,14 +199,41 @@ class FeatureBuilder {
     return list;
   }
 
-  void add_one(const FeatureLines& lines, std::size_t first, std::size_t copy) {
+  /// An axis with a clearance. Sizes of parts are normal, and three standard deviations are half their zones.
+  Feature loose(const ClearanceLines& lines) const {
+    Feature feature = described(lines.axis);
+    const bool touches = lines.contact == Contact::boundary;
+    if (!lines.fit.empty()) {
+      try {
+        const Fit found = fit(lines.fit);
+        feature.clearance = Clearance{found.most, found.mean * found.mean + found.variance, touches};
+      } catch (const std::invalid_argument& error) {
+        throw InputError(lines.fit_place, lines.axis.key + ".fit " + error.what(),
+                         "write the size and both classes, e.g. \"8 H7/g6\", or least = and most =");
+      }
+      if (feature.clearance->most > 0.0 && fit(lines.fit).least >= 0.0) return feature;
+      throw InputError(lines.fit_place, lines.axis.key + ".fit '" + printable(lines.fit) + "' leaves no clearance",
+                       "choose a looser shaft");
+    }
+    const double least = numbers_.length(*lines.least);
+    const double most = numbers_.positive(*lines.most, kLength);
+    if (least < 0.0 || least > most) {
+      throw InputError(lines.least->place, lines.least->key + " '" + lines.least->text + "' is not between 0 and most",
+                       "write the smaller clearance first; a pin that is pressed in has none");
+    }
+    const double mean = 0.5 * (least + most);
+    const double sigma = (most - least) / 6.0;
+    feature.clearance = Clearance{most, mean * mean + sigma * sigma, touches};
+    return feature;
+  }
+
+  void add_one(const FeatureLines& lines, Feature feature, std::size_t first, std::size_t copy) {
     const Limb& limb = mechanism_.limbs[first + copy];
     const std::size_t joint = joint_of(lines);
     FeatureFrame at = frame_in_first(lines, mechanism_.limbs[first], joint);
     const Transform turn = turned(limb_.copies, copy);
     at = {turn.R * at.axes, turn.R * at.middle};
     const FeaturePart part = part_of(lines, limb, joint);
-    Feature feature = described(lines);
     const std::string number = std::to_string(first + copy + 1);
     feature.name = lines.name + "_" + number;
     feature.limb = first + copy + 1;

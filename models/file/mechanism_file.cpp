@@ -180,6 +180,8 @@ const Keys<LimbLines, Nothing>& limb_keys() {
                    "Parts between its joints that give way."),
           optional("features", kept("list of tables", read_features, &LimbLines::features), "none",
                    "Bores, faces, points and distances of its parts, with the tolerances of their drawings."),
+          optional("clearances", kept("list of tables", read_clearances, &LimbLines::clearances), "none",
+                   "Clearances of its joints."),
           optional("compliance", kept("list of lists", read_compliance, &LimbLines::compliance), "none",
                    "Of the whole limb, besides joints and links: 6 x 6 bare SI numbers, [rotation; translation] from "
                    "[moment; force] in the frame of `to`.")}};
@@ -792,7 +794,8 @@ std::string_view name(Rotation rotation) {
 std::string_view name(ErrorsAbout about) { return about == ErrorsAbout::joint ? "joint" : "frame"; }
 
 bool MechanismFile::has_features() const {
-  return std::ranges::any_of(limbs, [](const LimbLines& limb) { return !limb.features.empty(); });
+  return std::ranges::any_of(limbs,
+                             [](const LimbLines& limb) { return !limb.features.empty() || !limb.clearances.empty(); });
 }
 
 const StudyTables& mechanism_file_tables() {

@@ -60,6 +60,7 @@ struct LimbLines {
   Copies copies;                              ///< copies of the limb
   std::vector<LinkLines> links;               ///< links with compliance
   std::vector<FeatureLines> features;         ///< of its parts, with tolerances
+  std::vector<ClearanceLines> clearances;     ///< of its joints
   std::optional<ComplianceLines> compliance;  ///< in the frame of the last body
 };
 

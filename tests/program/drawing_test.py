@@ -18,7 +18,7 @@ format = "poesy-study"
 version = 1
 mechanism = {{ file = "delta.toml", fidelity = "{fidelity}" }}
 poses = {{ select = "file", file = "poses.csv" }}
-errors.zones = {{ distribution = "normal", sigmas = 3 }}
+{zones}
 [analysis]
 {analysis}
 """
@@ -32,7 +32,9 @@ class Drawing(ProgramTest):
         self.write("poses.csv", POSES)
 
     def result(self, name, analysis, fidelity="first-order", arguments=()):
-        self.write(f"{name}.toml", STUDY.format(analysis=analysis, fidelity=fidelity))
+        has_features = "features = [" in (self.folder / "delta.toml").read_text()
+        zones = 'errors.zones = { distribution = "normal", sigmas = 3 }' if has_features else ""
+        self.write(f"{name}.toml", STUDY.format(analysis=analysis, fidelity=fidelity, zones=zones))
         self.succeeds("run", f"{name}.toml", "-o", f"{name}.h5", "--quiet", *arguments)
         return h5py.File(self.folder / f"{name}.h5")
 
@@ -87,6 +89,28 @@ class Drawing(ProgramTest):
             self.succeeds("run", "one.toml", "--shard", shard, "-o", f"part{shard[0]}.h5", "--quiet")
         self.succeeds("merge", "part1.h5", "part2.h5", "-o", "merged.h5")
         self.assertEqual(len({self.content_hash(f"{name}.h5") for name in ("one", "two", "merged")}), 1)
+
+    def test_clearance(self):
+        """A pin is loose in another way at each pose: the yield over the poses is the product of those of each."""
+        text = (self.folder / "delta.toml").read_text()
+        loose = 'clearances = [ { name = "play", joint = "B", length = "40 mm", fit = "8 H7/g6" } ]\n'
+        (self.folder / "delta.toml").write_text(text[:text.index("features = [")] + loose)
+        samples = 20000
+        analysis = f'kind = "monte-carlo"\ndraws = "per machine"\nsamples = {samples}\nlimits = {{ tip_position = "0.025 mm" }}'
+        with self.result("loose", analysis) as file:
+            together = file["yield/value"][()]
+            sigma = dict(zip((name.decode() for name in file["factors/name"][:]), file["factors/sigma"][:]))
+        end = np.hypot(sigma["play_x_1"], 0.5 * sigma["play_lean_x_1"])
+        np.testing.assert_allclose(end, 6.098155458825233e-6, rtol=1e-9)
+        alone = []
+        for pose in EXPECTED["poses"]:
+            self.write("poses.csv", "x [m],y [m],z [m]\n" + ",".join(map(repr, pose["pose"])) + "\n")
+            with self.result("alone", analysis) as file:
+                alone.append(file["yield/value"][()])
+        product = np.prod(alone)
+        variance = product * (1 - product) + sum((product / one) ** 2 * one * (1 - one) for one in alone)
+        self.assertLess(abs(together - product), 5.0 * np.sqrt(variance / samples))
+        self.assertLess(together, min(alone))
 
     def test_named(self):
         """`models` says in words what the errors of a feature are."""

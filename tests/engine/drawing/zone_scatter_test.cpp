@@ -69,6 +69,22 @@ TEST(ZoneScatter, OfOneZoneAlone) {
   EXPECT_FALSE(feature_sigmas(feature(FeatureKind::axis, {}, {}), 3.0).tilt);
 }
 
+TEST(ZoneScatter, OfAClearanceIsThatOfAnEndInADisc) {
+  const json all = json::parse(std::ifstream(POESY_TEST_DATA "/drawing.json"));
+  for (const json& one : all["fits"]) {
+    const double rms = one["rms_um"];
+    Feature pin = feature(FeatureKind::axis, {}, {});
+    pin.clearance = Clearance{one["most_um"], rms * rms, true};
+    const auto of_end = [&] {
+      const FeatureSigmas found = feature_sigmas(pin, 0.0);
+      return std::hypot(*found.middle, 0.5 * *found.tilt);
+    };
+    EXPECT_NEAR(of_end(), one["end_sd_boundary_um"].get<double>(), 1e-12);
+    pin.clearance->touches = false;
+    EXPECT_NEAR(of_end(), one["end_sd_uniform_um"].get<double>(), 1e-12);
+  }
+}
+
 /// The end of an axis and the corner of a plane have half the zone over sigmas as the standard deviation of a
 /// coordinate, however location and orientation share it.
 TEST(ZoneScatter, KeepsWhatAnExtremePointMayDo) {

@@ -66,6 +66,54 @@ TEST(Features, SayWhichErrorsTheirZonesLimit) {
   EXPECT_EQ(mechanism.factors.size(), 78u);
 }
 
+TEST(Features, AreLooseByAClearance) {
+  const auto with = [](const std::string& clearance) {
+    return replaced(text_of(kName),
+                    {"features = [", "clearances = [ { name = \"play\", joint = \"B\", length = \"40 mm\", " +
+                                         clearance + " } ]\nfeatures = ["});
+  };
+  const auto read = [](const std::string& text) {
+    const MechanismFile file = read_mechanism_file(text, "m.toml");
+    return mechanism(file, default_geometry(file));
+  };
+  const Mechanism made = read(with("fit = \"8 H7/g6\""));
+  ASSERT_EQ(made.factors.size(), 78u + 12u);
+  const auto play = std::ranges::find(made.features, "play_2", &Feature::name);
+  ASSERT_NE(play, made.features.end());
+  EXPECT_NEAR(play->clearance->most, 29e-6, 1e-18);
+  EXPECT_NEAR(std::sqrt(play->clearance->mean_square), 17.24818831066034e-6, 1e-16);
+  // Its errors are those of the hinge there.
+  const std::size_t lean = position(made.factors, "play_lean_x_2");
+  const std::size_t hinge = position(made.factors, "hinge_b_lean_x_2");
+  ASSERT_EQ(made.terms[lean].size(), made.terms[hinge].size());
+  EXPECT_EQ(made.terms[lean].front().scale, made.terms[hinge].front().scale);
+  const Mechanism stated = read(with("least = \"5 um\", most = \"29 um\", contact = \"uniform\""));
+  const auto other = std::ranges::find(stated.features, "play_2", &Feature::name);
+  EXPECT_FALSE(other->clearance->touches);
+  EXPECT_NEAR(other->clearance->mean_square, 17e-6 * 17e-6 + 4e-6 * 4e-6, 1e-20);
+}
+
+TEST(Features, RefuseAClearanceWithPlaceAndRemedy) {
+  const auto refused = [](const std::string& clearance, const std::string& words) {
+    const std::string text = "clearances = [ { name = \"play\", joint = \"B\", " + clearance + " } ]\nfeatures = [";
+    const std::string problem = problem_of(replaced(text_of(kName), {"features = [", text}));
+    EXPECT_NE(problem.find("m.toml:17:"), std::string::npos) << problem;
+    EXPECT_NE(problem.find(words), std::string::npos) << problem;
+    EXPECT_NE(problem.find("; "), std::string::npos) << problem;
+  };
+  refused("length = \"40 mm\"", "limb[0].clearances[0] has no fit");
+  refused("length = \"40 mm\", least = \"5 um\"", "has no fit");
+  refused("fit = \"8 H7/g6\"", "key 'length' is missing");
+  refused("length = \"40 mm\", fit = \"8 H7/q6\"", "limb[0].clearances[0].fit");
+  refused("length = \"40 mm\", fit = \"8 H7/g6\", most = \"5 um\"", "does not belong to a clearance with a fit");
+  refused("length = \"40 mm\", least = \"9 um\", most = \"5 um\"", "is not between 0 and most");
+  refused("length = \"40 mm\", least = \"-9 um\", most = \"5 um\"", "is not between 0 and most");
+  refused("length = \"40 mm\", least = 0, most = 0", "is not greater than 0");
+  refused("length = \"40 mm\", fit = \"8 H7/g6\", contact = \"loose\"", "is 'loose'");
+  refused("length = \"0 mm\", fit = \"8 H7/g6\"", "is not greater than 0");
+  refused("axis = 3, length = \"40 mm\", fit = \"8 H7/g6\"", "has 2 axes");
+}
+
 /// Responses of a model, by name.
 class Answer {
  public:
