@@ -223,6 +223,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "unseen; write points = [...] in [platform], three or more that are on no line"},
           {"joints = [", "joints = []\nx = [",
            "m.toml:21:1: unknown key 'x' in [limb[0]]; known: name, from, to, copies, points, joints, links, features, "
+           "clearances, "
            "compliance"},
           {"frames = \"all\"", "frames = \"none\"",
            "m.toml:27:10: errors.frames is 'none'; write \"all\", or a list of names and patterns"},
