@@ -77,9 +77,10 @@ class Slopes {
     iterations_.resize(2 * count);
   }
 
-  void set_pose(std::span<const double> pose) {
-    evaluator_->evaluate({pose, constant_, errors_, values_.all(), iterations_.size()},
-                         {found_.all(), status_.all(), iterations_, {}});
+  void set_pose(const PoseSet& poses, std::size_t pose) {
+    SampleBlock samples{poses[PoseIndex(pose)], constant_, errors_, values_.all(), iterations_.size()};
+    if (pose > 0) samples.previous = poses[PoseIndex(pose - 1)];
+    evaluator_->evaluate(samples, {found_.all(), status_.all(), iterations_, {}});
   }
 
   /// The slopes of a signed response by the errors of a feature; NaN where a pose is not solved.
@@ -225,7 +226,7 @@ std::optional<DrawingResult> drawing_result(const StudyRun& run) {
   Slopes slopes(run, features);
   std::vector<OverPoses> sums(model.responses.size(), {std::vector<double>(features.size(), 0.0)});
   for (std::size_t m = 0; m < run.poses.size(); ++m) {
-    slopes.set_pose(run.poses[PoseIndex(m)]);
+    slopes.set_pose(run.poses, m);
     for (std::size_t r = 0; r < model.responses.size(); ++r) {
       const std::vector<std::size_t> signed_ones = components(model, r);
       if (signed_ones.empty()) continue;
