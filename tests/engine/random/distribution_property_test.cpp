@@ -42,6 +42,7 @@ Law lower_half(const Distribution& d, long double x) {
     case Distribution::Shape::triangular:
       return {0.5L * (width + x) * (width + x) / (width * width), (width + x) / (width * width)};
     case Distribution::Shape::measured:
+    case Distribution::Shape::given:
       break;
   }
   return {};
