@@ -64,7 +64,7 @@ TEST(Loops, DeterminantChangesByItsSlopes) {
       const auto log_of_determinant = [&](double error) {
         std::vector<double> errors(model.terms.size(), 0.0);
         errors[f] = error;
-        const Moved at = moved(model.assembly, pose, frames.with(errors), error * gives);
+        const Moved at = moved(model.assembly, pose, frames.with(errors, pose.displacements), error * gives);
         const Matrix B = motion_columns(model.assembly, at.limbs, root) * loops.motions();
         return std::log((B.transpose() * B).determinant());
       };
@@ -82,7 +82,7 @@ TEST(Loops, MismatchBendsThem) {
     const Nominal pose = model.at(one.pose);
     const Matrix6 root = linalg::cholesky_root(pose.W);
     ErrorFrames error_frames(model);
-    const auto frames = error_frames.with(random_errors(model, 0.1, 5));
+    const auto frames = error_frames.with(random_errors(model, 0.1, 5), pose.displacements);
     const Index size = motion_columns(model.assembly, pose.limbs, root).cols();
     const auto gradient = [&](const Vector& x) {
       const Moved at = moved(model.assembly, pose, frames, x);

@@ -149,7 +149,7 @@ inline Solution solution_of(const AssemblyModel& model, const Nominal& pose, con
   Solver solver(model.assembly, model.ranks, options);
   solver.prepare(pose);
   ErrorFrames frames(model);
-  return solver.solve(frames.with(errors));
+  return solver.solve(frames.with(errors, pose.displacements));
 }
 
 }  // namespace poesy::assembly
