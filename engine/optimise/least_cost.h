@@ -26,15 +26,22 @@ Process fixed_process(double tolerance, double cost = 0.0);
 /// One process for each available tolerance, such as the grades of a standard, with the cost of a law.
 std::vector<Process> available_values(const CostLaw& cost, std::span<const double> tolerances);
 
+/// When the inner part of a pair may be left out.
+enum class LeftOut {
+  never,
+  by_choice,        ///< where that costs less
+  where_it_is_void  ///< where the outer part is so fine that no process of the inner one fits in it
+};
+
 /// A pair of parts, of which the inner one has at most a share of the size of the outer one. An example is an
 /// orientation zone within a location zone: T_o^2 <= T^2 / 2. Effects of the inner part may be negative, because a
 /// finer orientation leaves more of the location to the middle of the feature; effects of the outer part, and outer +
 /// share x inner, are not.
 struct Within {
-  std::size_t inner;     ///< position of the part whose size is bounded
-  std::size_t outer;     ///< position of the part that bounds it
-  double share;          ///< size of the inner part <= share x size of the outer part; 0 < share
-  bool may_be_left_out;  ///< the inner part may also have exactly this size and cost nothing
+  std::size_t inner;  ///< position of the part whose size is bounded
+  std::size_t outer;  ///< position of the part that bounds it
+  double share;       ///< size of the inner part <= share x size of the outer part; 0 < share
+  LeftOut left_out;   ///< whether the inner part may also have exactly this size and cost nothing
 };
 
 /// The problem: N parts, each with one or more processes, under L limits.

@@ -28,7 +28,7 @@ std::vector<double> tolerances_at(double factor, std::span<const double> proport
 double need_of(const ToleranceLimits& limits, std::size_t l, std::span<const double> tolerance) {
   double sum = 0.0;
   for (std::size_t i = 0; i < tolerance.size(); ++i) {
-    if (limits.row(l)[i] > 0.0) sum += limits.row(l)[i] * size_of(tolerance[i], limits.stacking);
+    if (limits.row(l)[i] != 0.0) sum += limits.row(l)[i] * size_of(tolerance[i], limits.stacking);
   }
   return sum;
 }

@@ -27,10 +27,13 @@ std::vector<SizedProcess> processes_of_pair(const Within& pair, const std::vecto
       both.push_back({a.cost, lo, a.hi, a.index, within});
     }
   }
+  const bool is_choice = pair.left_out == LeftOut::by_choice;
+  const double most = is_choice ? kInfinity : inner.front().lo / pair.share;
   for (const SizedProcess& a : outer) {
-    if (!pair.may_be_left_out) break;
-    const InnerProcess none{CostLaw::constant(0.0), 0.0, pair.share * a.hi, 0, pair.inner, pair.share, true};
-    both.push_back({a.cost, a.lo, a.hi, a.index, none});
+    if (pair.left_out == LeftOut::never || a.lo > most) continue;
+    const double hi = std::fmin(a.hi, most);
+    const InnerProcess none{CostLaw::constant(0.0), 0.0, pair.share * hi, 0, pair.inner, pair.share, true};
+    both.push_back({a.cost, a.lo, hi, a.index, none});
   }
   POESY_EXPECTS(!both.empty());
   return both;

@@ -32,6 +32,8 @@ poesy_test(tolerance_search_test LABELS statistical
            SOURCES engine/kinds/allocation/near_limit_test.cpp engine/kinds/allocation/search_stages_test.cpp
                    engine/kinds/allocation/search_test.cpp engine/kinds/allocation/variations_test.cpp
            LINKS poesy_kinds)
+poesy_test(zone_parts_test LABELS unit DATA SOURCES engine/kinds/allocation/zones_test.cpp
+           LINKS poesy_kinds poesy_models nlohmann_json::nlohmann_json)
 poesy_test(sobol_test LABELS unit SOURCES engine/kinds/sobol/groups_test.cpp engine/kinds/sobol/constant_test.cpp
            LINKS poesy_kinds)
 poesy_test(sobol_statistical_test LABELS statistical

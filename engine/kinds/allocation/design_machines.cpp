@@ -109,6 +109,7 @@ ToleranceDesign scale_screened(const SearchProblem& problem, const ToleranceDesi
     if (factor <= low || factor >= high) break;
     std::vector<double> wanted = from.candidate.point.tolerance;
     for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] *= stays[i] ? 1.0 : factor;
+    problem.programme.keep_void(from.candidate.point, wanted);
     const TolerancePoint next = problem.programme.at_most(wanted);
     if (next.tolerance == best.candidate.point.tolerance) break;
     ScreenedMachines screened = try_screened(problem, best, next);
@@ -137,15 +138,21 @@ PartScores part_scores(const SearchProblem& problem, const ToleranceDesign& desi
       of_error[p] += x * x - 1.0;
     }
   }
+  // A coarser orientation leaves less to the middle of its feature, which may raise the yield.
+  std::vector<bool> may_fall(problem.programme.size(), false);
+  for (const Within& pair : problem.programme.pairs()) may_fall[pair.inner] = true;
   PartScores scores;
   for (std::size_t i = 0; i < problem.programme.size(); ++i) {
-    const auto errors = problem.programme.errors(i);
     double sum = 0.0;
-    for (const std::size_t p : errors) sum += of_error[p];
+    double squares = 0.0;
+    for (const auto& [p, growth] : problem.programme.growth(design.candidate.point, i)) {
+      sum += growth * of_error[p];
+      squares += growth * growth;
+    }
     // The score of each error has a variance of 2 in a machine.
-    const double noise = std::sqrt(2.0 * static_cast<double>(machines.size()) * static_cast<double>(errors.size()));
+    const double noise = std::sqrt(2.0 * static_cast<double>(machines.size()) * squares);
     scores.of_part.push_back(sum);
-    scores.is_sure.push_back(sum > kSignificance * noise);
+    scores.is_sure.push_back((may_fall[i] ? std::abs(sum) : sum) > kSignificance * noise);
   }
   return scores;
 }

@@ -21,9 +21,13 @@ std::vector<double> part_effects(std::span<const double> error_effects, std::siz
   effects.reserve(error_effects.size() / errors * parts.size());
   for (std::size_t first = 0; first < error_effects.size(); first += errors) {
     for (const DrawnPart& part : parts) {
-      double sum = 0.0;
-      for (const std::size_t factor : part.factors) sum += error_effects[first + factor];
-      effects.push_back(sum * mean_square_per_tolerance(part.spread));
+      double effect = 0.0;
+      for (const auto& [list, mean_square] : part.groups) {
+        double sum = 0.0;
+        for (const std::size_t error : list) sum += error_effects[first + error];
+        effect += sum * mean_square;
+      }
+      effects.push_back(effect);
     }
   }
   return effects;

@@ -23,14 +23,21 @@ double sigma_per_tolerance(const Spread& spread);
 /// times this.
 double mean_square_per_tolerance(const Spread& spread);
 
-/// A part of a drawing: dimensions that share one tolerance.
-struct DrawnPart {
-  std::vector<std::size_t> factors;  ///< positions among the P errors
-  Spread spread;                     ///< how each of its errors lies within the tolerance
+/// Errors whose mean squares grow alike with the tolerance of a part.
+struct DrawnErrors {
+  std::vector<std::size_t> errors;  ///< positions among the P errors
+  /// The mean square of each per unit of T^2; negative for errors to which a finer tolerance leaves more, as a zone of
+  /// orientation does to the middle of its feature.
+  double mean_square;
 };
 
-/// What one unit of T^2 of each part adds to each mean square, [L x N]: the sum of error_effects over the part's
-/// errors, times mean_square_per_tolerance(). error_effects: [L x P] what one unit of each error's variance adds.
+/// A part of a drawing: the errors that depend on one tolerance.
+struct DrawnPart {
+  std::vector<DrawnErrors> groups;  ///< the errors, an error once at most
+};
+
+/// What one unit of T^2 of each part adds to each mean square, [L x N]: the sum over its groups of mean_square times
+/// the sum of error_effects over their errors. error_effects: [L x P] what one unit of each error's variance adds.
 std::vector<double> part_effects(std::span<const double> error_effects, std::size_t errors,
                                  std::span<const DrawnPart> parts);
 

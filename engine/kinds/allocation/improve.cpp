@@ -54,6 +54,7 @@ ToleranceLimits gradient_limit(const SearchProblem& problem, const ToleranceDesi
     const double weight = (is_sure[i] ? scores[i] : all * shares[i]) / all;
     limit.effects.push_back(size > 0.0 ? weight / size : 0.0);
   }
+  problem.programme.keep_allowed(limit);
   limit.room.front() = limit.need(0, tolerance);
   return limit;
 }

@@ -9,6 +9,8 @@
 #include "engine/base/text.h"
 #include "engine/kinds/allocation/parts.h"
 #include "engine/kinds/allocation/result.h"
+#include "engine/kinds/allocation/zone_blocks.h"
+#include "engine/kinds/allocation/zone_parts.h"
 #include "engine/stats/proportion.h"
 #include "engine/study/limit_keys.h"
 #include "engine/study/study_kind.h"
@@ -60,9 +62,10 @@ void check_own_errors(const StudySection& block, std::span<const AllocatedPart> 
   for (const AllocatedPart& part : parts) {
     for (const FactorIndex factor : part.factors) {
       if (owner[factor.value] == nullptr) continue;
-      block.require("factors").fail(fmt::format("puts '{}' into part '{}', but part '{}' has it as well",
-                                                model.factors[factor.value].name, part.name, owner[factor.value]->name),
-                                    "an error has one tolerance; leave it out of one of them");
+      const StudyValue members = block.require(block.find("zones") ? "zones" : "factors");
+      members.fail(fmt::format("puts '{}' into part '{}', but part '{}' has it as well",
+                               model.factors[factor.value].name, part.name, owner[factor.value]->name),
+                   "an error has one tolerance; leave it out of one of them");
     }
   }
 }
@@ -77,6 +80,7 @@ void read_parts(const StudyValue& value, Study& study, const Reading& reading) {
     parts.insert(parts.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   }
   if (parts.empty()) value.fail("is empty", "write [[analysis.parts]] with factors, e.g. factors = \"linear\"");
+  complete_zones(value, study, parts);
 }
 
 std::string parts_lines(const Study& study) {
@@ -105,13 +109,26 @@ std::string shown_block(Dimension dimension, const ModelDescription& model) {
       example_size(dimension, 1.0));
 }
 
+/// A block in which each zone is a part of its own; empty without zones.
+std::string shown_zone_block(const ModelDescription& model) {
+  const auto has_zone = [](const Feature& feature) { return feature.location || feature.orientation; };
+  if (std::ranges::none_of(model.features, has_zone)) return {};
+  return fmt::format(
+      "\n[[analysis.parts]]\nzones = \"all\"\neach = true\n{}cost = {{ law = \"reciprocal\", b = 1, unit = \"{}\" "
+      "}}\n# bounds = [{}, {}]\n",
+      shown_limbs(model), display_unit(Dimension::length).name, example_size(Dimension::length, 0.01),
+      example_size(Dimension::length, 1.0));
+}
+
 std::string shown_parts(const TemplateLines& lines, const Study& study) {
   const std::string cost(lines.meaning("analysis.parts.cost"));
   const std::string process(lines.meaning("analysis.parts.processes"));
+  std::string zones = shown_zone_block(study.model());
   return "\n" + lines.explanation_lines("analysis", "parts") + lines.keys_lines("analysis.parts") +
          comment("    cost: " + cost) + lines.keys_lines("analysis.parts.cost", 3) +
          comment("    processes: " + process) + lines.keys_lines("analysis.parts.processes", 3) +
-         shown_block(Dimension::length, study.model()).erase(0, 1) + shown_block(Dimension::angle, study.model());
+         (zones.empty() ? shown_block(Dimension::length, study.model()) : zones).erase(0, 1) +
+         shown_block(Dimension::angle, study.model());
 }
 
 StudyRow samples_row() {
@@ -215,6 +232,22 @@ void check_limits(const Study& study, const StudySection& section) {
   }
 }
 
+/// Refuses an aim that gives an orientation no tolerance: its effect alone may be negative, and it has no place as wide
+/// as its location.
+void check_aim_of_zones(const Study& study, const StudySection& section) {
+  const AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
+  if (asked.aim != Aim::equal_effect && asked.aim != Aim::equal_tolerance) return;
+  const std::vector<Within> pairs = zone_pairs(asked.parts, study.model());
+  if (pairs.empty()) return;
+  const std::string problem = fmt::format("is \"{}\", which gives no tolerance to '{}' within '{}'", name(asked.aim),
+                                          asked.parts[pairs.front().inner].name, asked.parts[pairs.front().outer].name);
+  constexpr std::string_view kRemedy =
+      "write what the zones cost, e.g. cost = { law = \"reciprocal\", b = 1, unit = \"mm\" }, or aim = "
+      "\"common-factor\"";
+  if (const auto aim = section.find("aim")) aim->fail(problem, kRemedy);
+  throw InputError(section.place(), "analysis.aim " + problem, kRemedy);
+}
+
 void complete_allocation(Study& study, const Reading& reading) {
   const StudySection section = reading.root.section("analysis");
   AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
@@ -226,6 +259,7 @@ void complete_allocation(Study& study, const Reading& reading) {
   const bool costs = std::ranges::any_of(asked.parts, has_cost);
   const auto aim = section.find("aim");
   if (!aim) asked.aim = costs ? Aim::least_cost : Aim::equal_effect;
+  check_aim_of_zones(study, section);
   if (!aim || costs || asked.aim != Aim::least_cost || reading.use != StudyUse::run) return;
   aim->fail("is \"least-cost\", but no part has a cost",
             "write what the parts' tolerances cost, e.g. cost = { law = \"reciprocal\", b = 1, unit = \"mm\" }, or "

@@ -63,10 +63,11 @@ Linearised linearise(const SearchProblem& problem, StageLog& log) {
   const ToleranceLimits limits = programme.limits(linearisation.squares, small, candidate->share);
   for (std::size_t i = 0; i < programme.size(); ++i) {
     bool acts = false;
-    for (std::size_t l = 0; l < limits.count(); ++l) acts = acts || limits.row(l)[i] > 0.0;
+    for (std::size_t l = 0; l < limits.count(); ++l) acts = acts || limits.row(l)[i] != 0.0;
     double& tolerance = candidate->point.tolerance[i];
     if (!acts) tolerance = std::min(tolerance, usual[i]);
   }
+  programme.keep_within(candidate->point.tolerance);
   return {std::move(linearisation), *std::move(candidate)};
 }
 

@@ -80,50 +80,6 @@ PartMembers members_by_pattern(const StudyValue& value, const Study& study) {
   return members;
 }
 
-/// Throws if an error does not vary by itself, or if its distribution has no standard deviation to set.
-void check_distributions(const StudyValue& value, const PartMembers& members, const Study& study) {
-  for (const FactorIndex factor : members) {
-    const std::string& error = factor_of(study, factor).name;
-    if (study.errors.by_factor[factor.value].shape() == Distribution::Shape::measured) {
-      value.fail("has '" + error + "', whose distribution is measured, so its tolerance is no choice",
-                 "leave it out of all parts to let it vary as measured, or give it another distribution");
-    }
-    if (study.errors.by_factor[factor.value].centre() != 0.0) {
-      value.fail("has '" + error + "', whose mean is not zero, so its tolerance is not about the nominal size",
-                 "take the nominal size in the middle of the limits and remove the mean, or leave it out of all parts");
-    }
-    if (study.errors.is_per_pose(factor)) {
-      value.fail("has '" + error + "', which a machine draws anew at each pose, so no part has it",
-                 "leave it out of all parts; it varies all the same");
-    }
-    for (const CorrelatedErrors& block : study.errors.correlated) {
-      if (std::ranges::find(block.factors, factor) == block.factors.end()) continue;
-      value.fail("has '" + error + "', which errors.correlated correlates with others",
-                 "leave it out of all parts, or out of errors.correlated");
-    }
-  }
-}
-
-using Limbs = std::vector<std::size_t>;
-
-Limbs read_limbs(const StudyValue& value, const ModelDescription& model) {
-  std::set<std::size_t> known;
-  for (const Factor& factor : model.factors) known.insert(factor.limb);
-  Limbs limbs;
-  for (const StudyValue& element : value.list()) {
-    limbs.push_back(static_cast<std::size_t>(element.whole_number(0)));
-    if (std::ranges::count(limbs, limbs.back()) > 1) {
-      element.fail(fmt::format("names limb {} a second time", limbs.back()), "remove one of them");
-    }
-    if (known.contains(limbs.back())) continue;
-    element.fail(
-        fmt::format("is {}, but model \"{}\" has errors of limbs {}", limbs.back(), model.name, fmt::join(known, ", ")),
-        "name some of them");
-  }
-  if (limbs.size() < 2) value.fail("names fewer than two limbs", "name all limbs that are made alike, e.g. [1, 2]");
-  return limbs;
-}
-
 bool is_digit(const std::string& text, std::size_t at) {
   return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
 }
@@ -165,13 +121,55 @@ std::vector<PartMembers> joined(const PartMembers& members, const Limbs& limbs, 
 
 }  // namespace
 
+void check_distributions(const StudyValue& value, const PartMembers& members, const Study& study) {
+  for (const FactorIndex factor : members) {
+    const std::string& error = factor_of(study, factor).name;
+    if (study.errors.by_factor[factor.value].shape() == Distribution::Shape::measured) {
+      value.fail("has '" + error + "', whose distribution is measured, so its tolerance is no choice",
+                 "leave it out of all parts to let it vary as measured, or give it another distribution");
+    }
+    if (study.errors.by_factor[factor.value].centre() != 0.0) {
+      value.fail("has '" + error + "', whose mean is not zero, so its tolerance is not about the nominal size",
+                 "take the nominal size in the middle of the limits and remove the mean, or leave it out of all parts");
+    }
+    if (study.errors.is_per_pose(factor)) {
+      value.fail("has '" + error + "', which a machine draws anew at each pose, so no part has it",
+                 "leave it out of all parts; it varies all the same");
+    }
+    for (const CorrelatedErrors& block : study.errors.correlated) {
+      if (std::ranges::find(block.factors, factor) == block.factors.end()) continue;
+      value.fail("has '" + error + "', which errors.correlated correlates with others",
+                 "leave it out of all parts, or out of errors.correlated");
+    }
+  }
+}
+
+Limbs read_limbs(const StudyValue& value, const ModelDescription& model) {
+  std::set<std::size_t> known;
+  for (const Factor& factor : model.factors) known.insert(factor.limb);
+  Limbs limbs;
+  for (const StudyValue& element : value.list()) {
+    limbs.push_back(static_cast<std::size_t>(element.whole_number(0)));
+    if (std::ranges::count(limbs, limbs.back()) > 1) {
+      element.fail(fmt::format("names limb {} a second time", limbs.back()), "remove one of them");
+    }
+    if (known.contains(limbs.back())) continue;
+    element.fail(
+        fmt::format("is {}, but model \"{}\" has errors of limbs {}", limbs.back(), model.name, fmt::join(known, ", ")),
+        "name some of them");
+  }
+  if (limbs.size() < 2) value.fail("names fewer than two limbs", "name all limbs that are made alike, e.g. [1, 2]");
+  return limbs;
+}
+
 bool is_each(const StudySection& block) {
   const auto each = block.find("each");
   return each && each->yes_or_no();
 }
 
 std::vector<PartMembers> read_members(const StudySection& block, const Study& study) {
-  const StudyValue value = block.require("factors");
+  const StudyValue value =
+      block.require("factors", "name the part's errors, e.g. [\"delta_1_4_*\"], or zones of the drawing");
   const PartMembers members = value.is_text() ? members_by_word(value, study) : members_by_pattern(value, study);
   check_distributions(value, members, study);
   const auto identical = block.find("identical_limbs");

@@ -11,6 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/kinds/allocation/cost_keys.h"
 #include "engine/kinds/allocation/members.h"
+#include "engine/kinds/allocation/zone_blocks.h"
 #include "engine/study/table_file.h"
 
 namespace poesy {
@@ -205,6 +206,17 @@ void check_each_name(const StudySection& block, std::span<const std::string_view
                    "give the other part another name");
 }
 
+/// The parts of a block with `zones`.
+std::vector<AllocatedPart> read_zone_block(const StudySection& block, const Study& study,
+                                           std::span<const std::string_view> taken) {
+  std::vector<AllocatedPart> parts = read_zones(block, study, taken);
+  for (AllocatedPart& part : parts) {
+    part.shift = read_shift(block);
+    read_choice(block, Dimension::length, part);
+  }
+  return parts;
+}
+
 std::string bounds_text(double lo, double hi, Dimension dimension) {
   return fmt::format("[{}, {}]", exact_value(lo, dimension), exact_value(hi, dimension));
 }
@@ -269,12 +281,16 @@ StudyTable parts_table() {
           {.name = "name", .type = "text", .usual = "the name of its first error", .meaning = kNameMeaning},
           {.name = "factors",
            .type = "text or list of texts",
-           .required = true,
-           .missing = "name the part's errors, e.g. {}",
            .example = "[\"delta_1_4_*\"]",
            .meaning = "Its errors, of one dimension and in no other part: a list of names, in which '*' stands for any "
                       "letters and '?' for one; a factor set; linear or angular, all that vary and are lengths or "
                       "angles."},
+          {.name = "zones",
+           .type = "text or list of texts",
+           .meaning = "Instead of factors, zones of the drawing, each a part of its own: \"all\", or a list such as "
+                      "[\"rail.position\", \"hinge_?.position\"] of features with the keys of their zones. T is the "
+                      "zone as written: a diameter, a width, or +- of a distance; errors.zones says how much of it is "
+                      "used. An orientation that does not pay is left out. With each = true."},
           {.name = "each",
            .type = "true or false",
            .usual = "`false`",
@@ -360,6 +376,7 @@ std::vector<AllocatedPart> read_part_block(const StudySection& block, const Stud
                                            std::span<const std::string_view> taken) {
   block.allow();
   const ModelDescription& model = study.model();
+  if (block.find("zones")) return read_zone_block(block, study, taken);
   const std::vector<PartMembers> members = read_members(block, study);
   check_dimensions(block, members, model);
   std::vector<AllocatedPart> parts;
@@ -381,6 +398,7 @@ std::string part_text(const AllocatedPart& part, const ModelDescription& model) 
   const Dimension dimension = dimension_of(part, model);
   const std::string cost =
       part.cost.law == StatedCost::Law::none ? "" : "cost = " + cost_text(part.cost, dimension) + "\n";
+  if (part.zone) return "\n[[analysis.parts]]\n" + zones_text(part, model) + cost + choice_text(part, dimension);
   const std::string factors = part.factors.size() > 1
                                   ? factor_list_text(part.factors, model)
                                   : fmt::format("[{}]", in_quotes(model.factors[part.factors.front().value].name));

@@ -9,6 +9,7 @@
 #include "engine/base/nan.h"
 #include "engine/fits/it_grade.h"
 #include "engine/kinds/allocation/parts.h"
+#include "engine/kinds/allocation/zone_parts.h"
 #include "engine/optimise/max_tolerances.h"
 
 namespace poesy {
@@ -82,15 +83,29 @@ Distribution error_of(const Distribution& shape, double sigma, double shift) {
   return scaled().shifted(shift);
 }
 
-DrawnPart drawn_part(const AllocatedPart& part, const Study& study) {
-  DrawnPart drawn{{}, {part.sigmas, part.shift}};
+/// The positions of the part's errors among those that vary.
+std::vector<std::size_t> errors_of(const AllocatedPart& part, const Study& study) {
+  std::vector<std::size_t> errors;
   for (const FactorIndex factor : part.factors) {
     const auto at = std::ranges::find(study.analysis.factors, factor);
     POESY_EXPECTS(at != study.analysis.factors.end());
-    drawn.factors.push_back(static_cast<std::size_t>(at - study.analysis.factors.begin()));
+    errors.push_back(static_cast<std::size_t>(at - study.analysis.factors.begin()));
   }
-  return drawn;
+  return errors;
 }
+
+DrawnPart drawn_part(const AllocatedPart& part, const std::vector<std::size_t>& errors, const Study& study) {
+  if (part.zone) return drawn_zone(part, study.model(), study.analysis.factors);
+  return {{{errors, mean_square_per_tolerance({part.sigmas, part.shift})}}};
+}
+
+/// Whether all errors of a part have T / sigmas, beside the shift.
+bool has_one_spread(const AllocatedPart& part, const ModelDescription& model) {
+  return !part.zone || feature_of(part, model).kind == FeatureKind::distance;
+}
+
+/// A zone of orientation this near to the largest that its location allows is as wide as it.
+constexpr double kVoid = 1.0 - 1e-9;
 
 /// A tolerance and a process that can make it.
 struct Held {
@@ -116,14 +131,137 @@ Held held_below(const std::vector<Process>& processes, double most) {
   return {lowest->lo, static_cast<std::size_t>(lowest - processes.begin())};
 }
 
+/// A tolerance `factor` times as large as far as its process allows, or the next larger single value; none if there is
+/// none.
+std::optional<Held> larger_than(const std::vector<Process>& list, const Held& from, double factor) {
+  const Process& now = list[from.process];
+  if (now.hi > from.tolerance) return Held{std::min(now.hi, factor * from.tolerance), from.process};
+  std::optional<std::size_t> above;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    if (list[k].lo != list[k].hi || list[k].lo <= from.tolerance) continue;
+    if (!above || list[k].lo < list[*above].lo) above = k;
+  }
+  if (!above) return std::nullopt;
+  return Held{list[*above].lo, *above};
+}
+
+/// A cost that does not fall with the tolerance asks for the finest one.
+Process finest_if_constant(Process process) {
+  if (process.cost.is_constant()) process.hi = process.lo;
+  return process;
+}
+
 }  // namespace
 
 ToleranceProgramme::ToleranceProgramme(const Study& study, const Model& model) : study_(study) {
   for (const AllocatedPart& part : parts()) {
     processes_.push_back(processes_of(part, model));
-    drawn_.push_back(drawn_part(part, study));
+    errors_.push_back(errors_of(part, study));
+    drawn_.push_back(drawn_part(part, errors_.back(), study));
     has_costs_ = has_costs_ || has_cost(part);
   }
+  pairs_ = zone_pairs(parts(), study.model());
+}
+
+const Within* ToleranceProgramme::pair_of(std::size_t part) const {
+  const auto has = [&](const Within& pair) { return pair.inner == part || pair.outer == part; };
+  const auto found = std::ranges::find_if(pairs_, has);
+  return found == pairs_.end() ? nullptr : &*found;
+}
+
+bool ToleranceProgramme::is_void(const TolerancePoint& point, std::size_t part) const {
+  const Within* const pair = pair_of(part);
+  if (pair == nullptr || pair->inner != part) return false;
+  return point.tolerance[part] >= kVoid * std::sqrt(pair->share) * point.tolerance[pair->outer];
+}
+
+void ToleranceProgramme::keep_within(std::span<double> tolerance) const {
+  for (const Within& pair : pairs_) {
+    tolerance[pair.inner] = std::min(tolerance[pair.inner], std::sqrt(pair.share) * tolerance[pair.outer]);
+  }
+}
+
+void ToleranceProgramme::keep_void(const TolerancePoint& point, std::span<double> tolerance) const {
+  for (const Within& pair : pairs_) {
+    if (is_void(point, pair.inner)) tolerance[pair.inner] = std::sqrt(pair.share) * tolerance[pair.outer];
+  }
+}
+
+void ToleranceProgramme::keep_allowed(ToleranceLimits& limits) const {
+  for (std::size_t l = 0; l < limits.count(); ++l) {
+    for (const Within& pair : pairs_) {
+      double* const row = &limits.effects[l * limits.parts];
+      row[pair.inner] = std::max(row[pair.inner], -row[pair.outer] / pair.share);
+    }
+  }
+}
+
+/// The mean squares of the errors of a pair at these tolerances [N].
+std::vector<ErrorFactor> ToleranceProgramme::squares_of_pair(const Within& pair,
+                                                             std::span<const double> tolerance) const {
+  std::vector<ErrorFactor> squares;
+  for (const std::size_t part : {pair.outer, pair.inner}) {
+    for (const auto& [errors, mean_square] : drawn_[part].groups) {
+      for (const std::size_t error : errors) {
+        auto at = std::ranges::find(squares, error, &ErrorFactor::error);
+        if (at == squares.end()) at = squares.insert(at, {error, 0.0});
+        at->factor += mean_square * tolerance[part] * tolerance[part];
+      }
+    }
+  }
+  return squares;
+}
+
+Variation ToleranceProgramme::variation(const TolerancePoint& point, std::size_t part, double factor) const {
+  Variation changes;
+  const Within* const pair = pair_of(part);
+  if (pair == nullptr) {
+    for (const std::size_t error : errors_[part]) changes.push_back({error, factor});
+    return changes;
+  }
+  const bool follows = is_void(point, pair->inner) && part == pair->outer;
+  std::vector<double> tolerance = point.tolerance;
+  tolerance[part] *= std::abs(factor);
+  if (follows) tolerance[pair->inner] *= std::abs(factor);
+  keep_within(tolerance);
+  const std::vector<ErrorFactor> before = squares_of_pair(*pair, point.tolerance);
+  const std::vector<ErrorFactor> after = squares_of_pair(*pair, tolerance);
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    if (!(before[k].factor > 0.0)) continue;
+    const double change = std::sqrt(std::max(0.0, after[k].factor) / before[k].factor);
+    changes.push_back({before[k].error, std::copysign(change, factor)});
+  }
+  return changes;
+}
+
+ToleranceProgramme::Weights ToleranceProgramme::weights(const TolerancePoint& point, std::size_t part) const {
+  if (const Within* const pair = pair_of(part)) {
+    return {squares_of_pair(*pair, point.tolerance), {pair->outer, pair->inner}};
+  }
+  Weights weights{{}, {part}};
+  const bool is_uniform = drawn_[part].groups.size() == 1;
+  for (const auto& [errors, mean_square] : drawn_[part].groups) {
+    for (const std::size_t error : errors) weights.errors.push_back({error, is_uniform ? 1.0 : mean_square});
+  }
+  return weights;
+}
+
+std::vector<ErrorFactor> ToleranceProgramme::growth(const TolerancePoint& point, std::size_t part) const {
+  std::vector<ErrorFactor> growth;
+  const Within* const pair = pair_of(part);
+  if (pair == nullptr) {
+    for (const std::size_t error : errors_[part]) growth.push_back({error, 1.0});
+    return growth;
+  }
+  const std::vector<ErrorFactor> squares = squares_of_pair(*pair, point.tolerance);
+  for (const auto& [errors, mean_square] : drawn_[part].groups) {
+    const double added = mean_square * point.tolerance[part] * point.tolerance[part];
+    for (const std::size_t error : errors) {
+      const double all = std::ranges::find(squares, error, &ErrorFactor::error)->factor;
+      if (all > 0.0) growth.push_back({error, added / all});
+    }
+  }
+  return growth;
 }
 
 const std::vector<AllocatedPart>& ToleranceProgramme::parts() const {
@@ -136,14 +274,29 @@ std::string ToleranceProgramme::chosen_name(std::size_t part, std::size_t proces
   return one.choice == AllocatedPart::Choice::grades ? it_grade_name(one.grades[process]) : "";
 }
 
+/// The finest zone on the drawing among features that share it.
+double ToleranceProgramme::usual_of_zone(const AllocatedPart& part) const {
+  const bool turned = is_orientation(part, study_.model());
+  double usual = kInfinity;
+  for (const std::size_t f : part.zone->features) {
+    const Feature& feature = study_.model().features[f];
+    usual = std::min(usual, (turned ? feature.orientation : feature.location)->size);
+  }
+  return usual;
+}
+
 std::vector<double> ToleranceProgramme::usual() const {
   std::vector<double> usual;
   for (std::size_t i = 0; i < size(); ++i) {
+    if (parts()[i].zone) {
+      usual.push_back(usual_of_zone(parts()[i]));
+      continue;
+    }
     double sigma = kInfinity;
     for (const FactorIndex factor : parts()[i].factors) {
       sigma = std::min(sigma, study_.errors.by_factor[factor.value].standard_deviation());
     }
-    usual.push_back(sigma / std::sqrt(mean_square_per_tolerance(drawn_[i].spread)));
+    usual.push_back(sigma / std::sqrt(drawn_[i].groups.front().mean_square));
   }
   return at_most(usual).tolerance;
 }
@@ -155,6 +308,14 @@ TolerancePoint ToleranceProgramme::at_most(std::span<const double> tolerance) co
     point.tolerance.push_back(held.tolerance);
     point.process.push_back(held.process);
   }
+  for (const Within& pair : pairs_) {
+    const double widest = std::sqrt(pair.share);
+    const bool was_void = tolerance[pair.inner] >= kVoid * widest * tolerance[pair.outer];
+    double& inner = point.tolerance[pair.inner];
+    const double most = widest * point.tolerance[pair.outer];
+    const bool is_given = pair.left_out == LeftOut::where_it_is_void;
+    if ((was_void && !is_given) || inner >= kVoid * most) inner = most;
+  }
   point.cost = cost_of(point);
   return point;
 }
@@ -163,32 +324,33 @@ TolerancePoint ToleranceProgramme::lowest() const { return at_most(std::vector<d
 
 std::optional<TolerancePoint> ToleranceProgramme::coarser(const TolerancePoint& point, std::size_t part,
                                                           double factor) const {
-  const std::vector<Process>& list = processes_[part];
   const double from = point.tolerance[part];
-  if (from == 0.0) return std::nullopt;
+  if (from == 0.0 || is_void(point, part)) return std::nullopt;
+  std::optional<Held> larger = larger_than(processes_[part], {from, point.process[part]}, factor);
+  const Within* const pair = pair_of(part);
+  if (pair != nullptr && pair->inner == part && pair->left_out == LeftOut::by_choice) {
+    const double most = std::sqrt(pair->share) * point.tolerance[pair->outer];
+    if (!larger || larger->tolerance >= kVoid * most) larger = Held{most, point.process[part]};
+  }
+  if (!larger) return std::nullopt;
   TolerancePoint next = point;
-  const Process& now = list[point.process[part]];
-  if (now.hi > from) {
-    next.tolerance[part] = std::min(now.hi, factor * from);
-  } else {
-    std::optional<std::size_t> above;  // the next larger single value
-    for (std::size_t k = 0; k < list.size(); ++k) {
-      if (list[k].lo != list[k].hi || list[k].lo <= from) continue;
-      if (!above || list[k].lo < list[*above].lo) above = k;
-    }
-    if (!above) return std::nullopt;
-    next.tolerance[part] = list[*above].lo;
-    next.process[part] = *above;
+  next.tolerance[part] = larger->tolerance;
+  next.process[part] = larger->process;
+  if (pair != nullptr && pair->outer == part && is_void(point, pair->inner)) {
+    next.tolerance[pair->inner] *= larger->tolerance / from;
   }
   next.cost = cost_of(next);
   return next;
 }
 
-AtBound ToleranceProgramme::at_bound(std::size_t part, double tolerance, std::size_t process) const {
+AtBound ToleranceProgramme::at_bound(const TolerancePoint& point, std::size_t part) const {
   const std::vector<Process>& list = processes_[part];
+  const double tolerance = point.tolerance[part];
+  const std::size_t process = point.process[part];
   const double lowest = std::ranges::min(list, {}, &Process::lo).lo;
   const double highest = std::ranges::max(list, {}, &Process::hi).hi;
   if (lowest == highest) return AtBound::single;
+  if (is_void(point, part)) return AtBound::none;
   if (tolerance == lowest) return AtBound::lower;
   if (tolerance == highest) return AtBound::upper;
   const Process& chosen = list[process];
@@ -197,14 +359,15 @@ AtBound ToleranceProgramme::at_bound(std::size_t part, double tolerance, std::si
   return tolerance == chosen.hi ? AtBound::upper : AtBound::none;
 }
 
-double ToleranceProgramme::cost(std::size_t part, double tolerance, std::size_t process) const {
-  return processes_[part][process].cost.at(tolerance);
+double ToleranceProgramme::cost(const TolerancePoint& point, std::size_t part) const {
+  if (is_void(point, part)) return 0.0;
+  return processes_[part][point.process[part]].cost.at(point.tolerance[part]);
 }
 
 double ToleranceProgramme::cost_of(const TolerancePoint& point) const {
   if (!has_costs_) return kNaN;
   double sum = 0.0;
-  for (std::size_t i = 0; i < size(); ++i) sum += cost(i, point.tolerance[i], point.process[i]);
+  for (std::size_t i = 0; i < size(); ++i) sum += cost(point, i);
   return sum;
 }
 
@@ -218,22 +381,25 @@ ToleranceLimits ToleranceProgramme::limits(const MeanSquares& squares, std::span
     const double most = share * wider * squares.room[l];
     limits.room[l] = most * most - squares.value[l] + limits.need(l, at);
   }
+  keep_allowed(limits);
   return limits;
 }
 
 std::vector<std::vector<Process>> ToleranceProgramme::within(const TrustRegion& region,
                                                              std::vector<std::vector<std::size_t>>& kept) const {
   const bool anywhere = region.centre.empty();
-  const std::vector<double> lowest = this->lowest().tolerance;
   std::vector<std::vector<Process>> near;
   for (std::size_t i = 0; i < size(); ++i) {
-    const double most = anywhere ? kInfinity : std::max(region.growth * region.centre[i], lowest[i]);
+    const double lowest = std::ranges::min(processes_[i], {}, &Process::lo).lo;
+    const double most = anywhere ? kInfinity : std::max(region.growth * region.centre[i], lowest);
+    const bool in_pair = pair_of(i) != nullptr;
     near.emplace_back();
     kept.emplace_back();
     for (std::size_t k = 0; k < processes_[i].size(); ++k) {
       const Process& process = processes_[i][k];
       if (process.lo > most) continue;
       near.back().push_back({process.cost, process.lo, std::min(process.hi, most)});
+      if (in_pair) near.back().back() = finest_if_constant(near.back().back());
       kept.back().push_back(k);
     }
   }
@@ -243,7 +409,7 @@ std::vector<std::vector<Process>> ToleranceProgramme::within(const TrustRegion& 
 ChoiceOfTolerances ToleranceProgramme::least(const ToleranceLimits& limits, const TrustRegion& region) const {
   constexpr SearchOptions kSearch{.relative_gap = 1e-6, .alternatives = 0, .max_nodes = 5000};
   std::vector<std::vector<std::size_t>> kept;
-  AllocationOutcome outcome = least_cost({limits, within(region, kept)}, kSearch);
+  AllocationOutcome outcome = least_cost({limits, within(region, kept), pairs_}, kSearch);
   if (const auto* broken = std::get_if<Infeasible>(&outcome)) return *broken;
   if (const auto* endless = std::get_if<Unbounded>(&outcome)) return *endless;
   const LeastCost& found = std::get<LeastCost>(outcome);
@@ -261,9 +427,13 @@ std::vector<double> ToleranceProgramme::proportions(const ToleranceLimits& limit
   if (aim == Aim::equal_effect) return equal_effect_proportions(limits);
   std::vector<double> list;
   for (std::size_t i = 0; i < size(); ++i) {
+    if (parts()[i].zone) {
+      list.push_back(usual_of_zone(parts()[i]));
+      continue;
+    }
     const FactorIndex first = parts()[i].factors.front();
     const double sigma = study_.errors.by_factor[first.value].standard_deviation();
-    list.push_back(sigma / std::sqrt(mean_square_per_tolerance(drawn_[i].spread)));
+    list.push_back(sigma / std::sqrt(drawn_[i].groups.front().mean_square));
   }
   if (aim == Aim::common_factor) return list;
   for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
@@ -310,12 +480,26 @@ ChoiceOfTolerances ToleranceProgramme::choose(const ToleranceLimits& limits, con
 
 Study ToleranceProgramme::at(std::span<const double> tolerance) const {
   Study study = study_;
+  const auto set = [&](FactorIndex factor, double sigma, double shift) {
+    Distribution& error = study.errors.by_factor[factor.value];
+    error = error_of(error, std::max(sigma, kPerfect), shift);
+  };
+  std::vector<double> squares(study_.analysis.factors.size(), 0.0);  // of errors in zones
   for (std::size_t i = 0; i < size(); ++i) {
-    const double sigma = sigma_per_tolerance(drawn_[i].spread) * tolerance[i];
-    const double shift = drawn_[i].spread.shift * tolerance[i];
-    for (const FactorIndex factor : parts()[i].factors) {
-      Distribution& error = study.errors.by_factor[factor.value];
-      error = error_of(error, std::max(sigma, kPerfect), shift);
+    const AllocatedPart& part = parts()[i];
+    if (has_one_spread(part, study_.model())) {
+      const double sigma = sigma_per_tolerance({part.sigmas, part.shift}) * tolerance[i];
+      for (const FactorIndex factor : part.factors) set(factor, sigma, part.shift * tolerance[i]);
+      continue;
+    }
+    for (const auto& [errors, mean_square] : drawn_[i].groups) {
+      for (const std::size_t error : errors) squares[error] += mean_square * tolerance[i] * tolerance[i];
+    }
+  }
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (has_one_spread(parts()[i], study_.model())) continue;
+    for (const std::size_t error : errors_[i]) {
+      set(study_.analysis.factors[error], std::sqrt(std::max(0.0, squares[error])), 0.0);
     }
   }
   return study;

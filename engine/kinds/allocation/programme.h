@@ -11,6 +11,7 @@
 #include "engine/kinds/allocation/drawn_part.h"
 #include "engine/kinds/allocation/mean_squares.h"
 #include "engine/kinds/allocation/result.h"
+#include "engine/kinds/allocation/variations.h"
 #include "engine/model/model.h"
 #include "engine/optimise/least_cost.h"
 #include "engine/optimise/tolerance_limits.h"
@@ -50,8 +51,23 @@ class ToleranceProgramme {
   const std::vector<AllocatedPart>& parts() const;     ///< [N] The parts as the study states them.
   /// [N] The processes of each part: one for each value, grade or range.
   const std::vector<std::vector<Process>>& processes() const { return processes_; }
-  /// The positions of a part's errors among those of the study.
-  std::span<const std::size_t> errors(std::size_t part) const { return drawn_[part].factors; }
+  /// The positions of a part's own errors among those of the study. The errors of a zone of location also depend on
+  /// that of orientation.
+  std::span<const std::size_t> errors(std::size_t part) const { return errors_[part]; }
+  const std::vector<Within>& pairs() const { return pairs_; }  ///< Zones of orientation within zones of location.
+  /// Whether a part is a zone of orientation as wide as the location allows, so that the drawing does not need it.
+  bool is_void(const TolerancePoint& point, std::size_t part) const;
+  /// How the standard deviations of errors change if this part alone has a tolerance `factor` times as large. A
+  /// negative factor mirrors them, too. Errors of zones in pairs with a standard deviation of 0 are left out.
+  Variation variation(const TolerancePoint& point, std::size_t part, double factor) const;
+  /// How parts share out what they add to mean squares among their errors.
+  struct Weights {
+    std::vector<ErrorFactor> errors;  ///< with their variances, up to a factor
+    std::vector<std::size_t> parts;   ///< the part, or both parts of its pair
+  };
+  Weights weights(const TolerancePoint& point, std::size_t part) const;  ///< The weights of a part's errors.
+  /// The derivative of the logarithm of each standard deviation by that of this part's tolerance; 1 except in pairs.
+  std::vector<ErrorFactor> growth(const TolerancePoint& point, std::size_t part) const;
   std::string chosen_name(std::size_t part,
                           std::size_t process) const;  ///< The name of a process or grade; else empty.
 
@@ -60,12 +76,18 @@ class ToleranceProgramme {
   TolerancePoint at_most(std::span<const double> tolerance) const;
   TolerancePoint lowest() const;  ///< The lowest tolerances.
   /// The point with one part coarser: its tolerance `factor` times as large, or the next larger value it can have. None
-  /// if its process allows no such value, and for a tolerance of 0.
+  /// if its process allows no such value, and for a tolerance of 0. A zone of orientation may also be left out.
   std::optional<TolerancePoint> coarser(const TolerancePoint& point, std::size_t part, double factor) const;
-  /// Whether a tolerance is at a bound of its part.
-  AtBound at_bound(std::size_t part, double tolerance, std::size_t process) const;
-  /// The cost of a part; 0 where none is stated.
-  double cost(std::size_t part, double tolerance, std::size_t process) const;
+  /// Whether the tolerance of a part is at a bound.
+  AtBound at_bound(const TolerancePoint& point, std::size_t part) const;
+  /// The cost of a part; 0 where none is stated, and for what is left out.
+  double cost(const TolerancePoint& point, std::size_t part) const;
+  /// Moves zones of orientation within their locations.
+  void keep_within(std::span<double> tolerance) const;
+  /// Gives orientations that the point does not need the widths that these locations [N] allow.
+  void keep_void(const TolerancePoint& point, std::span<double> tolerance) const;
+  /// Raises negative effects of zones of orientation on limits as far as a programme needs it (Within).
+  void keep_allowed(ToleranceLimits& limits) const;
   /// Limits on the mean square that parts add: room = (share x MeanSquares::room x wider)^2 - contribution of fixed
   /// errors. at: [N] the tolerances at which the mean squares were measured.
   ToleranceLimits limits(const MeanSquares& squares, std::span<const double> at, double share,
@@ -80,13 +102,18 @@ class ToleranceProgramme {
   std::vector<std::vector<Process>> within(const TrustRegion& region,
                                            std::vector<std::vector<std::size_t>>& kept) const;
   double cost_of(const TolerancePoint& point) const;
+  const Within* pair_of(std::size_t part) const;
+  std::vector<ErrorFactor> squares_of_pair(const Within& pair, std::span<const double> tolerance) const;
+  double usual_of_zone(const AllocatedPart& part) const;
   ChoiceOfTolerances least(const ToleranceLimits& limits, const TrustRegion& region) const;
   ChoiceOfTolerances largest(const ToleranceLimits& limits) const;
   std::vector<double> proportions(const ToleranceLimits& limits) const;
 
   const Study& study_;
-  std::vector<std::vector<Process>> processes_;  ///< [N]
-  std::vector<DrawnPart> drawn_;                 ///< [N]
+  std::vector<std::vector<Process>> processes_;   ///< [N]
+  std::vector<DrawnPart> drawn_;                  ///< [N]
+  std::vector<std::vector<std::size_t>> errors_;  ///< [N]
+  std::vector<Within> pairs_;
   bool has_costs_ = false;
 };
 

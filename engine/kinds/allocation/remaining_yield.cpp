@@ -20,11 +20,6 @@ struct CoarserPart {
   double steps;  ///< the number of such steps of T^2 to the next tolerance that the part can have
 };
 
-Variation varied(const SearchProblem& problem, std::size_t part, double factor) {
-  const auto errors = problem.programme.errors(part);
-  return {{errors.begin(), errors.end()}, factor};
-}
-
 std::vector<double> try_varied(const SearchProblem& problem, const ToleranceDesign& design, const NearLimit& near,
                                std::span<const Variation> variations) {
   const StudyRun& run = problem.run;
@@ -45,7 +40,9 @@ void probe_small(const SearchProblem& problem, const ToleranceDesign& design, st
   const NearLimit many(design.screened.numbers, design.screened.load, kProbesOfSmall);
   std::vector<Variation> variations;
   for (const CoarserPart& one : parts) {
-    for (const double factor : {one.step, -1.0, -one.step}) variations.push_back(varied(problem, one.part, factor));
+    for (const double factor : {one.step, -1.0, -one.step}) {
+      variations.push_back(problem.programme.variation(design.candidate.point, one.part, factor));
+    }
   }
   const std::vector<double> loads = try_varied(problem, design, many, variations);
   for (std::size_t v = 0; v < parts.size(); ++v) {
@@ -70,7 +67,7 @@ std::vector<double> probe(const SearchProblem& problem, const ToleranceDesign& d
     const double whole = next->tolerance[i] / point.tolerance[i];
     const double step = std::min(whole, kCoarserStep);
     coarser.push_back({i, step, (whole * whole - 1.0) / (step * step - 1.0)});
-    variations.push_back(varied(problem, i, step));
+    variations.push_back(problem.programme.variation(point, i, step));
   }
   const std::vector<double> loads = try_varied(problem, design, few, variations);
   std::vector<CoarserPart> small;

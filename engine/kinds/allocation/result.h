@@ -48,7 +48,13 @@ struct StatedProcess {
   double hi = std::numeric_limits<double>::infinity();  ///< largest tolerance, SI
 };
 
-/// A part of the drawing: errors that share one tolerance T, written +-T.
+/// The zone of a drawing that a part is: its tolerance T is the diameter or width of the zone, or of a distance +-T.
+struct PartZone {
+  std::string key;                    ///< "position"
+  std::vector<std::size_t> features;  ///< alike in limbs that share the tolerance: positions in the model's features
+};
+
+/// A part of the drawing: errors that share one tolerance T, written +-T, or a zone.
 struct AllocatedPart {
   /// From what the tolerance is chosen.
   enum class Choice {
@@ -59,8 +65,8 @@ struct AllocatedPart {
     fixed       ///< it is given
   };
   std::string name;                  ///< for people and files
-  std::vector<FactorIndex> factors;  ///< of one dimension, at least one
-  double sigmas = 3.0;               ///< T = shift T + sigmas x standard deviation
+  std::vector<FactorIndex> factors;  ///< of one dimension, at least one, and in no other part
+  double sigmas = 3.0;               ///< T = shift T + sigmas x standard deviation; of a zone, half of it
   double shift = 0.0;                ///< the mean is off by this share of T, as often up as down; 0 <= shift < 1
   Choice choice = Choice::range;  ///< from what the tolerance is chosen; it determines which of the members below count
   StatedCost cost = {};           ///< cost, for all choices except processes
@@ -71,6 +77,7 @@ struct AllocatedPart {
   std::vector<ItGrade> grades = {};             ///< the grades, from the finest one
   double nominal_size = 0.0;                    ///< the nominal size for grades, m
   std::vector<StatedProcess> processes = {};    ///< the processes
+  std::optional<PartZone> zone = {};            ///< the zone that it is
 };
 
 /// Which of the tolerances that keep the limits a study seeks.

@@ -51,15 +51,32 @@ YieldVerdict verdict_of(const MachineLoads& fresh, double yield, double confiden
   return verdict;
 }
 
-/// Divides a part's share of the mean square among its errors in proportion to their slopes, because they have one
-/// variance.
-void divide_share(std::span<const double> slopes, std::span<const std::size_t> errors, double of_part,
+/// The shares of the parts [N] in the mean square under a limit. What a zone of orientation does that the drawing does
+/// not need is done by the location.
+std::vector<double> mean_square_shares(const ToleranceProgramme& programme, const TolerancePoint& point,
+                                       const ToleranceLimits& limits, std::size_t limit) {
+  const double need = limits.need(limit, point.tolerance);
+  std::vector<double> shares;
+  for (std::size_t i = 0; i < limits.parts; ++i) {
+    shares.push_back(limits.row(limit)[i] * point.tolerance[i] * point.tolerance[i] / need);
+  }
+  for (const Within& pair : programme.pairs()) {
+    if (!programme.is_void(point, pair.inner)) continue;
+    shares[pair.outer] += shares[pair.inner];
+    shares[pair.inner] = 0.0;
+  }
+  return shares;
+}
+
+/// Divides shares among errors in proportion to their slopes by the variance times `weights`, which are the variances
+/// up to a factor.
+void divide_share(std::span<const double> slopes, std::span<const ErrorFactor> weights, double of_parts,
                   Array<double, axis::Factor>& shares) {
   double sum = 0.0;
-  for (const std::size_t p : errors) sum += slopes[p];
-  for (const std::size_t p : errors) {
-    const double within = sum > 0.0 ? slopes[p] / sum : 1.0 / static_cast<double>(errors.size());
-    shares(p) = within * of_part;
+  for (const auto& [p, weight] : weights) sum += weight * slopes[p];
+  for (const auto& [p, weight] : weights) {
+    const double within = sum > 0.0 ? weight * slopes[p] / sum : 1.0 / static_cast<double>(weights.size());
+    shares(p) = within * of_parts;
   }
 }
 
@@ -81,7 +98,7 @@ void add_parts(const SearchProblem& problem, const FoundTolerances& search, cons
   }
   found.bound = AllocationResult::Parts<std::uint8_t>({parts});
   const std::size_t tightest = worst_use(limits, point.tolerance).limit;
-  const double need = limits.need(tightest, point.tolerance);
+  const std::vector<double> shares = mean_square_shares(programme, point, limits, tightest);
   const auto slopes = std::span(search.linearisation.squares.slope).subspan(tightest * errors, errors);
   for (std::size_t i = 0; i < parts; ++i) {
     const AllocatedPart& part = programme.parts()[i];
@@ -98,11 +115,14 @@ void add_parts(const SearchProblem& problem, const FoundTolerances& search, cons
     found.sigma(i) = sigma_per_tolerance(spread) * tolerance;
     found.sigmas(i) = part.sigmas;
     found.shift(i) = part.shift * tolerance;
-    found.cost(i) = std::isnan(point.cost) ? kNaN : programme.cost(i, tolerance, point.process[i]);
+    found.cost(i) = std::isnan(point.cost) ? kNaN : programme.cost(point, i);
     found.share(i) = found.cost(i) / point.cost;
-    found.mean_square_share(i) = limits.row(tightest)[i] * tolerance * tolerance / need;
-    divide_share(slopes, programme.errors(i), found.mean_square_share(i), found.error_mean_square_share);
-    found.bound(i) = static_cast<std::uint8_t>(programme.at_bound(i, tolerance, point.process[i]));
+    found.mean_square_share(i) = shares[i];
+    const auto [weights, parts_of_errors] = programme.weights(point, i);
+    double of_errors = 0.0;
+    for (const std::size_t part : parts_of_errors) of_errors += shares[part];
+    divide_share(slopes, weights, of_errors, found.error_mean_square_share);
+    found.bound(i) = static_cast<std::uint8_t>(programme.at_bound(point, i));
     found.chosen(i) = programme.chosen_name(i, point.process[i]);
   }
   found.coarser_yield = {{parts}, search.coarser_yield};

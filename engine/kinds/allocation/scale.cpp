@@ -92,12 +92,15 @@ Tightened tighten_rejecting_parts(const SearchProblem& problem, Candidate from, 
     for (std::size_t s = 0; s < design.load.size(); ++s) {
       if (design.load[s] > 1.0) rejected.push_back(static_cast<std::uint32_t>(s));
     }
-    const std::vector<bool> rejects = part_scores(problem, design, rejected).is_sure;
+    const PartScores scores = part_scores(problem, design, rejected);
+    std::vector<bool> rejects = scores.is_sure;
+    for (std::size_t i = 0; i < rejects.size(); ++i) rejects[i] = rejects[i] && scores.of_part[i] > 0.0;
     const bool none = std::ranges::find(rejects, true) == rejects.end();
     std::vector<double> tighter = design.candidate.point.tolerance;
     for (std::size_t i = 0; i < tighter.size(); ++i) {
       if (none || rejects[i]) tighter[i] /= std::clamp(load, 1.05, 2.0);
     }
+    problem.programme.keep_void(design.candidate.point, tighter);
     TolerancePoint next = problem.programme.at_most(tighter);
     if (next.tolerance == design.candidate.point.tolerance) break;
     design.candidate.point = std::move(next);

@@ -63,7 +63,7 @@ ToleranceDesign scale_screened(const SearchProblem& problem, const ToleranceDesi
 
 /// Scores of parts: sums of x^2 - 1 over some machines, where x is an error over its standard deviation.
 struct PartScores {
-  std::vector<double> of_part;  ///< [N] sums over the errors of each part
+  std::vector<double> of_part;  ///< [N] sums over the errors of each part, each times its growth with the tolerance
   std::vector<bool> is_sure;    ///< [N] whether the score is more than noise (kSignificance)
 };
 

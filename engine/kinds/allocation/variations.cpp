@@ -113,8 +113,7 @@ class VariationEvaluator : private LoadSolver {
       for (std::size_t k = 0; k < count; ++k) values_[p * count + k] = drawn_[p * count_ + pairs_[k] % count_];
     }
     for (std::size_t k = 0; k < count; ++k) {
-      const Variation& variation = varied_.variations[pairs_[k] / count_];
-      for (const std::size_t p : variation.errors) values_[p * count + k] *= variation.factor;
+      for (const auto& [p, factor] : varied_.variations[pairs_[k] / count_]) values_[p * count + k] *= factor;
     }
     of_pairs_.assign(count, 0.0);
     solve(m, of_pairs_);

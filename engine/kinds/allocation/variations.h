@@ -13,11 +13,14 @@
 
 namespace poesy {
 
-/// A factor on some errors: a changed tolerance, or mirrored errors.
-struct Variation {
-  std::vector<std::size_t> errors;  ///< positions among the plan's factors
-  double factor;                    ///< finite; a negative one mirrors the errors
+/// A factor on an error.
+struct ErrorFactor {
+  std::size_t error;  ///< position among the plan's factors
+  double factor;      ///< finite; a negative one mirrors the error
 };
+
+/// Factors on some errors: a changed tolerance, or mirrored errors.
+using Variation = std::vector<ErrorFactor>;
 
 /// The loads (MachineLoads) [V x n] of the listed machines with each variation alone. machines: ascending numbers below
 /// plan.samples(). A machine is solved at the poses that decide, where its load is within kDeciding of its largest. If

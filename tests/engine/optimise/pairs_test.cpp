@@ -53,7 +53,7 @@ AllocationProblem delta(double hinge_b) {
     const double b = i == 3 || i == 7 ? 0.5 : i == kHingeTilt ? hinge_b : 1.0;
     problem.parts.push_back({{CostLaw::reciprocal(0.0, b), 0.0, kInfinity}});
   }
-  problem.pairs = {{kRailTilt, 1, 0.5, false}, {kHingeTilt, 4, 0.5, false}};
+  problem.pairs = {{kRailTilt, 1, 0.5, LeftOut::never}, {kHingeTilt, 4, 0.5, LeftOut::never}};
   return problem;
 }
 
@@ -77,7 +77,8 @@ TEST(ZonesOfTheDelta, CostLessWithoutOneOrBothOrientations) {
                                                                        {{kRailTilt, kHingeTilt}, 1110.8971540084056}};
   for (const auto& [left_out, cost] : cases) {
     AllocationProblem problem = delta(1.0);
-    for (Within& pair : problem.pairs) pair.may_be_left_out = std::ranges::count(left_out, pair.inner) > 0;
+    for (Within& pair : problem.pairs)
+      pair.left_out = std::ranges::count(left_out, pair.inner) > 0 ? LeftOut::by_choice : LeftOut::never;
     const LeastCost found = solved(problem);
     EXPECT_NEAR(found.best.cost, cost, 1e-8);
     EXPECT_EQ(found.best.left_out, left_out);
@@ -87,7 +88,7 @@ TEST(ZonesOfTheDelta, CostLessWithoutOneOrBothOrientations) {
 
 TEST(ZonesOfTheDelta, KeepAnOrientationThatPays) {
   AllocationProblem problem = delta(0.1);
-  for (Within& pair : problem.pairs) pair.may_be_left_out = true;
+  for (Within& pair : problem.pairs) pair.left_out = LeftOut::by_choice;
   SearchOptions options;
   options.alternatives = 1;
   const LeastCost found = solved(problem, options);
@@ -110,7 +111,7 @@ struct RandomPairs {
   std::vector<std::vector<PlainLaw>> laws;  ///< [N] of each process
 };
 
-RandomPairs random_pairs(std::uint64_t number, std::size_t pairs, std::size_t ways, bool may_be_left_out) {
+RandomPairs random_pairs(std::uint64_t number, std::size_t pairs, std::size_t ways, LeftOut left_out) {
   SplitMix draw(number * 7919 + 5);
   RandomPairs random;
   ToleranceLimits& limits = random.problem.limits;
@@ -134,7 +135,7 @@ RandomPairs random_pairs(std::uint64_t number, std::size_t pairs, std::size_t wa
     }
   }
   for (std::size_t p = 0; p < pairs; ++p) {
-    random.problem.pairs.push_back({2 * p + 1, 2 * p, draw.below(3) == 0 ? 2.0 / 3.0 : 0.5, may_be_left_out});
+    random.problem.pairs.push_back({2 * p + 1, 2 * p, draw.below(3) == 0 ? 2.0 / 3.0 : 0.5, left_out});
   }
   for (std::size_t l = 0; l < count; ++l) {
     double room = 0.0;
@@ -212,7 +213,7 @@ void expect_within_bounds(const AllocationProblem& problem, const Allocation& fo
 TEST(RandomPairs, AreSolvedWithAProofOfTheirOwn) {
   std::size_t count = 0;
   for (std::uint64_t number = 0; number < 60; ++number) {
-    const RandomPairs random = random_pairs(number, 1 + number % 4, 1, false);
+    const RandomPairs random = random_pairs(number, 1 + number % 4, 1, LeftOut::never);
     const AllocationOutcome outcome = least_cost(random.problem);
     const auto* found = std::get_if<LeastCost>(&outcome);
     if (found == nullptr) continue;
@@ -239,7 +240,7 @@ AllocationProblem chosen(const AllocationProblem& problem, const std::vector<std
   for (std::size_t p = 0; p < out.size(); ++p) {
     const Within& pair = problem.pairs[p];
     if (out[p] == 0) {
-      one.pairs.push_back({pair.inner, pair.outer, pair.share, false});
+      one.pairs.push_back({pair.inner, pair.outer, pair.share, LeftOut::never});
       continue;
     }
     one.parts[pair.inner] = {fixed_process(0.0)};
@@ -267,7 +268,7 @@ std::vector<double> costs_of_all(const AllocationProblem& problem) {
   const std::size_t parts = problem.parts.size();
   std::vector<std::size_t> most;
   for (const auto& processes : problem.parts) most.push_back(processes.size());
-  for (const Within& pair : problem.pairs) most.push_back(pair.may_be_left_out ? 2 : 1);
+  for (const Within& pair : problem.pairs) most.push_back(pair.left_out == LeftOut::never ? 1 : 2);
   std::vector<std::size_t> choice(most.size(), 0);
   for (std::size_t i = 0; i < choice.size();) {
     const std::vector<std::size_t> process(choice.begin(), choice.begin() + static_cast<std::ptrdiff_t>(parts));
@@ -292,7 +293,7 @@ TEST(RandomPairs, AreKeptOrLeftOutAsTheBestOfAllSays) {
   std::size_t kept = 0;
   for (std::uint64_t number = 0; number < 120; ++number) {
     const std::size_t ways = 1 + number % 2;
-    const RandomPairs random = random_pairs(number + 1000, ways == 1 ? 4 : 2, ways, true);
+    const RandomPairs random = random_pairs(number + 1000, ways == 1 ? 4 : 2, ways, LeftOut::by_choice);
     const std::vector<double> costs = costs_of_all(random.problem);
     SearchOptions options;
     options.alternatives = 2;
@@ -319,7 +320,7 @@ TEST(RandomPairs, AreKeptOrLeftOutAsTheBestOfAllSays) {
 
 TEST(RandomPairs, WithListsOfValuesAreSearchedWell) {
   AllocationProblem problem = delta(0.1);
-  for (Within& pair : problem.pairs) pair.may_be_left_out = true;
+  for (Within& pair : problem.pairs) pair.left_out = LeftOut::by_choice;
   std::vector<double> values;
   for (int k = 0; k < 25; ++k) values.push_back(0.001 * std::pow(10.0, k / 10.0));
   for (std::size_t i = 0; i < kDelta.size(); ++i) {
@@ -334,14 +335,28 @@ TEST(RandomPairs, WithListsOfValuesAreSearchedWell) {
 }
 
 TEST(RandomPairs, OfManyFeaturesAreSolvedAtOnce) {
-  const RandomPairs random = random_pairs(4, 30, 1, true);
+  const RandomPairs random = random_pairs(4, 30, 1, LeftOut::by_choice);
   const LeastCost found = solved(random.problem, {.relative_gap = 1e-6});
   EXPECT_LE(found.gap(), 1e-6 * found.best.cost);
   EXPECT_LT(found.nodes, 2000u);
 }
 
+TEST(PairOfParts, WithAGivenTiltHasItUnlessThatIsVoid) {
+  AllocationProblem problem{
+      {Stacking::root_sum_square, 2, {1.0, 0.5}, {1.0}}, {}, {{1, 0, 0.5, LeftOut::where_it_is_void}}};
+  problem.parts = {{{CostLaw::reciprocal(0.0, 1.0), 0.0, kInfinity}}, {fixed_process(0.1)}};
+  LeastCost found = solved(problem);
+  EXPECT_NEAR(found.best.tolerance[0], std::sqrt(1.0 - 0.5 * 0.01), 1e-9);
+  EXPECT_EQ(found.best.tolerance[1], 0.1);
+  EXPECT_TRUE(found.best.left_out.empty());
+  problem.parts[1] = {fixed_process(2.0)};
+  found = solved(problem);
+  EXPECT_NEAR(found.best.tolerance[0], std::sqrt(1.0 / 1.25), 1e-9);
+  EXPECT_EQ(found.best.left_out, std::vector<std::size_t>{1});
+}
+
 TEST(PairOfParts, WithoutEffectNeedsAnEnd) {
-  AllocationProblem problem{{Stacking::root_sum_square, 3, {0, 0, 1}, {1.0}}, {}, {{1, 0, 0.5, false}}};
+  AllocationProblem problem{{Stacking::root_sum_square, 3, {0, 0, 1}, {1.0}}, {}, {{1, 0, 0.5, LeftOut::never}}};
   const CostLaw law = CostLaw::reciprocal(0.0, 1.0);
   problem.parts = {{{law, 0.0, kInfinity}}, {{law, 0.0, kInfinity}}, {{law, 0.0, kInfinity}}};
   EXPECT_EQ(std::get<Unbounded>(least_cost(problem)).parts, std::vector<std::size_t>{0});
@@ -354,7 +369,7 @@ TEST(PairOfParts, WithoutEffectNeedsAnEnd) {
 
 TEST(PairOfParts, ThatBreaksALimitAtItsLowestIsInfeasible) {
   // The least need is that of a tilt as coarse as the location allows: 4 (1 - 0.5 x 0.5) = 3.
-  AllocationProblem problem{{Stacking::root_sum_square, 2, {1.0, -0.5}, {2.9}}, {}, {{1, 0, 0.5, false}}};
+  AllocationProblem problem{{Stacking::root_sum_square, 2, {1.0, -0.5}, {2.9}}, {}, {{1, 0, 0.5, LeftOut::never}}};
   problem.parts = {{{CostLaw::reciprocal(0.0, 1.0), 2.0, 9.0}}, {{CostLaw::reciprocal(0.0, 1.0), 0.1, 9.0}}};
   const auto broken = std::get<Infeasible>(least_cost(problem));
   EXPECT_EQ(broken.limit, 0u);
@@ -372,7 +387,7 @@ TEST(PairOfParts, ThatBreaksALimitAtItsLowestIsInfeasible) {
 }
 
 TEST(PairOfParts, WithHardlyAnyRoomIsSolved) {
-  AllocationProblem problem{{Stacking::root_sum_square, 2, {1.0, -0.5}, {3.0}}, {}, {{1, 0, 0.5, true}}};
+  AllocationProblem problem{{Stacking::root_sum_square, 2, {1.0, -0.5}, {3.0}}, {}, {{1, 0, 0.5, LeftOut::by_choice}}};
   problem.parts = {{{CostLaw::reciprocal(0.0, 1.0), 2.0, 9.0}}, {{CostLaw::reciprocal(0.0, 1.0), 0.1, 9.0}}};
   for (const double more : {0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3}) {
     problem.limits.room = {3.0 * (1.0 + more)};

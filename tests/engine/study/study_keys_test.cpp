@@ -229,7 +229,11 @@ std::vector<std::string> studies() {
           "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"allocation\"\ncpk = 1\ncalibrated = true\n"
           "limits = { angular_deformation = \"1 deg\" }\nparts = [{ factors = \"linear\", each = true, identical_limbs "
           "= [1, "
-          "2], grades = [\"IT7\"], nominal_size = \"50 mm\" }, { factors = \"angular\", tolerance = \"1 deg\" }]\n"};
+          "2], grades = [\"IT7\"], nominal_size = \"50 mm\" }, { factors = \"angular\", tolerance = \"1 deg\" }]\n",
+      with_zones(head, "sigmas = 3") +
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"allocation\"\n"
+          "limits = { angular_deformation = \"1 deg\" }\nparts = [{ zones = [\"rod.tolerance\"], each = true, "
+          "tolerance = \"1 mm\" }]\n"};
 }
 
 using OnTable = std::function<void(toml::table& table, const std::string& path)>;

@@ -22,9 +22,15 @@ TEST(SpreadOfErrors, WithAShiftHasWhatTheShiftLeaves) {
 
 TEST(PartsOfADrawing, HaveTheEffectsOfTheirErrors) {
   const std::vector<double> effects{1.0, 2.0, 4.0, 0.5, 0.0, 0.25};  // two limits, three errors
-  const std::vector<DrawnPart> parts{{{0, 2}, {2.0}}, {{1}, {3.0}}};
+  const auto square = [](double sigmas) { return mean_square_per_tolerance({sigmas}); };
+  const std::vector<DrawnPart> parts{{{{{0, 2}, square(2.0)}}}, {{{{1}, square(3.0)}}}};
   EXPECT_EQ(part_effects(effects, 3, parts),
             (std::vector{5.0 / 4.0, 2.0 * (1.0 / 3.0) * (1.0 / 3.0), 0.75 / 4.0, 0.0}));
+}
+
+TEST(PartsOfADrawing, MayLeaveMoreToOtherErrorsTheFinerTheyAre) {
+  const std::vector<DrawnPart> parts{{{{{0}, 0.25}}}, {{{{1, 2}, 1.0}, {{0}, -0.25}}}};
+  EXPECT_EQ(part_effects(std::vector{4.0, 0.5, 0.125}, 3, parts), (std::vector{1.0, 0.625 - 1.0}));
 }
 
 }  // namespace

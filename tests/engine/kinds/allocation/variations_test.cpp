@@ -49,10 +49,10 @@ struct VariedStudy {
 std::vector<Variation> variations() {
   std::vector<Variation> list;
   for (std::size_t p = 0; p < kErrors; ++p) {
-    for (const double factor : {1.05, 2.0}) list.push_back({{p}, factor});
+    for (const double factor : {1.05, 2.0}) list.push_back({{p, factor}});
   }
-  list.push_back({{0, 1, 2, 3}, -1.0});
-  list.push_back({{1, 3}, 1.05});
+  list.push_back({{0, -1.0}, {1, -1.0}, {2, -1.0}, {3, -1.0}});
+  list.push_back({{1, 1.05}, {3, 1.05}});
   return list;
 }
 
@@ -63,8 +63,8 @@ TEST(TryVariations, ChangesErrorsAsATolerance) {
   ASSERT_EQ(found.size(), list.size() * 225);
   for (std::size_t v = 0; v < list.size(); ++v) {
     VariedStudy other;
-    for (const std::size_t p : list[v].errors) {
-      other.study.errors.by_factor[p] = Distribution::normal(0.3 * std::abs(list[v].factor));
+    for (const auto& [p, factor] : list[v]) {
+      other.study.errors.by_factor[p] = Distribution::normal(0.3 * std::abs(factor));
     }
     const auto whole = machine_loads(other.plan(), other.model, other.study.analysis.limits, {.threads = 1});
     // Without signs: the function has none where all errors are mirrored.
@@ -75,13 +75,13 @@ TEST(TryVariations, ChangesErrorsAsATolerance) {
 TEST(TryVariations, KeepErrorsThatAreDrawnAnewAtEachPose) {
   VariedStudy study;
   study.study.errors.per_pose = {FactorIndex(2)};
-  const std::vector<Variation> list{{{0}, 1.05}, {{0, 1}, 2.0}, {{1, 3}, 1.05}};
+  const std::vector<Variation> list{{{0, 1.05}}, {{0, 2.0}, {1, 1.5}}, {{1, 1.05}, {3, 1.05}}};
   const std::vector<double> found = study.varied(list);
   for (std::size_t v = 0; v < list.size(); ++v) {
     VariedStudy other;
     other.study.errors.per_pose = study.study.errors.per_pose;
-    for (const std::size_t p : list[v].errors) {
-      other.study.errors.by_factor[p] = Distribution::normal(0.3 * list[v].factor);
+    for (const auto& [p, factor] : list[v]) {
+      other.study.errors.by_factor[p] = Distribution::normal(0.3 * factor);
     }
     const auto whole = machine_loads(other.plan(), other.model, other.study.analysis.limits, {.threads = 1});
     for (std::size_t k = 0; k < 225; ++k) EXPECT_NEAR(found[v * 225 + k], whole->load[2 * k], 1e-9) << v;
