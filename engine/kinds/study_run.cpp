@@ -15,8 +15,10 @@ std::optional<StudyResult> run_study(const Study& study, const Model& model, con
   RunOptions with_checkpoints = options;
   if (options.checkpoints == nullptr) with_checkpoints.checkpoints = &not_kept;
   const StudyRun run{.study = study, .model = model, .poses = poses, .options = with_checkpoints};
-  std::optional<StudyResult> result = kind_of(study).run.run(run);
-  if (result) result->drawing = drawing_result(run);
+  const RunKind& kind = kind_of(study).run;
+  std::optional<StudyResult> result = kind.run(run);
+  // A kind that confirms its result finds other sizes than those of the study.
+  if (result && !kind.confirms) result->drawing = drawing_result(run);
   return result;
 }
 
