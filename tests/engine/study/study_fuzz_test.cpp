@@ -73,7 +73,13 @@ TEST(DamagedStudy, MayNestAsDeepAsItsLinesAreLong) {
 
 TEST(DamagedTemplate, IsAStudyOrAnInputErrorWhateverBytesChange) {
   const Catalog catalog = test::fake_catalog();
-  Damage damage([&](const std::string& path) { read_study(path, catalog, StudyUse::run); });
+  Damage damage([&](const std::string& path) {
+    try {
+      read_study(path, catalog, StudyUse::run);
+    } catch (const FileError&) {
+      // A comment without its sign may name a file, and there is none.
+    }
+  });
   std::mt19937_64 random(20240608);
   for (const StudyKind* kind : study_kinds().all) {
     const std::string text = template_text(catalog[0], *kind);
