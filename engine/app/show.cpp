@@ -16,6 +16,7 @@
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
 #include "engine/report/display.h"
+#include "engine/report/signs.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
 #include "engine/result/result_file.h"
@@ -105,6 +106,7 @@ int show_one(const ShowOptions& options) {
   const SolveTally tally = kind.tally(result);
   if (options.top) keep_first(*options.top, tables);
   const std::size_t width = width_of(options);
+  if (!options.json && !shows_signs()) use_words(tables);
   print(options.json ? json_of(result, tally.total(), tables)
                      : summary_text(result, tally, width) + study_lines(result, width) +
                            failures_text(result, tally, path, width) + "\n" + text_of(tables, width, kRemedy));

@@ -33,6 +33,9 @@ bool shows_live_lines(int descriptor);
 /// stdout is not a terminal.
 std::size_t output_width();
 
+/// Whether texts for people may have signs beyond ASCII: the locale of LC_ALL, LC_CTYPE or LANG has UTF-8.
+bool shows_signs();
+
 /// Prints on stdout. Control characters except line ends and tabs are replaced, because the text may quote a file
 /// (printable_lines).
 void print(const std::string& text);

@@ -1,14 +1,16 @@
 """A drawing's features and zones: the numbers of another program, and the same draws however a run is divided."""
 
+import csv
 import json
 import os
 import shutil
+import subprocess
 from pathlib import Path
 
 import h5py
 import numpy as np
 
-from poesy_program import ProgramTest, main
+from poesy_program import PROGRAM, ProgramTest, main
 
 DATA = Path(os.environ["POESY_DATA"])
 MECHANISM = DATA / "mechanisms" / "linear-delta-drawing.toml"
@@ -111,6 +113,78 @@ class Drawing(ProgramTest):
         variance = product * (1 - product) + sum((product / one) ** 2 * one * (1 - one) for one in alone)
         self.assertLess(abs(together - product), 5.0 * np.sqrt(variance / samples))
         self.assertLess(together, min(alone))
+
+    ALLOCATION = """\
+kind = "allocation"
+samples = 4000
+limits = { tip_position = "0.1 mm" }
+yield = 0.95
+[[analysis.parts]]
+zones = "all"
+each = true
+identical_limbs = [1, 2, 3]
+cost = { law = "reciprocal", b = 1, unit = "mm" }
+bounds = ["0.002 mm", "0.2 mm"]
+"""
+
+    def rows(self, result):
+        self.succeeds("export", result, "-d", "tables")
+        with open(self.folder / "tables" / "drawing.csv", encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_allocation(self):
+        """The drawing comes back as a table for the workshop, the same however it is run."""
+        self.result("one", self.ALLOCATION, "exact", ["--threads", "1"]).close()
+        with self.result("two", self.ALLOCATION, "exact", ["--threads", "2"]) as file:
+            found = file["allocation"]
+            zones = {name.decode(): k for k, name in enumerate(file["part"][:])}
+            tolerance, needed = found["tolerance"][:], found["zone_is_needed"][:]
+            rejects = found["certificate/rejects"][()]
+            self.assertEqual(found.attrs["certified"], 1)
+            np.testing.assert_allclose(found["mean_square_share"][:].sum(), 1.0, rtol=1e-12)
+            np.testing.assert_allclose(np.nansum(found["error_mean_square_share"][:]), 1.0, rtol=1e-12)
+        self.assertEqual(self.content_hash("one.h5"), self.content_hash("two.h5"))
+        left_out = [name for name, k in zones.items() if needed[k] == 0]
+        self.assertEqual(left_out, ["rail.perpendicularity", "hinge_b.parallelism"])
+        rows = self.rows("two.h5")
+        self.assertEqual(list(rows[0]), "limbs feature symbol sign zone_mm shape datums length_mm cost share_of_cost "
+                                        "share_of_mean_square sigmas inside grade remark".split())
+        self.assertEqual([f"{row['feature']}.{row['symbol']}" for row in rows], [z for z in zones if z not in left_out])
+        for row in rows:
+            exact = 1e3 * tolerance[zones[f"{row['feature']}.{row['symbol']}"]]
+            self.assertLessEqual(float(row["zone_mm"]), exact)
+            self.assertGreater(float(row["zone_mm"]), 0.999 * exact)
+        rail = rows[1]
+        self.assertEqual([rail[key] for key in ("limbs", "sign", "shape", "datums", "length_mm", "remark")],
+                         ["1-3", "\u2316", "cylinder", "A|B", "500", "perpendicularity: not needed"])
+        inside = {row["feature"]: float(row["inside"]) for row in rows}
+        for feature, expected in (("rail", 0.9779054167276021), ("rod", 0.9973002039367398), ("rod_bore", 0.9888910034617577),
+                                  ("face", 0.9973002039367398**2)):
+            np.testing.assert_allclose(inside[feature], expected, rtol=1e-9)
+        # The study of the certificate repeats it.
+        self.succeeds("run", "two_certificate.toml", "-o", "again.h5", "--quiet")
+        with h5py.File(self.folder / "again.h5") as file:
+            self.assertEqual(file["yield/rejects"][()], rejects)
+
+    def test_given_orientation(self):
+        """An orientation that is in no block stays as drawn."""
+        parts = self.ALLOCATION.replace('"all"', '["*.position", "*.tolerance"]')
+        self.result("given", parts, "exact").close()
+        rows = {f"{row['feature']}.{row['symbol']}": row for row in self.rows("given.h5")}
+        self.assertEqual(rows["hinge_b.parallelism"]["zone_mm"], "0.01")
+        self.assertEqual(rows["hinge_b.parallelism"]["remark"], "given")
+
+    def test_signs(self):
+        """A terminal shows signs where its locale has them, and words elsewhere."""
+        self.result("signs", self.ALLOCATION, "exact").close()
+        for locale, line in (("C.UTF-8", "1-3 rail      \u2316  \u23000."), ("C", "1-3 rail      position     dia 0.")):
+            shown = subprocess.run([PROGRAM, "show", "signs.h5"], cwd=self.folder, env=os.environ | {"LC_ALL": locale},
+                                   capture_output=True, text=True, encoding="utf-8", check=True).stdout
+            self.assertIn(line, shown)
+            self.assertIn("perpendicularity: not needed", shown)
+        self.assertIn("\u2316", self.succeeds("show", "signs.h5", "--json"))
+        self.succeeds("report", "signs.h5", "-o", "signs.html")
+        self.assertIn("\u2316", (self.folder / "signs.html").read_text(encoding="utf-8"))
 
     def test_named(self):
         """`models` says in words what the errors of a feature are."""

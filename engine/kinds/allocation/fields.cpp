@@ -7,6 +7,8 @@
 #include "engine/kinds/allocation/kind.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/summary.h"
+#include "engine/kinds/allocation/zone_tables.h"
+#include "engine/model/feature.h"
 #include "engine/result/result_parts.h"
 #include "engine/stats/proportion.h"
 
@@ -53,6 +55,21 @@ const Group<Result> kAllocation{
      {"coarser_yield", &Result::coarser_yield, "1",
       "Predicted share of the design's machines that are within all limits if this part alone gets a T 5 % larger, or "
       "the next larger one that can be had; NaN where nothing larger is allowed"},
+     {"zone_feature", &Result::zone_feature, "1", "Feature of the drawing whose zone the part is; empty: it is none",
+      Presence::where_computed},
+     {"zone_limbs", &Result::zone_limbs, "1", "Limbs whose features share the zone", Presence::where_computed},
+     {"zone_key", &Result::zone_key, "1", "Its name: position, perpendicularity, ...", Presence::where_computed},
+     {"zone_shape", &Result::zone_shape, "1",
+      "cylinder, sphere, planes: T is a diameter or a width; interval: a distance, +-T", Presence::where_computed},
+     {"zone_datums", &Result::zone_datums, "1", "Its datums", Presence::where_computed},
+     {"zone_length", &Result::zone_length, "m", "Length of the axis, first side or diameter of the plane; NaN: none",
+      Presence::where_computed},
+     {"zone_width", &Result::zone_width, "m", "Second side of the plane; NaN: none", Presence::where_computed},
+     {"zone_inside", &Result::zone_inside, "1", "Share of the features that are inside the zone",
+      Presence::where_computed},
+     {"zone_is_needed", &Result::zone_is_needed, "1",
+      "0: an orientation that the drawing does not need, as wide as its location allows; else 1",
+      Presence::where_computed},
      {"stage_tolerance", &Result::stage_tolerance, kPartUnit, "T of each part after each step on the way"},
      {"multiplier", &Result::multiplier, kCostPerResponse,
       "What one unit more of the limit at this pose alone would save; NaN for a response without a limit"},
@@ -204,6 +221,17 @@ void check(const Result& found) {
   check_names(found.part_names, "/part");
   check_names(found.part_unit, "/allocation/unit");
   check_names(texts(found.stages, &AllocationStage::name), "/stage");
+  const std::array sizes{found.zone_feature.size(), found.zone_limbs.size(),  found.zone_key.size(),
+                         found.zone_shape.size(),   found.zone_datums.size(), found.zone_length.size(),
+                         found.zone_width.size(),   found.zone_inside.size(), found.zone_is_needed.size()};
+  if (std::ranges::count(sizes, sizes.front()) != static_cast<std::ptrdiff_t>(sizes.size())) {
+    throw h5::Error("/allocation has only some of the datasets of zones");
+  }
+  for (const std::string& key : found.zone_key) {
+    if (!key.empty() && std::ranges::find(zone_traits(), key, &ZoneTraits::key) == zone_traits().end()) {
+      throw h5::Error("/allocation/zone_key holds an unknown zone");
+    }
+  }
   if (std::ranges::any_of(found.bound, [](std::uint8_t at) { return at > 3; })) {
     throw h5::Error("/allocation/bound holds an unknown bound");
   }
@@ -382,6 +410,7 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
   const Result& found = allocation_of(result);
   append_sigma_tables(tables, result);
   tables.push_back(part_table(found));
+  if (found.has_zones()) tables.push_back(drawing_csv(found));
   if (!found.error_mean_square_share.empty()) tables.push_back(error_table(result));
   tables.push_back(limit_table(result));
   tables.push_back(pose_use_table(result));

@@ -146,6 +146,20 @@ struct AllocationResult {
   /// value; NaN if it cannot be coarser.
   Parts<double> coarser_yield;
 
+  /// @name Zones of a drawing: a number or text for each part, empty text for a part that is no zone. No arrays if no
+  /// part is a zone.
+  /// @{
+  Parts<std::string> zone_feature;     ///< name of the feature on the drawing: "rail"
+  Parts<std::string> zone_limbs;       ///< limbs that share the zone: "1-3"
+  Parts<std::string> zone_key;         ///< "position"
+  Parts<std::string> zone_shape;       ///< "cylinder", "sphere", "planes"; "interval" of a distance
+  Parts<std::string> zone_datums;      ///< "A|B"
+  Parts<double> zone_length;           ///< length of an axis, first side or diameter of a plane (m); NaN: none
+  Parts<double> zone_width;            ///< second side of a plane (m); NaN: none
+  Parts<double> zone_inside;           ///< share of the features that are inside it
+  Parts<std::uint8_t> zone_is_needed;  ///< 0: an orientation that the drawing does not need
+  /// @}
+
   AtPoses multiplier;  ///< what one unit more of the limit at this pose alone would save
   AtPoses limit_use;   ///< predicted root mean square over the root mean square that the tightest limit allows
   /// SI; of a limit that is not on the magnitude, the least distance over the poses from the response of the mechanism
@@ -186,7 +200,10 @@ struct AllocationResult {
   Array<SolveCounts, axis::Pose> solves;  ///< how solves of the certificate's machines ended
   std::vector<Failure> failures;          ///< the first samples of these machines that were not solved
 
-  std::size_t parts() const { return part_names.size(); }               ///< The number of parts of the drawing.
+  std::size_t parts() const { return part_names.size(); }   ///< The number of parts of the drawing.
+  bool has_zones() const { return !zone_feature.empty(); }  ///< Whether a part is a zone of the drawing.
+  /// Whether the part is an orientation that the drawing does not need.
+  bool is_left_out(std::size_t part) const { return has_zones() && zone_is_needed(part) == 0; }
   std::size_t poses() const { return limit_use.length<axis::Pose>(); }  ///< The number of poses of the study.
   SolveCounts total() const { return total_of(solves.all()); }          ///< The solves of the certificate at all poses.
   bool certified() const {

@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "engine/base/nan.h"
+#include "engine/drawing/share_inside.h"
 #include "engine/kinds/allocation/kind.h"
 #include "engine/kinds/allocation/machine_loads.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/search.h"
+#include "engine/kinds/allocation/zone_parts.h"
 #include "engine/kinds/confirming_study.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/stats/proportion.h"
@@ -120,12 +122,58 @@ void add_parts(const SearchProblem& problem, const FoundTolerances& search, cons
     found.mean_square_share(i) = shares[i];
     const auto [weights, parts_of_errors] = programme.weights(point, i);
     double of_errors = 0.0;
-    for (const std::size_t part : parts_of_errors) of_errors += shares[part];
+    for (const std::size_t one : parts_of_errors) of_errors += shares[one];
     divide_share(slopes, weights, of_errors, found.error_mean_square_share);
     found.bound(i) = static_cast<std::uint8_t>(programme.at_bound(point, i));
     found.chosen(i) = programme.chosen_name(i, point.process[i]);
   }
   found.coarser_yield = {{parts}, search.coarser_yield};
+}
+
+/// A feature with the zones that were found.
+Feature found_feature(const ToleranceProgramme& programme, const TolerancePoint& point, std::size_t part,
+                      const ModelDescription& model) {
+  Feature feature = feature_of(programme.parts()[part], model);
+  const bool turned = is_orientation(programme.parts()[part], model);
+  (turned ? feature.orientation : feature.location)->size = point.tolerance[part];
+  for (const Within& pair : programme.pairs()) {
+    if (pair.outer == part) feature.orientation->size = point.tolerance[pair.inner];
+    if (pair.inner == part) feature.location->size = point.tolerance[pair.outer];
+  }
+  return feature;
+}
+
+/// Fills in the zones of the drawing.
+void add_zones(const SearchProblem& problem, const TolerancePoint& point, AllocationResult& found) {
+  const ModelDescription& model = problem.run.study.model();
+  const std::vector<AllocatedPart>& parts = problem.programme.parts();
+  if (std::ranges::none_of(parts, [](const AllocatedPart& part) { return part.zone.has_value(); })) return;
+  const Study drawn = problem.programme.at(point.tolerance);
+  for (auto* texts : {&found.zone_feature, &found.zone_limbs, &found.zone_key, &found.zone_shape, &found.zone_datums}) {
+    *texts = AllocationResult::Parts<std::string>({parts.size()});
+  }
+  for (auto* numbers : {&found.zone_length, &found.zone_width, &found.zone_inside}) {
+    *numbers = AllocationResult::Parts<double>({parts.size()}, kNaN);
+  }
+  found.zone_is_needed = AllocationResult::Parts<std::uint8_t>({parts.size()}, 1);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const AllocatedPart& part = parts[i];
+    if (!part.zone) continue;
+    const Feature feature = found_feature(problem.programme, point, i, model);
+    found.zone_feature(i) = feature.label;
+    found.zone_limbs(i) = limbs_of(part, model);
+    found.zone_key(i) = part.zone->key;
+    found.zone_shape(i) = shape_of(part, model);
+    found.zone_datums(i) = zone_of(part, model).datums;
+    if (feature.size[0] > 0.0) found.zone_length(i) = feature.size[0];
+    if (feature.size[1] > 0.0) found.zone_width(i) = feature.size[1];
+    found.zone_inside(i) =
+        drawing::share_inside(feature, zone_class(part.zone->key, feature.kind), part.sigmas, part.shift);
+    found.zone_is_needed(i) = problem.programme.is_void(point, i) ? 0 : 1;
+    found.sigma(i) = drawn.errors.by_factor[part.factors.front().value].standard_deviation();
+    if (feature.kind == FeatureKind::distance)
+      found.sigma(i) = sigma_per_tolerance({part.sigmas, part.shift}) * point.tolerance[i];
+  }
 }
 
 /// Fills in the results of each limit.
@@ -200,6 +248,7 @@ AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& 
   const ToleranceLimits limits = limits_of(problem, search);
   AllocationResult found;
   add_parts(problem, search, limits, found);
+  add_zones(problem, candidate.point, found);
   add_limits(problem, search, limits, found);
   add_curves(problem, search, found);
   found.aim = problem.options.aim;

@@ -75,10 +75,13 @@ std::string certificate_text(const AllocationResult& found) {
   return fmt::format("not certified: it is not shown with {} that at least {} {} {}", sure, asked, good, counts);
 }
 
-std::string drawing_text(double tolerance, const std::string& si_unit) {
+std::string drawing_number(double tolerance, const std::string& si_unit) {
   constexpr int kDigits = 4;
-  const Unit& unit = display_unit(dimension_of(si_unit));
-  return fmt::format("+-{} {}", number_text(rounded_down(tolerance / unit.si, kDigits), kDigits), unit.name);
+  return number_text(rounded_down(tolerance / display_unit(dimension_of(si_unit)).si, kDigits), kDigits);
+}
+
+std::string drawing_text(double tolerance, const std::string& si_unit) {
+  return fmt::format("+-{} {}", drawing_number(tolerance, si_unit), display_unit(dimension_of(si_unit)).name);
 }
 
 }  // namespace poesy

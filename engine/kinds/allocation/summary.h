@@ -31,6 +31,9 @@ std::vector<std::size_t> ordered_parts(const AllocationResult& found, RowOrder o
 /// "certified: at least 99.73 % of the machines are within all limits at all poses, ...", or why it is not.
 std::string certificate_text(const AllocationResult& found);
 
+/// A tolerance in the unit in which people read it: four digits, rounded down so that limits are still kept.
+std::string drawing_number(double tolerance, const std::string& si_unit);
+
 /// T as a drawing has it, "+-0.0123 mm": four digits, rounded down so that limits are still kept.
 std::string drawing_text(double tolerance, const std::string& si_unit);
 

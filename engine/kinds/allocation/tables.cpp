@@ -10,6 +10,7 @@
 #include "engine/base/units.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/summary.h"
+#include "engine/kinds/allocation/zone_tables.h"
 #include "engine/model/calibrated.h"
 #include "engine/report/display.h"
 #include "engine/study/limit_keys.h"
@@ -44,7 +45,9 @@ std::string made_of(const Result& found, std::size_t n) {
 }
 
 std::string drawing_caption(const Result& found) {
-  const std::string parts = counted(found.parts(), "part", "parts");
+  std::size_t drawn = 0;
+  for (std::size_t n = 0; n < found.parts(); ++n) drawn += found.is_left_out(n) ? 0 : 1;
+  const std::string parts = counted(drawn, "part", "parts");
   const std::string cost = has_costs(found) ? ", which cost " + cost_text(found.total_cost) : "";
   switch (found.aim) {
     case Aim::least_cost:
@@ -99,15 +102,20 @@ void add_details(const Result& found, std::vector<FilledColumn>& columns) {
   columns.push_back(length("sigma", "sigma", found.sigma));
   columns.push_back(
       {text_column("unit", "unit", kFirstToGo), [unit](std::size_t n) { return text_cell(unit(n).name); }});
+  if (found.has_zones()) columns.push_back(words_column("part", "part", found.part_names, kFirstToGo));
   columns.push_back(words_column("errors", "errors", found.part_members, kFirstToGo + 1));
+}
+
+/// The names of parts, with T.
+std::vector<FilledColumn> part_columns(const Result& found) {
+  return {words_column("part", "part", found.part_names),
+          {text_column("drawing", "drawing"),
+           [&](std::size_t n) { return text_cell(drawing_text(found.tolerance(n), found.part_unit(n))); }}};
 }
 
 std::vector<FilledColumn> drawing_columns(const Result& found, bool alike) {
   static constexpr std::array<std::string_view, 4> kBounds{"", "lower", "upper", "no choice"};
-  std::vector<FilledColumn> columns{words_column("part", "part", found.part_names),
-                                    {text_column("drawing", "drawing"), [&](std::size_t n) {
-                                       return text_cell(drawing_text(found.tolerance(n), found.part_unit(n)));
-                                     }}};
+  std::vector<FilledColumn> columns = found.has_zones() ? zone_columns(found) : part_columns(found);
   if (std::ranges::any_of(found.chosen, [](const std::string& one) { return !one.empty(); })) {
     columns.push_back(words_column("chosen", "grade or process", found.chosen));
   }
@@ -119,8 +127,12 @@ std::vector<FilledColumn> drawing_columns(const Result& found, bool alike) {
     columns.push_back(share_column("share", "share of cost", found.share));
   }
   columns.push_back(share_column("mean_square_share", "share of mean square", found.mean_square_share));
-  columns.push_back(
-      {text_column("bound", "at bound"), [&](std::size_t n) { return text_cell(kBounds.at(found.bound(n))); }});
+  if (found.has_zones()) {
+    std::ranges::move(inside_columns(found), std::back_inserter(columns));
+  } else {
+    columns.push_back(
+        {text_column("bound", "at bound"), [&](std::size_t n) { return text_cell(kBounds.at(found.bound(n))); }});
+  }
   columns.push_back({number_column("coarser_rejects", "rejects if coarser", "", 2), [&](std::size_t n) {
                        const double machines = static_cast<double>(found.design_machines);
                        return number_cell(std::round(10.0 * machines * (1.0 - found.coarser_yield(n))) / 10.0);
@@ -131,9 +143,12 @@ std::vector<FilledColumn> drawing_columns(const Result& found, bool alike) {
 
 Table drawing_table(const Result& found, RowOrder order) {
   std::set<std::string> statements;
-  for (std::size_t n = 0; n < found.parts(); ++n) statements.insert(made_of(found, n));
+  for (std::size_t n = 0; n < found.parts(); ++n) {
+    if (!found.has_zones() || found.zone_key(n).empty()) statements.insert(made_of(found, n));
+  }
   const bool alike = statements.size() == 1;
   Table table{.name = "drawing", .caption = drawing_caption(found), .columns = {}, .ranked = true};
+  if (found.has_zones()) table.notes.push_back(zones_note(found));
   table.notes.push_back(
       fmt::format("{}sigma: standard deviation about the mean{}; on the drawing T is rounded down to four digits",
                   alike ? "T = " + *statements.begin() + "; " : "",
@@ -146,7 +161,9 @@ Table drawing_table(const Result& found, RowOrder order) {
       "that "
       "can be had");
   add_bound_note(found, table);
-  fill(table, ordered_parts(found, order), drawing_columns(found, alike));
+  std::vector<std::size_t> parts = ordered_parts(found, order);
+  if (found.has_zones()) parts = drawn_parts(found, parts);
+  fill(table, parts, drawing_columns(found, alike || statements.empty()));
   return table;
 }
 

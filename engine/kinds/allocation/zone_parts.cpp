@@ -1,5 +1,8 @@
 #include "engine/kinds/allocation/zone_parts.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "engine/base/contract.h"
@@ -46,6 +49,23 @@ bool is_orientation(const AllocatedPart& part, const ModelDescription& model) {
 const Zone& zone_of(const AllocatedPart& part, const ModelDescription& model) {
   const Feature& feature = feature_of(part, model);
   return is_orientation(part, model) ? *feature.orientation : *feature.location;
+}
+
+std::string limbs_of(const AllocatedPart& part, const ModelDescription& model) {
+  std::vector<std::size_t> limbs;
+  for (const std::size_t f : part.zone->features) limbs.push_back(model.features[f].limb);
+  std::ranges::sort(limbs);
+  const bool is_range = limbs.size() > 1 && limbs.back() - limbs.front() + 1 == limbs.size();
+  if (is_range) return fmt::format("{}-{}", limbs.front(), limbs.back());
+  return fmt::format("{}", fmt::join(limbs, ", "));
+}
+
+std::string_view shape_of(const AllocatedPart& part, const ModelDescription& model) {
+  const Feature& feature = feature_of(part, model);
+  if (feature.kind == FeatureKind::distance) return "interval";
+  if (feature.one_direction) return "planes";
+  if (feature.kind == FeatureKind::axis) return "cylinder";
+  return feature.kind == FeatureKind::point ? "sphere" : "planes";
 }
 
 DrawnPart drawn_zone(const AllocatedPart& part, const ModelDescription& model, std::span<const FactorIndex> factors) {

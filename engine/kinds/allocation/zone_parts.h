@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/kinds/allocation/drawn_part.h"
@@ -23,6 +25,12 @@ const Feature& feature_of(const AllocatedPart& part, const ModelDescription& mod
 
 /// The zone as the drawing states it. Precondition: it is a zone.
 const Zone& zone_of(const AllocatedPart& part, const ModelDescription& model);
+
+/// The features of a zone in words: "1-3", or "1, 3".
+std::string limbs_of(const AllocatedPart& part, const ModelDescription& model);
+
+/// "cylinder", "sphere", "planes", or "interval" for a distance. Precondition: it is a zone.
+std::string_view shape_of(const AllocatedPart& part, const ModelDescription& model);
 
 /// What one unit of T^2 of a zone adds to mean squares. factors: those that vary, of which errors are positions.
 DrawnPart drawn_zone(const AllocatedPart& part, const ModelDescription& model, std::span<const FactorIndex> factors);

@@ -2,6 +2,7 @@
 #include <hdf5.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -101,6 +102,42 @@ TEST_F(AllocationFile, IsReadBackAsItWas) {
   EXPECT_EQ(found.aim, Aim::least_cost);
   EXPECT_TRUE(found.calibrated);
   EXPECT_TRUE(verify_result(path_).matches());
+}
+
+TEST_F(AllocationFile, KeepsTheZonesOfADrawing) {
+  using Result = AllocationResult;
+  using Texts = std::vector<std::string>;
+  written_.part_names = {"rail.position", "rail.perpendicularity", "plate"};
+  written_.part_unit = {{3}, Texts{"m", "m", "m"}};
+  written_.chosen = {{3}, Texts{"", "", "IT7"}};
+  written_.zone_feature = {{3}, Texts{"rail", "rail", ""}};
+  written_.zone_limbs = {{3}, Texts{"1, 3", "1, 3", ""}};
+  written_.zone_key = {{3}, Texts{"position", "perpendicularity", ""}};
+  written_.zone_shape = {{3}, Texts{"cylinder", "cylinder", ""}};
+  written_.zone_datums = {{3}, Texts{"A|B", "A", ""}};
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  written_.zone_length = {{3}, {0.5, 0.5, kNone}};
+  written_.zone_width = {{3}, {kNone, kNone, kNone}};
+  written_.zone_inside = {{3}, {0.9779, 0.9889, kNone}};
+  written_.zone_is_needed = {{3}, {1, 0, 1}};
+  write();
+  const StoredResult result = stored();
+  const AllocationResult& found = allocation_of(result);
+  for (const auto member :
+       {&Result::zone_feature, &Result::zone_limbs, &Result::zone_key, &Result::zone_shape, &Result::zone_datums}) {
+    EXPECT_EQ(found.*member, written_.*member);
+  }
+  for (const auto member : {&Result::zone_length, &Result::zone_width, &Result::zone_inside}) {
+    expect_same(found.*member, written_.*member);
+  }
+  EXPECT_EQ(found.zone_is_needed, written_.zone_is_needed);
+  EXPECT_EQ(csv("drawing"),
+            "limbs,feature,symbol,sign,zone_mm,shape,datums,length_mm,cost,share_of_cost,share_of_mean_square,sigmas,"
+            "inside,grade,remark\n"
+            "\"1, 3\",rail,position,\u2316,0.01234,cylinder,A|B,500,2.5,0.25,0.5,3,0.9779,none,perpendicularity: not "
+            "needed\n"
+            "none,plate,tolerance,\u00b1,0.025,interval,none,NaN,0.5,0.05,0.125,3,NaN,IT7,given\n");
+  EXPECT_NE(problem_with("/allocation/zone_key", "/allocation/zone_feature").find("unknown zone"), std::string::npos);
 }
 
 TEST_F(AllocationFile, KeepsTheWayAndTheCertificate) {

@@ -1,0 +1,93 @@
+#include "engine/drawing/share_inside.h"
+
+#include <algorithm>
+#include <boost/math/distributions/non_central_chi_squared.hpp>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "engine/drawing/zone_scatter.h"
+
+namespace poesy::drawing {
+namespace {
+
+using std::numbers::pi;
+using std::numbers::sqrt2;
+
+/// The share of a normal within `k` standard deviations.
+double in_interval(double k) { return std::erf(k / sqrt2); }
+
+/// The share of points in a disc, and in a ball, of k standard deviations of a coordinate.
+double in_disc(double k) { return -std::expm1(-0.5 * k * k); }
+double in_ball(double k) { return in_interval(k) - std::sqrt(2.0 / pi) * k * std::exp(-0.5 * k * k); }
+
+template <class F>
+double integral(const F& f, double from, double to) {
+  return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(f, from, to, 15, 1e-12);
+}
+
+/// The share of two ends, each with coordinates of standard deviation 1 and correlated to each other, within k: given
+/// one end, the other is normal about `correlation` times it.
+double ends_inside(double k, double correlation, bool one_direction) {
+  const double rest = std::sqrt(std::max(0.0, (1.0 - correlation) * (1.0 + correlation)));
+  if (rest < 1e-6) return one_direction ? in_interval(k) : in_disc(k);
+  if (one_direction) {
+    return integral(
+        [&](double x) {
+          const double middle = correlation * x;
+          const double other =
+              0.5 * (std::erf((k - middle) / (rest * sqrt2)) + std::erf((k + middle) / (rest * sqrt2)));
+          return std::exp(-0.5 * x * x) / std::sqrt(2.0 * pi) * other;
+        },
+        -k, k);
+  }
+  return integral(
+      [&](double r) {
+        const double away = std::pow(correlation * r / rest, 2);
+        const double most = std::pow(k / rest, 2);
+        return r * std::exp(-0.5 * r * r) * cdf(boost::math::non_central_chi_squared(2.0, away), most);
+      },
+      0.0, k);
+}
+
+/// The share of planes within half a width: |z| and the largest lift of an extreme point add up.
+double plane_inside(FeatureKind kind, double half, double middle, double tilt) {
+  const auto density = [&](double lift) {
+    const double x = lift / tilt;
+    if (kind == FeatureKind::round) return x / tilt * std::exp(-0.5 * x * x);
+    return 2.0 / (tilt * std::sqrt(pi)) * std::exp(-0.25 * x * x) * std::erf(0.5 * x);
+  };
+  return integral([&](double lift) { return density(lift) * std::erf((half - lift) / (middle * sqrt2)); }, 0.0, half);
+}
+
+double location_inside(const Feature& feature, double sigmas) {
+  const double location = feature.location->size;
+  const FeatureSigmas found = feature_sigmas(feature, sigmas);
+  if (feature.kind == FeatureKind::axis) {
+    const double middle = std::pow(*found.middle, 2);
+    const double half_tilt = 0.25 * std::pow(*found.tilt, 2);
+    return ends_inside(sigmas, (middle - half_tilt) / (middle + half_tilt), feature.one_direction);
+  }
+  if (*found.tilt <= 1e-9 * location) return in_interval(sigmas);
+  return plane_inside(feature.kind, 0.5 * location, *found.middle, *found.tilt);
+}
+
+double orientation_inside(const Feature& feature, double sigmas) {
+  const double one = in_interval(sigmas);
+  if (feature.kind == FeatureKind::rectangle) return one * one;
+  return feature.one_direction ? one : in_disc(sigmas);
+}
+
+}  // namespace
+
+double share_inside(const Feature& feature, ZoneClass of, double sigmas, double shift) {
+  if (of == ZoneClass::orientation) return orientation_inside(feature, sigmas);
+  if (feature.kind == FeatureKind::distance) {
+    const double far = (1.0 + shift) / (1.0 - shift) * sigmas;
+    return 0.5 * (in_interval(sigmas) + in_interval(far));
+  }
+  if (feature.kind != FeatureKind::point) return location_inside(feature, sigmas);
+  return feature.one_direction ? in_interval(sigmas) : in_ball(sigmas);
+}
+
+}  // namespace poesy::drawing

@@ -1,0 +1,160 @@
+#include "engine/kinds/allocation/zone_tables.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "engine/base/text.h"
+#include "engine/base/units.h"
+#include "engine/kinds/allocation/summary.h"
+#include "engine/model/feature.h"
+#include "engine/report/signs.h"
+
+namespace poesy {
+namespace {
+
+using Result = AllocationResult;
+
+bool is_zone(const Result& found, std::size_t n) { return !found.zone_key(n).empty(); }
+
+std::string sign_of(const Result& found, std::size_t n) {
+  return is_zone(found, n) ? std::string(zone_traits(found.zone_key(n)).sign) : std::string(kPlusMinus);
+}
+
+/// "1-3 rail"; the name of a part that is no zone.
+std::string feature_text(const Result& found, std::size_t n) {
+  return is_zone(found, n) ? found.zone_limbs(n) + " " + found.zone_feature(n) : found.part_names[n];
+}
+
+/// What stands before the number: of a diameter, of a sphere's, of a width nothing.
+std::string_view before_number(const Result& found, std::size_t n) {
+  if (!is_zone(found, n) || found.zone_shape(n) == "interval") return kPlusMinus;
+  if (found.zone_shape(n) == "sphere") return kSphereDiameter;
+  return found.zone_shape(n) == "cylinder" ? kDiameter : std::string_view();
+}
+
+std::string zone_text(const Result& found, std::size_t n) {
+  const std::string& unit = found.part_unit(n);
+  return fmt::format("{}{} {}", before_number(found, n), drawing_number(found.tolerance(n), unit),
+                     display_unit(dimension_of(unit)).name);
+}
+
+/// "500 mm", or "60 x 40 mm".
+std::string over_text(const Result& found, std::size_t n) {
+  if (!is_zone(found, n) || std::isnan(found.zone_length(n))) return "-";
+  const Unit& unit = display_unit(Dimension::length);
+  const auto in_unit = [&](double si) { return number_text(si / unit.si); };
+  const std::string length = in_unit(found.zone_length(n));
+  if (std::isnan(found.zone_width(n))) return fmt::format("{} {}", length, unit.name);
+  return fmt::format("{} x {} {}", length, in_unit(found.zone_width(n)), unit.name);
+}
+
+/// Whether one is the orientation and the other the location of the same features.
+bool are_of_one_feature(const Result& found, std::size_t a, std::size_t b) {
+  return a != b && is_zone(found, a) && is_zone(found, b) && found.zone_feature(a) == found.zone_feature(b) &&
+         found.zone_limbs(a) == found.zone_limbs(b);
+}
+
+/// What a drawing says besides: what it does not need, and where a tolerance could not be chosen.
+std::string remark(const Result& found, std::size_t n) {
+  std::vector<std::string> words;
+  for (std::size_t other = 0; other < found.parts(); ++other) {
+    if (!are_of_one_feature(found, n, other) || !found.is_left_out(other)) continue;
+    words.push_back(found.zone_key(other) + ": not needed");
+  }
+  constexpr std::array<std::string_view, 4> kBounds{"", "at its lower bound", "at its upper bound", "given"};
+  if (found.bound(n) != 0) words.emplace_back(kBounds.at(found.bound(n)));
+  return fmt::format("{}", fmt::join(words, "; "));
+}
+
+/// Whether a location stands before this orientation.
+bool follows_another(const Result& found, std::size_t n) {
+  if (!is_zone(found, n)) return false;
+  // A run-out is a location on an axis, and only there.
+  const FeatureKind kind = found.zone_shape(n) == "cylinder" ? FeatureKind::axis : FeatureKind::round;
+  if (zone_class(found.zone_key(n), kind) != ZoneClass::orientation) return false;
+  for (std::size_t other = 0; other < found.parts(); ++other) {
+    if (are_of_one_feature(found, n, other)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<FilledColumn> zone_columns(const Result& found) {
+  return {{text_column("feature", "feature"), [&](std::size_t n) { return text_cell(feature_text(found, n)); }},
+          {text_column("symbol", ""),
+           [&](std::size_t n) { return text_cell(sign_of(found, n) == kPlusMinus ? "" : sign_of(found, n)); }},
+          {text_column("zone", "zone"), [&](std::size_t n) { return text_cell(zone_text(found, n)); }},
+          {text_column("datums", "to"),
+           [&](std::size_t n) { return text_cell(found.zone_datums(n).empty() ? "-" : found.zone_datums(n)); }},
+          {text_column("over", "over"), [&](std::size_t n) { return text_cell(over_text(found, n)); }}};
+}
+
+std::vector<FilledColumn> inside_columns(const Result& found) {
+  return {{percent_column("inside", "inside"), [&](std::size_t n) { return percent_cell(found.zone_inside(n)); }},
+          {text_column("remark", "remark"), [&](std::size_t n) { return text_cell(remark(found, n)); }}};
+}
+
+std::vector<std::size_t> drawn_parts(const Result& found, const std::vector<std::size_t>& order) {
+  std::vector<std::size_t> drawn;
+  for (const std::size_t n : order) {
+    if (found.is_left_out(n) || follows_another(found, n)) continue;
+    drawn.push_back(n);
+    for (std::size_t other = 0; other < found.parts(); ++other) {
+      if (are_of_one_feature(found, n, other) && !found.is_left_out(other)) drawn.push_back(other);
+    }
+  }
+  return drawn;
+}
+
+std::string zones_note(const Result& found) {
+  std::set<double> sigmas;
+  for (std::size_t n = 0; n < found.parts(); ++n) {
+    if (is_zone(found, n)) sigmas.insert(found.sigmas(n));
+  }
+  const std::string first = number_text(*sigmas.begin());
+  const std::string range = sigmas.size() == 1 ? first : first + " to " + number_text(*sigmas.rbegin());
+  return fmt::format(
+      "half a zone, or T of a distance: {} standard deviations of a coordinate at the extreme points of a feature; "
+      "inside: the share of features that are inside their zone; zones are rounded down to four digits",
+      range);
+}
+
+CsvTable drawing_csv(const Result& found) {
+  const auto text = [](double value) { return std::isnan(value) ? std::string("NaN") : shortest(value); };
+  const auto in_mm = [=](double si) { return std::isnan(si) ? text(si) : number_text(1e3 * si, 12); };
+  const auto or_none = [](const std::string& one) { return one.empty() ? std::string("none") : one; };
+  CsvTable table{
+      "drawing", {"limbs", [&found, or_none](std::size_t n) { return or_none(found.zone_limbs(n)); }}, found.parts()};
+  table.has = [&found](std::size_t n) { return !found.is_left_out(n); };
+  const auto add = [&](const char* name, std::function<std::string(std::size_t)> cell) {
+    table.more.push_back({name, std::move(cell)});
+  };
+  add("feature", [&found](std::size_t n) { return is_zone(found, n) ? found.zone_feature(n) : found.part_names[n]; });
+  add("symbol", [&found](std::size_t n) { return is_zone(found, n) ? found.zone_key(n) : std::string("tolerance"); });
+  add("sign", [&found](std::size_t n) { return sign_of(found, n); });
+  add("zone_mm", [&found](std::size_t n) {
+    return found.part_unit(n) == "m" ? drawing_number(found.tolerance(n), "m") : std::string("NaN");
+  });
+  add("shape", [&found](std::size_t n) { return is_zone(found, n) ? found.zone_shape(n) : std::string("interval"); });
+  add("datums", [&found, or_none](std::size_t n) { return or_none(found.zone_datums(n)); });
+  add("length_mm", [&found, in_mm](std::size_t n) { return in_mm(found.zone_length(n)); });
+  add("cost", [&found, text](std::size_t n) { return text(found.cost(n)); });
+  add("share_of_cost", [&found, text](std::size_t n) { return text(found.share(n)); });
+  add("share_of_mean_square", [&found, text](std::size_t n) { return text(found.mean_square_share(n)); });
+  add("sigmas", [&found, text](std::size_t n) { return text(found.sigmas(n)); });
+  add("inside", [&found, text](std::size_t n) { return text(found.zone_inside(n)); });
+  add("grade", [&found, or_none](std::size_t n) { return or_none(found.chosen(n)); });
+  add("remark", [&found, or_none](std::size_t n) { return or_none(remark(found, n)); });
+  return table;
+}
+
+}  // namespace poesy

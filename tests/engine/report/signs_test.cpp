@@ -1,0 +1,29 @@
+#include "engine/report/signs.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "engine/model/feature.h"
+
+namespace poesy {
+namespace {
+
+TEST(SignsOfADrawing, HaveWords) {
+  EXPECT_EQ(with_words("\u2316 \u23000.02 mm"), "position dia 0.02 mm");
+  EXPECT_EQ(with_words("S\u23000.02 mm"), "sphere dia 0.02 mm");
+  EXPECT_EQ(with_words("\u00b10.01 mm, \u00b10.02 mm"), "+-0.01 mm, +-0.02 mm");
+  EXPECT_EQ(with_words("no sign"), "no sign");
+  for (const ZoneTraits& zone : zone_traits()) {
+    EXPECT_EQ(with_words(zone.sign), zone.of == ZoneClass::size ? "+-" : zone.key);
+  }
+}
+
+TEST(SignsOfADrawing, AreReplacedInAllCells) {
+  std::vector<Table> tables{{.name = "t", .caption = "t", .columns = {{"a", "a", ""}}, .rows = {{{"\u2225", {}}}}}};
+  use_words(tables);
+  EXPECT_EQ(tables[0].rows[0][0].text, "parallelism");
+}
+
+}  // namespace
+}  // namespace poesy
