@@ -13,16 +13,21 @@
 namespace poesy::drawing {
 namespace {
 
-constexpr int kStarts = 24;        ///< directions from which the largest length is sought
-constexpr int kMostRounds = 1000;  ///< of the search for a point
-constexpr double kRest = 1e-15;    ///< a pull below this share of the weights is rest
+constexpr int kStarts = 24;          ///< directions from which the largest length is sought
+constexpr int kMostTurns = 200;      ///< of an ascent
+constexpr double kNearTop = 1e-4;    ///< growth at which an ascent is near its end, to find the best one
+constexpr double kTop = 1e-14;       ///< growth at which it ends
+constexpr int kMostRounds = 1000;    ///< of the search for a point
+constexpr double kRest = 1e-15;      ///< a pull below this share of the weights is rest
+constexpr double kEqual = 1e-14;     ///< costs that differ by this share are equal
+constexpr double kNearRest = 1e-12;  ///< below this share a pull that grows is rounding
 
 /// A vector across an axis; a zone between planes has its second component 0.
 struct Across {
   double x = 0.0;
   double y = 0.0;
 
-  double length() const { return std::hypot(x, y); }
+  double length() const { return std::sqrt(x * x + y * y); }
 };
 
 Across operator+(const Across& a, const Across& b) { return {a.x + b.x, a.y + b.y}; }
@@ -65,6 +70,7 @@ Across weighted_median(const Across& p1, const Across& p2, double w0, double w) 
     if (pull.length() <= weights[k]) return points[k];
   }
   Across q = 1.0 / (w0 + 2.0 * w) * (w * p1 + w * p2);
+  double last = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kMostRounds; ++round) {
     Across gradient;
     Across pulled;  // Weiszfeld's step, which is slow and always gets nearer
@@ -81,12 +87,16 @@ Across weighted_median(const Across& p1, const Across& p2, double w0, double w) 
       xy -= weight * u.x * u.y;
       yy += weight * u.x * u.x;
     }
-    if (gradient.length() <= kRest * (w0 + 2.0 * w)) break;
+    const double pull = gradient.length() / (w0 + 2.0 * w);
+    const bool is_rounding = pull >= last && pull <= kNearRest;
+    if (pull <= kRest || is_rounding) break;
+    last = pull;
     const double determinant = xx * yy - xy * xy;
     const Across newton = q - Across{(yy * gradient.x - xy * gradient.y) / determinant,
                                      (xx * gradient.y - xy * gradient.x) / determinant};
     const Across slow = 1.0 / inverse * pulled;
-    q = cost(newton) < cost(slow) ? newton : slow;
+    const double least = cost(slow);
+    q = cost(newton) <= least + kEqual * least ? newton : slow;
   }
   return q;
 }
@@ -163,10 +173,13 @@ double sum_of(const OfErrors& squares, std::size_t first, std::size_t count) {
                          squares.begin() + static_cast<std::ptrdiff_t>(first + count), 0.0);
 }
 
+/// A vector with a number for each component; 0 for those that are not there.
+using Direction = std::array<double, 3>;
+
 /// Unit vectors from which the ascent starts, spread evenly over half of all directions.
-std::vector<std::array<double, 3>> starts(std::size_t components) {
+std::vector<Direction> starts(std::size_t components) {
   if (components == 1) return {{1.0, 0.0, 0.0}};
-  std::vector<std::array<double, 3>> list;
+  std::vector<Direction> list;
   for (int k = 0; k < kStarts; ++k) {
     const double share = (k + 0.5) / kStarts;
     const double turn = components == 2 ? std::numbers::pi * share : 2.0 * std::numbers::pi * std::numbers::phi * k;
@@ -175,6 +188,46 @@ std::vector<std::array<double, 3>> starts(std::size_t components) {
     list.push_back({radius * std::cos(turn), radius * std::sin(turn), height});
   }
   return list;
+}
+
+/// The end of an ascent.
+struct Reached {
+  LargestLength top;
+  Direction direction{};  ///< of the sum of vectors there
+};
+
+/// The sum of vectors with all features at their extremes in a direction of any length, and its length.
+Reached reached_in(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes,
+                   const Direction& direction) {
+  const double size = std::hypot(direction[0], direction[1], direction[2]);
+  Reached found;
+  for (std::size_t q = 0; q < features.size(); ++q) {
+    const std::vector<OfErrors>& components = slopes[q];
+    OfErrors along(components.front().size(), 0.0);
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      for (std::size_t e = 0; e < along.size(); ++e) along[e] += direction[c] / size * components[c][e];
+    }
+    const Extreme at = extreme(features[q], along);
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      found.direction[c] += std::inner_product(at.errors.begin(), at.errors.end(), components[c].begin(), 0.0);
+    }
+    found.top.by_feature.push_back(at.value);
+  }
+  found.top.length = std::hypot(found.direction[0], found.direction[1], found.direction[2]);
+  return found;
+}
+
+/// Turns a direction to the sum of vectors that it makes, until the length grows by no more than this share.
+Reached ascend(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes,
+               const Direction& start, double share) {
+  Reached best = reached_in(features, slopes, start);
+  for (int round = 0; round < kMostTurns && best.top.length > 0.0; ++round) {
+    Reached next = reached_in(features, slopes, best.direction);
+    const bool is_top = !(next.top.length > best.top.length * (1.0 + share));
+    if (next.top.length >= best.top.length) best = std::move(next);
+    if (is_top) break;
+  }
+  return best;
 }
 
 }  // namespace
@@ -225,34 +278,15 @@ ZoneSquares zone_squares(const Feature& feature, double sigmas, const OfErrors& 
 }
 
 LargestLength largest_length(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes) {
-  LargestLength best;
-  if (features.empty()) return best;
+  if (features.empty()) return {};
   const std::size_t components = slopes.front().size();
   POESY_EXPECTS(components >= 1 && components <= 3);
-  for (std::array<double, 3> direction : starts(components)) {
-    double length = 0.0;
-    for (int round = 0; round < 200; ++round) {
-      std::array<double, 3> sum{};
-      std::vector<double> parts;
-      for (std::size_t q = 0; q < features.size(); ++q) {
-        OfErrors along(slopes[q].front().size(), 0.0);
-        for (std::size_t c = 0; c < components; ++c) {
-          for (std::size_t e = 0; e < along.size(); ++e) along[e] += direction[c] * slopes[q][c][e];
-        }
-        const Extreme found = extreme(features[q], along);
-        for (std::size_t c = 0; c < components; ++c) {
-          sum[c] += std::inner_product(found.errors.begin(), found.errors.end(), slopes[q][c].begin(), 0.0);
-        }
-        parts.push_back(found.value);
-      }
-      const double next = std::hypot(sum[0], sum[1], sum[2]);
-      if (next > best.length) best = {next, parts};
-      if (!(next > length * (1.0 + 1e-14))) break;
-      length = next;
-      for (std::size_t c = 0; c < 3; ++c) direction[c] = sum[c] / next;
-    }
+  Reached best;
+  for (const Direction& direction : starts(components)) {
+    Reached found = ascend(features, slopes, direction, kNearTop);
+    if (found.top.length > best.top.length) best = std::move(found);
   }
-  return best;
+  return best.top.length > 0.0 ? ascend(features, slopes, best.direction, kTop).top : best.top;
 }
 
 }  // namespace poesy::drawing
