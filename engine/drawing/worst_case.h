@@ -21,23 +21,25 @@ struct Extreme {
 /// without a zone is 0. theory.md, features and zones.
 Extreme extreme(const Feature& feature, const OfErrors& slopes);
 
-/// Mean squares of a feature's effect if half a zone is so many standard deviations. squares: of its errors, the sums
-/// of squared slopes over the components of a response.
+/// Mean squares of a feature's effect.
 struct ZoneSquares {
   double even;   ///< as feature_sigmas() divides its zone of location
   double worst;  ///< as the worst division of a location without orientation: the middle alone, or the tilt alone
 };
-/// squares: of each error of the feature.
+
+/// The mean squares if half a zone is so many standard deviations. squares: of each error of the feature, the sum of
+/// squared slopes over the components of a response.
 ZoneSquares zone_squares(const Feature& feature, double sigmas, const OfErrors& squares);
 
-/// The largest length of a sum over features of vectors, one column of slopes for each error; by ascent from many
-/// directions, which finds the largest in practice and proves no bound.
+/// The largest length of a sum of vectors, one for each feature.
 struct LargestLength {
   double length = 0.0;             ///< the largest that was found
   std::vector<double> by_feature;  ///< the part of each feature in that direction
 };
 
-/// slopes: [features][components] of each feature's errors. Up to three components.
+/// The largest length over all errors in the zones. An error adds its column of slopes times its value. Ascents from
+/// many directions find the largest in practice, and prove no bound. slopes: [features][components] of each feature's
+/// errors; up to three components.
 LargestLength largest_length(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes);
 
 }  // namespace poesy::drawing

@@ -34,16 +34,10 @@ std::vector<Feature> varied_features(const Study& study) {
   std::vector<Feature> list;
   for (const Feature& feature : study.model().features) {
     const bool has_zone = feature.clearance || ((feature.location || feature.orientation) && study.errors.zones);
-    if (has_zone && std::ranges::all_of(feature.middle, varies) && std::ranges::all_of(feature.tilt, varies)) {
+    if (has_zone && std::ranges::all_of(feature.errors(), varies)) {
       list.push_back(feature);
     }
   }
-  return list;
-}
-
-std::vector<FactorIndex> errors_of(const Feature& feature) {
-  std::vector<FactorIndex> list = feature.middle;
-  list.insert(list.end(), feature.tilt.begin(), feature.tilt.end());
   return list;
 }
 
@@ -60,7 +54,7 @@ class Slopes {
       : evaluator_(run.model.evaluator(run.study.solver)), constant_(run.study.model().factors.size(), 0.0) {
     for (const Feature& feature : features) {
       first_.push_back(errors_.size());
-      for (const FactorIndex error : errors_of(feature)) {
+      for (const FactorIndex error : feature.errors()) {
         errors_.push_back(error);
         steps_.push_back(kDifferenceStep * run.study.errors.by_factor[error.value].standard_deviation());
       }
@@ -106,7 +100,7 @@ class Slopes {
   std::vector<std::uint32_t> iterations_;
 };
 
-/// The signed responses behind a response; none if it is no linear function and no norm of some.
+/// The signed responses behind a response: itself, or those of which it is the norm; otherwise none.
 std::vector<std::size_t> components(const ModelDescription& model, std::size_t response) {
   const Response& one = model.responses[response];
   if (one.has_no_sign || one.components.size() > 3) return {};
@@ -225,20 +219,21 @@ std::optional<DrawingResult> drawing_result(const StudyRun& run) {
   DrawingResult result = described(run, features);
   Slopes slopes(run, features);
   std::vector<OverPoses> sums(model.responses.size(), {std::vector<double>(features.size(), 0.0)});
+  std::vector<std::vector<std::size_t>> signed_ones;
+  for (std::size_t r = 0; r < model.responses.size(); ++r) signed_ones.push_back(components(model, r));
   for (std::size_t m = 0; m < run.poses.size(); ++m) {
     slopes.set_pose(run.poses, m);
     for (std::size_t r = 0; r < model.responses.size(); ++r) {
-      const std::vector<std::size_t> signed_ones = components(model, r);
-      if (signed_ones.empty()) continue;
+      if (signed_ones[r].empty()) continue;
       std::vector<std::vector<OfErrors>> of_features(features.size());
       for (std::size_t q = 0; q < features.size(); ++q) {
-        for (const std::size_t component : signed_ones) of_features[q].push_back(slopes.of(component, q));
+        for (const std::size_t component : signed_ones[r]) of_features[q].push_back(slopes.of(component, q));
       }
       add_pose(features, of_features, r, m, sums[r], result);
     }
   }
   for (std::size_t r = 0; r < model.responses.size(); ++r) {
-    if (!components(model, r).empty()) finish(sums[r], r, result);
+    if (!signed_ones[r].empty()) finish(sums[r], r, result);
   }
   return result;
 }

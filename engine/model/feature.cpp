@@ -6,6 +6,12 @@
 
 namespace poesy {
 
+std::vector<FactorIndex> Feature::errors() const {
+  std::vector<FactorIndex> all = middle;
+  all.insert(all.end(), tilt.begin(), tilt.end());
+  return all;
+}
+
 const std::vector<ZoneTraits>& zone_traits() {
   using enum ZoneClass;
   static const std::vector<ZoneTraits> kAll{

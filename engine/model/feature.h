@@ -47,9 +47,11 @@ struct Feature {
   std::vector<FactorIndex> middle = {};  ///< errors that move it: x, y of an axis; z of a plane; x, y, z; a distance
   std::vector<FactorIndex> tilt = {};    ///< errors that turn it: lean_x, lean_y of an axis; lift_x, lift_y of a plane
   std::optional<Zone> location = {};     ///< also the tolerance of a distance
+  std::optional<Zone> orientation = {};  ///< of class orientation
   /// Instead of zones: an axis is loose in its bore, at each pose in another way.
   std::optional<Clearance> clearance = {};
-  std::optional<Zone> orientation = {};  ///< of class orientation
+
+  std::vector<FactorIndex> errors() const;  ///< All errors: those that move it, then those that turn it.
 };
 
 /// What a kind of zone is.

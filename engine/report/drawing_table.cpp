@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "engine/report/display.h"
+#include "engine/stats/moments.h"
 
 namespace poesy {
 namespace {
@@ -23,12 +23,6 @@ double largest(std::span<const double> values) {
   double most = 0.0;
   for (const double value : values) most = std::fmax(most, value);
   return most;
-}
-
-double root_mean_square(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 }  // namespace
@@ -53,8 +47,7 @@ std::optional<Table> drawing_table(const StoredResult& result, std::size_t respo
                             in_unit(largest(found.worst_case.row(response)))),
                 "zones in mm; other errors are not in these numbers"},
       .ranked = true};
-  std::vector<std::size_t> rows(found.features());
-  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  std::vector<std::size_t> rows = positions(found.features());
   std::ranges::stable_sort(rows, std::ranges::greater(), [&](std::size_t q) { return found.effect(response, q); });
   fill(table, rows,
        {{text_column("feature", "feature"), [&](std::size_t q) { return text_cell(found.names[q]); }},

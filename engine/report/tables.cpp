@@ -215,14 +215,9 @@ std::string default_ranking(const StoredResult& result) {
 
 namespace {
 
-/// The features by their effect on the response that ranks: by default the first that has a limit.
+/// The features by their effect on the response that ranks.
 std::optional<Table> features_table(const StoredResult& result, const TableOptions& options) {
-  std::string name = options.ranked_by;
-  if (name.empty() && result.verdicts && !result.verdicts->limits.empty()) {
-    name = result.responses[result.verdicts->limits.front().response].name;
-  }
-  if (name.empty()) name = default_ranking(result);
-  const auto response = std::ranges::find(result.responses, name, &NamedUnit::name);
+  const auto response = std::ranges::find(result.responses, options.ranked_by, &NamedUnit::name);
   if (response == result.responses.end()) return std::nullopt;
   return drawing_table(result, static_cast<std::size_t>(response - result.responses.begin()));
 }

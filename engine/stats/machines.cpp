@@ -122,20 +122,25 @@ std::vector<double> MachineBlock::values_of(std::size_t response, std::size_t ma
   return values;
 }
 
-bool MachineBlock::is_beyond(std::size_t response, std::size_t machine) const {
-  if (!limits_[response].is_over_poses()) return beyond_(response, machine) != 0;
-  std::vector<double> values = values_of(response, machine);
-  return !limits_[response].keeps(values, poses());
+std::vector<std::uint8_t> MachineBlock::beyond(std::size_t response) const {
+  const auto at_some_pose = beyond_.row(response);
+  std::vector<std::uint8_t> list(at_some_pose.begin(), at_some_pose.end());
+  if (!limits_[response].is_over_poses()) return list;
+  for (std::size_t b = 0; b < machines(); ++b) {
+    std::vector<double> values = values_of(response, b);
+    list[b] = limits_[response].keeps(values, poses()) ? 0 : 1;
+  }
+  return list;
 }
 
-Rejects MachineBlock::rejects_over_poses(std::size_t response, std::size_t pose) const {
+Rejects MachineBlock::rejects_over_poses(std::size_t response, std::size_t pose,
+                                         std::span<const std::uint8_t> beyond) const {
   const ValueLimit& limit = limits_[response];
   Rejects rejects;
   for (std::size_t b = 0; b < machines(); ++b) {
     const std::size_t at = pose * machines() + b;
     const bool is_solved = counts_[at] != 0;
-    const bool is_reject =
-        is_solved && !limit.is_spread() && !limit.holds(values_[response][at]) && is_beyond(response, b);
+    const bool is_reject = is_solved && !limit.is_spread() && beyond[b] != 0 && !limit.holds(values_[response][at]);
     add(rejects, {is_reject || !is_solved ? 1U : 0U, is_reject ? 1U : 0U});
   }
   return rejects;
@@ -158,21 +163,23 @@ MachineCounts MachineBlock::counts() const {
   counts.machines = machines();
   make_room({responses}, counts.by_limit);
   make_room({responses, poses()}, counts.at_pose);
-  for (std::size_t b = 0; b < machines(); ++b) {
-    const bool unsolved = solved_[b] == 0;
-    bool beyond_any = false;
-    for (std::size_t r = 0; r < responses; ++r) {
-      const bool beyond = is_beyond(r, b);
-      beyond_any |= beyond;
-      add(counts.by_limit(r), {beyond || unsolved ? 1U : 0U, beyond ? 1U : 0U});
-    }
-    counts.unsolved += unsolved ? 1 : 0;
-    add(counts.all, {beyond_any || unsolved ? 1U : 0U, beyond_any ? 1U : 0U});
-  }
+  const auto count = [&](std::size_t b, bool is_beyond, Rejects& rejects) {
+    add(rejects, {is_beyond || solved_[b] == 0 ? 1U : 0U, is_beyond ? 1U : 0U});
+  };
+  std::vector<std::uint8_t> beyond_any(machines(), 0);
   for (std::size_t r = 0; r < responses; ++r) {
-    for (std::size_t m = 0; m < poses(); ++m) {
-      counts.at_pose(r, m) = limits_[r].is_over_poses() ? rejects_over_poses(r, m) : at_pose_[m][r];
+    const std::vector<std::uint8_t> of_limit = beyond(r);
+    for (std::size_t b = 0; b < machines(); ++b) {
+      beyond_any[b] |= of_limit[b];
+      count(b, of_limit[b] != 0, counts.by_limit(r));
     }
+    for (std::size_t m = 0; m < poses(); ++m) {
+      counts.at_pose(r, m) = limits_[r].is_over_poses() ? rejects_over_poses(r, m, of_limit) : at_pose_[m][r];
+    }
+  }
+  for (std::size_t b = 0; b < machines(); ++b) {
+    counts.unsolved += solved_[b] == 0 ? 1 : 0;
+    count(b, beyond_any[b] != 0, counts.all);
   }
   return counts;
 }
@@ -181,7 +188,8 @@ std::vector<std::uint8_t> MachineBlock::rejected() const {
   std::vector<std::uint8_t> rejected(machines());
   for (std::size_t b = 0; b < machines(); ++b) rejected[b] = static_cast<std::uint8_t>(solved_[b] == 0);
   for (std::size_t r = 0; r < limits_.size(); ++r) {
-    for (std::size_t b = 0; b < machines(); ++b) rejected[b] |= static_cast<std::uint8_t>(is_beyond(r, b));
+    const std::vector<std::uint8_t> of_limit = beyond(r);
+    for (std::size_t b = 0; b < machines(); ++b) rejected[b] |= of_limit[b];
   }
   return rejected;
 }

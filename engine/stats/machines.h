@@ -75,10 +75,10 @@ class MachineBlock {
  private:
   /// The values of a machine at the poses where its sample counts.
   std::vector<double> values_of(std::size_t response, std::size_t machine) const;
-  /// Whether the limit is broken at the poses where the machine's sample counts.
-  bool is_beyond(std::size_t response, std::size_t machine) const;
-  /// The rejects at a pose for a limit over poses.
-  Rejects rejects_over_poses(std::size_t response, std::size_t pose) const;
+  /// [B] 1 if the limit is broken at the poses where the machine's sample counts, else 0.
+  std::vector<std::uint8_t> beyond(std::size_t response) const;
+  /// The rejects at a pose for a limit over poses. beyond: of the response.
+  Rejects rejects_over_poses(std::size_t response, std::size_t pose, std::span<const std::uint8_t> beyond) const;
 
   std::vector<ValueLimit> limits_;                       ///< [R]
   std::vector<std::uint8_t> solved_;                     ///< [B] 1 if all samples of the machine count

@@ -138,6 +138,12 @@ double root_mean_square(double mean, double standard_deviation, std::uint64_t co
   return std::sqrt(sample_mean_square(mean, spread, static_cast<double>(count)));
 }
 
+double root_mean_square(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
 double student_quantile(double freedom, double conf_level) {
   POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
   const boost::math::students_t student(freedom);

@@ -53,6 +53,8 @@ double sample_mean_square(double mean, double standard_deviation, double count);
 
 /// The root mean square of `count` values with this mean and sample standard deviation; NaN without values.
 double root_mean_square(double mean, double standard_deviation, std::uint64_t count);
+/// The root mean square of these values; NaN without values.
+double root_mean_square(std::span<const double> values);
 
 /// The half-width of a two-sided interval over the standard error, for this many degrees of freedom (Student's t).
 /// Preconditions: freedom > 0, 0 < conf_level < 1.

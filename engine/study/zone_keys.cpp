@@ -77,8 +77,8 @@ ZoneScatter scatter_of(const StudyValue& value) {
 }
 
 /// Sets those entries of a list over all errors.
-void set(const std::vector<FactorIndex>& errors, std::optional<double> sigma,
-         std::vector<std::optional<double>>& list) {
+void set_sigma(const std::vector<FactorIndex>& errors, std::optional<double> sigma,
+               std::vector<std::optional<double>>& list) {
   for (const FactorIndex error : errors) list[error.value] = sigma;
 }
 
@@ -123,8 +123,8 @@ std::vector<FactorIndex> clearance_errors(const ModelDescription& model) {
   std::vector<FactorIndex> list;
   for (const Feature& feature : model.features) {
     if (!feature.clearance) continue;
-    list.insert(list.end(), feature.middle.begin(), feature.middle.end());
-    list.insert(list.end(), feature.tilt.begin(), feature.tilt.end());
+    const std::vector<FactorIndex> errors = feature.errors();
+    list.insert(list.end(), errors.begin(), errors.end());
   }
   std::ranges::sort(list);
   return list;
@@ -149,8 +149,8 @@ std::vector<std::optional<double>> sigmas_by_zones(const Study& study) {
     if (!study.errors.zones && !feature.clearance) continue;
     const double sigmas = study.errors.zones ? drawing::sigmas_of(feature, *study.errors.zones) : 0.0;
     const drawing::FeatureSigmas found = drawing::feature_sigmas(feature, sigmas);
-    set(feature.middle, found.middle, list);
-    set(feature.tilt, found.tilt, list);
+    set_sigma(feature.middle, found.middle, list);
+    set_sigma(feature.tilt, found.tilt, list);
   }
   return list;
 }

@@ -199,22 +199,18 @@ class FeatureBuilder {
     return list;
   }
 
-  /// An axis with a clearance. Sizes of parts are normal, and three standard deviations are half their zones.
-  Feature loose(const ClearanceLines& lines) const {
-    Feature feature = described(lines.axis);
-    const bool touches = lines.contact == Contact::boundary;
-    if (!lines.fit.empty()) {
-      try {
-        const Fit found = fit(lines.fit);
-        feature.clearance = Clearance{found.most, found.mean * found.mean + found.variance, touches};
-      } catch (const std::invalid_argument& error) {
-        throw InputError(lines.fit_place, lines.axis.key + ".fit " + error.what(),
-                         "write the size and both classes, e.g. \"8 H7/g6\", or least = and most =");
-      }
-      if (feature.clearance->most > 0.0 && fit(lines.fit).least >= 0.0) return feature;
-      throw InputError(lines.fit_place, lines.axis.key + ".fit '" + printable(lines.fit) + "' leaves no clearance",
-                       "choose a looser shaft");
+  /// The clearance of a fit by name. All fits that fit() knows have one.
+  static Clearance by_fit(const ClearanceLines& lines) {
+    try {
+      const Fit found = fit(lines.fit);
+      return {found.most, found.mean * found.mean + found.variance};
+    } catch (const std::invalid_argument& error) {
+      throw InputError(lines.fit_place, lines.axis.key + ".fit " + error.what(),
+                       "write the size and both classes, e.g. \"8 H7/g6\", or least = and most =");
     }
+  }
+
+  Clearance by_ends(const ClearanceLines& lines) const {
     const double least = numbers_.length(*lines.least);
     const double most = numbers_.positive(*lines.most, kLength);
     if (least < 0.0 || least > most) {
@@ -223,7 +219,14 @@ class FeatureBuilder {
     }
     const double mean = 0.5 * (least + most);
     const double sigma = (most - least) / 6.0;
-    feature.clearance = Clearance{most, mean * mean + sigma * sigma, touches};
+    return {most, mean * mean + sigma * sigma};
+  }
+
+  /// An axis with a clearance. Sizes of parts are normal, and three standard deviations are half their zones.
+  Feature loose(const ClearanceLines& lines) const {
+    Feature feature = described(lines.axis);
+    feature.clearance = lines.fit.empty() ? by_ends(lines) : by_fit(lines);
+    feature.clearance->touches = lines.contact == Contact::boundary;
     return feature;
   }
 

@@ -280,7 +280,7 @@ void read_workspace(const StudyValue& value, PlatformLines& platform) {
   }
 }
 
-/// Names that are no name of a point of the platform.
+/// Names that points of the platform must not have.
 constexpr std::array<std::string_view, 4> kOtherPoints{"base", "origin", "platform", "tip"};
 
 std::vector<NamedPoint> platform_points(const StudyValue& value) {

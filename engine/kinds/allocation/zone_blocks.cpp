@@ -97,9 +97,7 @@ void check_block(const StudySection& block, const StudyValue& zones, const Study
 PartMembers errors_of(const ZoneAt& zone, const ModelDescription& model) {
   const Feature& feature = model.features[zone.feature];
   if (zone_class(zone.key, feature.kind) == ZoneClass::orientation) return feature.tilt;
-  PartMembers errors = feature.middle;
-  if (!feature.orientation) errors.insert(errors.end(), feature.tilt.begin(), feature.tilt.end());
-  return errors;
+  return feature.orientation ? feature.middle : feature.errors();
 }
 
 void check_errors(const StudyValue& value, const ZoneAt& zone, const Study& study) {

@@ -28,12 +28,12 @@ std::string sign_of(const Result& found, std::size_t n) {
   return is_zone(found, n) ? std::string(zone_traits(found.zone_key(n)).sign) : std::string(kPlusMinus);
 }
 
-/// "1-3 rail"; the name of a part that is no zone.
+/// "1-3 rail"; of a part that is not a zone its name.
 std::string feature_text(const Result& found, std::size_t n) {
   return is_zone(found, n) ? found.zone_limbs(n) + " " + found.zone_feature(n) : found.part_names[n];
 }
 
-/// What stands before the number: of a diameter, of a sphere's, of a width nothing.
+/// The sign before the number: of a diameter, or of a sphere's; none before a width.
 std::string_view before_number(const Result& found, std::size_t n) {
   if (!is_zone(found, n) || found.zone_shape(n) == "interval") return kPlusMinus;
   if (found.zone_shape(n) == "sphere") return kSphereDiameter;
@@ -62,7 +62,7 @@ bool are_of_one_feature(const Result& found, std::size_t a, std::size_t b) {
          found.zone_limbs(a) == found.zone_limbs(b);
 }
 
-/// What a drawing says besides: what it does not need, and where a tolerance could not be chosen.
+/// Remarks of the drawing: an orientation that is not needed, and a tolerance that could not be chosen.
 std::string remark(const Result& found, std::size_t n) {
   std::vector<std::string> words;
   for (std::size_t other = 0; other < found.parts(); ++other) {
@@ -74,7 +74,7 @@ std::string remark(const Result& found, std::size_t n) {
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-/// Whether a location stands before this orientation.
+/// Whether this is an orientation whose location has a line of its own.
 bool follows_another(const Result& found, std::size_t n) {
   if (!is_zone(found, n)) return false;
   // A run-out is a location on an axis, and only there.

@@ -12,7 +12,7 @@
 /// the result outlives what refers to it.
 namespace poesy {
 
-/// Feature, symbol, zone, datums and length of each part; of a part that is no zone its name and T.
+/// Feature, symbol, zone, datums and length of each part; of a part that is not a zone its name and T.
 std::vector<FilledColumn> zone_columns(const AllocationResult& found);
 
 /// The share of features inside their zone, and what else a drawing says.

@@ -11,6 +11,7 @@
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/display.h"
 #include "engine/stats/indices.h"
+#include "engine/stats/moments.h"
 
 namespace poesy {
 namespace {
@@ -24,12 +25,6 @@ double removable_part(double residual, double effect) {
 /// The same for one error; NaN if its effect is rounding.
 double removable_share(double residual, double effect) {
   return has_effect(effect) ? removable_part(residual, effect) : kNaN;
-}
-
-double root_mean_square(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 using Cells = SeparationResult::Cells;

@@ -330,6 +330,16 @@ TEST(ToleranceSearch, RefusesALimitBelowWhatOtherErrorsGive) {
       << refusal_of(study);
 }
 
+/// The standard deviation of the sum is that of which a share of the design's rejects is beyond 1 on one side.
+void expect_deviation_by_one_end(const AllocationResult& found) {
+  double variance = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) variance += std::pow(kCoefficients[i] * found.sigma(i), 2);
+  const double z =
+      -normal_quantile(1.0, static_cast<double>(found.design_most) / static_cast<double>(found.design_machines));
+  EXPECT_NEAR(std::sqrt(variance), 1.0 / z, 0.01 / z);
+  EXPECT_EQ(found.certificate.decision, YieldVerdict::Decision::kept);
+}
+
 /// Of a limit with two ends the nearer one decides, here nearly alone: the standard deviation of the sum is that whose
 /// normal share is the yield. Where the perfect mechanism is off zero, the limit is counted from there.
 TEST(ToleranceSearch, KeepsALimitWithTwoEnds) {
@@ -337,12 +347,7 @@ TEST(ToleranceSearch, KeepsALimitWithTwoEnds) {
   study.study.analysis.limits = {{0, ValueLimit::between(-1.0, 3.0)}};
   const StudyResult result = study.run();
   const AllocationResult& found = result.as<AllocationResult>();
-  double variance = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) variance += std::pow(kCoefficients[i] * found.sigma(i), 2);
-  const double z =
-      -normal_quantile(1.0, static_cast<double>(found.design_most) / static_cast<double>(found.design_machines));
-  EXPECT_NEAR(std::sqrt(variance), 1.0 / z, 0.01 / z);
-  EXPECT_EQ(found.certificate.decision, YieldVerdict::Decision::kept);
+  expect_deviation_by_one_end(found);
   EXPECT_EQ(result.verdicts->limits.at(0).limit, ValueLimit::between(-1.0, 3.0));
   FunctionStudy moved(
       3,
@@ -364,12 +369,7 @@ TEST(ToleranceSearch, KeepsALimitWithOneEnd) {
   FunctionStudy study = weighted_sum_study();
   study.study.analysis.limits = {{0, ValueLimit::between(-std::numeric_limits<double>::infinity(), 1.0)}};
   const AllocationResult found = study.find();
-  double variance = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) variance += std::pow(kCoefficients[i] * found.sigma(i), 2);
-  const double z =
-      -normal_quantile(1.0, static_cast<double>(found.design_most) / static_cast<double>(found.design_machines));
-  EXPECT_NEAR(std::sqrt(variance), 1.0 / z, 0.01 / z);
-  EXPECT_EQ(found.certificate.decision, YieldVerdict::Decision::kept);
+  expect_deviation_by_one_end(found);
 }
 
 TEST(ToleranceSearch, RefusesLowestTolerancesThatAreTooCoarse) {
