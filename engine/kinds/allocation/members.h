@@ -15,8 +15,8 @@ using Limbs = std::vector<std::size_t>;  ///< Numbers of limbs, as files count t
 /// The limbs of a list, at least two and each once. Throws InputError at a value that names none of the model's.
 Limbs read_limbs(const StudyValue& value, const ModelDescription& model);
 
-/// Throws InputError at the value for errors whose tolerance cannot be chosen: measured, correlated, about a mean, or drawn
-/// anew at each pose.
+/// Throws InputError at the value for errors whose tolerance cannot be chosen: measured, correlated, about a mean, or
+/// drawn anew at each pose.
 void check_distributions(const StudyValue& value, const PartMembers& members, const Study& study);
 
 /// The errors of each part of one block: a single part, or with `each` a part for each error, where corresponding

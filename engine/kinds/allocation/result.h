@@ -146,8 +146,8 @@ struct AllocationResult {
   /// value; NaN if it cannot be coarser.
   Parts<double> coarser_yield;
 
-  /// @name Zones of a drawing: a number or text for each part, empty text for a part that is not a zone. No arrays if no
-  /// part is a zone.
+  /// @name Zones of a drawing: a number or text for each part, empty text for a part that is not a zone. No arrays if
+  /// no part is a zone.
   /// @{
   Parts<std::string> zone_feature;     ///< name of the feature on the drawing: "rail"
   Parts<std::string> zone_limbs;       ///< limbs that share the zone: "1-3"
