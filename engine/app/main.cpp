@@ -28,7 +28,7 @@ void describe_program(Command& program) {
       "A study file says which mechanism, errors and poses are looked at, and how. poesy draws the errors, "
       "solves the mechanism for every pose and draw, and writes what it found to a result file."};
   program.examples = {{"which mechanisms are there?", "poesy models"},
-                      {"a study to start from, every key explained", "poesy template 2upr-rpu > study.toml"},
+                      {"a study to start from", "poesy template 2upr-rpu > study.toml"},
                       {"gives study.h5", "poesy run study.toml"},
                       {"the errors that matter most", "poesy show study.h5"}};
 }

@@ -14,6 +14,7 @@
 #include "engine/report/mechanism_picture.h"
 #include "engine/report/tables.h"
 #include "engine/storage/file_writer.h"
+#include "engine/study/brief_template.h"
 #include "engine/study/text_file.h"
 #include "models/registry.h"
 
@@ -45,6 +46,7 @@ const StudyKind& kind_named(const std::string& word) {
 struct TemplateOptions {
   std::string model;
   std::string kind{study_kinds().all.front()->name};
+  bool full = false;
   bool reference = false;
 };
 
@@ -60,7 +62,8 @@ int print_template(const TemplateOptions& options) {
   if (const auto refusal = wanted.no_template != nullptr ? wanted.no_template(as_named) : std::nullopt) {
     throw InputError({}, refusal->problem, refusal->remedy);
   }
-  print(template_text(entry, wanted));
+  const std::string text = template_text(entry, wanted);
+  print(options.full ? text : brief_template(text, study_kinds().tables, wanted.name));
   return kDone;
 }
 
@@ -131,15 +134,16 @@ Command& add_models(Command& program) {
 }
 
 Command& add_template(Command& program) {
-  const auto [command, options] =
-      program.add_command("template", "print a complete, commented study file", print_template);
+  const auto [command, options] = program.add_command("template", "print a study file to start from", print_template);
   CLI::Option* named = command.add_value("model", options.model, "MODEL", "mechanism, or its file");
   command.add_value("kind", options.kind, "KIND", "kind of study: " + either(names(study_kinds())));
+  command.add_flag("--full", options.full, "every key, explained")->needs(named);
   command.add_flag("--reference", options.reference, "print the reference of all keys of study files, as Markdown")
       ->excludes(named);
-  command.examples = {{"a sensitivity study", "poesy template 2upr-rpu > study.toml"},
-                      {"all errors at once", "poesy template 3-prs monte-carlo > study.toml"},
-                      {"every key of a study file, as text", "poesy template --reference"}};
+  command.examples = {
+      {"a sensitivity study", "poesy template 2upr-rpu > study.toml"},
+      {"all errors at once, every key explained", "poesy template 3-prs monte-carlo --full > study.toml"},
+      {"every key of a study file, as text", "poesy template --reference"}};
   command.callback([&reference = options.reference, named] {
     if (!reference && named->count() == 0) throw CLI::RequiredError(named->get_type_name());
   });

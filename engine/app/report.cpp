@@ -22,12 +22,12 @@ struct ReportOptions {
   std::string report;
 };
 
-/// The default path: result.h5 gives result.html beside it; before.h5 and after.h5 give before-after.html beside the
+/// The default path: result.h5 gives result.html beside it; before.h5, ..., after.h5 give before-after.html beside the
 /// first.
 std::string default_path(const std::vector<std::string>& results) {
   const std::filesystem::path first(results.front());
   std::string name = first.stem().string();
-  if (results.size() == 2) name += "-" + std::filesystem::path(results.back()).stem().string();
+  if (results.size() > 1) name += "-" + std::filesystem::path(results.back()).stem().string();
   return (first.parent_path() / (name + ".html")).string();
 }
 
@@ -61,15 +61,17 @@ int report(const ReportOptions& options) {
 }  // namespace
 
 Command& add_report(Command& program) {
-  const auto [command, options] =
-      program.add_command("report", "one HTML file with figures and tables of a result, or of two compared", report);
-  command.add_value("results", options.results, "RESULT.h5", "result file, or two to be compared")
+  const auto [command, options] = program.add_command(
+      "report", "one HTML file with figures and tables of a result, or of several compared", report);
+  command
+      .add_value("results", options.results, "RESULT.h5",
+                 "result file, or several of one kind, A, B, ..., which are compared with A")
       ->required()
-      ->expected(1, 2);
-  command.add_value(
-      "-o,--output", options.report, "REPORT.html",
-      "report; default: RESULT.html beside the result, A-B.html beside A for two; REPORT.pdf is printed by "
-      "Chromium where it is installed");
+      ->expected(1, kMostResults);
+  command.add_value("-o,--output", options.report, "REPORT.html",
+                    "report; default: RESULT.html beside the result, A-B.html beside A for several, B the last; "
+                    "REPORT.pdf is printed by "
+                    "Chromium where it is installed");
   command.examples = {{"gives result.html", "poesy report result.h5"},
                       {"two compared, before-after.html", "poesy report before.h5 after.h5"},
                       {"printed, where Chromium is installed", "poesy report result.h5 -o result.pdf"}};

@@ -16,6 +16,8 @@
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
 #include "engine/report/display.h"
+#include "engine/report/merits.h"
+#include "engine/report/report_kind.h"
 #include "engine/report/signs.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
@@ -31,7 +33,7 @@ constexpr std::string_view kRemedy = "a wider terminal, --response NAME or --jso
 constexpr std::size_t kMostNumber = 1'000'000;
 
 struct ShowOptions {
-  std::vector<std::string> results;  ///< one result, or two to compare
+  std::vector<std::string> results;  ///< one result, or several to compare
   std::string response;
   std::optional<std::string> sort;
   std::optional<std::size_t> top;
@@ -113,58 +115,105 @@ int show_one(const ShowOptions& options) {
   return kDone;
 }
 
-void check_ranked(const std::string& path, const StoredResult& result) {
-  if (ranks_errors(result)) return;
-  throw InputError(
-      {path},
-      fmt::format("is a result of kind '{}', and only those of kind {} rank errors", result.kind, kinds_that_rank()),
-      "show each result alone, or compare both with poesy report");
+/// The responses that --response names for so many results, one for all or A,B for each; the default for none.
+std::vector<std::string> responses_of(const ShowOptions& options, std::span<const ReportedResult> results) {
+  std::vector<std::string> names;
+  for (std::size_t from = 0; from <= options.response.size();) {
+    const std::size_t comma = std::min(options.response.find(',', from), options.response.size());
+    names.push_back(options.response.substr(from, comma - from));
+    from = comma + 1;
+  }
+  if (names.size() > 1 && names.size() != results.size()) {
+    throw InputError({}, fmt::format("--response: {} names for {} results", names.size(), results.size()),
+                     "name one response, or one for each result");
+  }
+  names.resize(results.size(), names.front());
+  for (std::size_t n = 0; n < results.size(); ++n) {
+    names[n] = response_of(names[n], results[n].path, results[n].stored);
+  }
+  return names;
 }
 
-/// Shows the rankings of two results side by side.
-int show_both(const ShowOptions& options) {
+/// Adds the two rankings of errors, or what else two results of this kind are compared by.
+void compare_two(const ReportKind& kind, std::span<const ReportedResult> results, std::span<const RankedResult> ranked,
+                 RowOrder order, ComparedResults& compared) {
+  if (kind.two_rankings == nullptr) {
+    const Comparison both = comparison(kind, results[0], results[1]);
+    const auto shown = std::ranges::find(both.a.options, ranked[0].response);
+    std::vector<Table> tables = comparison_tables(both);
+    const auto first = shown == both.a.options.end() ? 0 : shown - both.a.options.begin();
+    compared.tables.push_back(std::move(tables[static_cast<std::size_t>(first)]));
+    return;
+  }
+  TwoRankings rankings = kind.two_rankings(ranked[0], ranked[1], order);
+  compared.tables.push_back(std::move(rankings.table));
+  compared.tau = rankings.tau;
+  compared.remarks = std::move(rankings.remarks);
+}
+
+/// What the results are compared by: figures of merit, settings that differ, then their errors or other items.
+ComparedResults compare(const ReportKind& kind, std::span<const ReportedResult> results,
+                        std::span<const RankedResult> ranked, RowOrder order) {
+  ComparedResults compared;
+  std::vector<const StoredResult*> stored;
+  for (const ReportedResult& one : results) stored.push_back(&one.stored);
+  const std::string response = compared_response(stored);
+  std::vector<std::vector<Merit>> found;
+  for (const StoredResult* one : stored) found.push_back(merits(kind, *one, response));
+  if (std::optional<Table> table = merits_table(found)) compared.tables.push_back(std::move(*table));
+  for (std::size_t n = 1; n < results.size(); ++n) {
+    Table settings = settings_table(*stored[0], *stored[n], n, false);
+    if (!settings.rows.empty()) compared.tables.push_back(std::move(settings));
+  }
+  if (results.size() == 2) compare_two(kind, results, ranked, order, compared);
+  return compared;
+}
+
+/// Shows which of several results is better, and what differs between them.
+int show_several(const ShowOptions& options) {
   const RowOrder order = order_of(options);
-  const std::string& path_a = options.results.front();
-  const std::string& path_b = options.results.back();
-  const StoredResult a = read_result_with_warning(path_a);
-  const StoredResult b = read_result_with_warning(path_b);
-  check_ranked(path_a, a);
-  check_ranked(path_b, b);
-  const std::size_t comma = options.response.find(',');
-  const std::string of_a = options.response.substr(0, comma);
-  const std::string of_b = comma == std::string::npos ? of_a : options.response.substr(comma + 1);
-  const ReportKind& kind = kind_of(a).report;
-  const RankedResult ranked_a{a, path_a, response_of(of_a, path_a, a), kind.tally(a).total()};
-  const RankedResult ranked_b{b, path_b, response_of(of_b, path_b, b), kind_of(b).report.tally(b).total()};
-  TwoRankings rankings = kind.two_rankings(ranked_a, ranked_b, order);
-  if (options.top) keep_first(*options.top, {&rankings.table, 1});
+  std::vector<ReportedResult> results;
+  for (const std::string& path : options.results) {
+    results.push_back({read_result_with_warning(path), path});
+    check_comparable(results.front().stored, results.front().path, results.back().stored, path);
+  }
+  const ReportKind& kind = kind_of(results.front().stored).report;
+  const std::vector<std::string> responses = responses_of(options, results);
+  std::vector<RankedResult> ranked;
+  for (std::size_t n = 0; n < results.size(); ++n) {
+    const StoredResult& stored = results[n].stored;
+    ranked.push_back({stored, results[n].path, responses[n], kind.tally(stored).total()});
+  }
+  ComparedResults compared = compare(kind, results, ranked, order);
+  if (options.top) keep_first(*options.top, compared.tables);
   if (options.json) {
-    print(json_of(ranked_a, ranked_b, rankings));
+    print(json_of(ranked, compared));
     return kDone;
   }
   const std::size_t width = width_of(options);
-  std::string text = prose_of(ranked_text('A', ranked_a), width) + prose_of(ranked_text('B', ranked_b), width) + "\n" +
-                     text_of(rankings.table, width, kRemedy);
-  for (const std::string& remark : rankings.remarks) text += prose_of(remark, width);
+  const std::string_view role = kind.two_rankings == nullptr ? "response" : "ranked by";
+  std::string text;
+  for (std::size_t n = 0; n < ranked.size(); ++n) text += prose_of(ranked_text(letter_of(n), ranked[n], role), width);
+  text += "\n" + text_of(compared.tables, width, kRemedy);
+  for (const std::string& remark : compared.remarks) text += prose_of(remark, width);
   print(text);
   return kDone;
 }
 
-int show(const ShowOptions& options) { return options.results.size() == 1 ? show_one(options) : show_both(options); }
+int show(const ShowOptions& options) { return options.results.size() == 1 ? show_one(options) : show_several(options); }
 
 }  // namespace
 
 Command& add_show(Command& program) {
   const auto [command, options] =
-      program.add_command("show", "print a result as tables, or the rankings of two beside each other", show);
+      program.add_command("show", "print a result as tables, or which of several is better", show);
   command
       .add_value("results", options.results, "RESULT.h5",
-                 "result file, or two sensitivity results whose rankings are shown beside each other")
+                 "result file, or several of one kind, A, B, ..., which are compared with A")
       ->required()
-      ->expected(1, 2);
-  command.add_value(
-      "--response", options.response, "RESPONSE",
-      "response to rank by, or to show alone where nothing is ranked; A,B for one of each of two results");
+      ->expected(1, kMostResults);
+  command.add_value("--response", options.response, "RESPONSE",
+                    "response to rank by, or to show alone where nothing is ranked; A,B,... for one of each result");
   command.add_value("--sort", options.sort, "KEY",
                     fmt::format("order of the errors of a sensitivity result: {}; order is that of the study; default: "
                                 "effect",
@@ -178,7 +227,7 @@ Command& add_show(Command& program) {
   command.examples = {{"the tables of a result", "poesy show result.h5"},
                       {"the ten errors that matter most to another response",
                        "poesy show result.h5 --response angular_deformation --top 10"},
-                      {"the rankings of two studies beside each other", "poesy show platform.h5 published.h5"}};
+                      {"which of two designs is better, and why", "poesy show before.h5 after.h5"}};
   return command;
 }
 

@@ -59,13 +59,4 @@ const Kind& kind_of(const StoredResult& result) {
 
 std::string_view replayable_kinds() { return "sensitivity, Monte Carlo or evaluate"; }
 
-std::string kinds_that_rank() {
-  std::string names;
-  for (const Kind* kind : kAll) {
-    if (kind->report.two_rankings != nullptr)
-      names += (names.empty() ? "'" : ", '") + std::string(kind->study.name) + "'";
-  }
-  return names;
-}
-
 }  // namespace poesy

@@ -23,9 +23,6 @@ const Kind& kind_of(const Study& study);
 /// The kind of a result. Precondition: its kind exists.
 const Kind& kind_of(const StoredResult& result);
 
-/// The names of the kinds that rank errors, in quotes, for messages.
-std::string kinds_that_rank();
-
 /// The kinds whose solves can be replayed, for messages.
 std::string_view replayable_kinds();
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "engine/base/nan.h"
 #include "engine/base/text.h"
 #include "engine/base/units.h"
 #include "engine/report/display.h"
@@ -120,11 +121,12 @@ std::string json_of(const StoredResult& result, const SolveCounts& solves, std::
 
 std::string json_of(const Table& table) { return text_of(Json(table)); }
 
-std::string json_of(const RankedResult& a, const RankedResult& b, const TwoRankings& rankings) {
-  return text_of({{"results", Json::array({ranked_json(a), ranked_json(b)})},
-                  {"kendall_tau", std::isnan(rankings.tau) ? Json(nullptr) : Json(rankings.tau)},
-                  {"remarks", rankings.remarks},
-                  {"tables", Json::array({rankings.table})}});
+std::string json_of(std::span<const RankedResult> results, const ComparedResults& compared) {
+  Json all{{"results", Json::array()}, {"remarks", compared.remarks}, {"tables", compared.tables}};
+  for (const RankedResult& result : results) all["results"].push_back(ranked_json(result));
+  const double tau = compared.tau.value_or(kNaN);
+  all["kendall_tau"] = std::isnan(tau) ? Json(nullptr) : Json(tau);
+  return text_of(all);
 }
 
 }  // namespace poesy

@@ -6,6 +6,7 @@
 
 #include "engine/report/html/parts.h"
 #include "engine/report/html/robot.h"
+#include "engine/report/merits.h"
 #include "engine/report/solves.h"
 #include "engine/report/tables.h"
 
@@ -25,6 +26,9 @@ struct ReportKind {
   std::vector<Table> (*tables)(const StoredResult&, const TableOptions&);  ///< tables that only this kind has
   /// Compares the rankings of errors in two results; null: it ranks nothing.
   TwoRankings (*two_rankings)(const RankedResult& a, const RankedResult& b, RowOrder order) = nullptr;
+  /// Figures of merit beside the yield, by which results are compared first. response: may be one that the result does
+  /// not have. Null: the kind has none.
+  std::vector<Merit> (*merits)(const StoredResult&, std::string_view response) = nullptr;
   bool sorts = false;                                   ///< whether its ranked tables support every RowOrder
   Settling (*settling)(const StoredResult&) = nullptr;  ///< null: the kind is not sampled
   StudyWords (*words)(const StoredResult&);             ///< texts for the list of what was run
@@ -45,11 +49,10 @@ struct ReportKind {
 /// convergence of adaptive samples.
 std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options);
 
-/// The report of one result, or the comparison of two, as one HTML document that needs no other file: what was run,
-/// warnings, figures with their numbers, tables. It can be read without JavaScript, which only draws the figures. Text
-/// from files is escaped. Throws InputError for two results that cannot be compared: they have different kinds or
-/// mechanisms, or no responses and no errors, cases or sources in common. Precondition: one result or two; kind is that
-/// of the first.
+/// The report of one result, or the comparison of two or more, as one HTML document that needs no other file: what was
+/// run, warnings, figures with their numbers, tables. It can be read without JavaScript, which only draws the figures.
+/// Text from files is escaped. Throws InputError for results that cannot be compared: they have different kinds, or no
+/// responses and no errors, cases or sources in common. Precondition: there is a result; kind is that of the first.
 std::string html_report(const ReportKind& kind, std::span<const ReportedResult> results);
 
 }  // namespace poesy

@@ -434,26 +434,27 @@ std::string not_settled_text(const StoredResult& result, const Settling& settlin
 
 void check_comparable(const StoredResult& a, const std::string& path_a, const StoredResult& b,
                       const std::string& path_b) {
-  const auto check = [&](std::string_view what, const std::string& of_a, const std::string& of_b) {
-    if (of_a == of_b) return;
+  if (a.kind != b.kind) {
     throw InputError({.file = path_b},
-                     fmt::format("cannot be compared with {}: its {} is '{}', not '{}'", path_a, what, of_b, of_a),
-                     "compare two results of one kind and mechanism, or look at each alone");
-  };
-  check("kind", a.kind, b.kind);
-  check("mechanism", a.model, b.model);
+                     fmt::format("cannot be compared with {}: its kind is '{}', not '{}'", path_a, b.kind, a.kind),
+                     "compare results of one kind, or look at each alone");
+  }
+  if (common(names_of(a.responses), names_of(b.responses)).empty()) {
+    throw InputError({.file = path_b}, fmt::format("has no response in common with {}", path_a),
+                     "compare results that share some");
+  }
 }
 
 bool differ_in_metric(const StoredResult& a, const StoredResult& b) {
   return !a.metric.empty() && !b.metric.empty() && a.metric != b.metric;
 }
 
-std::string ranked_text(char letter, const RankedResult& ranked) {
+std::string ranked_text(char letter, const RankedResult& ranked, std::string_view role) {
   const StoredResult& result = ranked.result;
   std::string text = result.title.empty() ? fmt::format("{}: {}", letter, ranked.path)
                                           : fmt::format("{}: {} ({})", letter, result.title, ranked.path);
   if (!result.metric.empty()) text += "; metric: " + metric_text(result);
-  return text + fmt::format("; ranked by {}; {} of {} {}", ranked.response, count_text(ranked.solves.not_converged()),
+  return text + fmt::format("; {} {}; {} of {} {}", role, ranked.response, count_text(ranked.solves.not_converged()),
                             counted(ranked.solves.total(), "solve", "solves"), why_unsolved(ranked.solves));
 }
 

@@ -103,16 +103,16 @@ struct TwoRankings {
   std::vector<std::string> remarks;  ///< sentences for people: the tau, how the metrics differ, what is left out
 };
 
-/// Throws InputError, with the path of B, if the results are of two kinds or mechanisms.
+/// Throws InputError, with the path of B, if the results are of two kinds or have no response in common.
 void check_comparable(const StoredResult& a, const std::string& path_a, const StoredResult& b,
                       const std::string& path_b);
 
 /// Whether two results have different metrics; false if one of them has none.
 bool differ_in_metric(const StoredResult& a, const StoredResult& b);
 
-/// One line about one of two results: "A: title (path); metric: ...; ranked by gap; 5 of 1 000 solves did not
-/// converge".
-std::string ranked_text(char letter, const RankedResult& ranked);
+/// One line about one of several results: "A: title (path); metric: ...; ranked by gap; 5 of 1 000 solves did not
+/// converge". role: what the response does there.
+std::string ranked_text(char letter, const RankedResult& ranked, std::string_view role = "ranked by");
 
 /// A result's summary and its tables as one JSON object, for programs:
 ///
@@ -129,12 +129,19 @@ std::string ranked_text(char letter, const RankedResult& ranked);
 /// Invalid UTF-8 is replaced. solves: all of the result.
 std::string json_of(const StoredResult& result, const SolveCounts& solves, std::span<const Table> tables);
 
-/// Two rankings as one JSON object:
+/// What two or more results of a kind are compared by.
+struct ComparedResults {
+  std::vector<Table> tables = {};         ///< figures of merit, settings that differ, errors or other items
+  std::optional<double> tau = {};         ///< Kendall's tau of two rankings, NaN if not known; none: nothing was ranked
+  std::vector<std::string> remarks = {};  ///< sentences for people
+};
+
+/// A comparison as one JSON object:
 ///
-///     results: [{path, response (that ranks), and of the result all that is above but its tables}, ...], A before B
-///     kendall_tau (null where it is not known), remarks: [sentences]
-///     tables: [the one table, as above]
-std::string json_of(const RankedResult& a, const RankedResult& b, const TwoRankings& rankings);
+///     results: [{path, response (that ranks), and of the result all that is above but its tables}, ...], A first
+///     kendall_tau (null where it is not known, or nothing is ranked), remarks: [sentences]
+///     tables: as above
+std::string json_of(std::span<const RankedResult> results, const ComparedResults& compared);
 
 std::string json_of(const Table& table);  ///< One table as JSON, in the form above.
 

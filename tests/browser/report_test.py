@@ -290,7 +290,7 @@ class Reports(PageTest):
         self.check_page(self.report("sensitivity", self.result("sensitivity", study)))
 
     def test_the_mechanism_is_turned_and_shown_at_its_poses(self):
-        study = self.poesy("template", "3-prs").replace("samples = 1000", "samples = 20")
+        study = self.poesy("template", "3-prs", "--full").replace("samples = 1000", "samples = 20")
         page = self.report("mechanism", self.result("mechanism", study))
         self.browser.open(page, 1000)
         shown = """const figure = document.querySelector("[data-figure=robot]");
@@ -327,7 +327,7 @@ class Reports(PageTest):
         self.check_page(self.report("identification", self.result("identification", study)))
 
     def test_monte_carlo(self):
-        template = self.poesy("template", "3-prs", "monte-carlo")
+        template = self.poesy("template", "3-prs", "monte-carlo", "--full")
         limited = template.replace("[solver]", '[analysis.limits]\nposition = "30 mm"\nrotation = "8 deg"\n[solver]')
         self.check_page(self.report("monte-carlo", self.result("monte-carlo", limited)))
         marked = self.browser.run(
@@ -339,7 +339,7 @@ class Reports(PageTest):
         self.assertEqual(shaded, 4)
 
     def test_comparison(self):
-        template = self.poesy("template", "2upr-rpu")
+        template = self.poesy("template", "2upr-rpu", "--full")
         smaller = template.replace('sigma = "1 mm"', 'sigma = "0.5 mm"')
         self.check_page(self.report("comparison", self.result("before", template), self.result("after", smaller)))
 

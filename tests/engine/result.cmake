@@ -11,4 +11,5 @@ poesy_test(checkpoint_test LABELS robustness SOURCES engine/storage/checkpoint_t
 poesy_test(convergence_test LABELS unit
            SOURCES engine/study/study_samples_test.cpp engine/result/result_convergence_test.cpp
                    engine/report/convergence_table_test.cpp
+                   engine/report/merits_test.cpp
            LINKS poesy_kinds)

@@ -143,7 +143,7 @@ class Studies(unittest.TestCase):
 
     def check_order(self, model, *response):
         with tempfile.TemporaryDirectory() as folder:
-            template = poesy("template", model, folder=folder)
+            template = poesy("template", model, "--full", folder=folder)
             quick = re.sub(r"(?m)^samples = \d+", "samples = 200", re.sub(r"(?m)^count = \d+", "count = 4", template))
             (Path(folder) / "study.toml").write_text(quick)
             poesy("run", "study.toml", "--quiet", folder=folder)

@@ -29,7 +29,7 @@ class ReadingGuide(unittest.TestCase):
         holder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(holder.cleanup)
         cls.folder = holder.name
-        template = cls.succeeds(POESY, "template", "2upr-rpu")
+        template = cls.succeeds(POESY, "template", "2upr-rpu", "--full")
         quick = re.sub(r"(?m)^samples = \d+", "samples = 100", re.sub(r"(?m)^count = \d+", "count = 3", template))
         (Path(cls.folder) / "study.toml").write_text(quick)
         cls.succeeds(POESY, "run", "study.toml", "--quiet")

@@ -13,7 +13,7 @@ SUBSETS = ["FS", "T", "R", "L", "FS+T", "FS+R", "FS+L", "T+R", "T+L", "R+L", "FS
 class Coupling(ProgramTest):
     def setUp(self):
         super().setUp()
-        template = self.succeeds("template", "3-prs", "coupling")
+        template = self.succeeds("template", "3-prs", "coupling", "--full")
         self.study = template.replace('select = "interior"', 'select = "grid"').replace(
             "count = 158", "count = { alpha = 3, beta = 3, z = 2 }")
         self.write("study.toml", self.study)

@@ -85,7 +85,7 @@ class Exports(Csv):
         """Poses and errors go round twice, and neither they nor the responses lose a bit."""
         for model in MODELS:
             with self.subTest(model):
-                template = self.succeeds("template", model)
+                template = self.succeeds("template", model, "--full")
                 self.write("study.toml", re.sub(r"(?m)^count = \d+", "count = 4",
                                                 re.sub(r"(?m)^samples = \d+", "samples = 50", template)))
                 self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet")

@@ -102,7 +102,7 @@ class MechanismFile(ProgramTest):
     def test_a_template_runs(self):
         for name in ("rps3", "upr2-rpu", "ups6"):
             self.take(name)
-            template = self.succeeds("template", f"{name}.toml", "monte-carlo")
+            template = self.succeeds("template", f"{name}.toml", "monte-carlo", "--full")
             template = template.replace("count = 158", "count = 2").replace("samples = 1000", "samples = 20")
             self.write("template.toml", template)
             self.assertIn("# mobility:", self.succeeds("check", "template.toml"))
@@ -208,7 +208,7 @@ class MechanismFile(ProgramTest):
         shown = self.succeeds("models", "rps3.toml")
         for name, columns in (("tip", "rx, ry, tip_z"), ("actuators", "q_1_2, q_2_2, q_3_2")):
             self.assertIn(f"\nposes may be given by {name}\n", shown)
-            self.assertIn(f"# Chart {name} in which a file may give poses: {columns}\n", self.succeeds("template", "rps3.toml"))
+            self.assertIn(f"# Chart {name} in which a file may give poses: {columns}\n", self.succeeds("template", "rps3.toml", "--full"))
         poses = [(0.1 * k - 0.2, 0.3 - 0.13 * k, 0.52 + 0.03 * k) for k in range(5)]
         self.write("poses.csv", table([dict(zip(("rx", "ry", "z"), pose, strict=True)) for pose in poses], ["rx", "ry", "z"]))
         self.write("errors.csv", "delta_1_0_x [mm]\n0.1\n")

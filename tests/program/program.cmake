@@ -28,12 +28,13 @@ program_test(mechanism_file regression)
 program_test(shared_drive statistical)
 program_test(assembly regression)
 program_test(drawing regression)
+program_test(compare unit)
 program_test(flatness statistical)
 program_test(own_responses regression)
 program_test(relative_responses statistical)
 program_test(branched statistical)
 program_test(load regression)
-set_property(TEST program.drawing program.flatness program.mechanism_file program.relative_responses program.shared_drive
+set_property(TEST program.drawing program.compare program.flatness program.mechanism_file program.relative_responses program.shared_drive
              program.assembly program.branched program.load
              APPEND PROPERTY ENVIRONMENT POESY_DATA=${CMAKE_CURRENT_SOURCE_DIR}/data)
 program_test(determinism determinism)

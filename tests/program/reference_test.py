@@ -1,4 +1,5 @@
-"""The reference of study files in the repository is the one that the program prints."""
+"""The reference of study files in the repository is the one that the program prints; templates are short, or explain
+every key, and mean the same."""
 
 from pathlib import Path
 
@@ -17,6 +18,27 @@ class Reference(ProgramTest):
         done = self.poesy("template", "2upr-rpu", "--reference")
         self.assertEqual(done.returncode, 2, done.stdout)
         self.assertIn(b"--reference", done.stderr)
+
+    def test_short_and_full_templates_are_the_same_study(self):
+        for model, kind in (("2upr-rpu", "sensitivity"), ("2upr-rpu", "monte-carlo"), ("2upr-rpu", "allocation"),
+                            ("2upr-rpu", "sobol"), ("2upr-rpu", "evaluate"), ("3-prs", "coupling")):
+            with self.subTest(model=model, kind=kind):
+                resolved = []
+                for options in ((), ("--full",)):
+                    text = self.succeeds("template", model, kind, *options)
+                    self.write("study.toml", text)
+                    study = self.succeeds("check", "study.toml")
+                    resolved.append(study[study.index("format ="):].replace(self.title(text), 'title = ""'))
+                    lines = [line for line in text.splitlines() if line]
+                    if not options:
+                        self.assertLessEqual(len(lines), 29)
+                        self.assertLessEqual(max(map(len, lines)), 120)
+                self.assertEqual(*resolved)
+
+    @staticmethod
+    def title(template):
+        """The line of the title, as a resolved study has it; "title = " where there is none."""
+        return next((line.split("  #")[0] for line in template.splitlines() if line.startswith("title")), "title = ")
 
 
 if __name__ == "__main__":

@@ -16,6 +16,11 @@ BY_PLATFORM = STUDY.replace("[solver]\n", '[solver]\nmetric = "platform"\n')
 MONTE_CARLO = STUDY.replace('"sensitivity"', '"monte-carlo"')
 
 
+def rankings(both):
+    """The table of the two rankings, among those of a comparison."""
+    return next(table for table in both["tables"] if table["name"] == "rankings")
+
+
 class Show(ProgramTest):
     def setUp(self):
         super().setUp()
@@ -116,7 +121,7 @@ class Show(ProgramTest):
 
     def test_json_of_every_kind_is_json_alone(self):
         for kind in ("monte-carlo", "identification", "evaluate"):
-            template = self.succeeds("template", "2upr-rpu", kind).replace("count = 158", "count = 3")
+            template = self.succeeds("template", "2upr-rpu", kind, "--full").replace("count = 158", "count = 3")
             self.write("kind.toml", "\n".join("samples = 200" if line.startswith("samples = ") else line
                                               for line in template.splitlines()) + "\n")
             self.succeeds("run", "kind.toml", "-o", "kind.h5", "--quiet")
@@ -148,7 +153,7 @@ class Show(ProgramTest):
         self.assertIn("is an HDF5 file, such as a result of poesy, and no study; give its study", done.stderr.decode())
 
     def test_failures_of_both_fidelities(self):
-        template = self.succeeds("template", "3-prs").replace('fidelity = "exact"', 'fidelity = "both"', 1)
+        template = self.succeeds("template", "3-prs", "--full").replace('fidelity = "exact"', 'fidelity = "both"', 1)
         self.write("both.toml", template.replace("count = 158", "count = 2").replace("samples = 1000", "samples = 200"))
         self.succeeds("run", "both.toml", "-o", "both.h5", "--quiet")
         text = self.succeeds("show", "both.h5")
@@ -202,7 +207,7 @@ class Metric(ProgramTest):
             self.assertEqual(self.words(study), (self.PLATFORM.format(4), own))
 
     def test_models_that_weigh_nothing_have_none(self):
-        template = self.succeeds("template", "3-prs").replace("count = 158", "count = 2")
+        template = self.succeeds("template", "3-prs", "--full").replace("count = 158", "count = 2")
         self.write("study.toml", template.replace("samples = 1000", "samples = 100"))
         self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
         self.assertNotIn("metric:", self.succeeds("show", "r.h5"))
@@ -236,7 +241,7 @@ class TwoRankings(ProgramTest):
         both = json.loads(self.succeeds("show", "published.h5", "platform.h5", "--json", *options))
         self.assertEqual([one["response"] for one in both["results"]], [response_a, response_b])
         a, b = self.effects("published", response_a), self.effects("platform", response_b)
-        rows = both["tables"][0]["rows"]
+        rows = rankings(both)["rows"]
         self.assertEqual({row["error"] for row in rows}, set(a))
         for row in rows:
             for key, effects in (("a", a), ("b", b)):
@@ -258,13 +263,13 @@ class TwoRankings(ProgramTest):
         both = self.compare("linear_deformation", "gap")
         self.assertLess(both["kendall_tau"], 0.9)
         self.assertEqual(both["results"][0]["metric"], "published")
-        self.assertEqual(both["tables"][0]["rows"][-1]["error"], "epsilon_3_3_x")  # no effect as published
+        self.assertEqual(rankings(both)["rows"][-1]["error"], "epsilon_3_3_x")  # no effect as published
         text = self.succeeds("show", "published.h5", "platform.h5")
         for words in ("A: ", "A: published.h5; metric: published, radians", "B: platform.h5; metric: platform, by",
                       f"Kendall's tau of the two rankings is {both['kendall_tau']:.2g}, over 6 errors", "unit of length"):
             self.assertIn(words, " ".join(text.split()))
         lines = [line.split() for line in text.splitlines()]
-        for shown in both["tables"][0]["shown"]:
+        for shown in rankings(both)["shown"]:
             self.assertIn(shown, lines)
         self.succeeds("report", "published.h5", "platform.h5", "-o", "both.html")
         page = (self.folder / "both.html").read_text().replace("&#39;", "'")
@@ -278,7 +283,7 @@ class TwoRankings(ProgramTest):
     def test_order_and_number_of_rows(self):
         options = ("--sort", "name", "--top", "2")
         both = json.loads(self.succeeds("show", "published.h5", "platform.h5", "--json", *options))
-        self.assertEqual([row["error"] for row in both["tables"][0]["rows"]], ["delta_1_0_z", "delta_1_1_y"])
+        self.assertEqual([row["error"] for row in rankings(both)["rows"]], ["delta_1_0_z", "delta_1_1_y"])
         whole = json.loads(self.succeeds("show", "published.h5", "platform.h5", "--json"))
         self.assertEqual(both["kendall_tau"], whole["kendall_tau"])  # of all errors, shown or not
 
@@ -294,10 +299,11 @@ class TwoRankings(ProgramTest):
         self.write("mc.toml", MONTE_CARLO)
         self.succeeds("run", "mc.toml", "--quiet")
         self.assertIn("'monte-carlo'", self.refused("published.h5", "mc.h5"))
-        template = self.succeeds("template", "3-prs").replace("count = 158", "count = 2")
+        template = self.succeeds("template", "3-prs", "--full").replace("count = 158", "count = 2")
         self.write("3prs.toml", template.replace("samples = 1000", "samples = 100"))
         self.succeeds("run", "3prs.toml", "--quiet")
-        self.assertIn("mechanism is '3-prs', not '2upr-rpu'", self.refused("published.h5", "3prs.h5"))
+        self.assertIn("has no response in common with", self.refused("published.h5", "3prs.h5"))
+        self.assertIn("3 names for 2 results", self.refused("published.h5", "platform.h5", "--response", "x,y,z"))
 
 
 if __name__ == "__main__":

@@ -43,7 +43,7 @@ class StudyNotes(ProgramTest):
         self.assertNotIn("held constant", self.succeeds("show", "e.h5"), "the table sets all errors")
 
     def test_the_template_holds_errors_of_the_study_size(self):
-        template = self.succeeds("template", "2upr-rpu")
+        template = self.succeeds("template", "2upr-rpu", "--full")
         for sigma, size in (("1 mm", "1 mm"), ("20 um", "0.02 mm")):
             self.write("study.toml", template.replace('sigma = "1 mm"', f'sigma = "{sigma}"'))
             self.assertIn(f"30 errors of set 'benign' at {size} and 1 deg", self.succeeds("check", "study.toml"))

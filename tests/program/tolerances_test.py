@@ -168,7 +168,7 @@ class Tolerances(ProgramTest):
 
     def test_confirmation_stays_within_the_parts(self):
         # Tolerances for so large an angle outgrow the parts.
-        template = self.succeeds("template", "2upr-rpu").replace("count = 158", "count = 5").replace("samples = 1000", "samples = 300")
+        template = self.succeeds("template", "2upr-rpu", "--full").replace("count = 158", "count = 5").replace("samples = 1000", "samples = 300")
         self.write("whole.toml", template)
         self.succeeds("run", "whole.toml", "-o", "w.h5", "--quiet")
         printed = self.succeeds("tolerances", "w.h5", "--response", "angular_deformation", "--limit", "20 deg", "-d", "t")

@@ -263,10 +263,17 @@ Comparable comparable(const StoredResult& result, const StoredResult& other) {
   return all;
 }
 
+std::vector<Merit> merits(const StoredResult& result, std::string_view) {
+  const Result& found = allocation_of(result);
+  if (!has_costs(found)) return {};
+  return {{.what = "cost of all parts", .value = found.total_cost}};
+}
+
 }  // namespace
 
 constinit const ReportKind kAllocationReport{.tally = tally,
                                              .tables = allocation_tables,
+                                             .merits = merits,
                                              .sorts = true,
                                              .words = words,
                                              .warn = warn,

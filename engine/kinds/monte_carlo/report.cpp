@@ -455,6 +455,17 @@ ErrorShares error_shares(const StoredResult& result) {
           .at_poses = {at_poses.begin(), at_poses.end()}};
 }
 
+/// The root mean square of the response over the samples of all poses.
+std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  const auto at = std::ranges::find(result.responses, name, &NamedUnit::name);
+  if (at == result.responses.end() || found.overall_rms.empty()) return {};
+  const auto r = static_cast<std::size_t>(at - result.responses.begin());
+  return {{.what = fmt::format("root mean square of {}", name),
+           .unit = unit_text(*at),
+           .value = found.overall_rms(r) / display(*at).si}};
+}
+
 Comparable comparable(const StoredResult& result, const StoredResult&) {
   const auto numbers = overall(result);
   std::vector<std::string> names;
@@ -483,6 +494,7 @@ std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOpt
 constinit const ReportKind kMonteCarloReport{
     .tally = tally,
     .tables = monte_carlo_tables,
+    .merits = merits,
     .settling = settling,
     .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
     .warn = warn,

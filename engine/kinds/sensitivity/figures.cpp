@@ -227,6 +227,15 @@ Comparable comparable_sensitivity(const StoredResult& result, const StoredResult
   return all;
 }
 
+std::vector<Merit> sensitivity_merits(const StoredResult& result, std::string_view response) {
+  const auto at = std::ranges::find(result.responses, response, &NamedUnit::name);
+  if (at == result.responses.end()) return {};
+  const auto r = static_cast<std::size_t>(at - result.responses.begin());
+  return {{.what = fmt::format("predicted root mean square of {}", response),
+           .unit = unit_text(*at),
+           .value = total_rms(result, r)}};
+}
+
 void compare_sensitivity(const ReportedResult& a, const ReportedResult& b, const Comparison& compared, Page& page) {
   add_rankings(a, b, page);
   add_comparison(compared, page);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/kinds/sensitivity/result.h"
@@ -63,6 +64,9 @@ std::string first_order(const StoredResult& result, const ErrorCells& cells);
 
 /// Compares the indices, and all errors together; by the published estimator if one of the results has no other.
 Comparable comparable_sensitivity(const StoredResult& result, const StoredResult& other);
+
+/// The root mean square of the response over samples and poses, predicted from each error alone.
+std::vector<Merit> sensitivity_merits(const StoredResult& result, std::string_view response);
 
 /// Adds the sections of two results: their rankings, what differs, and where in the workspace.
 void compare_sensitivity(const ReportedResult& a, const ReportedResult& b, const Comparison& compared, Page& page);

@@ -289,6 +289,7 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
 constinit const ReportKind kSensitivityReport{.tally = sensitivity_tally,
                                               .tables = sensitivity_tables,
                                               .two_rankings = two_rankings,
+                                              .merits = sensitivity_merits,
                                               .sorts = true,
                                               .settling = settling,
                                               .words = [](const StoredResult&) { return StudyWords{.draws = true}; },

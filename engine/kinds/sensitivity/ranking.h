@@ -72,7 +72,7 @@ double share_not_converged(const SensitivityResult& result, std::size_t factor);
 
 /// Compares the rankings of two results for the errors that both have. Errors without effect share the last rank; those
 /// whose effect cannot be distinguished from rounding have no rank and do not count for the tau. Throws InputError if
-/// the results are of two kinds or mechanisms, or have no error in common. Precondition: sensitivity results.
+/// the results are of two kinds, or have no error in common. Precondition: sensitivity results.
 TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder order = RowOrder::effect);
 
 }  // namespace poesy

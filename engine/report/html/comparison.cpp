@@ -198,7 +198,6 @@ void add_quantity(Comparable& to, const StoredResult& result, std::string label,
 }
 
 Comparison comparison(const ReportKind& kind, const ReportedResult& a, const ReportedResult& b) {
-  if (common(names_of(a.stored.responses), names_of(b.stored.responses)).empty()) refuse(b, a, "response");
   const Comparable all_a = kind.comparable(a.stored, b.stored);
   const Comparable all_b = kind.comparable(b.stored, a.stored);
   if (all_a.item_word != all_b.item_word) refuse(b, a, "case");
@@ -209,6 +208,14 @@ Comparison comparison(const ReportKind& kind, const ReportedResult& a, const Rep
   return {kept_part(all_a, positions_in(options, true), positions_in(items, true)),
           kept_part(all_b, positions_in(options, false), positions_in(items, false)), only_in(all_a.items, all_b.items),
           only_in(all_b.items, all_a.items)};
+}
+
+std::vector<Table> comparison_tables(const Comparison& compared) {
+  std::vector<Table> tables;
+  for (std::size_t option = 0; option < compared.a.options.size(); ++option) {
+    tables.push_back(table_of(compared, option));
+  }
+  return tables;
 }
 
 Answer comparison_answer(const Comparison& compared) {
@@ -266,8 +273,7 @@ void add_comparison(const Comparison& compared, Page& page) {
   }
   if (!a.totals.empty() && !compared.b.totals.empty()) section.table(totals_table(compared));
   add_figure(page, section, "side-by-side", bars_of(compared, pool), "A and B side by side" + order_of(a) + ".");
-  std::vector<Table> tables;
-  for (std::size_t option = 0; option < a.options.size(); ++option) tables.push_back(table_of(compared, option));
+  const std::vector<Table> tables = comparison_tables(compared);
   section.table(tables.front());
   section.folded(fmt::format("The same for every other {}", a.option_word), std::span(tables).subspan(1));
   if (a.items.size() < 2) return;

@@ -143,8 +143,6 @@ void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& pa
 /// folded.
 void add_what_was_run(const ReportKind& kind, std::span<const ReportedResult> results, Page& page);
 
-inline constexpr std::string_view kLetters[] = {"A", "B"};  ///< The names of two results.
-
 /// Adds a figure to a page and a place for it to a section.
 void add_figure(Page& page, Section& section, const std::string& key, Figure figure, std::string_view caption);
 
@@ -186,8 +184,11 @@ struct Comparison {
   std::vector<std::string> only_b;  ///< items that only the second has
 };
 
-/// Compares two results of this kind and one mechanism. Throws InputError if they have nothing in common.
+/// Compares two results of this kind. Throws InputError if they have nothing in common.
 Comparison comparison(const ReportKind& kind, const ReportedResult& a, const ReportedResult& b);
+
+/// The tables of a comparison, one for each option.
+std::vector<Table> comparison_tables(const Comparison& compared);
 
 /// The summary of a comparison.
 Answer comparison_answer(const Comparison& compared);

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
+#include <utility>
 
 #include "engine/base/contract.h"
 #include "engine/model/calibrated.h"
@@ -164,71 +164,87 @@ void add_unsolved(const SolveCounts& of_a, const SolveCounts& of_b, Page& page) 
   page.add_section("not-solved", "What was not solved").table(table);
 }
 
-/// Names and readable values of all settings, except format and title.
-std::vector<std::pair<std::string, std::string>> named_settings(const StoredResult& result) {
-  std::vector<std::pair<std::string, std::string>> list;
-  for (const StudySetting& one : study_settings(result.study_text)) {
-    if (!one.section.empty()) list.emplace_back(one.section + "." + one.key, readable_setting(one.value));
-  }
-  return list;
-}
-
-/// The settings in which both studies differ, or agree (`same`), in the order of A.
-Table settings_table(const StoredResult& a, const StoredResult& b, bool same) {
-  Table table{.name = same ? "settings_alike" : "settings",
-              .caption = same ? "Settings that are the same" : "Settings that differ",
-              .columns = {text_column("setting", "setting"), text_column("a", "A"), text_column("b", "B")}};
-  const auto list_a = named_settings(a);
-  const auto list_b = named_settings(b);
-  const std::map<std::string, std::string> of_a(list_a.begin(), list_a.end());
-  const std::map<std::string, std::string> of_b(list_b.begin(), list_b.end());
-  const auto add = [&](const std::string& name, const std::string& in_a, const std::string& in_b) {
-    if ((in_a == in_b) == same) table.rows.push_back({text_cell(name), text_cell(in_a), text_cell(in_b)});
-  };
-  for (const auto& [name, value] : list_a) {
-    const auto at = of_b.find(name);
-    add(name, value, at == of_b.end() ? std::string() : at->second);
-  }
-  for (const auto& [name, value] : list_b) {
-    if (!of_a.contains(name)) add(name, {}, value);
-  }
-  return table;
-}
-
-/// Adds the differences between the studies, which explain those of their numbers.
-void add_studies(const StoredResult& a, const StoredResult& b, Page& page) {
-  Section& section = page.add_section("studies", "How the studies differ");
-  const Table differing = settings_table(a, b, false);
-  differing.rows.empty() ? section.paragraph("Both studies have the same settings.") : section.table(differing);
-  section.folded("Settings that are the same in both", settings_table(a, b, true));
-}
-
 std::string name_of(const ReportedResult& result) {
   return result.stored.title.empty() ? result.path : fmt::format("{} ({})", result.stored.title, result.path);
 }
 
-/// The page of two results.
-Page comparison_page(const ReportKind& kind, std::span<const ReportedResult> results) {
-  const ReportedResult& a = results[0];
-  const ReportedResult& b = results[1];
-  check_comparable(a.stored, a.path, b.stored, b.path);
-  Page page;
-  page.title = fmt::format("Two results of {} compared", a.stored.model);
-  page.subtitle = fmt::format("A: {}; B: {}", name_of(a), name_of(b));
-  for (const auto& [letter, result] : {std::pair(kLetters[0], &a), std::pair(kLetters[1], &b)}) {
-    for (const std::string& one : warnings(kind, *result)) page.warnings.push_back(fmt::format("{}: {}", letter, one));
+/// Adds which result is better, by how much, and whether that is certain.
+void add_merits(std::span<const ReportedResult> results, std::span<const std::vector<Merit>> found, Page& page) {
+  const std::optional<Table> table = merits_table(found);
+  if (!table) return;
+  Section& section = page.add_section("which-is-better", "Which is better");
+  for (std::size_t n = 0; n < results.size(); ++n) {
+    section.paragraph(fmt::format("{}: {}", letter_of(n), name_of(results[n])));
   }
-  add_studies(a.stored, b.stored, page);
-  add_responses(a.stored, page);
+  section.table(*table);
+}
+
+/// Adds the differences between the studies, which explain those of their numbers.
+void add_studies(std::span<const ReportedResult> results, Page& page) {
+  Section& section = page.add_section("studies", "How the studies differ");
+  const StoredResult& a = results.front().stored;
+  for (std::size_t n = 1; n < results.size(); ++n) {
+    const Table differing = settings_table(a, results[n].stored, n, false);
+    if (differing.rows.empty()) {
+      section.paragraph(fmt::format("The studies of A and {} have the same settings.", letter_of(n)));
+    } else {
+      section.table(differing);
+    }
+  }
+  if (results.size() == 2) {
+    section.folded("Settings that are the same in both", settings_table(a, results[1].stored, 1, true));
+  }
+}
+
+/// The line "Answer" of a comparison by figures of merit; empty if the results have none in common.
+Answer merits_answer(std::span<const std::vector<Merit>> found) {
+  std::string text;
+  for (std::size_t n = 1; n < found.size(); ++n) {
+    const std::string sentences = merit_sentences(found.front(), found[n], letter_of(n));
+    if (!sentences.empty()) text += (text.empty() ? "" : " ") + sentences;
+  }
+  return text.empty() ? Answer() : Answer{{"Answer", text}};
+}
+
+/// Adds what is compared of two results: errors or other items, and how the solves ended.
+void add_two(const ReportKind& kind, const ReportedResult& a, const ReportedResult& b, Page& page) {
   const Comparison compared = comparison(kind, a, b);
-  page.answer = comparison_answer(compared);
+  for (auto& line : comparison_answer(compared)) {
+    const bool known = line.first == "Answer" && !page.answer.empty();
+    page.answer.emplace_back(known ? "Largest effects" : line.first, std::move(line.second));
+  }
   if (kind.compare != nullptr) {
     kind.compare(a, b, compared, page);
   } else {
     add_comparison(compared, page);
   }
+}
+
+/// The page of two or more results.
+Page comparison_page(const ReportKind& kind, std::span<const ReportedResult> results) {
+  const ReportedResult& a = results.front();
+  Page page;
+  page.title = fmt::format("{} results compared", results.size() == 2 ? "Two" : std::to_string(results.size()));
+  std::vector<const StoredResult*> stored;
+  for (std::size_t n = 0; n < results.size(); ++n) {
+    check_comparable(a.stored, a.path, results[n].stored, results[n].path);
+    page.subtitle +=
+        fmt::format("{}{}: {} of {}", n == 0 ? "" : "; ", letter_of(n), name_of(results[n]), results[n].stored.model);
+    for (const std::string& one : warnings(kind, results[n])) {
+      page.warnings.push_back(fmt::format("{}: {}", letter_of(n), one));
+    }
+    stored.push_back(&results[n].stored);
+  }
+  const std::string response = compared_response(stored);
+  std::vector<std::vector<Merit>> found;
+  for (const StoredResult* result : stored) found.push_back(merits(kind, *result, response));
+  page.answer = merits_answer(found);
+  add_merits(results, found, page);
+  add_studies(results, page);
+  add_responses(a.stored, page);
+  if (results.size() == 2) add_two(kind, a, results[1], page);
   add_glossary(a.stored, page);
-  add_unsolved(kind.tally(a.stored).total(), kind.tally(b.stored).total(), page);
+  if (results.size() == 2) add_unsolved(kind.tally(a.stored).total(), kind.tally(*stored[1]).total(), page);
   add_what_was_run(kind, results, page);
   return page;
 }
@@ -236,7 +252,7 @@ Page comparison_page(const ReportKind& kind, std::span<const ReportedResult> res
 }  // namespace
 
 std::string html_report(const ReportKind& kind, std::span<const ReportedResult> results) {
-  POESY_EXPECTS(results.size() == 1 || results.size() == 2);
+  POESY_EXPECTS(!results.empty());
   return html_document(results.size() == 1 ? page_of(kind, results.front()) : comparison_page(kind, results));
 }
 

@@ -172,22 +172,23 @@ std::vector<RunFact> run_facts(const ReportKind& kind, const ReportedResult& rep
   };
 }
 
-/// The facts of one result, or those in which two agree (`same`) or differ.
+/// The facts of one result, or those in which several agree (`same`) or differ.
 Table facts_table(const ReportKind& kind, std::span<const ReportedResult> results, bool same) {
-  const bool two = results.size() == 2;
+  const bool several = results.size() > 1;
   Table table{.name = same ? "what_was_run_alike" : "what_was_run",
-              .caption = !two   ? "What was run"
-                         : same ? "What is the same in both runs"
-                                : "What differs between the runs",
+              .caption = !several ? "What was run"
+                         : same   ? "What is the same in all runs"
+                                  : "What differs between the runs",
               .columns = {text_column("fact", "fact")}};
   std::vector<std::vector<RunFact>> facts;
   for (const ReportedResult& result : results) {
-    const std::string letter(two ? kLetters[facts.size()] : "value");
+    const std::string letter = several ? std::string(1, letter_of(facts.size())) : "value";
     table.columns.push_back(text_column(letter, letter));
     facts.push_back(run_facts(kind, result));
   }
   for (std::size_t n = 0; n < facts.front().size(); ++n) {
-    if (two && (facts[0][n].second == facts[1][n].second) != same) continue;
+    const auto as_first = [&](const std::vector<RunFact>& other) { return other[n].second == facts[0][n].second; };
+    if (several && std::ranges::all_of(facts, as_first) != same) continue;
     std::vector<Cell>& row = table.rows.emplace_back();
     row.push_back(text_cell(facts.front()[n].first));
     for (const std::vector<RunFact>& of_result : facts) row.push_back(text_cell(of_result[n].second));
@@ -257,9 +258,9 @@ void add_what_was_run(const ReportKind& kind, std::span<const ReportedResult> re
           : "The study below holds every setting, those that its author left out among them. With the same program on "
             "the same kind of processor it gives the same numbers for any number of threads.");
   section.table(facts_table(kind, results, false));
-  if (results.size() == 2) section.folded("What is the same in both", facts_table(kind, results, true));
+  if (results.size() > 1) section.folded("What is the same in all", facts_table(kind, results, true));
   for (std::size_t n = 0; n < results.size(); ++n) {
-    const std::string name = results.size() == 2 ? fmt::format("The study of {}", kLetters[n]) : "The study";
+    const std::string name = results.size() > 1 ? fmt::format("The study of {}", letter_of(n)) : "The study";
     section.folded_text(name + ", resolved", results[n].stored.study_text);
   }
 }

@@ -1,0 +1,208 @@
+#include "engine/report/merits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "engine/base/contract.h"
+#include "engine/report/display.h"
+#include "engine/report/report_kind.h"
+
+namespace poesy {
+namespace {
+
+constexpr int kDigits = 4;
+
+/// The yield in percent; its interval counts measured parts too, if there are some.
+Merit yield_merit(const YieldVerdict& yield) {
+  const Interval machines{yield.ci_low, yield.ci_high};
+  const Interval interval = yield.with_parts.value_or(machines);
+  return {.what = "yield",
+          .unit = "%",
+          .value = 100.0 * yield.value,
+          .low = 100.0 * interval.low,
+          .high = 100.0 * interval.high,
+          .most_best = true};
+}
+
+const Merit* find(std::span<const Merit> merits, std::string_view what) {
+  const auto at = std::ranges::find(merits, what, &Merit::what);
+  return at == merits.end() ? nullptr : &*at;
+}
+
+std::string_view word_of(Change verdict) {
+  constexpr std::array<std::string_view, 4> kWords{"better", "worse", "not told apart", ""};
+  return kWords[static_cast<std::size_t>(verdict)];
+}
+
+/// A value with its unit; shares in percent as everywhere.
+std::string text_of(const Merit& merit, double value) {
+  if (merit.unit == "%") return percent_text(value / 100.0);
+  return number_text(value, kDigits) + (merit.unit.empty() ? "" : " " + merit.unit);
+}
+
+/// "+6.74 percentage points" for a share, otherwise "-17 %" of the value in A.
+std::string change_text(const Merit& a, const MeritChange& change) {
+  if (a.unit == "%") return fmt::format("{:+.3g} percentage points", change.value);
+  return fmt::format("{:+.3g} %", 100.0 * change.value / std::abs(a.value));
+}
+
+std::string interval_text(const Merit& a, const MeritChange& change) {
+  if (std::isnan(change.low)) return {};
+  const double scale = a.unit == "%" ? 1.0 : 100.0 / std::abs(a.value);
+  return fmt::format(", interval {:+.3g} to {:+.3g}", scale * change.low, scale * change.high);
+}
+
+std::string sentence(const Merit& a, const Merit& b, char letter) {
+  const MeritChange change = change_of(a, b);
+  const std::string numbers =
+      fmt::format("the {} is {} in A and {} in {} ({}{})", a.what, text_of(a, a.value), text_of(b, b.value), letter,
+                  change_text(a, change), interval_text(a, change));
+  switch (change.verdict) {
+    case Change::better:
+      return fmt::format("{} is better: {}.", letter, numbers);
+    case Change::worse:
+      return "A is better: " + numbers + ".";
+    case Change::not_told_apart:
+      return fmt::format("A and {} are not told apart: {}.", letter, numbers);
+    case Change::without_interval:
+      break;
+  }
+  return fmt::format("T{}.", numbers.substr(1));
+}
+
+/// Names and readable values of all settings, except format and title.
+std::vector<std::pair<std::string, std::string>> named_settings(const StoredResult& result) {
+  std::vector<std::pair<std::string, std::string>> list;
+  for (const StudySetting& one : study_settings(result.study_text)) {
+    if (!one.section.empty()) list.emplace_back(one.section + "." + one.key, readable_setting(one.value));
+  }
+  return list;
+}
+
+/// The names of the figures of merit that all results have, in the order of the first.
+std::vector<std::string> shared_merits(std::span<const std::vector<Merit>> results) {
+  std::vector<std::string> names;
+  for (const Merit& merit : results.front()) {
+    const auto has = [&](const std::vector<Merit>& other) { return find(other, merit.what) != nullptr; };
+    if (std::ranges::all_of(results, has)) names.push_back(merit.what);
+  }
+  return names;
+}
+
+Cell change_cell(double change) {
+  Cell cell = number_cell(change, 3);
+  if (change > 0.0) cell.text.insert(0, "+");
+  return cell;
+}
+
+/// The row of one figure of merit of one result. first: that of A.
+std::vector<Cell> row_of(const Merit& first, const Merit& merit, std::size_t result) {
+  std::vector<Cell> row{text_cell(merit.what),
+                        text_cell(merit.unit),
+                        text_cell(std::string(1, letter_of(result))),
+                        number_cell(merit.value, kDigits),
+                        number_cell(merit.low, kDigits),
+                        number_cell(merit.high, kDigits)};
+  const MeritChange change = result == 0 ? MeritChange{} : change_of(first, merit);
+  row.insert(row.end(), {change_cell(change.value), change_cell(change.low), change_cell(change.high),
+                         text_cell(word_of(change.verdict))});
+  return row;
+}
+
+}  // namespace
+
+char letter_of(std::size_t result) {
+  POESY_EXPECTS(result < kMostResults);
+  return static_cast<char>('A' + result);
+}
+
+std::vector<Merit> merits(const ReportKind& kind, const StoredResult& result, std::string_view response) {
+  std::vector<Merit> list;
+  if (result.verdicts && result.verdicts->yield) list.push_back(yield_merit(*result.verdicts->yield));
+  if (kind.merits != nullptr) {
+    for (Merit& merit : kind.merits(result, response)) list.push_back(std::move(merit));
+  }
+  return list;
+}
+
+std::string compared_response(std::span<const StoredResult* const> results) {
+  const auto in_all = [&](const std::string& name) {
+    return std::ranges::all_of(results, [&](const StoredResult* result) {
+      return std::ranges::find(result->responses, name, &NamedUnit::name) != result->responses.end();
+    });
+  };
+  const StoredResult& first = *results.front();
+  if (const std::string name = default_ranking(first); in_all(name)) return name;
+  const auto at = std::ranges::find_if(first.responses, in_all, &NamedUnit::name);
+  return at == first.responses.end() ? std::string() : at->name;
+}
+
+MeritChange change_of(const Merit& a, const Merit& b) {
+  MeritChange change{.value = b.value - a.value};
+  change.low = change.value - std::hypot(b.value - b.low, a.high - a.value);
+  change.high = change.value + std::hypot(b.high - b.value, a.value - a.low);
+  if (std::isnan(change.low) || std::isnan(change.high)) return change;
+  if (change.low <= 0.0 && change.high >= 0.0) {
+    change.verdict = Change::not_told_apart;
+  } else {
+    change.verdict = (change.value > 0.0) == a.most_best ? Change::better : Change::worse;
+  }
+  return change;
+}
+
+std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
+  const std::vector<std::string> shared = shared_merits(results);
+  if (shared.empty()) return std::nullopt;
+  Table table{.name = "merits",
+              .caption = results.size() == 2 ? "Which is better: B against A" : "Which is better: each against A",
+              .columns = {text_column("quantity", "quantity"), text_column("unit", "unit"), text_column("result", "in"),
+                          number_column("value", "value"), number_column("low", "low", "", 1),
+                          number_column("high", "high", "", 1), number_column("change", "change"),
+                          number_column("change_low", "low"), number_column("change_high", "high"),
+                          text_column("verdict", "verdict")},
+              .notes = {"low, high: intervals of the value, and of its change as if both results were drawn "
+                        "independently; common draws make it wider than it need be"}};
+  for (const std::string& what : shared) {
+    const Merit& first = *find(results.front(), what);
+    for (std::size_t n = 0; n < results.size(); ++n) table.rows.push_back(row_of(first, *find(results[n], what), n));
+  }
+  return table;
+}
+
+std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit>& b, char letter) {
+  std::string text;
+  for (const Merit& merit : a) {
+    const Merit* other = find(b, merit.what);
+    if (other != nullptr) text += (text.empty() ? "" : " ") + sentence(merit, *other, letter);
+  }
+  return text;
+}
+
+Table settings_table(const StoredResult& a, const StoredResult& b, std::size_t other, bool same) {
+  Table table{.name = same ? "settings_alike" : "settings",
+              .caption = same ? "Settings that are the same" : "Settings that differ",
+              .columns = {text_column("setting", "setting"), text_column("a", "A"),
+                          text_column("b", std::string(1, letter_of(other)))}};
+  const auto list_a = named_settings(a);
+  const auto list_b = named_settings(b);
+  const std::map<std::string, std::string> of_a(list_a.begin(), list_a.end());
+  const std::map<std::string, std::string> of_b(list_b.begin(), list_b.end());
+  const auto add = [&](const std::string& name, const std::string& in_a, const std::string& in_b) {
+    if ((in_a == in_b) == same) table.rows.push_back({text_cell(name), text_cell(in_a), text_cell(in_b)});
+  };
+  for (const auto& [name, value] : list_a) {
+    const auto at = of_b.find(name);
+    add(name, value, at == of_b.end() ? std::string() : at->second);
+  }
+  for (const auto& [name, value] : list_b) {
+    if (!of_a.contains(name)) add(name, {}, value);
+  }
+  return table;
+}
+
+}  // namespace poesy

@@ -1,0 +1,89 @@
+"""`poesy show A B ...` and `report A B ...`: which design is better, by how much, and whether that is certain."""
+
+import json
+import os
+import re
+from pathlib import Path
+
+from poesy_program import ProgramTest, main
+
+STUDY = """\
+format = "poesy-study"
+version = 1
+[mechanism]
+model = "2upr-rpu"
+[solver]
+metric = "platform"
+[poses]
+count = 6
+[errors]
+linear = { distribution = "normal", sigma = "0.02 mm" }
+angular = { distribution = "normal", sigma = "0.01 deg" }
+[analysis]
+kind = "monte-carlo"
+draws = "per machine"
+factors = "deforming-all"
+samples = 2000
+limits = { gap = "0.04 mm" }
+"""
+
+PRINTER = """\
+format = "poesy-study"
+version = 1
+mechanism.file = "FILE"
+poses = { count = 3 }
+errors.linear = { distribution = "normal", sigma = "0.05 mm" }
+errors.angular = { distribution = "normal", sigma = "0.05 deg" }
+analysis = { kind = "sensitivity", factors = "all", samples = 100 }
+"""
+
+
+class Compare(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.results = []
+        for name, sigma in (("a", "0.02"), ("b", "0.015"), ("c", "0.0201")):
+            self.write(f"{name}.toml", STUDY.replace("0.02 mm", f"{sigma} mm"))
+            self.succeeds("run", f"{name}.toml", "--quiet")
+            self.results.append(f"{name}.h5")
+
+    def test_yields_of_three(self):
+        both = json.loads(self.succeeds("show", *self.results, "--json"))
+        table = both["tables"][0]
+        self.assertEqual(table["name"], "merits")
+        rows = [row for row in table["rows"] if row["quantity"] == "yield"]
+        self.assertEqual([row["result"] for row in rows], ["A", "B", "C"])
+        self.assertEqual([row["verdict"] for row in rows[1:]], ["better", "not told apart"])
+        self.assertLess(rows[0]["value"] + 10, rows[1]["value"])
+        self.assertEqual(rows[1]["change"], rows[1]["value"] - rows[0]["value"])
+        low = rows[1]["change"] - ((rows[1]["value"] - rows[1]["low"]) ** 2 + (rows[0]["high"] - rows[0]["value"]) ** 2) ** 0.5
+        self.assertAlmostEqual(rows[1]["change_low"], low, places=10)
+        settings = [table for table in both["tables"] if table["name"] == "settings"]
+        self.assertEqual([row["setting"] for row in settings[0]["rows"]], ["errors.linear"])
+
+    def test_two_as_text_and_as_a_report(self):
+        text = " ".join(self.succeeds("show", "a.h5", "b.h5").split())
+        for words in ("Which is better: B against A", "better", "Settings that differ", "0.015 mm", "root mean square of gap"):
+            self.assertIn(words, text)
+        self.succeeds("report", "a.h5", "b.h5", "-o", "two.html")
+        page = (self.folder / "two.html").read_text()
+        self.assertIn("B is better: the yield is ", page)
+        self.succeeds("report", *self.results, "-o", "three.html")
+        page = (self.folder / "three.html").read_text()
+        self.assertIn("A and C are not told apart: the yield is ", page)
+
+    def test_mechanisms_of_two_names(self):
+        printer = (Path(os.environ["POESY_DATA"]) / "mechanisms/delta6.toml").read_text()
+        name = re.search('^name = "(.*)"$', printer, re.MULTILINE)[1]
+        for other in ("one", "two"):
+            self.write(f"{other}.toml", printer.replace(f'name = "{name}"', f'name = "{other}"'))
+            self.write(f"study_{other}.toml", PRINTER.replace("FILE", f"{other}.toml"))
+            self.succeeds("run", f"study_{other}.toml", "-o", f"{other}.h5", "--quiet")
+        merits = json.loads(self.succeeds("show", "one.h5", "two.h5", "--json"))["tables"][0]
+        self.assertEqual([row["change"] for row in merits["rows"] if row["result"] == "B"], [0.0])
+        self.succeeds("report", "one.h5", "two.h5", "-o", "both.html")
+        self.assertIn("A: one.h5 of one; B: two.h5 of two", (self.folder / "both.html").read_text())
+
+
+if __name__ == "__main__":
+    main()
