@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "models/chain/metric.h"
+#include "models/file/drawing_gaps.h"
 #include "models/file/structure.h"
 
 namespace poesy::file {
@@ -92,7 +93,9 @@ std::vector<std::string> TrackedModel::remarks() const { return rounding_remarks
 
 std::vector<std::string> TrackedModel::unusual_geometry() const {
   std::vector<std::string> list = home_outside(mechanism_);
-  for (std::string& unlike : unlike_limbs(mechanism_)) list.push_back(std::move(unlike));
+  for (const auto& find : {unlike_limbs, doubtful_zones, uncovered_directions}) {
+    for (std::string& found : find(mechanism_)) list.push_back(std::move(found));
+  }
   return list;
 }
 

@@ -1,0 +1,325 @@
+#include "models/file/drawing_gaps.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/units.h"
+#include "engine/drawing/zone_scatter.h"
+#include "engine/linalg/decompositions.h"
+#include "models/chain/limb.h"
+#include "models/file/mobility.h"
+#include "models/file/structure.h"
+#include "models/file/tracking.h"
+
+namespace poesy::file {
+namespace {
+
+using Eigen::Index;
+using Matrix = Eigen::MatrixXd;
+
+/// Orthonormal vectors are dependent if a singular value is below this.
+constexpr double kDependent = 1e-6;
+
+/// An orthonormal basis of the x with A x = 0. Singular values up to `nothing` count as 0.
+Matrix null_space(const Matrix& A, double nothing = kDependent) {
+  if (A.rows() == 0 || A.cols() == 0) return Matrix::Identity(A.cols(), A.cols());
+  const linalg::SingularValueDecomposition svd = linalg::right_singular_vectors(A);
+  return svd.V.rightCols(A.cols() - (svd.values.array() > nothing).count());
+}
+
+/// An orthonormal basis of what is perpendicular to the columns of A.
+Matrix complement(const Matrix& A) { return null_space(A.transpose()); }
+
+/// A limb at a pose, with lengths in units of the reach.
+struct PlacedLimb {
+  std::vector<Transform> parts;  ///< [joints + 1] base_T_part of each frame's part
+  Matrix passive;                ///< [6 x passive joints] twists at the base's origin
+};
+
+PlacedLimb placed(const Limb& limb, std::span<const double> displacements, const Transform& from) {
+  PlacedLimb made{{from}, Matrix(6, 0)};
+  Transform g = from * limb.home.front();
+  for (std::size_t j = 0; j < limb.joints.size(); ++j) {
+    const Joint& joint = limb.joints[j];
+    if (joint.moves()) {
+      const chain::Joint moving = joint.of_chain();
+      if (!joint.actuated) {
+        made.passive.conservativeResize(Eigen::NoChange, made.passive.cols() + 1);
+        made.passive.rightCols<1>() = chain::spatial_column(moving, g);
+      }
+      chain::move_joint(moving, displacements.front(), g);
+      displacements = displacements.subspan(1);
+    }
+    if (j + 1 < limb.joints.size()) made.parts.push_back(g);
+    g = g * limb.home[j + 1];
+  }
+  made.parts.push_back(g);
+  return made;
+}
+
+/// All limbs at these displacements [moving].
+std::vector<PlacedLimb> placed(const Mechanism& unit, std::span<const double> displacements) {
+  std::vector<std::span<const double>> of_limb;
+  for (const Limb& limb : unit.limbs) {
+    of_limb.push_back(displacements.first(limb.moving()));
+    displacements = displacements.subspan(limb.moving());
+  }
+  std::vector<Transform> bodies(unit.bodies.size());
+  std::vector<PlacedLimb> list(unit.limbs.size());
+  const auto place = [&](std::size_t i) { list[i] = placed(unit.limbs[i], of_limb[i], bodies[unit.limbs[i].from]); };
+  for (const std::size_t i : placing_limbs(unit)) {
+    place(i);
+    bodies[unit.limbs[i].to] = list[i].parts.back();
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list[i].parts.empty()) place(i);
+  }
+  return list;
+}
+
+/// What a twist of each limb's end does while the drives are held, to first order: it moves bodies, or remains as a
+/// gap. [limbs] each [rows x 6].
+std::vector<Matrix> effects_of_ends(const Mechanism& unit, const std::vector<PlacedLimb>& limbs) {
+  const auto rows = 6 * static_cast<Index>(limbs.size());
+  Index passive = 0;
+  for (const PlacedLimb& limb : limbs) passive += limb.passive.cols();
+  const auto moved = 6 * static_cast<Index>(unit.bodies.size() - 1);
+  const auto body = [&](std::size_t b) { return passive + 6 * static_cast<Index>(b - 1); };
+  Matrix loops = Matrix::Zero(rows, passive + moved);
+  Index column = 0;
+  for (std::size_t i = 0; i < limbs.size(); ++i) {
+    const auto row = 6 * static_cast<Index>(i);
+    loops.block(row, column, 6, limbs[i].passive.cols()) = limbs[i].passive;
+    column += limbs[i].passive.cols();
+    loops.block<6, 6>(row, body(unit.limbs[i].to)) -= lie::Matrix6<double>::Identity();
+    if (unit.limbs[i].from != kBase) {
+      loops.block<6, 6>(row, body(unit.limbs[i].from)) += lie::Matrix6<double>::Identity();
+    }
+  }
+  const linalg::SingularValueDecomposition svd = linalg::singular_value_decomposition(loops);
+  const Index rank = (svd.values.array() > unit.precision.rank_threshold * svd.values[0]).count();
+  const Matrix range = svd.U.leftCols(rank);
+  const Matrix by_end =
+      svd.V.bottomRows(moved).leftCols(rank) * svd.values.head(rank).cwiseInverse().asDiagonal() * range.transpose();
+  const Matrix gaps = Matrix::Identity(rows, rows) - range * range.transpose();
+  std::vector<Matrix> effects;
+  for (Index row = 0; row < rows; row += 6) {
+    Matrix& effect = effects.emplace_back(moved + rows, 6);
+    effect << by_end.middleCols<6>(row), gaps.middleCols<6>(row);
+  }
+  return effects;
+}
+
+/// What unit errors of each part do, [limbs][joints + 1]: a triangle R with the length |R e| of all effects of an error
+/// e = [omega; v] of the part over the poses.
+using PartEffects = std::vector<std::vector<Matrix>>;
+
+void add_pose(const Mechanism& unit, std::span<const double> displacements, PartEffects& effects) {
+  const std::vector<PlacedLimb> limbs = placed(unit, displacements);
+  const std::vector<Matrix> of_ends = effects_of_ends(unit, limbs);
+  for (std::size_t i = 0; i < limbs.size(); ++i) {
+    effects[i].resize(limbs[i].parts.size(), Matrix::Zero(6, 6));
+    for (std::size_t k = 0; k < limbs[i].parts.size(); ++k) {
+      Matrix all(6 + of_ends[i].rows(), 6);
+      all << effects[i][k], of_ends[i] * lie::adjoint(limbs[i].parts[k]);
+      effects[i][k] = linalg::upper_triangle(all);
+    }
+  }
+}
+
+PartEffects part_effects(const Mechanism& mechanism) {
+  const Mechanism unit = in_reaches(mechanism);
+  PartEffects effects(unit.limbs.size());
+  add_pose(unit, std::vector<double>(unit.moving(), 0.0), effects);
+  for (const PoseMobility& pose : workspace_mobility(mechanism)) {
+    if (!pose.reached()) continue;
+    add_pose(unit, scaled_displacements(mechanism, pose.tracked.displacements, 1.0 / mechanism.reach), effects);
+  }
+  return effects;
+}
+
+/// Whether a zone or the file states each error.
+std::vector<bool> stated_errors(const Mechanism& mechanism) {
+  std::vector<bool> is_stated(mechanism.factors.size(), true);
+  const auto remove = [&](const std::vector<FactorIndex>& errors) {
+    for (const FactorIndex error : errors) is_stated[error.value] = false;
+  };
+  for (const Feature& feature : mechanism.features) {
+    if (!feature.location) remove(feature.middle);
+    if (!feature.location && !feature.orientation) remove(feature.tilt);
+  }
+  return is_stated;
+}
+
+/// The stated errors of a part as columns of length 1, with lengths in units of the reach.
+Matrix stated_columns(const Mechanism& mechanism, const std::vector<bool>& is_stated, std::size_t limb,
+                      std::size_t frame) {
+  Matrix columns(6, 0);
+  for (std::size_t f = 0; f < mechanism.terms.size(); ++f) {
+    if (!is_stated[f]) continue;
+    lie::Screw<double> column = lie::Screw<double>::Zero();
+    for (const chain::ErrorTerm& term : mechanism.terms[f]) {
+      if (term.limb != limb || term.frame != frame) continue;
+      column[static_cast<Index>(term.component)] += term.scale / (term.component < 3 ? 1.0 : mechanism.reach);
+    }
+    if (!(column.norm() > 0.0)) continue;
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+    columns.rightCols<1>() = column.normalized();
+  }
+  return columns;
+}
+
+/// Directions in the axes of a part, as orthonormal columns.
+struct Directions {
+  Matrix displacements;  ///< [3 x d]
+  Matrix turns;          ///< [3 x t] where displacements do not count
+};
+
+/// The directions that these columns [6 x k] do not span, whatever the point about which they turn.
+Directions not_spanned(const Matrix& columns) {
+  const Matrix spanned = complement(complement(columns));
+  const Matrix turns = spanned.topRows(3);
+  return {complement(spanned.bottomRows(3) * null_space(turns)), complement(turns)};
+}
+
+/// "x, y and z".
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (k > 0) text += k + 1 == words.size() ? " and " : ", ";
+    text += words[k];
+  }
+  return text;
+}
+
+/// Orthonormal directions in words: "x and y", "(0.6, 0.8, 0)", "all that is perpendicular to (0.6, 0.8, 0)".
+std::string direction_words(const Matrix& directions) {
+  std::vector<std::string> words;
+  Matrix oblique = directions * directions.transpose();
+  for (Index axis = 0; axis < 3; ++axis) {
+    if (std::abs(oblique(axis, axis) - 1.0) > kDependent) continue;
+    words.emplace_back(1, "xyz"[axis]);
+    oblique(axis, axis) = 0.0;
+  }
+  const Index left = directions.cols() - static_cast<Index>(words.size());
+  const auto vector_words = [](Vector3 vector) {
+    Index largest = 0;
+    vector.cwiseAbs().maxCoeff(&largest);
+    return triple_text(vector[largest] < 0.0 ? Vector3(-vector) : vector);
+  };
+  if (left == 1) {
+    Index most = 0;
+    oblique.colwise().norm().maxCoeff(&most);
+    words.push_back(vector_words(oblique.col(most).normalized()));
+  }
+  if (left == 2) words.push_back("all that is perpendicular to " + vector_words(complement(directions).col(0)));
+  return listed(words);
+}
+
+/// "displacement along x and turn about z have no tolerance"; empty if there are none.
+std::string clause(const Directions& left) {
+  std::vector<std::string> words;
+  if (left.displacements.cols() > 0) words.push_back("displacement along " + direction_words(left.displacements));
+  if (left.turns.cols() > 0) words.push_back("turn about " + direction_words(left.turns));
+  if (words.empty()) return {};
+  return fmt::format("{} {} no tolerance", fmt::join(words, " and "), words.size() == 1 ? "has" : "have");
+}
+
+std::string body_words(const Mechanism& mechanism, std::size_t body) {
+  if (body == kBase) return "the base";
+  return body == kPlatform ? "the platform" : "body '" + mechanism.bodies[body].name + "'";
+}
+
+/// The part that a frame's errors belong to; empty if the joint there has no such part.
+std::string part_words(const Mechanism& mechanism, const Limb& limb, std::size_t frame) {
+  const std::size_t joints = limb.joints.size();
+  if (frame > 0 && frame < joints && limb.joints[frame - 1].name == limb.joints[frame].name) {
+    return limb.joints[frame].kind == JointKind::universal ? "the cross of " + limb.joints[frame].name : "";
+  }
+  return fmt::format("between {} and {}", frame == 0 ? body_words(mechanism, limb.from) : limb.joints[frame - 1].name,
+                     frame == joints ? body_words(mechanism, limb.to) : limb.joints[frame].name);
+}
+
+/// "limb 1", "limbs 1 and 3", "limbs 1 to 3".
+std::string limbs_words(const Mechanism& mechanism, const std::vector<std::size_t>& limbs) {
+  std::vector<std::string> labels;
+  for (const std::size_t limb : limbs) labels.push_back(mechanism.limbs[limb].label);
+  if (labels.size() == 1) return fmt::format("limb {}", labels.front());
+  const bool is_range = labels.size() > 2 && limbs.back() - limbs.front() + 1 == limbs.size();
+  if (is_range) return fmt::format("limbs {} to {}", labels.front(), labels.back());
+  return "limbs " + listed(labels);
+}
+
+/// What limbs say alike.
+struct SaidByLimbs {
+  std::string words;
+  std::vector<std::size_t> limbs;
+};
+
+void say(std::vector<SaidByLimbs>& list, std::string words, std::size_t limb) {
+  const auto known = std::ranges::find(list, words, &SaidByLimbs::words);
+  if (known == list.end()) {
+    list.push_back({std::move(words), {limb}});
+  } else {
+    known->limbs.push_back(limb);
+  }
+}
+
+void add_new(std::vector<std::string>& list, std::string text) {
+  if (std::ranges::find(list, text) == list.end()) list.push_back(std::move(text));
+}
+
+std::string length_text(double metres) { return readable_text({metres, Dimension::length}, 4); }
+
+}  // namespace
+
+std::vector<std::string> uncovered_directions(const Mechanism& mechanism) {
+  if (mechanism.features.empty()) return {};
+  const PartEffects effects = part_effects(mechanism);
+  double largest = 0.0;
+  for (const std::vector<Matrix>& limb : effects) {
+    for (const Matrix& part : limb) largest = std::max(largest, part.norm());
+  }
+  const std::vector<bool> is_stated = stated_errors(mechanism);
+  std::vector<SaidByLimbs> said;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    for (std::size_t k = 0; k < effects[i].size(); ++k) {
+      const std::string part = part_words(mechanism, mechanism.limbs[i], k);
+      if (part.empty()) continue;
+      const Matrix without_effect = null_space(effects[i][k], mechanism.precision.rank_threshold * largest);
+      const Matrix stated = stated_columns(mechanism, is_stated, i, k);
+      Matrix covered(6, without_effect.cols() + stated.cols());
+      covered << without_effect, stated;
+      const std::string words = clause(not_spanned(covered));
+      if (!words.empty()) say(said, fmt::format("{} (frame {}): {}", part, k, words), i);
+    }
+  }
+  std::vector<std::string> list;
+  for (const SaidByLimbs& one : said) list.push_back(limbs_words(mechanism, one.limbs) + ", " + one.words);
+  return list;
+}
+
+std::vector<std::string> doubtful_zones(const Mechanism& mechanism) {
+  std::vector<std::string> list;
+  for (const Feature& feature : mechanism.features) {
+    for (const std::optional<Zone>& zone : {feature.location, feature.orientation}) {
+      const bool needs_datums = zone && zone->key != "tolerance" && zone->key != "flatness";
+      if (needs_datums && zone->datums.empty()) {
+        add_new(list, fmt::format("{} of {} has no datums", zone->key, feature.label));
+      }
+    }
+    if (!feature.location || !feature.orientation) continue;
+    const double widest = drawing::widest_orientation(feature.kind) * feature.location->size;
+    if (feature.orientation->size < widest) continue;
+    add_new(list, fmt::format("{} of {} is {}, and its {} allows no more than {} anyway", feature.orientation->key,
+                              feature.label, length_text(feature.orientation->size), feature.location->key,
+                              length_text(widest)));
+  }
+  return list;
+}
+
+}  // namespace poesy::file

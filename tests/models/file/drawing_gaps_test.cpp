@@ -1,0 +1,124 @@
+#include "models/file/drawing_gaps.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/file/model.h"
+#include "tests/models/file/files.h"
+#include "tests/models/file/wrong.h"
+
+namespace poesy::file {
+namespace {
+
+using Clauses = std::vector<std::string>;
+
+constexpr const char* kName = "linear-delta-drawing";
+
+Mechanism read(const std::string& text) {
+  const MechanismFile file = read_mechanism_file(text, "m.toml");
+  return mechanism(file, default_geometry(file));
+}
+
+/// The Delta's file without the feature of this name.
+std::string without(const std::string& feature) {
+  std::string text = text_of(kName);
+  const std::size_t begin = text.find("  { name = \"" + feature + "\"");
+  EXPECT_NE(begin, std::string::npos) << feature;
+  return text.erase(begin, text.find('\n', begin) + 1 - begin);
+}
+
+const Clauses& uncovered() {
+  static const Clauses list{
+      "limbs 1 to 3, between the base and O (frame 0): displacement along x, y and z and turn about z have no "
+      "tolerance",
+      "limbs 1 to 3, between O and q (frame 1): displacement along z and turn about z have no tolerance",
+      "limbs 1 to 3, between q and B (frame 2): displacement along y has no tolerance",
+      "limbs 1 to 3, the cross of C (frame 5): displacement along y has no tolerance",
+      "limb 1, between C and the platform (frame 6): displacement along y has no tolerance",
+      "limb 2, between C and the platform (frame 6): displacement along (0.866025, 0.5, 0) has no tolerance",
+      "limb 3, between C and the platform (frame 6): displacement along (0.866025, -0.5, 0) has no tolerance"};
+  return list;
+}
+
+TEST(DrawingGaps, AreTheDirectionsThatNoFeatureOfThePartCovers) {
+  EXPECT_EQ(uncovered_directions(from_file(kName)), uncovered());
+}
+
+TEST(DrawingGaps, GrowByWhatAFeatureSaid) {
+  Clauses more = uncovered();
+  more.insert(more.begin() + 3, "limbs 1 to 3, between B and C (frame 4): displacement along x has no tolerance");
+  EXPECT_EQ(uncovered_directions(read(without("rod"))), more);
+  EXPECT_EQ(uncovered_directions(read(without("zero"))), uncovered());  // the hinge's position says it as well
+  more = uncovered();
+  more[2] =
+      "limbs 1 to 3, between q and B (frame 2): displacement along x and y and turn about x and z have no tolerance";
+  EXPECT_EQ(uncovered_directions(read(without("hinge_b"))), more);
+}
+
+/// A feature without a zone has no tolerance, and an error that the file states has one.
+TEST(DrawingGaps, AreWithoutZonesAndStatedErrors) {
+  const std::string rod = "direction = [\"r - R\", 0, \"-h\"], tolerance = \"0.02 mm\"";
+  const std::string text = replaced(text_of(kName), {rod, "direction = [\"r - R\", 0, \"-h\"]"});
+  EXPECT_EQ(uncovered_directions(read(text)), uncovered_directions(read(without("rod"))));
+  const std::string stated = "\n[[error]]\nlimb = \"each\"\nname = \"width\"\nframe = 2\ncomponent = \"delta_y\"\n";
+  Clauses fewer = uncovered();
+  fewer.erase(fewer.begin() + 2);
+  EXPECT_EQ(uncovered_directions(read(text_of(kName) + stated)), fewer);
+}
+
+TEST(DrawingGaps, AreNotSaidWithoutADrawing) { EXPECT_TRUE(uncovered_directions(from_file("rrr3")).empty()); }
+
+/// What the model itself says of single components: those in the list move the platform, and of the others those that
+/// no feature covers move nothing.
+TEST(DrawingGaps, ActInTheModel) {
+  std::string text = text_of(kName);
+  text.erase(text.find("features = ["));
+  for (int frame = 0; frame <= 6; ++frame) {
+    for (const char* component : {"delta_x", "delta_y", "delta_z", "epsilon_x", "epsilon_y", "epsilon_z"}) {
+      text += "\n[[error]]\nlimb = 1\nname = \"" + std::string(component) + "_" + std::to_string(frame) +
+              "\"\nframe = " + std::to_string(frame) + "\ncomponent = \"" + component + "\"\n";
+    }
+  }
+  const CatalogEntry entry = catalog_entry(text, "m.toml");
+  const std::unique_ptr<Model> model = build(entry, 1);
+  const std::vector<Factor>& factors = entry.description.factors;
+  const auto effect = [&](const std::string& name) {
+    double largest = 0.0;
+    const auto at = std::ranges::find(factors, name, &Factor::name);
+    EXPECT_NE(at, factors.end()) << name;
+    std::vector<double> values(factors.size(), 0.0);
+    values[static_cast<std::size_t>(at - factors.begin())] = 1e-3;
+    for (const std::vector<double>& pose :
+         {std::vector<double>{0.0, 0.0, 0.2}, {0.06, -0.04, 0.18}, {-0.03, 0.07, 0.24}}) {
+      std::vector<double> found(entry.description.responses.size());
+      SolveStatus status{};
+      std::uint32_t iterations = 0;
+      SolverOptions options;
+      options.tolerance = entry.description.tolerance;
+      model->evaluator(options)->evaluate({pose, values, {}, {}, 1}, {found, {&status, 1}, {&iterations, 1}, {}});
+      for (const double one : found) largest = std::max(largest, std::abs(one));
+    }
+    return largest;
+  };
+  for (const char* acts : {"delta_x_0", "delta_y_0", "delta_z_0", "epsilon_z_0", "delta_z_1", "epsilon_z_1",
+                           "delta_y_2", "delta_y_5", "delta_y_6"}) {
+    EXPECT_GT(effect(acts), 1e-5) << acts;
+  }
+  // Turns about the passive axes behind the part.
+  for (const char* idle : {"epsilon_y_2", "epsilon_y_6"}) EXPECT_LT(effect(idle), 1e-12) << idle;
+}
+
+TEST(DrawingGaps, NameZonesThatSayLittle) {
+  EXPECT_TRUE(doubtful_zones(from_file(kName)).empty());
+  const std::string rail = "perpendicularity = { zone = \"0.02 mm\", datums = \"A\" }";
+  EXPECT_EQ(doubtful_zones(read(replaced(text_of(kName), {rail, "perpendicularity = \"0.0355 mm\""}))),
+            (Clauses{"perpendicularity of rail has no datums",
+                     "perpendicularity of rail is 0.0355 mm, and its position allows no more than 0.03536 mm "
+                     "anyway"}));
+  EXPECT_EQ(build(catalog_entry(text_of(kName), "m.toml"))->unusual_geometry(), uncovered());
+}
+
+}  // namespace
+}  // namespace poesy::file
