@@ -65,6 +65,16 @@ struct SketchedPoint {
   SketchVector point;  ///< its place
 };
 
+/// A feature of a part in a picture.
+struct SketchedFeature {
+  std::string name;   ///< name on the drawing: "rail"
+  std::string zones;  ///< its tolerances for people: "position 0.05 mm to A|B"; empty: none
+  std::size_t limb;   ///< from 0
+  std::size_t frame;  ///< position, in Sketch::frames, of the frame of its part
+  /// Its shape in that frame (m): the ends of an axis, the corners of a plane in their order, or one point.
+  std::vector<SketchVector> outline;
+};
+
 /// A mechanism in a picture at one pose.
 struct Sketch {
   std::vector<std::vector<SketchedJoint>>
@@ -80,6 +90,7 @@ struct Sketch {
   std::vector<SketchedEnds> ends = {};     ///< [limbs]; empty: all limbs connect the base and the platform
   std::vector<SketchedPoint> points = {};  ///< named points of the platform
   std::vector<SketchedBody> bodies = {};   ///< base, platform, and bodies between them; empty if there are none between
+  std::vector<SketchedFeature> features = {};  ///< of the drawing
 
   /// The ends of a limb.
   SketchedEnds ends_of(std::size_t limb) const { return ends.empty() ? SketchedEnds{} : ends[limb]; }

@@ -35,7 +35,7 @@ std::array<Direction, 4> directions(bool z_is_down) {
 }
 
 /// The legend with a scale bar. scale: pixels per metre.
-std::string legend(Pixel at, double scale) {
+std::string legend(Pixel at, double scale, bool has_features) {
   const double length = rounded_down(kSketchWidth / 5 / scale);
   std::string text = svg_line({at.x, at.y}, {at.x + scale * length, at.y}, "stroke=\"#1d222b\" stroke-width=\"2\"");
   text += svg_text({at.x + scale * length + 6, at.y + 4}, fmt::format("{:g} mm", 1e3 * length));
@@ -47,6 +47,11 @@ std::string legend(Pixel at, double scale) {
   text += svg_glyph('P', true, {x, at.y}, "#ffffff") + svg_text({x + 11, at.y + 4}, "actuated");
   text += svg_circle({x + 84, at.y}, 1.7 * kGlyph, "class=\"errors\"");
   text += svg_text({x + 98, at.y + 4}, "frames with errors");
+  if (has_features) {
+    x += 222;
+    text += "<g class=\"feature\">" + svg_line({x, at.y}, {x + 20, at.y}, "class=\"bar\"") + "</g>\n" +
+            svg_text({x + 26, at.y + 4}, "features");
+  }
   return fmt::format("<g {}>\n{}</g>\n", kInk, text);
 }
 
@@ -61,12 +66,14 @@ std::string mechanism_picture(const Sketch& sketch, std::string_view title) {
   const double scale = std::ranges::min(views, {}, &SketchView::scale).scale;
   const std::vector<std::string> title_lines = wrapped(title, kTitleWidth);
   const double head = kHead + kTitleLine * static_cast<double>(std::max<std::size_t>(title_lines.size(), 1) - 1);
+  const bool has_features = !sketch.features.empty();
+  const std::string style = std::string(kSketchStyle) + std::string(has_features ? kFeatureStyle : "");
   const double height = head + 2 * kSketchHeight + kLegend;
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" height=\"{1:g}\" "
       "role=\"img\" font-family=\"sans-serif\" font-size=\"12\">\n{2}\n{3}\n{4}<rect width=\"{0:g}\" "
       "height=\"{1:g}\" fill=\"#ffffff\"/>\n",
-      2 * kSketchWidth, height, kPictureMark, element("title", title), kSketchStyle);
+      2 * kSketchWidth, height, kPictureMark, element("title", title), style);
   for (std::size_t n = 0; n < title_lines.size(); ++n) {
     text += svg_text({8, 18 + kTitleLine * static_cast<double>(n)}, title_lines[n],
                      "font-weight=\"bold\" font-size=\"14\"");
@@ -77,7 +84,7 @@ std::string mechanism_picture(const Sketch& sketch, std::string_view title) {
                         head + kSketchHeight * static_cast<double>(v / 2),
                         svg_text({8, 16}, all[v].name, "fill=\"#5a6270\""), still_sketch(sketch, views[v]));
   }
-  return text + legend({16, height - kLegend / 2}, scale) + "</svg>\n";
+  return text + legend({16, height - kLegend / 2}, scale, has_features) + "</svg>\n";
 }
 
 }  // namespace poesy

@@ -23,6 +23,7 @@ constexpr double kThickest = 8.0;     // pixels of the link with the largest sha
 constexpr double kMillimetres = 1e3;  // in a metre
 constexpr double kSamePoint = 1.0;    // pixels; joints that are closer share a point
 constexpr double kDigit = 9.0;        // pixels of a limb's number
+constexpr double kDot = 2.5;          // pixels, radius of a feature without size
 constexpr std::array<std::string_view, 6> kLimbs{"#2563a8", "#b4541a", "#2f7d4f", "#8a3d8f", "#8a6d1b", "#3b7f8c"};
 
 double distance(const SketchVector& a, const SketchVector& b) {
@@ -81,6 +82,7 @@ class Drawing {
   std::string all(std::size_t mark) {
     bodies();
     for (std::size_t i = 0; i < sketch_->limbs.size(); ++i) limb(i);
+    for (const SketchedFeature& one : sketch_->features) feature(one);
     if (mark < sketch_->errors.size()) frame(sketch_->errors[mark]);
     return std::move(text_);
   }
@@ -241,6 +243,27 @@ class Drawing {
     const SketchVector pixel = offsets.back() < way ? plus({}, 1.0 / way, plus(next, -1.0, here))
                                                     : plus({}, view_->metres(1.0), view_->right());
     for (const double offset : offsets) places.push_back(plus(here, offset, pixel));
+  }
+
+  /// Draws an axis as a bar, a plane as a plate, and other features as a dot.
+  void feature(const SketchedFeature& feature) {
+    const SketchedFrame& frame = sketch_->frames[feature.limb][feature.frame];
+    std::vector<SketchVector> points;
+    for (const SketchVector& inside : feature.outline) {
+      SketchVector& point = points.emplace_back(frame.origin);
+      for (std::size_t axis = 0; axis < 3; ++axis) point = plus(point, inside[axis], frame.axes[axis]);
+    }
+    const std::string zones = feature.zones.empty() ? "" : ": " + feature.zones;
+    text_ += "<g class=\"feature\">" +
+             element("title", fmt::format("{} of limb {}{}", feature.name, feature.limb + 1, zones)) + "\n";
+    if (points.size() == 1) {
+      add_group(points.front(), "class=\"dot\"", svg_circle({0, 0}, kDot, ""));
+    } else if (points.size() == 2) {
+      add_line(points[0], points[1], "class=\"bar\"");
+    } else {
+      add_path(points, "class=\"plate\"");
+    }
+    text_ += "</g>\n";
   }
 
   /// Draws the frame of an error, with its axis thicker than the others.

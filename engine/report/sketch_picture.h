@@ -22,7 +22,8 @@ struct PartShares {
 };
 
 /// A mechanism as SVG elements in a picture of kSketchWidth x kSketchHeight: links, and glyphs of joints
-/// (svg_shapes.h), side by side if joints share a point. Each part has its points (mm, base frame) as data-p="x,y,z
+/// (svg_shapes.h), side by side if joints share a point, and the features of the drawing with their names and zones as
+/// titles. Each part has its points (mm, base frame) as data-p="x,y,z
 /// x,y,z". A joint also has its own point as data-at, with data-limb and data-joint.
 /// @{
 /// For a page that sets colours and turns the picture: links and joints are as thick as their shares, which are in the
@@ -40,5 +41,10 @@ inline constexpr std::string_view kSketchStyle =
     ".tick{stroke-dasharray:6 2 1 2}.frame-axis,.base{stroke:#8b93a1}.tool,.platform{stroke:#5a6270;stroke-width:1.5}"
     ".base,.platform{fill:#8b93a1;fill-opacity:.1}.base{stroke-dasharray:4 3}.frame-name{fill:#5a6270}"
     ".limb-name,.drive{fill:currentColor}.errors{fill:none;stroke:#b3261e;stroke-width:.8}</style>\n";
+
+/// The style sheet of the features in it.
+inline constexpr std::string_view kFeatureStyle =
+    "<style>.feature{stroke:#6b4fa0;fill:#6b4fa0}.bar{stroke-width:3.5;stroke-opacity:.75;stroke-linecap:butt}"
+    ".plate{fill-opacity:.25}.dot{stroke:none}</style>\n";
 
 }  // namespace poesy

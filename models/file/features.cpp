@@ -251,6 +251,7 @@ class FeatureBuilder {
                 mechanism_);
     }
     mechanism_.features.push_back(std::move(feature));
+    mechanism_.feature_places.push_back(part.datum.inverse() * Transform{at.axes, at.middle});
   }
 
   const Numbers& numbers_;

@@ -131,9 +131,11 @@ struct Mechanism {
   ErrorsAbout about = ErrorsAbout::joint;     ///< of errors of frames, and of those with their own names
   bool errors_at_joints = true;               ///< see chain::Limb; false with features, whose errors are about frames
   std::vector<Feature> features = {};         ///< of all limbs
-  double reach;                               ///< m: largest distance between the joints' points, before copies, and P
-  Precision precision = {};                   ///< of its numbers
-  assembly::Load load = {};                   ///< used if there is stiffness
+  /// [features] part_T_feature at home: the middle and the axes of each in the frame of its part (m).
+  std::vector<Transform> feature_places = {};
+  double reach;              ///< m: largest distance between the joints' points, before copies, and P
+  Precision precision = {};  ///< of its numbers
+  assembly::Load load = {};  ///< used if there is stiffness
   /// Points of the platform whose displacements are reported.
   std::vector<NamedPlatformPoint> named = {};
 

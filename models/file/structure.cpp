@@ -96,6 +96,55 @@ std::string limb_lines(const Mechanism& mechanism) {
   return text;
 }
 
+/// "position 0.05 mm to A|B, perpendicularity 0.02 mm to A".
+std::string zones_text(const Feature& feature) {
+  std::vector<std::string> list;
+  for (const std::optional<Zone>& zone : {feature.location, feature.orientation}) {
+    if (!zone) continue;
+    list.push_back(fmt::format("{} {:.6g} mm{}", zone->key, kMillimetres * zone->size,
+                               zone->datums.empty() ? "" : " to " + zone->datums));
+  }
+  if (feature.clearance) list.push_back("clearance up to " + small_length_text(feature.clearance->most));
+  return fmt::format("{}", fmt::join(list, ", "));
+}
+
+/// The points of a feature in its own axes, m.
+std::vector<Vector3> outline_of(const Feature& feature) {
+  constexpr int kCorners = 16;  // of a round face
+  const double a = 0.5 * feature.size[0];
+  const double b = 0.5 * feature.size[1];
+  std::vector<Vector3> outline;
+  switch (feature.kind) {
+    case FeatureKind::axis:
+      return {{0.0, 0.0, -a}, {0.0, 0.0, a}};
+    case FeatureKind::rectangle:
+      return {{-a, -b, 0.0}, {a, -b, 0.0}, {a, b, 0.0}, {-a, b, 0.0}};
+    case FeatureKind::round:
+      for (int k = 0; k < kCorners; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / kCorners;
+        outline.emplace_back(a * std::cos(angle), a * std::sin(angle), 0.0);
+      }
+      return outline;
+    case FeatureKind::point:
+    case FeatureKind::distance:
+      break;
+  }
+  return {Vector3::Zero()};
+}
+
+SketchedFeature sketched_feature(const Mechanism& mechanism, std::size_t f) {
+  const Feature& feature = mechanism.features[f];
+  const std::size_t joints = mechanism.limbs[feature.limb - 1].joints.size();
+  SketchedFeature sketch{.name = feature.label,
+                         .zones = zones_text(feature),
+                         .limb = feature.limb - 1,
+                         .frame = feature.frame == joints ? joints + 1 : feature.frame,
+                         .outline = {}};
+  const Transform& place = mechanism.feature_places[f];
+  for (const Vector3& point : outline_of(feature)) sketch.outline.push_back(sketched(place.R * point + place.p));
+  return sketch;
+}
+
 }  // namespace
 
 std::string triple_text(const Vector3& value) {
@@ -131,6 +180,7 @@ Sketch sketch_of(const Mechanism& mechanism) {
     }
     sketch.limbs.push_back(std::move(limb));
   }
+  for (std::size_t f = 0; f < mechanism.features.size(); ++f) sketch.features.push_back(sketched_feature(mechanism, f));
   if (!mechanism.is_branched()) return sketch;
   for (const Limb& limb : mechanism.limbs) sketch.ends.push_back({limb.from, limb.to});
   for (const assembly::Body& body : mechanism.bodies) sketch.bodies.push_back({body.name, sketched(body.home.p)});

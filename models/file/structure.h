@@ -26,7 +26,8 @@ std::string small_length_text(double metres);
 /// The description of a coordinate.
 std::string coordinate_text(const Coordinate& coordinate);
 
-/// The sketch of the joints at home, as written in the file: elementary joints of one joint are shown as one.
+/// The sketch of the joints at home, as written in the file: elementary joints of one joint are shown as one. With the
+/// features of the drawing.
 Sketch sketch_of(const Mechanism& mechanism);
 
 /// A clause for each coordinate of home that is outside its workspace.

@@ -351,11 +351,15 @@ std::string pictures(const StoredResult& result, const std::vector<RobotPose>& p
   return html + "</div>\n";
 }
 
-std::string caption(const StoredResult& result, const std::vector<RobotError>& errors, const ErrorShares& shares) {
+std::string caption(const StoredResult& result, const Sketch& home, const std::vector<RobotError>& errors,
+                    const ErrorShares& shares) {
   std::string text =
       "The mechanism in the frames of the model that is solved: the base is dashed, the platform has a plain outline, "
       "joints are drawn by their kind (circle R, square P, circle with a cross U, circle in a circle S, diamond H, "
       "circle in a square C), filled where a drive holds them; a limb's number is beside its first joint.";
+  if (!home.features.empty()) {
+    text += " Features of the drawing are bars along axes, plates in planes, and dots, with their zones as tooltips.";
+  }
   if (!has_shares(errors)) return text;
   text += fmt::format(" Links and joints are coloured by the sum over their errors of the {}.", shares.what);
   if (!shares.joined.empty()) {
@@ -402,7 +406,7 @@ void add_robot(const ReportedResult& reported, const ErrorShares& shares, Page& 
   const SketchView view = sketch_view(sketches, kSketchYaw, kSketchPitch);
   const PartShares parts = part_shares(home, errors);
   page.figures.figures["robot"] = robot_figure(result, model, poses, errors, view, page.figures.pool);
-  section.figure("robot", caption(result, errors, shares),
+  section.figure("robot", caption(result, home, errors, shares),
                  legend(parts, shares.what) + pictures(result, poses, errors, view, parts, shares.what));
   if (errors.empty()) return;
   const std::size_t open = std::min(kOpenRows, errors.size());

@@ -54,6 +54,25 @@ TEST(MechanismPicture, ShowsASlideBetweenTheJointsThatItConnects) {
   EXPECT_NEAR(place_of(svg, "q&lt;").second, (place_of(svg, "A").second + place_of(svg, "B").second) / 2, 0.11);
 }
 
+TEST(MechanismPicture, ShowsFeaturesInTheFramesOfTheirParts) {
+  EXPECT_EQ(count(mechanism_picture(sketch(), "no drawing"), "feature"), 0u);
+  Sketch made = sketch();
+  const SketchedFrame frame{{0.1, 0.0, 0.2}, {{{0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}}}};
+  made.frames = {{frame, frame}, {frame}};
+  made.features = {{"bore", "position 0.05 mm to A|B", 0, 1, {{0.0, 0.0, -0.02}, {0.0, 0.0, 0.02}}},
+                   {"face", "", 1, 0, {{0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}, {-0.01, 0.0, 0.0}}},
+                   {"rod", "tolerance 0.02 mm", 1, 0, {{0.03, 0.0, 0.0}}}};
+  const std::string svg = mechanism_picture(made, "drawing");
+  EXPECT_EQ(count(svg, "<title>bore of limb 1: position 0.05 mm to A|B</title>"), 4u);
+  EXPECT_EQ(count(svg, "<title>face of limb 2</title>"), 4u);
+  EXPECT_EQ(count(svg, "<title>rod of limb 2: tolerance 0.02 mm</title>"), 4u);
+  // z of the frame is -x of the base, and x is z.
+  EXPECT_EQ(count(svg, "data-p=\"120.000,0.000,200.000 80.000,0.000,200.000\" class=\"bar\""), 4u);
+  EXPECT_EQ(count(svg, "data-p=\"100.000,0.000,230.000\" class=\"dot\""), 4u);
+  EXPECT_EQ(count(svg, "class=\"plate\""), 4u);
+  EXPECT_EQ(count(svg, "<g "), count(svg, "</g>"));
+}
+
 /// Glyphs have a radius of 6: as joints at one point, at the base, and as those on the platform.
 TEST(MechanismPicture, ShowsJointsAtOnePointSideBySide) {
   Sketch made = sketch();
