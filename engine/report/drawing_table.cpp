@@ -6,7 +6,9 @@
 #include <cmath>
 #include <string>
 
+#include "engine/model/feature.h"
 #include "engine/report/display.h"
+#include "engine/report/signs.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
@@ -17,6 +19,33 @@ std::string zone_text(const std::string& key, double size, const std::string& da
   if (key == "-") return key;
   const bool is_size = key == "tolerance";
   return fmt::format("{}{:.6g}{}", is_size ? "+-" : key + " ", 1e3 * size, datums == "-" ? "" : " " + datums);
+}
+
+/// Whether the zones of a feature are between planes, so that only one of its two directions has an error.
+bool is_between_planes(const StoredResult& result, std::size_t q) {
+  const DrawingResult& found = *result.drawing;
+  const std::string& kind = found.kind(q);
+  if (kind != "axis" && kind != "point") return kind != "distance";
+  const auto has = [&](std::string_view direction) {
+    const std::string ending = fmt::format("{}_{}", direction, found.limb(q));
+    return std::ranges::any_of(result.factors, [&](const NamedUnit& factor) {
+      return factor.name == found.label(q) + "_" + ending || factor.name == found.label(q) + "_lean_" + ending;
+    });
+  };
+  return has("x") != has("y");
+}
+
+/// The cell of a zone with its frame; that of a distance or of a clearance has none.
+Cell zone_cell(const StoredResult& result, std::size_t q, const std::string& key, double size,
+               const std::string& datums) {
+  Cell cell = text_cell(zone_text(key, size, datums));
+  const auto known = std::ranges::find(zone_traits(), key, &ZoneTraits::key);
+  if (known == zone_traits().end() || known->of == ZoneClass::size) return cell;
+  const std::string_view before = is_between_planes(result, q)         ? std::string_view()
+                                  : result.drawing->kind(q) == "point" ? kSphereDiameter
+                                                                       : kDiameter;
+  cell.boxes = frame_boxes(known->sign, fmt::format("{}{:.6g}", before, 1e3 * size), datums == "-" ? "" : datums);
+  return cell;
 }
 
 double largest(std::span<const double> values) {
@@ -53,11 +82,11 @@ std::optional<Table> drawing_table(const StoredResult& result, std::size_t respo
        {{text_column("feature", "feature"), [&](std::size_t q) { return text_cell(found.names[q]); }},
         {text_column("location", "location or size"),
          [&](std::size_t q) {
-           return text_cell(zone_text(found.location(q), found.location_zone(q), found.location_datums(q)));
+           return zone_cell(result, q, found.location(q), found.location_zone(q), found.location_datums(q));
          }},
         {text_column("orientation", "orientation"),
          [&](std::size_t q) {
-           return text_cell(zone_text(found.orientation(q), found.orientation_zone(q), found.orientation_datums(q)));
+           return zone_cell(result, q, found.orientation(q), found.orientation_zone(q), found.orientation_datums(q));
          }},
         {number_column("effect", "effect", unit.name),
          [&, response](std::size_t q) { return value_cell(found.effect(response, q), named); }},

@@ -1,5 +1,8 @@
 #include "engine/report/signs.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "engine/model/feature.h"
 
 namespace poesy {
@@ -20,6 +23,16 @@ std::string with_words(std::string_view text) {
   replace(words, kPlusMinus, "+-");
   for (const ZoneTraits& zone : zone_traits()) replace(words, zone.sign, zone.key);
   return words;
+}
+
+std::vector<std::string> frame_boxes(std::string_view sign, std::string zone, std::string_view datums) {
+  std::vector<std::string> boxes{std::string(sign), std::move(zone)};
+  while (!datums.empty()) {
+    const std::size_t end = std::min(datums.find('|'), datums.size());
+    boxes.emplace_back(datums.substr(0, end));
+    datums.remove_prefix(std::min(end + 1, datums.size()));
+  }
+  return boxes;
 }
 
 void use_words(std::span<Table> tables) {

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/report/table.h"
 
@@ -18,5 +19,8 @@ std::string with_words(std::string_view text);
 
 /// Writes words in the place of signs into all cells.
 void use_words(std::span<Table> tables);
+
+/// The boxes of a tolerance frame: sign, zone, and each datum of "A|B". zone: with the sign of a diameter.
+std::vector<std::string> frame_boxes(std::string_view sign, std::string zone, std::string_view datums);
 
 }  // namespace poesy

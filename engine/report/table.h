@@ -24,6 +24,7 @@ struct Column {
   /// If there is too little room, the columns with the largest number are removed first, all of them together because
   /// they belong together; the heading of the first one names the group. Columns with 0 are never removed.
   int dispensable = 0;
+  bool only_text = false;  ///< whether a page leaves it out, because boxes of another column show it
 };
 
 /// A cell of a table.
@@ -33,6 +34,8 @@ struct Cell {
   std::optional<double> value;
   std::optional<std::uint64_t> whole =
       std::nullopt;  ///< the same number if it is whole, because a double rounds large ones
+  /// What a page draws instead of the text: the boxes of a tolerance frame, from left to right. Empty: the text.
+  std::vector<std::string> boxes = {};
 };
 
 /// A table as plain values. Terminal, report and JSON show the same cells and so the same digits.

@@ -69,6 +69,7 @@ void add_drawing(const StoredResult& result, std::span<const Table> tables, Page
   const Result& found = allocation_of(result);
   Section& section = page.add_section("drawing", "What goes on the drawing");
   section.table(tables, "drawing");
+  if (found.has_zones()) section.paragraph("Tolerance frames are in mm.");
   for (std::size_t n = 0; n < found.parts(); ++n) {
     page.figures.about.emplace(found.part_names[n], found.part_members(n));
   }

@@ -46,6 +46,23 @@ std::string zone_text(const Result& found, std::size_t n) {
                      display_unit(dimension_of(unit)).name);
 }
 
+/// The zone with its frame, in mm; that of a distance has none.
+Cell zone_cell(const Result& found, std::size_t n) {
+  Cell cell = text_cell(zone_text(found, n));
+  if (!is_zone(found, n) || found.zone_shape(n) == "interval") return cell;
+  const std::string zone(before_number(found, n));
+  cell.boxes = frame_boxes(sign_of(found, n), zone + drawing_number(found.tolerance(n), found.part_unit(n)),
+                           found.zone_datums(n));
+  return cell;
+}
+
+/// A column of texts that a frame shows as well.
+Column framed_column(std::string name, std::string heading) {
+  Column column = text_column(std::move(name), std::move(heading));
+  column.only_text = true;
+  return column;
+}
+
 /// "500 mm", or "60 x 40 mm".
 std::string over_text(const Result& found, std::size_t n) {
   if (!is_zone(found, n) || std::isnan(found.zone_length(n))) return "-";
@@ -90,10 +107,10 @@ bool follows_another(const Result& found, std::size_t n) {
 
 std::vector<FilledColumn> zone_columns(const Result& found) {
   return {{text_column("feature", "feature"), [&](std::size_t n) { return text_cell(feature_text(found, n)); }},
-          {text_column("symbol", ""),
+          {framed_column("symbol", ""),
            [&](std::size_t n) { return text_cell(sign_of(found, n) == kPlusMinus ? "" : sign_of(found, n)); }},
-          {text_column("zone", "zone"), [&](std::size_t n) { return text_cell(zone_text(found, n)); }},
-          {text_column("datums", "to"),
+          {text_column("zone", "zone"), [&](std::size_t n) { return zone_cell(found, n); }},
+          {framed_column("datums", "to"),
            [&](std::size_t n) { return text_cell(found.zone_datums(n).empty() ? "-" : found.zone_datums(n)); }},
           {text_column("over", "over"), [&](std::size_t n) { return text_cell(over_text(found, n)); }}};
 }

@@ -1,11 +1,13 @@
 #include "engine/report/html/page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "engine/base/text.h"
 #include "engine/report/html/printed_number.h"
+#include "engine/report/signs.h"
 #include "engine/storage/version.h"
 
 namespace poesy {
@@ -68,6 +70,15 @@ std::string printed_text(std::string_view text) {
   return text.starts_with("+-") ? "\u00b1" + std::string(text.substr(2)) : std::string(text);
 }
 
+/// A tolerance frame as on a drawing. Where it is read aloud or its signs are missing, its title has them in words.
+std::string frame_element(const Cell& cell) {
+  std::string boxes;
+  for (const std::string& box : cell.boxes) boxes += element("span", box);
+  const std::string words = escaped(with_words(fmt::format("{}", fmt::join(cell.boxes, " "))));
+  return fmt::format("<td><span class=\"tolerance\" role=\"img\" aria-label=\"{0}\" title=\"{0}\">{1}</span></td>",
+                     words, boxes);
+}
+
 /// The rows of a table as HTML. The first column of texts is their heading.
 std::string body_html(const Table& table) {
   const std::size_t columns = table.columns.size();
@@ -82,10 +93,12 @@ std::string body_html(const Table& table) {
     const std::vector<Cell>& cells = table.rows[n];
     html += "<tr>";
     for (std::size_t c = 0; c < columns; ++c) {
+      if (table.columns[c].only_text) continue;
       const bool number = table.columns[c].kind == Column::Kind::number;
-      html += c == naming ? element("th", cells[c].text, "scope=\"row\"")
-              : number    ? number_element(numbers[c].cells[n], numbers[c].longest_tail)
-                          : element("td", printed_text(cells[c].text), width_class(table, c));
+      html += c == naming               ? element("th", cells[c].text, "scope=\"row\"")
+              : !cells[c].boxes.empty() ? frame_element(cells[c])
+              : number                  ? number_element(numbers[c].cells[n], numbers[c].longest_tail)
+                                        : element("td", printed_text(cells[c].text), width_class(table, c));
     }
     html += "</tr>\n";
   }
@@ -163,7 +176,9 @@ std::string html_table(const Table& table) {
       "<div class=\"table-wrap\" tabindex=\"0\" role=\"group\" aria-label=\"{1}\" data-table=\"{0}\"><table>"
       "<caption>{1}</caption>\n<thead><tr>",
       escaped(table.name), escaped(table.caption));
-  for (const Column& column : table.columns) html += column_heading(column);
+  for (const Column& column : table.columns) {
+    if (!column.only_text) html += column_heading(column);
+  }
   html += "</tr></thead>\n<tbody>\n" + body_html(table) + "</tbody></table></div>\n";
   for (const std::string& note : table.notes) html += element("p", note, "class=\"note\"") + "\n";
   return html;

@@ -28,7 +28,7 @@ std::string escaped(std::string_view text);
 std::string element(std::string_view tag, std::string_view text, std::string_view attributes = {});
 
 /// A table as HTML in a box that scrolls: caption, headings with units, cells, and notes below. The box has the
-/// attribute data-table with the table's name.
+/// attribute data-table with the table's name. A cell with boxes is drawn as a tolerance frame.
 std::string html_table(const Table& table);
 
 /// A section of the report with a heading. All texts are escaped here.

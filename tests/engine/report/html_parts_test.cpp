@@ -91,6 +91,22 @@ TEST(HtmlTable, NamesRowsByTheFirstTextAndShowsUnitsAndNotes) {
   }
 }
 
+TEST(HtmlTable, DrawsToleranceFramesInThePlaceOfTheirTexts) {
+  const Table table{.name = "t",
+                    .caption = "c",
+                    .columns = {{"feature", "feature", ""},
+                                {.name = "symbol", .heading = "symbol", .unit = "", .only_text = true},
+                                {"zone", "zone", ""}},
+                    .rows = {{{"rail", {}}, {"\u2316", {}}, {"0.05 mm", {}, {}, {"\u2316", "\u23000.05", "<A>"}}}}};
+  const std::string html = html_table(table);
+  EXPECT_NE(html.find("<th scope=\"col\">feature</th><th scope=\"col\">zone</th></tr>"), std::string::npos) << html;
+  EXPECT_NE(html.find("<tr><th scope=\"row\">rail</th><td><span class=\"tolerance\" role=\"img\" "
+                      "aria-label=\"position dia 0.05 &lt;A&gt;\" title=\"position dia 0.05 &lt;A&gt;\">"
+                      "<span>\u2316</span><span>\u23000.05</span><span>&lt;A&gt;</span></span></td></tr>"),
+            std::string::npos)
+      << html;
+}
+
 TEST(HtmlTable, PutsDecimalPointsBelowEachOther) {
   const Table table{.name = "t",
                     .caption = "c",

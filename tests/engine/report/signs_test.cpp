@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <vector>
 
 #include "engine/model/feature.h"
@@ -17,6 +18,12 @@ TEST(SignsOfADrawing, HaveWords) {
   for (const ZoneTraits& zone : zone_traits()) {
     EXPECT_EQ(with_words(zone.sign), zone.of == ZoneClass::size ? "+-" : zone.key);
   }
+}
+
+TEST(SignsOfADrawing, AreInABoxOfAFrame) {
+  using Boxes = std::vector<std::string>;
+  EXPECT_EQ(frame_boxes("\u2316", "\u23000.05", "A|B-C"), (Boxes{"\u2316", "\u23000.05", "A", "B-C"}));
+  EXPECT_EQ(frame_boxes("\u23e5", "0.05", ""), (Boxes{"\u23e5", "0.05"}));
 }
 
 TEST(SignsOfADrawing, AreReplacedInAllCells) {
