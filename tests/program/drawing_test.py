@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -183,8 +184,61 @@ bounds = ["0.002 mm", "0.2 mm"]
             self.assertIn(line, shown)
             self.assertIn("perpendicularity: not needed", shown)
         self.assertIn("\u2316", self.succeeds("show", "signs.h5", "--json"))
-        self.succeeds("report", "signs.h5", "-o", "signs.html")
-        self.assertIn("\u2316", (self.folder / "signs.html").read_text(encoding="utf-8"))
+
+    def test_report(self):
+        """A report draws the frames of tolerances, and features in the picture of the mechanism."""
+        self.result("report", self.ALLOCATION, "exact").close()
+        self.succeeds("report", "report.h5", "-o", "report.html")
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        rail = re.search(r"<span>\u2316</span><span>\u2300([\d.]+)</span><span>A</span><span>B</span></span>", page)
+        self.assertIn(rail[1], [row["zone_mm"] for row in self.rows("report.h5") if row["symbol"] == "position"])
+        self.assertIn("<title>rail of limb 3: position 0.05 mm to A|B, perpendicularity 0.02 mm to A</title>", page)
+        self.result("mc", 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 500').close()
+        self.succeeds("report", "mc.h5", "-o", "mc.html")
+        page = (self.folder / "mc.html").read_text(encoding="utf-8")
+        self.assertIn("<span>\u2316</span><span>\u23000.05</span><span>A</span><span>B</span></span>", page)
+        self.assertIn("<span>\u2225</span><span>0.01</span><span>A</span></span>", page)  # a face
+
+    def test_rounded(self):
+        """Tolerances in steps that a workshop has: the certificate is of these."""
+        for name, round_to in (("r10", '"R10"'), ("steps", '"0.0005 mm"')):
+            analysis = self.ALLOCATION + f"round = {round_to}\n"
+            with self.result(name, analysis, "exact") as file:
+                found = file["allocation"]
+                needed, tolerance = found["zone_is_needed"][:], 1e3 * found["tolerance"][:]
+                stage, machines = [s.decode() for s in file["stage"][:]], found["stages/rejects"][:]
+                self.assertEqual(found.attrs["certified"], 1)
+                self.assertEqual(stage[-1], "rounded down")
+                before, after = found["stage_tolerance"][-2:]
+                self.assertLessEqual(machines[-1], machines[-2])
+            wanted = tolerance[needed == 1]
+            if name == "steps":
+                np.testing.assert_allclose(wanted / 0.0005, np.round(wanted / 0.0005), rtol=1e-12)
+            else:
+                r10 = [1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8]
+                first = 10 ** (np.log10(wanted) % 1)
+                self.assertLess(np.abs(first[:, None] / r10 - 1).min(axis=1).max(), 1e-12)
+            self.assertTrue((after <= before * (1 + 1e-12)).all())
+            rows = self.rows(f"{name}.h5")
+            self.assertEqual({row["grade"] for row in rows}, {"R10" if name == "r10" else "steps of 0.0005 mm"})
+            np.testing.assert_allclose([float(row["zone_mm"]) for row in rows], wanted, rtol=1e-12)
+            self.succeeds("run", f"{name}_certificate.toml", "-o", "again.h5", "--quiet")
+
+    def test_values(self):
+        """Zones of a list of values."""
+        values = 'values = ["0.004 mm", "0.0063 mm", "0.01 mm", "0.016 mm", "0.025 mm"]'
+        analysis = self.ALLOCATION.replace('bounds = ["0.002 mm", "0.2 mm"]', values)
+        self.result("values", analysis).close()
+        self.assertLessEqual({row["zone_mm"] for row in self.rows("values.h5")}, {"0.004", "0.0063", "0.01", "0.016", "0.025"})
+
+    def test_forgotten(self):
+        """`models` and `check` say which directions of a part have no tolerance, and a picture shows features."""
+        hint = "hint: limbs 1 to 3, between q and B (frame 2): displacement along y has no tolerance; is that meant?"
+        self.assertIn(hint, self.succeeds("models", "delta.toml", "-o", "delta.svg"))
+        self.assertIn('class="bar"', (self.folder / "delta.svg").read_text())
+        self.write("study.toml", STUDY.format(analysis='kind = "sensitivity"', fidelity="exact",
+                                              zones='errors.zones = { distribution = "normal", sigmas = 3 }'))
+        self.assertIn("# " + hint, self.succeeds("check", "study.toml"))
 
     def test_named(self):
         """`models` says in words what the errors of a feature are."""

@@ -122,6 +122,24 @@ constexpr std::array<ChoiceKey, 5> kChoiceKeys{{{"bounds", PartChoice::range, re
                                                 {"processes", PartChoice::processes, read_processes},
                                                 {"tolerance", PartChoice::fixed, read_fixed}}};
 
+/// Throws if no value within these bounds of a tolerance can be had.
+void check_rounding(const StudyValue& value, double lo, double hi, const Rounding& round) {
+  if (std::isinf(hi) || round.up(lo) <= round.down(hi)) return;
+  value.fail("is set, but no such value is within the bounds of the tolerance", "take a finer step, or wider bounds");
+}
+
+void read_round(const StudySection& block, Dimension dimension, AllocatedPart& part) {
+  const auto value = block.find("round");
+  if (!value) return;
+  part.round = read_rounding(*value, dimension);
+  if (part.choice == PartChoice::range) return check_rounding(*value, part.lo, part.hi, *part.round);
+  if (part.choice != PartChoice::processes) {
+    value->fail("is set, but the part has a list of the tolerances that can be had, or one that is given",
+                "remove it, or write bounds instead of the list");
+  }
+  for (const StatedProcess& process : part.processes) check_rounding(*value, process.lo, process.hi, *part.round);
+}
+
 /// Reads cost and choice of a block whose errors have this dimension.
 void read_choice(const StudySection& block, Dimension dimension, AllocatedPart& part) {
   std::optional<StudyValue> chosen;
@@ -140,6 +158,7 @@ void read_choice(const StudySection& block, Dimension dimension, AllocatedPart& 
     static_cast<void>(size->positive_quantity(Dimension::length));
     size->fail("is set, but the part has no grades", "write grades, e.g. [\"IT7\"], or leave it out");
   }
+  read_round(block, dimension, part);
   const auto cost = block.find("cost");
   if (!cost) return;
   part.cost = read_cost(*cost, dimension);
@@ -180,7 +199,7 @@ void check_dimensions(const StudySection& block, std::span<const PartMembers> pa
   }
   const std::string both = two_dimensions(parts, model);
   if (both.empty()) return;
-  for (const std::string_view key : {"cost", "bounds", "values", "grades", "processes", "tolerance"}) {
+  for (const std::string_view key : {"cost", "bounds", "values", "grades", "processes", "tolerance", "round"}) {
     if (!block.find(key)) continue;
     block.require("factors").fail(fmt::format("has {}, and '{}' cannot hold for both", both, key), kRemedy);
   }
@@ -261,6 +280,10 @@ std::string choice_text(const AllocatedPart& part, Dimension dimension) {
   return std::isfinite(part.hi) ? "bounds = " + bounds_text(part.lo, part.hi, dimension) + "\n" : "";
 }
 
+std::string round_text(const AllocatedPart& part, Dimension dimension) {
+  return part.round ? "round = " + rounding_text(*part.round, dimension) + "\n" : "";
+}
+
 /// Throws at the value if this tolerance is too large for an error of the part.
 void check_size(const StudyValue& value, double tolerance, const AllocatedPart& part, const Model& model) {
   for (const FactorIndex factor : part.factors) {
@@ -337,7 +360,15 @@ StudyTable parts_table() {
           {.name = "tolerance",
            .type = "quantity",
            .bounds = "greater than 0",
-           .meaning = "The tolerance itself, where it is given."}}};
+           .meaning = "The tolerance itself, where it is given."},
+          {.name = "round",
+           .type = "quantity or text",
+           .usual = "none",
+           .meaning =
+               "With bounds, processes or none of these: the tolerances that a workshop has, multiples of a step "
+               "such as \"0.001 mm\", or the preferred numbers of ISO 3, \"R5\", \"R10\" or \"R20\", in mm "
+               "or deg. T is rounded down to one of them at the end, and the certificate is of rounded "
+               "tolerances."}}};
 }
 
 }  // namespace
@@ -398,13 +429,15 @@ std::string part_text(const AllocatedPart& part, const ModelDescription& model) 
   const Dimension dimension = dimension_of(part, model);
   const std::string cost =
       part.cost.law == StatedCost::Law::none ? "" : "cost = " + cost_text(part.cost, dimension) + "\n";
-  if (part.zone) return "\n[[analysis.parts]]\n" + zones_text(part, model) + cost + choice_text(part, dimension);
+  if (part.zone)
+    return "\n[[analysis.parts]]\n" + zones_text(part, model) + cost + choice_text(part, dimension) +
+           round_text(part, dimension);
   const std::string factors = part.factors.size() > 1
                                   ? factor_list_text(part.factors, model)
                                   : fmt::format("[{}]", in_quotes(model.factors[part.factors.front().value].name));
-  return fmt::format("\n[[analysis.parts]]\nname = {}\nfactors = {}\nsigmas = {}\nshift = {}\n{}{}",
+  return fmt::format("\n[[analysis.parts]]\nname = {}\nfactors = {}\nsigmas = {}\nshift = {}\n{}{}{}",
                      in_quotes(part.name), factors, shortest(part.sigmas), shortest(part.shift), cost,
-                     choice_text(part, dimension));
+                     choice_text(part, dimension), round_text(part, dimension));
 }
 
 void check_part_sizes(const StudySection& block, const AllocatedPart& part, const Model& model) {

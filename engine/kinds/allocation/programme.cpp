@@ -34,8 +34,11 @@ double largest_of(const AllocatedPart& part, const Model& model) {
 std::vector<Process> processes_of(const AllocatedPart& part, const Model& model) {
   using Choice = AllocatedPart::Choice;
   const CostLaw law = part.cost.cost_law();
-  const auto bounded = [&](double hi, double lo) {
-    return std::isinf(hi) ? std::max(lo, largest_of(part, model)) : hi;
+  const auto bounded = [&](const CostLaw& cost, double lo, double hi) {
+    const double most = std::isinf(hi) ? std::max(lo, largest_of(part, model)) : hi;
+    if (!part.round) return Process{cost, lo, most};
+    const double least = part.round->up(lo);
+    return Process{cost, least, std::max(least, part.round->down(most))};
   };
   switch (part.choice) {
     case Choice::fixed:
@@ -50,14 +53,14 @@ std::vector<Process> processes_of(const AllocatedPart& part, const Model& model)
     case Choice::processes: {
       std::vector<Process> list;
       for (const StatedProcess& process : part.processes) {
-        list.push_back({process.cost.cost_law(), process.lo, bounded(process.hi, process.lo)});
+        list.push_back(bounded(process.cost.cost_law(), process.lo, process.hi));
       }
       return list;
     }
     case Choice::range:
       break;
   }
-  return {{law, part.lo, bounded(part.hi, part.lo)}};
+  return {bounded(law, part.lo, part.hi)};
 }
 
 /// Errors with this shape, this standard deviation and a shifted mean, SI. Precondition: the shape is symmetric.
@@ -270,8 +273,10 @@ const std::vector<AllocatedPart>& ToleranceProgramme::parts() const {
 
 std::string ToleranceProgramme::chosen_name(std::size_t part, std::size_t process) const {
   const AllocatedPart& one = parts()[part];
-  if (one.choice == AllocatedPart::Choice::processes) return one.processes[process].name;
-  return one.choice == AllocatedPart::Choice::grades ? it_grade_name(one.grades[process]) : "";
+  if (one.choice == AllocatedPart::Choice::grades) return it_grade_name(one.grades[process]);
+  const std::string name = one.choice == AllocatedPart::Choice::processes ? one.processes[process].name : "";
+  if (!one.round) return name;
+  return name + (name.empty() ? "" : ", ") + rounding_words(*one.round, dimension_of(one, study_.model()));
 }
 
 /// The finest zone on the drawing among features that share it.
@@ -318,6 +323,29 @@ TolerancePoint ToleranceProgramme::at_most(std::span<const double> tolerance) co
   }
   point.cost = cost_of(point);
   return point;
+}
+
+TolerancePoint ToleranceProgramme::rounded(const TolerancePoint& point) const {
+  const auto down = [&](std::size_t part, double tolerance) {
+    const std::optional<Rounding>& round = parts()[part].round;
+    const double lowest = processes_[part][point.process[part]].lo;
+    return round ? std::max(lowest, round->down(tolerance)) : tolerance;
+  };
+  TolerancePoint next = point;
+  for (std::size_t i = 0; i < size(); ++i) next.tolerance[i] = down(i, point.tolerance[i]);
+  for (const Within& pair : pairs_) {
+    if (is_void(point, pair.inner)) continue;
+    const double location = point.tolerance[pair.outer];
+    const double before = point.tolerance[pair.inner];
+    const double after = next.tolerance[pair.inner];
+    // What the orientation leaves to the middle must not grow.
+    const double most = std::sqrt(location * location - (before - after) * (before + after));
+    next.tolerance[pair.outer] = down(pair.outer, most);
+  }
+  keep_void(point, next.tolerance);
+  keep_within(next.tolerance);
+  next.cost = cost_of(next);
+  return next;
 }
 
 TolerancePoint ToleranceProgramme::lowest() const { return at_most(std::vector<double>(size(), 0.0)); }

@@ -75,6 +75,9 @@ class ToleranceProgramme {
   /// Each tolerance [N], or the next lower one that its part can have, or the lowest one.
   TolerancePoint at_most(std::span<const double> tolerance) const;
   TolerancePoint lowest() const;  ///< The lowest tolerances.
+  /// The point with each tolerance rounded down to what its part asks for. No error has a larger standard deviation:
+  /// where an orientation becomes finer, its location is rounded down from what then leaves the middle as it was.
+  TolerancePoint rounded(const TolerancePoint& point) const;
   /// The point with one part coarser: its tolerance `factor` times as large, or the next larger value it can have. None
   /// if its process allows no such value, and for a tolerance of 0. A zone of orientation may also be left out.
   std::optional<TolerancePoint> coarser(const TolerancePoint& point, std::size_t part, double factor) const;

@@ -1,4 +1,5 @@
-// The last stage of the search: it finds the effect of each part alone, and makes parts coarser to use remaining yield.
+// The last stages of the search: they find the effect of each part alone, make parts coarser to use remaining yield,
+// and round tolerances down.
 
 #include <algorithm>
 #include <functional>
@@ -80,6 +81,18 @@ std::vector<double> probe(const SearchProblem& problem, const ToleranceDesign& d
   return yield;
 }
 
+std::vector<std::size_t> all_parts(const SearchProblem& problem) {
+  std::vector<std::size_t> all(problem.programme.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+Probed probe_all(const SearchProblem& problem, ToleranceDesign design) {
+  const std::vector<double> unknown(problem.programme.size(), kNaN);
+  std::vector<double> yield = probe(problem, design, all_parts(problem), unknown);
+  return {std::move(design), std::move(yield)};
+}
+
 /// The parts among these that could be coarser alone, at a lower cost, with no more rejects than the design may have.
 /// If together they would use more than that, those of the least effect are taken.
 std::vector<std::size_t> idle_parts(const SearchProblem& problem, const Probed& probed,
@@ -129,11 +142,8 @@ std::optional<Probed> loosen(const SearchProblem& problem, const Probed& from, s
 }  // namespace
 
 Probed use_remaining_yield(const SearchProblem& problem, ToleranceDesign from, StageLog& log) {
-  std::vector<std::size_t> all(problem.programme.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  const std::vector<double> unknown(all.size(), kNaN);
-  Probed probed{std::move(from), unknown};
-  probed.coarser_yield = probe(problem, probed.design, all, unknown);
+  const std::vector<std::size_t> all = all_parts(problem);
+  Probed probed = probe_all(problem, std::move(from));
   bool better = false;
   for (std::size_t round = 0; round < kMaxCoarseningRounds; ++round) {
     std::vector<std::size_t> idle = idle_parts(problem, probed, all);
@@ -149,6 +159,16 @@ Probed use_remaining_yield(const SearchProblem& problem, ToleranceDesign from, S
     log.add("coarser where nothing breaks", design.candidate, design.load.size(), rejects_of(design.load));
   }
   return probed;
+}
+
+Probed round_down(const SearchProblem& problem, Probed from, StageLog& log) {
+  TolerancePoint rounded = problem.programme.rounded(from.design.candidate.point);
+  if (rounded.tolerance == from.design.candidate.point.tolerance) return from;
+  Candidate candidate = from.design.candidate;
+  candidate.point = std::move(rounded);
+  ToleranceDesign design = try_all(problem, std::move(candidate), from.design.seed);
+  log.add("rounded down", design.candidate, design.load.size(), rejects_of(design.load));
+  return probe_all(problem, std::move(design));
 }
 
 }  // namespace poesy::allocation

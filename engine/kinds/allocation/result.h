@@ -11,6 +11,7 @@
 #include "engine/base/array.h"
 #include "engine/base/index.h"
 #include "engine/fits/it_grade.h"
+#include "engine/kinds/allocation/rounding.h"
 #include "engine/optimise/cost_law.h"
 #include "engine/optimise/least_cost.h"
 #include "engine/report/tables.h"
@@ -78,6 +79,7 @@ struct AllocatedPart {
   double nominal_size = 0.0;                    ///< the nominal size for grades, m
   std::vector<StatedProcess> processes = {};    ///< the processes
   std::optional<PartZone> zone = {};            ///< the zone that it is
+  std::optional<Rounding> round = {};           ///< of a range or of processes: to what T is rounded down at the end
 };
 
 /// Which of the tolerances that keep the limits a study seeks.
@@ -141,7 +143,7 @@ struct AllocationResult {
   /// The same for each error; the shares of a part's errors add up to that of the part. NaN for an error of no part.
   Array<double, axis::Factor> error_mean_square_share;
   Parts<std::uint8_t> bound;  ///< AtBound: 0 between its bounds, 1 at the lower, 2 at the upper, 3 no choice
-  Parts<std::string> chosen;  ///< name of the process or grade; empty where there is none
+  Parts<std::string> chosen;  ///< name of the process or grade, and to what T is rounded; empty where there is none
   /// Predicted share of good machines among the design's if this part alone is made 5 % coarser, or has its next larger
   /// value; NaN if it cannot be coarser.
   Parts<double> coarser_yield;

@@ -56,7 +56,7 @@ std::optional<FoundTolerances> find_tolerances(const SearchProblem& problem) {
     if (!design.screened.numbers.empty()) {  // otherwise the tolerances are the lowest, and nothing is left to choose
       design = improve(problem, linearisation, std::move(design), found.log);
       design = scale_to_other_machines(problem, design, found.log);
-      Probed probed = use_remaining_yield(problem, std::move(design), found.log);
+      Probed probed = round_down(problem, use_remaining_yield(problem, std::move(design), found.log), found.log);
       design = std::move(probed.design);
       found.coarser_yield = std::move(probed.coarser_yield);
     }

@@ -120,6 +120,9 @@ struct Probed {
 /// can be coarser alone.
 Probed use_remaining_yield(const SearchProblem& problem, ToleranceDesign from, StageLog& log);
 
+/// Rounds tolerances down to what their parts ask for, and tries all machines again if any changes.
+Probed round_down(const SearchProblem& problem, Probed from, StageLog& log);
+
 /// @name Refusals, which throw InputError
 /// @{
 /// Refuses a study whose perfect mechanism is beyond a limit at some pose.

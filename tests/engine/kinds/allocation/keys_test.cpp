@@ -278,6 +278,20 @@ TEST(BlockOfParts, JoinsTheLimbsOfMechanisms) {
   EXPECT_EQ(parts("3-prs", first.name + " = " + size, "[1, 2, 3]").size(), 17u);  // its set "all" has 51 errors
 }
 
+TEST(PartOfADrawing, MayBeRoundedToStepsOfAWorkshop) {
+  const AllocatedPart multiple = part_of("factors = [\"delta_1\"]\nround = \"1 um\"\n");
+  EXPECT_EQ(multiple.choice, Choice::range);
+  EXPECT_NEAR(multiple.round->down(12.9e-6), 12e-6, 1e-18);
+  EXPECT_NEAR(multiple.round->down(12e-6 * (1.0 - 1e-15)), 12e-6, 1e-18);
+  EXPECT_NEAR(multiple.round->up(12.1e-6), 13e-6, 1e-18);
+  EXPECT_EQ(multiple.round->up(0.0), 1e-6);
+  EXPECT_EQ(multiple.round->down(0.9e-6), 0.0);
+  const AllocatedPart series =
+      part_of("factors = [\"epsilon_1\"]\nbounds = [\"0.1 deg\", \"1 deg\"]\nround = \"R5\"\n");
+  EXPECT_NEAR(series.round->down(0.3 * kDegree), 0.25 * kDegree, 1e-16);
+  EXPECT_EQ(series.round->up(0.0), 0.0);
+}
+
 /// What a part is, every number with all its bits.
 void expect_same(const AllocatedPart& a, const AllocatedPart& b) {
   EXPECT_EQ(a.name, b.name);
@@ -291,6 +305,7 @@ void expect_same(const AllocatedPart& a, const AllocatedPart& b) {
   EXPECT_EQ(a.values, b.values);
   EXPECT_EQ(a.grades, b.grades);
   EXPECT_EQ(a.nominal_size, b.nominal_size);
+  EXPECT_EQ(a.round, b.round);
   ASSERT_EQ(a.processes.size(), b.processes.size());
   for (std::size_t p = 0; p < a.processes.size(); ++p) {
     EXPECT_EQ(a.processes[p].name, b.processes[p].name);
@@ -348,6 +363,8 @@ TEST(ResolvedTextOfTolerances, ReadsBackToTheSameStudy) {
   expect_reads_back(with_analysis(kEveryKey));
   expect_reads_back(with_analysis(kLimits + kSigmas + kOnePart + "values = [\"0.0123 mm\", \"0.3 mm\"]\n"));
   expect_reads_back(with_analysis(kLimits + kSigmas + kOnePart + "tolerance = \"0.3 mm\"\n"));
+  expect_reads_back(with_analysis(kLimits + kSigmas + kOnePart + "round = \"R20\"\n"));
+  expect_reads_back(with_analysis(kLimits + kSigmas + kOnePart + "round = \"0.0013 mm\"\nbounds = [\"0 mm\", \"1 mm\"]\n"));
   expect_reads_back(
       with_analysis(kLimits + kSigmas +
                     "[[analysis.parts]]\nfactors = \"linear\"\n"
@@ -577,6 +594,15 @@ INSTANTIATE_TEST_SUITE_P(
                  {"tolerance is set, and so is"}},
         BadStudy{"DescendingValues", of_delta("values = [\"2 mm\", ^\"1 mm\"]"), {"ascending order"}},
         BadStudy{"ValueOfZero", of_delta("values = [^\"0 mm\"]"), {"greater than zero"}},
+        BadStudy{"UnknownSeries", of_delta("round = ^\"R40\""), {"round is 'R40'", "R5, R10 or R20"}},
+        BadStudy{"RoundedToNothing", of_delta("round = ^\"0 mm\""), {"greater than zero"}},
+        BadStudy{"RoundedToAnAngle", of_delta("round = ^\"1 deg\""), {"1 deg"}},
+        BadStudy{"RoundedValues",
+                 of_delta("values = [\"1 mm\"]\nround = ^\"R10\""),
+                 {"has a list of the tolerances that can be had", "remove it"}},
+        BadStudy{"NothingWithinTheBounds",
+                 of_delta("bounds = [\"1.1 mm\", \"1.2 mm\"]\nround = ^\"R10\""),
+                 {"no such value is within the bounds", "finer step"}},
         BadStudy{"NoValues", of_delta("values = ^[]"), {"values is empty"}},
         BadStudy{"ToleranceOfZero", of_delta("tolerance = ^\"0 mm\""), {"greater than zero"}},
         BadStudy{"GradesWithoutSize", of_delta("grades = ^[\"IT7\"]"), {"nominal_size is missing", "50 mm"}},

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -178,6 +179,33 @@ TEST(ZoneParts, KeepAnOrientationThatIsNoPartAsDrawn) {
   EXPECT_NEAR(tilt_at(0.1e-3), 0.02e-3 / 3.0, 1e-18);
   EXPECT_NEAR(tilt_at(0.01e-3), 0.01e-3 / 3.0 / std::sqrt(2.0), 1e-18);
   EXPECT_EQ(programme.at_bound(programme.at_most(std::vector{0.01e-3, 1.0}), 1), AtBound::single);
+}
+
+TEST(ZoneParts, AreRoundedDownWithoutALargerError) {
+  const ZoneSearch search(read("[[analysis.parts]]\nzones = \"all\"\n" + kAlike + kCost + "round = \"0.003 mm\"\n"));
+  const ToleranceProgramme& programme = search.problem.programme;
+  const std::size_t location = search.position("rail.position");
+  const std::size_t tilt = search.position("rail.perpendicularity");
+  EXPECT_EQ(programme.lowest().tolerance[location], 0.003e-3);
+  TolerancePoint point = programme.at_most(programme.usual());
+  for (const auto& [wide, fine, expected_wide, expected_fine] :
+       {std::array{50.0, 20.0, 48.0, 18.0},
+        {48.01, 20.9, 45.0, 18.0},
+        {48.0, 18.0, 48.0, 18.0},
+        {14.0, 9.8, 12.0, 12.0 / std::sqrt(2.0)}}) {  // at last the orientation is as wide as the location allows
+    point.tolerance[location] = 1e-6 * wide;
+    point.tolerance[tilt] = 1e-6 * fine;
+    const TolerancePoint rounded = programme.rounded(point);
+    EXPECT_NEAR(rounded.tolerance[location], 1e-6 * expected_wide, 1e-15);
+    EXPECT_NEAR(rounded.tolerance[tilt], 1e-6 * expected_fine, 1e-15);
+    const Study before = programme.at(point.tolerance);
+    const Study after = programme.at(rounded.tolerance);
+    for (const FactorIndex factor : before.analysis.factors) {
+      const double sigma = before.errors.by_factor[factor.value].standard_deviation();
+      EXPECT_LE(after.errors.by_factor[factor.value].standard_deviation(), sigma * (1.0 + 1e-12)) << factor.value;
+    }
+  }
+  EXPECT_TRUE(programme.is_void(programme.rounded(point), tilt));
 }
 
 TEST(ZoneParts, GrowByTheirOwnErrorsAndTheMiddle) {
