@@ -21,6 +21,25 @@ def turned(angle, vectors):
     return np.stack(np.broadcast_arrays(cosine * x - sine * y, sine * x + cosine * y), -1)
 
 
+def foot_of_spheres(centres, radii):
+    """Of the two points that three spheres have in common: the middle, which is in the plane of the centres, from the first
+    centre. centres [... x 3 x 3], radii [... x 3]: [... x 3]."""
+    edges = centres[..., 1:, :] - centres[..., :1, :]
+    right = 0.5 * (np.sum(edges ** 2, axis=-1) - radii[..., 1:] ** 2 + radii[..., :1] ** 2)
+    gram = edges @ np.swapaxes(edges, -1, -2)
+    return (np.linalg.solve(gram, right[..., None])[..., 0][..., None, :] @ edges)[..., 0, :]
+
+
+def three_spheres(centres, radii, near):
+    """The point that three spheres have in common, on the side of their centres' plane where `near` is: [... x 3]."""
+    foot = foot_of_spheres(centres, radii)
+    normal = np.cross(centres[..., 1, :] - centres[..., 0, :], centres[..., 2, :] - centres[..., 0, :])
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    side = np.sign(np.sum((near - centres[..., 0, :]) * normal, axis=-1, keepdims=True))
+    height = np.sqrt(radii[..., :1] ** 2 - np.sum(foot ** 2, axis=-1, keepdims=True))
+    return centres[..., 0, :] + foot + side * height * normal
+
+
 class FiveBar:
     """The circles of the distal links about the elbows meet, or do not."""
 
@@ -99,12 +118,7 @@ class FlatDelta:
                                                          0.205 + of(errors, f"zero_{k + 1}", count)), -1)
                             for k, a in enumerate(angles)], 1)
         rods = np.hypot(0.16, 0.005) + np.stack([of(errors, f"rod_{k}", count) for k in (1, 2, 3)], -1)
-        # The foot of the platform on the plane of the centres.
-        edges = centres[:, 1:] - centres[:, :1]
-        right = 0.5 * (np.sum(edges ** 2, axis=-1) - rods[:, 1:] ** 2 + rods[:, :1] ** 2)
-        gram = edges @ edges.transpose(0, 2, 1)
-        foot = np.linalg.solve(gram, right[..., None])[..., 0][:, None, :] @ edges
-        return rods[:, 0] - np.linalg.norm(foot[:, 0], axis=-1)
+        return rods[:, 0] - np.linalg.norm(foot_of_spheres(centres, rods), axis=-1)
 
 
 MECHANISMS = [FiveBar(), ThreeRpr(), FlatDelta()]
@@ -131,6 +145,21 @@ def rotation_vectors(matrices):
 def error_vectors(errors, names, count):
     """Of names [rows][components]: [N x rows x components]."""
     return np.moveaxis(np.array([[of(errors, name, count) for name in row] for row in names]), -1, 0)
+
+
+def six_legs(ends, balls, lengths, rotation, position):
+    """Where a platform is whose balls [N x 6 x 3] legs of these lengths [N x 6] hold to their ends [N x 6 x 3], by Newton's
+    method from a rotation [N x 3 x 3] and a position [N x 3]: both."""
+    for _ in range(6):
+        arms = np.einsum("nij,nkj->nki", rotation, balls)
+        legs = arms + position[:, None] - ends
+        found = np.linalg.norm(legs, axis=-1)
+        along = legs / found[..., None]
+        jacobian = np.concatenate([np.cross(arms, along), along], -1)
+        step = np.linalg.solve(jacobian, (lengths - found)[..., None])[..., 0]
+        rotation, position = rotations(step[:, :3]) @ rotation, position + step[:, 3:]
+    assert np.abs(step).max() < 1e-12
+    return rotation, position
 
 
 class SixRods:
@@ -185,16 +214,8 @@ class SixRods:
         rods = self.rod + error_vectors(errors, [[f"rod_{side}_{k}" for side, k in pairs]], count)[:, 0]
         seats = error_vectors(errors, [[f"ball_{side}_{axis}_{k}" for axis in "xyz"] for side, k in pairs], count)
         rods, balls = np.tile(rods, (len(places), 1)), np.tile(self.down + seats, (len(places), 1, 1))
-        position, rotation = np.repeat(places, count, axis=0), np.tile(np.eye(3), (len(ends), 1, 1))
-        for _ in range(6):
-            arms = np.einsum("nij,nkj->nki", rotation, balls)
-            legs = arms + position[:, None] - ends
-            lengths = np.linalg.norm(legs, axis=-1)
-            along = legs / lengths[..., None]
-            jacobian = np.concatenate([np.cross(arms, along), along], -1)
-            step = np.linalg.solve(jacobian, (rods - lengths)[..., None])[..., 0]
-            rotation, position = rotations(step[:, :3]) @ rotation, position + step[:, 3:]
-        assert np.abs(step).max() < 1e-12
+        rotation, position = np.tile(np.eye(3), (len(ends), 1, 1)), np.repeat(places, count, axis=0)
+        rotation, position = six_legs(ends, balls, rods, rotation, position)
         moved = np.concatenate([position - np.repeat(places, count, axis=0), rotation_vectors(rotation)], -1)
         return moved.reshape(len(places), count, 6)
 
