@@ -215,15 +215,32 @@ constexpr std::array<std::string_view, 3> kBeside{".toml", "_mechanism.toml", "_
 /// The beginning of that study's comment, which the result's name follows.
 constexpr std::string_view kRepeats = "repeats the certificate of ";
 
+/// The path of a file beside the result, by its ending.
+std::string path_beside(const std::filesystem::path& result, std::string_view end) {
+  return (result.parent_path() / (stem_beside(result) + std::string(end))).string();
+}
+
+/// Whether the study beside the result repeats an earlier certificate and names this file beside it.
+bool is_of_earlier_study(const std::filesystem::path& result, const std::string& file) {
+  const std::string study = path_beside(result, kBeside.front());
+  std::error_code ignored;
+  return has_mark(study, kRepeats) && has_mark(study, std::filesystem::path(file).filename().string()) &&
+         std::filesystem::is_regular_file(file, ignored);
+}
+
 /// Writes the study and the files that it names beside the result. Returns the path of the study,
-/// RESULT_certificate.toml. The study is written first: the next run refuses to replace files that no study names
-/// (check_files_beside), so a killed run must not leave such files.
+/// RESULT_certificate.toml. Files that only an earlier study named are removed, and the study is written before the
+/// files that it names: the next run refuses to replace files that no study names (check_files_beside), so neither this
+/// run nor a killed one may leave such files.
 std::string write_beside(const Job& job, Study confirming) {
   const std::filesystem::path result(job.path);
   const std::string folder = result.has_parent_path() ? result.parent_path().string() : ".";
   const std::string stem = stem_beside(result);
   for (const std::string_view end : kBeside) {
-    remove_left_over((result.parent_path() / (stem + std::string(end))).string());
+    const std::string file = path_beside(result, end);
+    remove_left_over(file);
+    std::error_code ignored;
+    if (end != kBeside.front() && is_of_earlier_study(result, file)) std::filesystem::remove(file, ignored);
   }
   name_files_beside(confirming, stem);
   const std::string comment = std::string(kRepeats) + printable_line(result.filename().string());
@@ -236,20 +253,12 @@ std::string write_beside(const Job& job, Study confirming) {
 
 void check_files_beside(const std::string& result, std::span<const std::string> inputs) {
   const std::filesystem::path path(result);
-  const auto beside = [&](std::string_view end) {
-    return (path.parent_path() / (stem_beside(path) + std::string(end))).string();
-  };
-  const std::string study = beside(kBeside.front());
-  const bool is_earlier = has_mark(study, kRepeats);
   // An earlier study of this kind, or a file that it names.
-  const auto is_ours = [&](const std::string& file) {
-    std::error_code ignored;
-    if (file == study) return is_marked(study, kRepeats);
-    return is_earlier && has_mark(study, std::filesystem::path(file).filename().string()) &&
-           std::filesystem::is_regular_file(file, ignored);
+  const auto is_ours = [&](std::string_view end, const std::string& file) {
+    return end == kBeside.front() ? is_marked(file, kRepeats) : is_of_earlier_study(path, file);
   };
   for (const std::string_view end : kBeside) {
-    const std::string file = beside(end);
+    const std::string file = path_beside(path, end);
     check_name_length(file);
     std::error_code ignored;  // a path that cannot be examined is neither
     for (const std::string& input : inputs) {
@@ -257,7 +266,7 @@ void check_files_beside(const std::string& result, std::span<const std::string> 
       throw InputError({input}, "would be replaced by the study that confirms the result, " + file,
                        "give the result another name (-o)");
     }
-    if (!stands(file) || is_ours(file)) continue;
+    if (!stands(file) || is_ours(end, file)) continue;
     throw InputError({file},
                      "exists and was not written with this result, and the study that confirms it would replace it",
                      "move it away, or give the result another name (-o)");

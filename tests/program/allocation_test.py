@@ -143,6 +143,15 @@ class Allocation(ResumptionTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.check_certificate("results/r.h5", "elsewhere/again.h5")
 
+    def test_a_study_that_names_fewer_files_leaves_none_behind(self):
+        """So the next one finds no file that no study names."""
+        shutil.copy(GALLERY / "2upr-rpu/2upr-rpu.toml", self.folder)
+        self.write("poses.csv", "gamma,z,beta\n0,-0.2,0\n0.2,-0.25,-0.1\n-0.3,-0.22,0.3\n")
+        for study, beside in ((FROM_FILES, {"out_certificate_mechanism.toml", "out_certificate_poses.csv"}), (SMALL, set()),
+                              (FROM_FILES, {"out_certificate_mechanism.toml", "out_certificate_poses.csv"})):
+            self.run_study(study)
+            self.assertEqual({path.name for path in self.folder.glob("out_certificate_*")}, beside)
+
     def test_same_bits(self):
         hashes = set()
         for threads in (1, 2, 3):
