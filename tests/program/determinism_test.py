@@ -5,6 +5,7 @@ import itertools
 import h5py
 
 from poesy_program import STUDY, ProgramTest, main
+from resumption import DESIGNED, FORCES, GIVEN, ZONES
 
 
 class Determinism(ProgramTest):
@@ -68,6 +69,10 @@ analysis = {{ kind = "coupling", linear = ["0.1 mm", "0.3 mm", "0.5 mm"], limbs 
             self.assertEqual(len(hashes), 1, fidelity)
             by_fidelity.append(hashes.pop())
         self.assertNotEqual(*by_fidelity)
+
+    def test_designers_words(self):
+        for study in (DESIGNED, GIVEN, ZONES, FORCES):
+            self.assertEqual(len({self.content_hash(study, "--threads", n) for n in (1, 2, 5)}), 1, study)
 
     def test_identification_and_cases(self):
         head, rest = STUDY.split("[analysis]")

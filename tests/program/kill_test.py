@@ -55,7 +55,7 @@ class Kill(ResumptionTest):
                     code, messages = self.run_and_stop(kind, signal.SIGKILL, *["--resume"] * taken_up, longest=2.0)
                     self.assertIn(code, (0, -signal.SIGKILL), messages)
                 self.assertEqual(self.content_hash(), self.expected[kind])
-                beside = {path.name for path in self.folder.glob("*_certificate.toml")}
+                beside = {path.name for path in self.folder.glob("*_certificate*.toml")}
                 self.assertEqual({path.name for path in self.folder.iterdir()} - beside,
                                  {"study.toml", "undisturbed.h5", "out.h5"})
                 for path in self.folder.glob("out.h5*"):

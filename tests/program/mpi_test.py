@@ -16,8 +16,8 @@ from pathlib import Path
 import h5py
 
 from poesy_program import PROGRAM, least_to_work, main
-from resumption import (ADAPTIVE_STUDIES, ALLOCATION, CASES, COUPLING, FIDELITIES, IDENTIFICATION, MACHINES, MONTE_CARLO,
-                        RELATIVE, SENSITIVITY, SOBOL, STUDIES, ResumptionTest)
+from resumption import (ADAPTIVE_STUDIES, ALLOCATION, CASES, COUPLING, DESIGNED, FIDELITIES, FORCES, GIVEN, IDENTIFICATION,
+                        MACHINES, MONTE_CARLO, RELATIVE, SENSITIVITY, SOBOL, STUDIES, ZONES, ResumptionTest)
 
 MPIRUN = shutil.which("mpirun")
 KILLS = int(os.environ.get("POESY_RANK_KILLS", "3"))
@@ -29,7 +29,11 @@ SMALLER = {
     "machines": MACHINES,
     "relative responses": RELATIVE,
     "sobol": SOBOL,
+    "designer's words": DESIGNED,
+    "given machines": GIVEN,
+    "forces": FORCES,
     "allocation": ALLOCATION,
+    "allocation of zones": ZONES,
     "evaluate": CASES.replace("count = 4000", "count = 300"),
     "identification": IDENTIFICATION.replace("count = 1500", "count = 100"),
     "coupling": COUPLING.replace("count = 5000", "count = 500"),

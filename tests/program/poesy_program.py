@@ -12,6 +12,7 @@ from pathlib import Path
 
 PROGRAM = os.environ["POESY_PROGRAM"]
 GALLERY = Path(__file__).resolve().parents[2] / "results/gallery"
+MECHANISMS = Path(__file__).resolve().parents[1] / "data/mechanisms"
 AN_OLDER_RESULT = "poesy-result: an older one"  # what may be replaced
 
 STUDY = """\

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import h5py
 
-from poesy_program import GALLERY, PROGRAM, ProgramTest
+from poesy_program import GALLERY, MECHANISMS, PROGRAM, ProgramTest
 
 # A sanitizer takes some twenty times as long. With fewer poses the program does the same otherwise.
 POSES = 8 if os.environ.get("POESY_SANITIZE") else 16
@@ -144,9 +144,78 @@ REPEATED = MACHINES.replace("[solver]", """\
 "epsilon_2_*" = { distribution = "normal", sigma = "0.2 deg", mean = "0.1 deg", draws = "per pose" }
 delta_3_1_y = { distribution = "triangular", limits = [0, "1 mm"] }
 [solver]""", 1)
+# In the words of a designer: zones of a drawing, a loose hinge, errors with means, limits and fits, some drawn anew at each
+# pose; limits with two ends, one end, a share of the poses and a spread; responses of one's own.
+DESIGNED_HEAD = f"""\
+format = "poesy-study"
+version = 1
+mechanism.file = "{MECHANISMS / "designed-delta.toml"}"
+poses.count = {POSES // 4}
+[errors]
+zones = {{ distribution = "normal", sigmas = 3 }}
+linear = {{ distribution = "uniform", limits = ["-20 um", "5 um"] }}
+[errors.override]
+"stop_*" = {{ distribution = "normal", sigma = "5 um", draws = "per pose" }}
+"seat_z_?" = {{ draws = "per pose" }}
+sag_3 = {{ distribution = "normal", limits = "217 h6", sigmas = 3 }}
+batch = {{ distribution = "triangular", half_width = "20 um", mean = "-4 um" }}
+[[response]]
+name = "gauge"
+sum = {{ probe_z = 1, theta_x = "-20 mm" }}
+"""
+DESIGNED = DESIGNED_HEAD + """\
+[analysis]
+kind = "monte-carlo"
+draws = "per machine"
+samples = 12300
+limits = { gauge = ["-60 um", "90 um"], push = { to = "80 um" }, tilt = { to = "0.3 mrad", share = 0.5 }, x = { spread = "0.1 mm" } }
+"""
+# Given machines, of which the other errors are drawn, and responses that are those of two poses.
+GIVEN = (DESIGNED_HEAD[:DESIGNED_HEAD.index("[errors.override]")] + """\
+machines = { columns = ["rail_x_1", "rod_2", "batch"], rows = [
+""" + "".join(f"  [{k % 83 - 41}e-6, {k % 59 - 29}e-6, {k % 37 - 18}e-6],\n" for k in range(4200)) + """\
+] }
+[[response]]
+name = "rise"
+sum = { nozzle_z = 1 }
+relative_to = { x = 0, y = 0, z = "200 mm" }
+[[response]]
+name = "step"
+norm = ["probe_x", "probe_y"]
+relative_to = "previous"
+[analysis]
+kind = "monte-carlo"
+draws = "per machine"
+factors = ["face_*", "rail_*", "rod_*", "stop_*", "batch"]
+samples = 4200
+limits = { rise = ["-6 um", "8 um"], step = "12 um" }
+""")
+ZONES = DESIGNED_HEAD + """\
+[analysis]
+kind = "allocation"
+samples = 12000
+limits = { probe_position = "0.15 mm", push = ["-0.12 mm", "0.15 mm"] }
+yield = 0.95
+parts = [{ zones = ["face.*", "rail.*", "hinge.*", "rod.*"], each = true, identical_limbs = [1, 2, 3], cost = { law = "reciprocal", b = 1, unit = "mm" } }]
+"""
+# Of a mechanism with bodies that gives way under a load.
+FORCES = f"""\
+format = "poesy-study"
+version = 1
+mechanism.file = "{MECHANISMS / "linear-delta.toml"}"
+poses.count = {POSES // 2}
+[errors]
+linear = {{ distribution = "normal", sigma = "0.05 mm" }}
+angular = {{ distribution = "normal", sigma = "0.02 deg" }}
+[analysis]
+kind = "monte-carlo"
+samples = 300
+limits = {{ position = "0.6 mm", strain_energy = "5 mJ" }}
+"""
 STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "machines": MACHINES, "uniform errors": UNIFORM,
            "repeated machines": REPEATED, "relative responses": RELATIVE, "sobol": SOBOL,
-           "allocation": ALLOCATION, "evaluate": CASES, "identification": IDENTIFICATION,
+           "designer's words": DESIGNED, "given machines": GIVEN, "forces": FORCES,
+           "allocation": ALLOCATION, "allocation of zones": ZONES, "evaluate": CASES, "identification": IDENTIFICATION,
            "coupling": COUPLING, "fidelities": FIDELITIES}
 ADAPTIVE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"
 # Whose runs go on in rounds, until their intervals are narrow.

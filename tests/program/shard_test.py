@@ -7,7 +7,7 @@ import signal
 import h5py
 
 from poesy_program import main
-from resumption import ALLOCATION, COUPLING, IDENTIFICATION, MONTE_CARLO, POSES, SENSITIVITY, STUDIES, ResumptionTest
+from resumption import ALLOCATION, COUPLING, IDENTIFICATION, MONTE_CARLO, POSES, SENSITIVITY, STUDIES, ZONES, ResumptionTest
 
 
 class Shards(ResumptionTest):
@@ -34,7 +34,7 @@ class Shards(ResumptionTest):
 
     def test_every_kind(self):
         for kind, study in STUDIES.items():
-            if study in (ALLOCATION, IDENTIFICATION):
+            if study in (ALLOCATION, ZONES, IDENTIFICATION):
                 continue
             expected = self.undisturbed(study)
             for count in (1, 2, 5):
