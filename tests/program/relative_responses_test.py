@@ -1,5 +1,5 @@
 """A printer that is zeroed in the middle: its height over the bed less its height there, of the same machine. What is right
-is computed here, from the rods alone. Named points and responses of a mechanism's file, and steps from pose to pose."""
+is computed from the rods alone. Named points and responses of a mechanism's file, and steps from pose to pose."""
 
 import json
 import os
@@ -10,10 +10,10 @@ import h5py
 import numpy as np
 
 from poesy_program import ProgramTest, main
+from six_rods import PLACES, rod_effects
 
 PRINTER = (Path(os.environ["POESY_DATA"]) / "mechanisms/delta6.toml").read_text()
-L, D, R, W = 0.217, 0.095, 0.030, 0.046  # m: rods, reach, effector, distance of a pair
-BED = np.array([[0.0, 0.0]] + [[0.05 * np.cos(a), 0.05 * np.sin(a)] for a in np.radians(range(0, 360, 60))])
+BED = PLACES[:, :2]
 RODS = [f"rod_{k}" for k in range(1, 7)]
 ZERO = 'relative_to = { x = 0, y = 0, z = 0 }\n'
 HEIGHT = '[[response]]\nname = "height"\nsum = { z = 1 }\n'
@@ -30,22 +30,6 @@ kind = "{kind}"
 factors = ["rod_*"]
 {analysis}
 """
-
-
-def slopes():
-    """What each rod does, by its length, to [theta; displacement] of the effector: [poses x 6 x rods]."""
-    turn = [np.array([[np.cos(t), -np.sin(t), 0], [np.sin(t), np.cos(t), 0], [0, 0, 1]]) for t in 2 * np.pi * np.arange(3) / 3]
-    order = [(side, k) for side in (1, -1) for k in range(3)]
-    top = np.array([turn[k] @ [D + R, side * W / 2, 0] for side, k in order])
-    ball = np.array([turn[k] @ [R, side * W / 2, 0] for side, k in order])
-    found = []
-    for x, y in BED:
-        place = np.array([x, y, 0.0])
-        high = top.copy()
-        high[:, 2] = np.sqrt(L**2 - ((top - ball - place)[:, :2] ** 2).sum(1))
-        along = (ball + place - high) / L
-        found.append(np.linalg.inv(np.hstack([np.cross(ball, along), along])))
-    return np.array(found)
 
 
 class RelativeResponses(ProgramTest):
@@ -66,7 +50,7 @@ class RelativeResponses(ProgramTest):
         """30.9 % of the printers keep 0.04 mm as they are, 58.0 % if they are zeroed in the middle. alpha 1e-4."""
         machines = 60000
         rods = np.random.default_rng(0).normal(0.0, 5e-5, (1000000, 6))
-        height = rods @ slopes()[:, 5].T
+        height = rods @ rod_effects()[:, 5].T
         right = (np.abs(height - height[:, :1]) <= 4e-5).all(1).mean()
         self.assertAlmostEqual(right, 0.580, delta=0.002)
         analysis = f'draws = "per machine"\nsamples = {machines}\nlimits = {{ height = "0.04 mm" }}\n'
@@ -77,7 +61,7 @@ class RelativeResponses(ProgramTest):
             shares = file["yield/mean_square_share"][-1]
         self.assertLess(height[0], 1e-15)
         self.assertGreater(z[0], 1e-5)
-        of_rod = ((slopes()[:, 5] - slopes()[:1, 5]) ** 2).sum(0)
+        of_rod = ((rod_effects()[:, 5] - rod_effects()[:1, 5]) ** 2).sum(0)
         np.testing.assert_allclose(shares, of_rod / of_rod.sum(), atol=0.03)
         checked = self.succeeds("check", "s.toml")
         self.assertIn("height is less its value at x = 0 mm, y = 0 mm, z = 0 mm: each machine is solved once more there", checked)
@@ -90,16 +74,16 @@ class RelativeResponses(ProgramTest):
             rms = dict(zip(names, file["monte_carlo/rms"][:]))
             shares = file["yield/mean_square_share"][-1]
         np.testing.assert_allclose(rms["off"] ** 2, rms["off_x"] ** 2 + rms["off_y"] ** 2 + rms["off_z"] ** 2, rtol=1e-12)
-        of_rod = ((slopes()[:, 3:] - slopes()[:1, 3:]) ** 2).sum((0, 1))
+        of_rod = ((rod_effects()[:, 3:] - rod_effects()[:1, 3:]) ** 2).sum((0, 1))
         np.testing.assert_allclose(shares, of_rod / of_rod.sum(), atol=0.04)
-        right = np.sqrt(((slopes()[:, 3:] - slopes()[:1, 3:]) ** 2).sum((1, 2))) * 5e-5
+        right = np.sqrt(((rod_effects()[:, 3:] - rod_effects()[:1, 3:]) ** 2).sum((1, 2))) * 5e-5
         np.testing.assert_allclose(rms["off"], right, rtol=0.06, atol=1e-15)
 
     def test_uniform_errors(self):
         """The gradient of the yield takes the linear map of the differences."""
         half = 9e-5
         rods = np.random.default_rng(1).uniform(-half, half, (1000000, 6))
-        height = rods @ (slopes()[:, 5] - slopes()[:1, 5]).T
+        height = rods @ (rod_effects()[:, 5] - rod_effects()[:1, 5]).T
         right = (np.abs(height) <= 4e-5).all(1).mean()
         analysis = 'draws = "per machine"\nsamples = 20000\nlimits = { height = "0.04 mm" }\n'
         with self.run_study(analysis, distribution="uniform", size='half_width = "0.09 mm"') as file:
@@ -116,7 +100,7 @@ class RelativeResponses(ProgramTest):
             with self.run_study(analysis.replace("factors = [\"rod_*\"]\n", ""), kind="allocation", fidelity=fidelity) as file:
                 tolerance = file["allocation/tolerance"][0]
             rods = np.random.default_rng(2).normal(0.0, tolerance / 3.0, (1000000, 6))
-            height = rods @ (slopes()[:, 5] - slopes()[:1, 5]).T
+            height = rods @ (rod_effects()[:, 5] - rod_effects()[:1, 5]).T
             right = (np.abs(height) <= 4e-5).all(1).mean()
             self.assertGreater(right, 0.949)
             self.assertLess(right, 0.958)
@@ -186,7 +170,7 @@ class RelativeResponses(ProgramTest):
             rms = dict(zip(names, file["monte_carlo/rms"][:]))
             first = file["yield/value"][()]
         self.assertEqual(names[-7:], ["nozzle_x", "nozzle_y", "nozzle_z", "nozzle_position", "height", "aside", "edge"])
-        nozzle = np.array([np.cross(s[:3], NOZZLE, axis=0) + s[3:] for s in slopes()])
+        nozzle = np.array([np.cross(s[:3], NOZZLE, axis=0) + s[3:] for s in rod_effects()])
         for axis, name in enumerate(("nozzle_x", "nozzle_y", "nozzle_z")):
             np.testing.assert_allclose(rms[name], 5e-5 * np.sqrt((nozzle[:, axis] ** 2).sum(1)), rtol=0.06)
         edge = (nozzle[:, 0] + nozzle[:, 1]) / np.sqrt(2)

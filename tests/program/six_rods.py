@@ -87,6 +87,11 @@ class Machines:
         return np.arccos(np.clip((np.trace(self.R, axis1=1, axis2=2) - 1) / 2, -1, 1))
 
 
+def rod_effects():
+    """What each rod does by its length to [turn; displacement] of the effector, to first order: [places x 6 x rods]."""
+    return np.linalg.inv(machines(np.zeros((1, 6))).jacobian())
+
+
 def machines(rods):
     """Each machine with these errors of its rods [N x 6] at each place, place by place: N x 7 platforms."""
     lengths = np.repeat(ROD + rods, len(PLACES), axis=0)
