@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import os
 import re
 import shutil
@@ -15,7 +16,8 @@ from poesy_program import PROGRAM, ProgramTest, main
 
 DATA = Path(os.environ["POESY_DATA"])
 MECHANISM = DATA / "mechanisms" / "linear-delta-drawing.toml"
-EXPECTED = json.loads((DATA / "drawing.json").read_text())["linear_delta"]
+REFERENCES = json.loads((DATA / "drawing.json").read_text())
+EXPECTED = REFERENCES["linear_delta"]
 STUDY = """\
 format = "poesy-study"
 version = 1
@@ -24,6 +26,26 @@ poses = {{ select = "file", file = "poses.csv" }}
 {zones}
 [analysis]
 {analysis}
+"""
+# OTAF (Kramer84/otaf), notebook Ex1_2D_4dof: a part with two faces, which leans on one of them. The second limb holds nothing.
+POCKET = """\
+format = "poesy-mechanism"
+version = 1
+name = "pocket"
+title = "Part of 99.8 mm in a pocket of 100 mm"
+[platform]
+origin = ["99.8 mm", 0, 0]
+points = { top = [0, "5 mm", 0], bottom = [0, "-5 mm", 0] }
+metric_points = [[0, "5 mm", 0], [0, "-5 mm", 0], [0, 0, "5 mm"]]
+coordinates = ["x"]
+workspace = { x = ["99 mm", "101 mm"] }
+[[limb]]
+joints = [ { name = "part", type = "P", at = [0, 0, 0], axis = "x", actuated = true } ]
+features = [
+  { name = "left", joint = "part", kind = "axis", z = "y", x = "x", length = "10 mm", shape = "planes", along = "x", position = { zone = "0.31 mm", datums = "A" } },
+  { name = "right", joint = "part", part = "after", at = ["99.8 mm", 0, 0], kind = "axis", z = "y", x = "x", length = "10 mm", shape = "planes", along = "x", position = { zone = "0.31 mm", datums = "A" } } ]
+[[limb]]
+joints = [ { name = "A", type = "S", at = [0, "50 mm", 0] }, { name = "B", type = "P", from = "A", to = "C" }, { name = "C", type = "S", at = ["99.8 mm", "50 mm", 0] } ]
 """
 POSES = "x [m],y [m],z [m]\n" + "".join(",".join(map(repr, one["pose"])) + "\n" for one in EXPECTED["poses"])
 
@@ -92,6 +114,36 @@ class Drawing(ProgramTest):
             self.succeeds("run", "one.toml", "--shard", shard, "-o", f"part{shard[0]}.h5", "--quiet")
         self.succeeds("merge", "part1.h5", "part2.h5", "-o", "merged.h5")
         self.assertEqual(len({self.content_hash(f"{name}.h5") for name in ("one", "two", "merged")}), 1)
+
+    def test_published_pocket(self):
+        """How many parts are too wide for the pocket, wherever it holds them: at the top or at the bottom of their faces."""
+        samples = 400000
+        published = REFERENCES["published"][0]
+
+        def beyond(sigma):
+            """Of a normal, 0.2 mm."""
+            return 0.5 * math.erfc(2e-4 / (sigma * math.sqrt(2.0)))
+
+        edge = 0.31e-3 / 6.0  # standard deviation of a face's middle or of its edge
+        largest = f"""
+[errors.override]
+"*_x_?" = {{ distribution = "normal", sigma = "{edge} m" }}
+"*_lean_x_?" = {{ distribution = "normal", sigma = "{2.0 * edge} m" }}
+"""
+        cases = (("exact_percent", 1.0 - (1.0 - beyond(2.0 * edge)) ** 2, largest, '"all"'),
+                 ("same_with_equal_shares_percent", 1.0 - (1.0 - beyond(math.sqrt(2.0) * edge)) ** 2, "", '"all"'),
+                 ("translation_alone_percent", beyond(math.sqrt(2.0) * edge), largest, '["left_x_1", "right_x_1"]'),
+                 ("rotation_alone_percent", 2.0 * beyond(math.sqrt(2.0) * edge), largest, '["*_lean_x_1"]'))
+        (self.folder / "delta.toml").write_text(POCKET)
+        self.write("poses.csv", "x [m]\n0.0998\n")
+        for name, closed, override, factors in cases:
+            self.assertAlmostEqual(closed, published[name] / 100.0, delta=1e-12)
+            limits = 'limits = { top_x = { to = "0.2 mm" }, bottom_x = { to = "0.2 mm" } }'
+            analysis = f'kind = "monte-carlo"\ndraws = "per machine"\nfactors = {factors}\nsamples = {samples}\n{limits}'
+            with self.result("pocket", analysis + override) as file:
+                found = file["yield/rejects"][()] / samples
+            # alpha = 1e-4
+            self.assertLess(abs(found - closed), 3.9 * math.sqrt(closed / samples), name)
 
     def test_clearance(self):
         """A pin is loose in another way at each pose: the yield over the poses is the product of those of each."""
@@ -166,6 +218,15 @@ bounds = ["0.002 mm", "0.2 mm"]
         self.succeeds("run", "two_certificate.toml", "-o", "again.h5", "--quiet")
         with h5py.File(self.folder / "again.h5") as file:
             self.assertEqual(file["yield/rejects"][()], rejects)
+
+    def test_certificate_with_other_seeds(self):
+        """Tolerances that are certified with one set of machines are so with 18 of 20 others at least."""
+        self.result("drawing", self.ALLOCATION, "exact").close()
+        passed = 0
+        for seed in range(101, 121):
+            done = self.poesy("run", "drawing_certificate.toml", "-o", "again.h5", "--quiet", "--seed", seed)
+            passed += b"PASS" in done.stdout and done.returncode == 0
+        self.assertGreaterEqual(passed, 18)
 
     def test_given_orientation(self):
         """An orientation that is in no block stays as drawn."""
