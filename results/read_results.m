@@ -2,9 +2,8 @@ function result = read_results(source, response, figure_file)
 % READ_RESULTS  What a poesy study found: poesy.read and poesy.plot in one call, as a start for scripts of your own.
 %
 %   result = read_results('study.h5')     the result file, or the folder that `poesy export study.h5 -d tables` wrote
-%   read_results(source)                  draws what each error of a sensitivity study does to the first response that is
-%                                         a length (poesy show looks among those that the mechanism puts first; name it
-%                                         to be sure)
+%   read_results(source)                  draws what each error of a sensitivity study does to the displacement of the tool,
+%                                         without a tool of the platform, else to the first response that is a length
 %   read_results(source, 'angular_deformation')                          to another response
 %   result = read_results(source, 'linear_deformation', 'ranked.svg')    writes the figure to a file
 %

@@ -43,6 +43,7 @@ ROUNDING = 1e-10  # an index below it, in SI, is zero but for rounding
 # In which unit people read an SI unit, and how many of it are one of that; any other unit is shown as it is.
 DISPLAY = {"m": ("mm", 1e3), "rad": ("deg", 180.0 / math.pi)}
 INDEX = "global_corrected"  # the index, as `poesy show` has it
+LEADING = ("tip_position", "position")  # the responses that come first where there are no limits
 FIGURES = (".svg", ".png", ".pdf")
 
 
@@ -133,10 +134,12 @@ def read_result(path: str) -> Result:
 
 
 def default_response(result: Result) -> str:
-    """As `poesy show`: the first length among the responses that the model puts first, else the first of them."""
+    """As `poesy show`: of the responses that the model puts first the displacement of the tool, without a tool that of the
+    platform, else the first length, or the first of them."""
     units = result.units("response")
     headline = list(np.atleast_1d(result.groups["responses"].attrs.get("headline", list(units))))
-    return next((name for name in headline if units[name] == "m"), headline[0])
+    headline.sort(key=lambda name: LEADING.index(name) if name in LEADING else len(LEADING))
+    return headline[0] if headline[0] in LEADING else next((name for name in headline if units[name] == "m"), headline[0])
 
 
 def ranked_errors(result: Result, response: str | None = None) -> list[RankedError]:

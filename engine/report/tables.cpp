@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/nan.h"
+#include "engine/model/leading_response.h"
 #include "engine/report/display.h"
 #include "engine/report/drawing_table.h"
 #include "engine/report/report_kind.h"
@@ -205,6 +206,8 @@ std::vector<std::size_t> varying_first(const StoredResult& result, std::vector<s
 std::string default_ranking(const StoredResult& result) {
   const std::vector<std::size_t> order = varying_first(result, result.headline);
   if (order.empty()) return {};
+  const NamedUnit& leading = result.responses[order.front()];
+  if (verdict_on(result, order.front()) != nullptr || leading_rank(leading.name) < kNotLeading) return leading.name;
   const bool some_vary = varies(result, order.front());
   const auto is_varying_length = [&](std::size_t r) {
     return varies(result, r) == some_vary && dimension_of(result.responses[r].unit) == Dimension::length;

@@ -27,8 +27,8 @@ std::string constant_text(const NamedUnit& response);
 /// The same responses with those that do not vary at the end.
 std::vector<std::size_t> varying_first(const StoredResult& result, std::vector<std::size_t> responses);
 
-/// The response that ranks by default: the first length among those of the headline that vary (or all, if none varies),
-/// or else the first.
+/// The response that ranks by default. Of those of the headline that vary (or of all, if none varies) it is the first
+/// if it has a limit or is the displacement of tool or platform, otherwise the first length, or else the first.
 std::string default_ranking(const StoredResult& result);
 
 /// The order in which tables show ranked errors, the largest first.

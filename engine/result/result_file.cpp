@@ -8,6 +8,7 @@
 #include "engine/base/array.h"
 #include "engine/base/error.h"
 #include "engine/result/drawing_parts.h"
+#include "engine/result/headline.h"
 #include "engine/result/result_parts.h"
 #include "engine/storage/checkpoint.h"
 #include "engine/storage/content_hash.h"
@@ -316,6 +317,7 @@ StoredResult read_result(const std::string& path, FindFileKind find_kind) {
     if (kind == nullptr) throw h5::Error("its kind '" + result.kind + "' is unknown");
     kind->read(file, result);
     if (file.exists("/drawing")) result.drawing = read_drawing(file);
+    order_headline(result);
     return result;
   });
 }

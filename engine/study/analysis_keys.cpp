@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "engine/base/name_pattern.h"
 #include "engine/base/text.h"
+#include "engine/model/leading_response.h"
 #include "engine/study/limit_keys.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
@@ -367,8 +369,10 @@ std::string factor_list_text(std::span<const FactorIndex> factors, const ModelDe
 std::string example_limits(const ModelDescription& model) {
   const std::vector<Response>& responses = model.responses;
   if (responses.empty()) return {};
-  const auto length = std::ranges::find(responses, Dimension::length, &Response::dimension);
-  const Response& response = length == responses.end() ? responses.front() : *length;
+  const auto rank = [](const Response& one) {
+    return std::pair(leading_rank(one.name), one.dimension != Dimension::length);
+  };
+  const Response& response = *std::ranges::min_element(responses, {}, rank);
   return fmt::format("{{ {} = {} }}", response.name, example_size(response.dimension, 0.05));
 }
 

@@ -204,8 +204,8 @@ std::string factors_text(std::span<const FactorIndex> factors, const ModelDescri
 std::string factor_list_text(std::span<const FactorIndex> factors, const ModelDescription& model);
 /// The factor sets of a model, as comment lines of a template.
 std::string sets_comment(const ModelDescription& model);
-/// A limit as a TOML table, on the model's first response that is a length, or else on its first; empty for a model
-/// without responses.
+/// A limit as a TOML table, on the displacement of the tool or of the platform (leading_rank), or else on the first
+/// response that is a length, or on the first; empty for a model without responses.
 std::string example_limits(const ModelDescription& model);
 /// A comment line of a template with the model's responses, and its line of limits after `sign`; empty without
 /// responses.

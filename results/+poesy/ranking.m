@@ -1,22 +1,26 @@
 function ranked = ranking(result, response)
 % POESY.RANKING  What matters most: the rows of result.ranked for one response, the largest first.
 %
-%   poesy.ranking(result)                          prints the ranking for the first response that is a length
+%   poesy.ranking(result)                          prints the ranking for the response that the study is about
 %   poesy.ranking(result, 'angular_deformation')   for another response
 %   ranked = poesy.ranking(result, response)       gives it: kind, what, response, unit; names {N x 1};
 %                                                  value, low, high [N x 1]; order [N x 1], the rows of result.ranked
 %
 % result is what POESY.READ or POESY.RUN gave, or a file or folder that POESY.READ takes. See there for what is ranked. Rows
-% without a number come last, and rows with the same number in the order of the result. Where no response is a length, the
-% first that has a number is taken: one that does not vary has no shares. Shares and Sobol' indices have no unit, so name the
-% response to be sure which one is meant.
+% without a number come last, and rows with the same number in the order of the result. Without a name it is a response with a
+% limit, the one whose limit is missed most often; without limits the displacement of the tool, without a tool that of the
+% platform; else the first length, or the first that has a number: one that does not vary has no shares.
   if ~isstruct(result)
     result = poesy.read(result);
   end
   all = result.ranked;
   if nargin < 2 || isempty(response)
     known = reshape(any(~isnan(all.value), 1), [], 1);  % a response that does not vary has no share
-    first = [find(strcmp(all.units(:), 'mm') & known); find(known); 1];
+    first = [];
+    for name = reshape(poesy.internal.leading(result), 1, [])
+      first = [first; find(strcmp(all.responses(:), name{1}) & known)];  %#ok<AGROW> a few names
+    end
+    first = [first; find(strcmp(all.units(:), 'mm') & known); find(known); 1];
     response = all.responses{first(1)};
   end
   r = find(strcmp(all.responses, response));

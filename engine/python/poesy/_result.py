@@ -9,6 +9,8 @@ import weakref
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
+import numpy as np
+
 from . import _h5, _program
 from ._constant import constant_responses
 from ._errors import DamagedFile, FileError, NotInResult
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     import xarray
 
 # Axes whose entries have units of their own: where the names and the units are.
+_LEADING = ("tip_position", "position")  # the responses that come first where there are no limits (engine/result/headline.h)
 _UNITS = {
     "response": ("responses/name", "responses/unit"),
     "factor": ("factors/name", "factors/unit"),
@@ -138,17 +141,29 @@ class Result:
         return self._constant
 
     def response(self, name: str | None = None) -> str:
-        """The response of this name, or the one that the program ranks by: of those that the mechanism puts first and that
-        vary, the first that is a length, else the first. Raises `NotInResult` for a name that it does not have."""
+        """The response of this name, or the one that the program ranks by. Of those that vary it is a response with a
+        limit, the one whose limit is missed most often; without limits the displacement of the tool, without a tool that
+        of the platform; else of those that the mechanism puts first the first that is a length, or the first. Raises
+        `NotInResult` for a name that it does not have."""
         units = self._units["response"]
         if name is None:
             listed = self.to_xarray("responses").attrs.get("headline", list(units))
-            first = [listed] if isinstance(listed, str) else list(listed)
-            first = [one for one in first if one not in self.constant] or first
-            return next((one for one in first if units[one] == "m"), first[0])
+            listed = [listed] if isinstance(listed, str) else list(listed)
+            leading = [*self._limited(), *(one for one in _LEADING if one in listed)]
+            order = list(dict.fromkeys([*leading, *listed]))
+            order = [one for one in order if one not in self.constant] or order
+            return order[0] if order[0] in leading else next((one for one in order if units[one] == "m"), order[0])
         if name not in units:
             raise NotInResult(f"{self.path}: there is no response '{name}'; it has {', '.join(units)}")
         return name
+
+    def _limited(self) -> list[str]:
+        """Responses with limits, the one whose limit is missed most often first."""
+        if "limits" not in self._names:
+            return []
+        limits = self.to_xarray("limits")
+        missed = 1.0 - limits["within"].values / np.maximum(limits["tried"].values, 1)
+        return [str(limits["response"].values[k]) for k in np.argsort(-missed, kind="stable")]
 
     def response_unit(self, name: str) -> tuple[str, float]:
         """The unit in which people read a response, and its size in SI: ("mm", 0.001)."""
