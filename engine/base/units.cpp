@@ -151,7 +151,10 @@ Dimension dimension_of(std::string_view si_name) {
   return found == kDimensions.end() ? Dimension::number : found->display.dimension;
 }
 
-std::string_view error_kind(Dimension dimension) { return dimension == Dimension::angle ? "angular" : "linear"; }
+std::string_view error_kind(Dimension dimension) {
+  if (dimension == Dimension::number) return "relative";
+  return dimension == Dimension::angle ? "angular" : "linear";
+}
 
 Quantity parse_quantity(std::string_view text, std::optional<Dimension> wanted) {
   const std::string_view body = trimmed(text);

@@ -8,8 +8,8 @@
 
 namespace poesy {
 
-/// What a value measures; a number has no unit. Errors are lengths or angles. Only responses and their limits can be
-/// forces, moments or energies.
+/// What a value measures; a number has no unit. Errors are lengths, angles or numbers. Only responses and their limits
+/// can be forces, moments or energies.
 enum class Dimension { length, angle, time, number, force, moment, energy };
 
 std::span<const Dimension> all_dimensions();  ///< All dimensions, in the order of the enumeration.
@@ -34,10 +34,11 @@ std::string unit_names(std::optional<Dimension> dimension = std::nullopt);
 
 std::string_view name(
     Dimension dimension);  ///< The name: "length", "angle", "time", "number", "force", "moment", "energy".
-std::string with_article(Dimension dimension);     ///< The name with its article: "a length", "an angle".
-std::string_view si_unit(Dimension dimension);     ///< The SI unit: "m", "rad", "s", "1", "N", "N m" or "J".
-const Unit& display_unit(Dimension dimension);     ///< The unit that people read: "mm", "deg", else that of the SI.
-std::string_view error_kind(Dimension dimension);  ///< The word for errors of this dimension: "linear" or "angular".
+std::string with_article(Dimension dimension);  ///< The name with its article: "a length", "an angle".
+std::string_view si_unit(Dimension dimension);  ///< The SI unit: "m", "rad", "s", "1", "N", "N m" or "J".
+const Unit& display_unit(Dimension dimension);  ///< The unit that people read: "mm", "deg", else that of the SI.
+std::string_view error_kind(
+    Dimension dimension);  ///< The word for errors of this dimension: "linear", "angular", "relative".
 
 /// The dimension with this SI unit; `number` for any other text.
 Dimension dimension_of(std::string_view si_name);

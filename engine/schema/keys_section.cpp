@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/base/ratio.h"
 #include "engine/base/text.h"
 #include "engine/schema/keys.h"
 
@@ -116,7 +117,7 @@ double StudyValue::percent() const {
 }
 
 double StudyValue::quantity(Dimension dimension) const {
-  if (dimension == Dimension::number) return number();
+  if (dimension == Dimension::number) return is_text() ? quantity_of(printable(text()), dimension) : number();
   if (node_->is_number())
     fail("is the bare number " + shortest(number()), "write it with a unit, e.g. " + example(dimension));
   if (!is_text()) wrong_type("write a number and a unit in quotes, e.g. " + example(dimension));
@@ -124,6 +125,11 @@ double StudyValue::quantity(Dimension dimension) const {
 }
 
 double StudyValue::quantity_of(const std::string& written, Dimension dimension) const {
+  if (dimension == Dimension::number) {
+    if (const auto share = parse_ratio(written)) return *share;
+    if (const auto bare = parse_number(written)) return *bare;
+    fail("is '" + written + "', but must be a number", "write it without a unit, or like \"0.1 %\" or \"50 um/m\"");
+  }
   try {
     const Quantity quantity = parse_quantity(written, dimension);
     if (quantity.dimension == dimension) return quantity.si;

@@ -144,6 +144,11 @@ std::string shown_samples(const TemplateLines& lines, const Study&) {
          "# samples = " + lines.inline_table("analysis.samples") + "\n";
 }
 
+/// The line of `relative`; empty where nothing that is held is a number.
+std::string relative_line(const Background& background) {
+  return background.relative == 0.0 ? "" : "relative = " + shortest(background.relative) + "\n";
+}
+
 const InnerRows<Background>& background_keys() {
   static const InnerRows<Background> keys{
       .paths = {"analysis.background"},
@@ -160,7 +165,12 @@ const InnerRows<Background>& background_keys() {
                InnerRow<Background>{.name = "angular",
                                     .value = quantity_at(Dimension::angle, &Background::angular),
                                     .usual = "the standard deviation of angular in [errors]",
-                                    .meaning = "The value of those that are angles."}}};
+                                    .meaning = "The value of those that are angles."},
+               InnerRow<Background>{.name = "relative",
+                                    .value = quantity_at(Dimension::number, &Background::relative),
+                                    .usual = "the standard deviation of relative in [errors]",
+                                    .meaning = "The value of those that are numbers.",
+                                    .lines = relative_line}}};
   return keys;
 }
 
@@ -169,9 +179,14 @@ void read_background(const StudyValue& value, Study& study, const Reading& readi
   const StudySection section = value.section();
   Background background{.factors = {},
                         .linear = usual_distribution(reading, Dimension::length).standard_deviation(),
-                        .angular = usual_distribution(reading, Dimension::angle).standard_deviation()};
+                        .angular = usual_distribution(reading, Dimension::angle).standard_deviation(),
+                        .relative = usual_distribution(reading, Dimension::number).standard_deviation()};
   read_keys(background_keys(), section, background, Nothing());
   background.factors = read_factors(section.require("factors"), study.model());
+  const auto is_number = [&](FactorIndex factor) {
+    return study.model().factors[factor.value].dimension == Dimension::number;
+  };
+  if (std::ranges::none_of(background.factors, is_number)) background.relative = 0.0;
   study.analysis.background = std::move(background);
 }
 

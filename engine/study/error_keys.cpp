@@ -82,6 +82,7 @@ KeyValue<Parameters> size_at(double Parameters::*member, double (StudyValue::*re
 
 /// An example of limits.
 std::string_view example_limits(Dimension dimension) {
+  if (dimension == Dimension::number) return "[\"-0.1 %\", 0]";
   return dimension == Dimension::angle ? "[\"-0.1 deg\", 0]" : "[\"-0.1 mm\", 0]";
 }
 
@@ -161,7 +162,7 @@ InnerRow<Parameters> draws_row() {
 
 const InnerRows<Parameters>& distribution_keys() {
   static const InnerRows<Parameters> keys{
-      .paths = {"errors.linear", "errors.angular", "errors.override.FACTOR"},
+      .paths = {"errors.linear", "errors.angular", "errors.relative", "errors.override.FACTOR"},
       .meaning = "A distribution about zero or a mean, between limits, or of measured values.",
       .chooser = "distribution",
       .owner = "the distribution",
@@ -243,7 +244,14 @@ const InnerRows<Parameters>& distribution_keys() {
   return keys;
 }
 
-Distribution default_distribution(Dimension dimension) { return Distribution::normal(display_unit(dimension).si); }
+/// 1 mm, 1 deg and 0.1 %.
+Distribution default_distribution(Dimension dimension) {
+  return Distribution::normal(dimension == Dimension::number ? 1e-3 : display_unit(dimension).si);
+}
+
+bool has_errors_of(Dimension dimension, const ModelDescription& model) {
+  return std::ranges::find(model.factors, dimension, &Factor::dimension) != model.factors.end();
+}
 
 /// Reads the values of a file if the study names one; returns whether there are any. Files are opened only for a run.
 /// usual: the distribution of other errors of this dimension.
@@ -338,6 +346,10 @@ void set_error(const StatedError& error, std::size_t f, ErrorModel& errors) {
 
 template <Dimension kDimension>
 void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
+  if (kDimension == Dimension::number && !has_errors_of(kDimension, study.model())) {
+    value.fail("has no meaning for " + study.model().name + ", whose errors are lengths and angles",
+               "remove it; errors with grows_with are numbers");
+  }
   const StatedError error = read_error(value, kDimension, reading.use, default_distribution(kDimension), study.doubts);
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     if (study.model().factors[f].dimension == kDimension) set_error(error, f, study.errors);
@@ -561,6 +573,7 @@ StatedError commonest_error(const Study& study, Dimension dimension) {
 
 template <Dimension kDimension>
 std::string usual_line(const Study& study) {
+  if (kDimension == Dimension::number && !has_errors_of(kDimension, study.model())) return {};
   return fmt::format("{} = {}\n", error_kind(kDimension),
                      error_text(commonest_error(study, kDimension), kDimension, exact_value));
 }
@@ -568,13 +581,16 @@ std::string usual_line(const Study& study) {
 std::string override_lines(const Study& study) {
   const StatedError linear = commonest_error(study, Dimension::length);
   const StatedError angular = commonest_error(study, Dimension::angle);
+  const StatedError relative = commonest_error(study, Dimension::number);
   const std::vector<std::optional<double>> zones = sigmas_by_zones(study);
   const std::vector<FactorIndex> loose = clearance_errors(study.model());
   std::string text;
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     const Factor& factor = study.model().factors[f];
     const StatedError own = stated_error(study.errors, f);
-    const StatedError& usual = factor.dimension == Dimension::length ? linear : angular;
+    const StatedError& usual = factor.dimension == Dimension::length  ? linear
+                               : factor.dimension == Dimension::angle ? angular
+                                                                      : relative;
     const Draws draws = std::ranges::binary_search(loose, FactorIndex(f)) ? Draws::per_pose : Draws::per_machine;
     if (is_given(study, f) || own == (zones[f] ? StatedError{Distribution::normal(*zones[f]), draws} : usual)) continue;
     text += factor.name + " = " + error_text(own, factor.dimension, exact_value) + "\n";
@@ -603,6 +619,17 @@ StudyRow usual_row(std::string_view meaning) {
           .meaning = meaning,
           .reader = read_usual<kDimension>,
           .lines = usual_line<kDimension>};
+}
+
+std::string shown_relative(const TemplateLines& lines, const Study& study) {
+  return has_errors_of(Dimension::number, study.model()) ? lines.usual("errors", "relative") : "";
+}
+
+StudyRow relative_row() {
+  StudyRow row = usual_row<Dimension::number>(
+      "Distribution of every number: of errors that grow with the displacement of a joint, \"0.1 %\" or \"50 um/m\".");
+  row.shown = shown_relative;
+  return row;
 }
 
 /// Refuses at the value that determines the factor's distribution: the first of these keys that it has, or else sigma.
@@ -670,7 +697,7 @@ const StudyRows& errors_keys() {
       .paths = {"errors"},
       .meaning = "How the errors that vary scatter, by their dimension.",
       .rows = {usual_row<Dimension::length>("Distribution of every length."),
-               usual_row<Dimension::angle>("Distribution of every angle."), zones_row(),
+               usual_row<Dimension::angle>("Distribution of every angle."), relative_row(), zones_row(),
                StudyRow{.name = "override",
                         .value = {.type = "table"},
                         .usual = "none",
@@ -751,10 +778,8 @@ void refuse_error(const StudySection& section, std::string_view key, const std::
   throw InputError(section.place(), "the default of " + std::string(key) + " " + problem, kTooLargeRemedy);
 }
 
-void check_error_size(const Model& model, FactorIndex factor, double linear, double angular,
-                      const StudySection& section) {
+void check_error_size(const Model& model, FactorIndex factor, double size, const StudySection& section) {
   const Dimension dimension = model.description().factors[factor.value].dimension;
-  const double size = dimension == Dimension::length ? linear : angular;
   if (const auto problem = beyond_bound(model, factor, size, "an error")) {
     refuse_error(section, error_kind(dimension), *problem);
   }
@@ -766,7 +791,8 @@ void check_error_bounds(const StudySection& root, const Study& study, const Mode
   if (kind.varies != Varies::none) check_distributions(root, study, model);
   if (const auto& held = study.analysis.background) {
     for (const FactorIndex factor : held->factors) {
-      check_error_size(model, factor, held->linear, held->angular, analysis.section("background"));
+      const double size = held->of(model.description().factors[factor.value].dimension);
+      check_error_size(model, factor, size, analysis.section("background"));
     }
   }
   check_calibrated(analysis, study);

@@ -59,12 +59,9 @@ std::string owners_text(const std::vector<FactorIndex>& held, const Study& study
 std::string sizes_text(const std::vector<FactorIndex>& held, const Study& study) {
   const Background& background = *study.analysis.background;
   std::vector<std::string> sizes;
-  for (const Quantity size :
-       {Quantity{background.linear, Dimension::length}, Quantity{background.angular, Dimension::angle}}) {
-    const auto has_it = [&](FactorIndex factor) {
-      return study.model().factors[factor.value].dimension == size.dimension;
-    };
-    if (std::ranges::any_of(held, has_it)) sizes.push_back(readable_text(size, 6));
+  for (const Dimension dimension : kErrorDimensions) {
+    const auto has_it = [&](FactorIndex factor) { return study.model().factors[factor.value].dimension == dimension; };
+    if (std::ranges::any_of(held, has_it)) sizes.push_back(readable_text({background.of(dimension), dimension}, 6));
   }
   return fmt::format("{}", fmt::join(sizes, " and "));
 }
@@ -83,8 +80,7 @@ std::vector<double> background_errors(const std::optional<Background>& backgroun
   std::vector<double> errors(model.factors.size(), 0.0);
   if (!background) return errors;
   for (const FactorIndex factor : background->factors) {
-    const bool is_length = model.factors[factor.value].dimension == Dimension::length;
-    errors[factor.value] = is_length ? background->linear : background->angular;
+    errors[factor.value] = background->of(model.factors[factor.value].dimension);
   }
   return errors;
 }

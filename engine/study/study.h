@@ -14,6 +14,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/base/index.h"
+#include "engine/base/units.h"
 #include "engine/base/value_limit.h"
 #include "engine/drawing/zone_scatter.h"
 #include "engine/model/model.h"
@@ -71,11 +72,21 @@ struct ErrorModel {
   bool is_per_pose(FactorIndex factor) const;  ///< Whether a machine draws this error anew at each pose.
 };
 
+/// The dimensions of errors.
+inline constexpr std::array kErrorDimensions{Dimension::length, Dimension::angle, Dimension::number};
+
 /// Errors that are constant while others vary.
 struct Background {
   std::vector<FactorIndex> factors;  ///< the constant errors, unless they vary
   double linear = 0.0;               ///< m, for factors that are lengths
   double angular = 0.0;              ///< rad, for factors that are angles
+  double relative = 0.0;             ///< for factors that are numbers
+
+  /// The value of factors of this dimension.
+  double of(Dimension dimension) const {
+    if (dimension == Dimension::number) return relative;
+    return dimension == Dimension::length ? linear : angular;
+  }
 };
 
 /// Samples are added until intervals are narrow enough, from `min` to Analysis::samples at each pose; see

@@ -216,9 +216,8 @@ std::string example_size(Dimension dimension, double units);
 /// Throws InputError at its place if an error of the study makes no sense for this model (Model::error_bound). Checks
 /// the standard deviation of errors that vary, and the size of errors that are constant or that the kind sets.
 void check_error_bounds(const StudySection& root, const Study& study, const Model& model);
-/// The same for one error with the sizes that `linear` and `angular` of a section set.
-void check_error_size(const Model& model, FactorIndex factor, double linear, double angular,
-                      const StudySection& section);
+/// The same for one error of this size, which `linear`, `angular` or `relative` of a section sets.
+void check_error_size(const Model& model, FactorIndex factor, double size, const StudySection& section);
 /// Throws for an error that is too large, at the value of this key, or at the section if it has no such key.
 [[noreturn]] void refuse_error(const StudySection& section, std::string_view key, const std::string& problem);
 /// The advice for an error that is too large.

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "engine/base/contract.h"
+#include "engine/base/ratio.h"
 #include "engine/base/text.h"
 #include "engine/study/study.h"
 #include "engine/study/text_file.h"
@@ -72,6 +73,7 @@ double size_of(const CsvCell& cell, const Title& title, Dimension dimension) {
   if (!title.unit || *title.unit == si_unit(dimension)) return 1.0;
   const Unit* unit = find_unit(*title.unit);
   if (unit != nullptr && unit->dimension == dimension) return unit->si;
+  if (const auto share = ratio_unit(*title.unit); share && dimension == Dimension::number) return *share;
   const std::string problem =
       unit == nullptr ? "an unknown unit"
                       : fmt::format("a unit of {}, but this column is a {}", name(unit->dimension), name(dimension));
@@ -105,7 +107,7 @@ TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
             .title = cell.text,
             .dimension = found->dimension,
             .si = size_of(cell, title, found->dimension),
-            .bare = !title.unit};
+            .bare = !title.unit && found->dimension != Dimension::number};
   }
   if (contains(known.facts, title.name)) return {.role = fact, .name = title.name, .title = cell.text};
   if (contains(known.labels, title.name)) return {.role = label, .name = title.name, .title = cell.text};

@@ -142,25 +142,87 @@ std::string number_suffix(const SlotLines& slot, std::size_t k) {
   return slot.numbers[k] == 0 ? "" : "_" + std::to_string(slot.numbers[k]);
 }
 
-double scale_of(const Expression& scale, const Numbers& numbers) {
-  const double value = numbers.quantity(scale, kNumber);
-  if (value != 0.0) return value;
-  throw InputError(scale.place, scale.key + " is zero, so the error has no effect", "write its scale");
+/// How an error of a limb grows.
+struct Growth {
+  std::optional<chain::JointWay> way = {};  ///< none: the error is the same at all poses
+  int length = 0;                           ///< power of m of the way
+  std::string text = {};                    ///< ", grows with q, from home"
+
+  /// Lets the terms grow.
+  void apply(chain::ErrorTerms& terms) const {
+    for (chain::ErrorTerm& term : terms) term.along = way;
+  }
+};
+
+/// Throws unless the joint of the limb has one displacement. j: position of its first element.
+void check_has_displacement(const Reference& name, const Limb& limb, std::size_t j) {
+  const Joint& joint = limb.joints[j];
+  const auto fail = [&](const std::string& problem, const std::string& remedy) {
+    throw InputError(name.place, name.key + " is '" + name.name + "', " + problem, remedy);
+  };
+  if (!joint.moves()) {
+    fail("a fixed frame of limb " + limb.label + ", which has no displacement", "name a joint that moves");
+  }
+  if (std::ranges::count(limb.joints, joint.name, &Joint::name) == 1) return;
+  fail("a joint of type " + std::string(poesy::file::name(joint.kind)) + ", which has several displacements",
+       "write its axes as joints of types R and P, and name the one that is meant");
+}
+
+Growth growth(const ErrorLines& error, std::size_t i, const Numbers& numbers, const Mechanism& mechanism) {
+  if (!error.grows_with) return {};
+  const Reference& name = *error.grows_with;
+  const Limb& limb = mechanism.limbs[i];
+  const auto joint = std::ranges::find(limb.joints, name.name, &Joint::name);
+  if (joint == limb.joints.end()) {
+    throw InputError(
+        name.place, name.key + " is '" + printable(name.name) + "', which no joint of limb " + limb.label + " is named",
+        suggestion(name.name, names(limb.joints)));
+  }
+  auto at = static_cast<std::size_t>(joint - limb.joints.begin());
+  check_has_displacement(name, limb, at);
+  const bool slides = joint->kind == JointKind::prismatic;
+  const double from = error.from ? numbers.quantity(*error.from, slides ? kLength : kAngle) : 0.0;
+  const std::string start =
+      from == 0.0 ? "home" : readable_text({from, slides ? Dimension::length : Dimension::angle}, 6);
+  for (std::size_t before = 0; before < i; ++before) at += mechanism.limbs[before].joints.size();
+  return {chain::JointWay{at, from}, slides ? 1 : 0, ", grows with " + name.name + ", from " + start};
+}
+
+/// The scale of a component of an error: a number, or what makes an error that grows a number.
+double scale_of(const Expression& scale, std::size_t component, const Growth& growth, const Numbers& numbers) {
+  const int wanted = growth.way ? (component < 3 ? 0 : 1) - growth.length : 0;
+  const Value value = numbers.value(scale);
+  if (value.si == 0.0) {
+    throw InputError(scale.place, scale.key + " is zero, so the error has no effect", "write its scale");
+  }
+  if (wanted == 0) return numbers.quantity(scale, kNumber);
+  if (value.powers.like({.length = wanted})) return value.si;
+  const bool turns = component < 3;
+  throw InputError(scale.place,
+                   scale.key + " is " + dimension_text(value) + ", but the error makes " +
+                       (turns ? "an angle, and grows with a length" : "a length, and grows with an angle"),
+                   std::string("write scale = ") +
+                       (turns ? "\"1 / (1 m)\", and the error is in rad/m" : "\"1 m\", and the error is in m/rad"));
 }
 
 /// Adds an error for each limb and each component of a vector.
 void add_vector(const ErrorLines& error, const Numbers& numbers, Mechanism& mechanism) {
-  const double scale = scale_of(error.scale, numbers);
   const bool vector = error.components.size() > 1;
   const SlotLines& slot = error.slot;
   for (std::size_t k = 0; k < slot.limbs.size(); ++k) {
+    const Growth growing = growth(error, slot.limbs[k], numbers, mechanism);
     for (const std::size_t component : error.components) {
+      const double scale = scale_of(error.scale, component, growing, numbers);
       const std::string axis = vector ? std::string(1, axis_of(component)) : "";
       const std::string name = error.name.name + (vector ? "_" + axis : "") + number_suffix(slot, k);
       const chain::ErrorTerm term{slot.limbs[k], slot.frames[k], component, scale};
       Factor made = factor(mechanism, term, name, axis);
       if (!error.description.empty()) made.description = error.description;
-      add_error(std::move(made), about_joint(mechanism, term), error.name, mechanism);
+      made.description += growing.text;
+      if (growing.way) made.dimension = Dimension::number;
+      chain::ErrorTerms terms = about_joint(mechanism, term);
+      growing.apply(terms);
+      add_error(std::move(made), std::move(terms), error.name, mechanism);
     }
   }
 }
@@ -169,24 +231,36 @@ void add_vector(const ErrorLines& error, const Numbers& numbers, Mechanism& mech
 struct Combination {
   chain::ErrorTerms terms;
   std::optional<int> length;  ///< power of m that it is; none: not known yet
+  std::string growth = {};    ///< how it grows, for its description; empty: it does not
 };
 
 std::string measure_text(int length) { return length == 1 ? "a length" : "an angle"; }
 
 /// Adds the components of one frame. A share is per unit of the error: an error that is a length has numbers for delta
-/// and 1/length for epsilon.
+/// and 1/length for epsilon. An error that grows is a number, and a share is also per unit of the way.
 void add_components(const std::vector<ComponentLines>& components, std::size_t limb, std::size_t frame,
-                    const Numbers& numbers, const Mechanism& mechanism, Combination& made) {
+                    const Growth& growing, const Numbers& numbers, const Mechanism& mechanism, Combination& made) {
+  made.growth = growing.text;
   for (const ComponentLines& one : components) {
     const Value share = numbers.value(one.scale);
     if (share.any) continue;
-    const int length = (one.component < 3 ? 0 : 1) - share.powers.length;
+    const int length = (one.component < 3 ? 0 : 1) - share.powers.length - growing.length;
     const auto fail = [&](const std::string& problem) {
       throw InputError(one.scale.place, one.scale.key + " '" + one.scale.text + "' " + problem,
                        "for an error that is a length write numbers for delta and 1/length for epsilon, for an angle "
                        "lengths for delta and numbers for epsilon");
     };
-    if (!share.powers.like({.length = share.powers.length}) || (length != 0 && length != 1)) {
+    const bool is_product = share.powers.like({.length = share.powers.length});
+    if (growing.way && (!is_product || length != 0)) {
+      throw InputError(one.scale.place,
+                       one.scale.key + " '" + one.scale.text + "' is " + dimension_text(share) +
+                           ", so the error, which grows, is not a number",
+                       growing.length == 1 ? "where it grows with a length write numbers for delta and 1/length for "
+                                             "epsilon"
+                                           : "where it grows with an angle write lengths for delta and numbers for "
+                                             "epsilon");
+    }
+    if (!is_product || (length != 0 && length != 1)) {
       fail("is " + dimension_text(share) + ", so the error is neither a length nor an angle");
     }
     if (made.length && *made.length != length) {
@@ -194,7 +268,8 @@ void add_components(const std::vector<ComponentLines>& components, std::size_t l
     }
     made.length = length;
     if (share.si == 0.0) continue;
-    const chain::ErrorTerms terms = about_joint(mechanism, {limb, frame, one.component, share.si});
+    chain::ErrorTerms terms = about_joint(mechanism, {limb, frame, one.component, share.si});
+    growing.apply(terms);
     made.terms.insert(made.terms.end(), terms.begin(), terms.end());
   }
 }
@@ -206,8 +281,11 @@ void add_combination(const ErrorLines& error, const Combination& made, const std
                      "write the share of a component");
   }
   const chain::ErrorTerm& first = made.terms.front();
-  add_error({name, *made.length == 1 ? Dimension::length : Dimension::angle, first.limb + 1, first.frame,
-             error.description.empty() ? std::move(description) : error.description},
+  const Dimension dimension = first.along         ? Dimension::number
+                              : *made.length == 1 ? Dimension::length
+                                                  : Dimension::angle;
+  add_error({name, dimension, first.limb + 1, first.frame,
+             (error.description.empty() ? std::move(description) : error.description) + made.growth},
             made.terms, error.name, mechanism);
 }
 
@@ -225,7 +303,8 @@ void add_combinations(const ErrorLines& error, const Numbers& numbers, Mechanism
   const SlotLines& slot = error.slot;
   for (std::size_t k = 0; k < slot.limbs.size(); ++k) {
     Combination made;
-    add_components(error.combination, slot.limbs[k], slot.frames[k], numbers, mechanism, made);
+    add_components(error.combination, slot.limbs[k], slot.frames[k], growth(error, slot.limbs[k], numbers, mechanism),
+                   numbers, mechanism, made);
     const Limb& limb = mechanism.limbs[slot.limbs[k]];
     add_combination(error, made, error.name.name + number_suffix(slot, k),
                     "limb " + limb.label + ", " + parts_of(mechanism, limb, slot.frames[k]).text() + ": " +
@@ -240,7 +319,9 @@ void add_shared(const ErrorLines& error, const Numbers& numbers, Mechanism& mech
   std::string limbs;
   for (const PlaceLines& place : error.places) {
     for (std::size_t k = 0; k < place.slot.limbs.size(); ++k) {
-      add_components(place.components, place.slot.limbs[k], place.slot.frames[k], numbers, mechanism, made);
+      const std::size_t limb = place.slot.limbs[k];
+      add_components(place.components, limb, place.slot.frames[k], growth(error, limb, numbers, mechanism), numbers,
+                     mechanism, made);
       limbs += (limbs.empty() ? "" : ", ") + mechanism.limbs[place.slot.limbs[k]].label;
     }
   }

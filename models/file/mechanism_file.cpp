@@ -443,6 +443,14 @@ const Keys<ErrorLines, Nothing>& error_keys() {
           optional<E>("places", {.type = "list of tables"}, "",
                       "Without `limb`, `frame` and `component`: the places where one error acts, of one number: "
                       "[{ limb = 1, frame = 3, component = \"delta_z\" }, ...]."),
+          optional(
+              "grows_with", kept("text", reference, &E::grows_with), "",
+              "A joint of the limb, of type R, P or H: what the error changes is the error times the nominal "
+              "displacement of this joint at the pose. The error is a number, such as that of a lead, a scale or a "
+              "gear ratio: \"0.1 %\", \"50 um/m\". Where an angle grows with a length, scale = \"1 / (1 m)\" makes it "
+              "one in rad/m."),
+          optional("from", kept("quantity", expression, &E::from), "`0`, home",
+                   "With `grows_with`: the displacement of the joint from home where the error is zero."),
           optional("description", text_at(&E::description), "what the frame's own error says", "For people.")}};
   return keys;
 }
@@ -611,6 +619,9 @@ void read_named_errors(const StudyValue& value, MechanismFile& file) {
     ErrorLines error;
     read_keys(error_keys(), element.section(), error, Nothing{});
     check_name(error.name);
+    if (const auto from = element.section().find("from"); from && !error.grows_with) {
+      from->fail("is set without grows_with", "name the joint, e.g. grows_with = \"q\", or remove it");
+    }
     read_where(element.section(), limbs, error);
     file.errors.push_back(std::move(error));
   }

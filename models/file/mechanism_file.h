@@ -133,6 +133,8 @@ struct ErrorLines {
   Expression scale{"1", "scale", {}, true};  ///< the entry of the frame's error is the error times this
   std::vector<ComponentLines> combination;   ///< components that are one error
   std::vector<PlaceLines> places;            ///< of one error
+  std::optional<Reference> grows_with;       ///< joint of the limb with whose displacement it grows; none: it does not
+  std::optional<Expression> from;            ///< displacement from home where it is zero; none: 0
   std::string description;                   ///< empty: the description of the frame
 };
 

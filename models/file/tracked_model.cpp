@@ -102,6 +102,7 @@ std::vector<std::string> TrackedModel::unusual_geometry() const {
 ErrorBound TrackedModel::error_bound(FactorIndex factor) const {
   const Factor& error = description_.factors[factor.value];
   if (error.dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
+  if (error.dimension == Dimension::number) return {1.0, "all of what it is a share of"};
   const Limb& limb = mechanism_.limbs[error.limb - 1];
   ErrorBound bound{mechanism_.reach, "the mechanism's reach"};
   for (std::size_t j = 1; j < limb.home.size(); ++j) {

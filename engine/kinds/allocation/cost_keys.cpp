@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
+#include "engine/base/ratio.h"
 #include "engine/base/text.h"
 
 namespace poesy {
@@ -22,8 +24,17 @@ constexpr std::array<std::string_view, 4> kLawNames{"none", "reciprocal", "recip
 struct WrittenCost {
   StatedCost cost = {};
   Dimension dimension = Dimension::length;
-  const Unit* unit = nullptr;
+  std::string unit = {};   ///< as written; empty: none
+  double unit_size = 1.0;  ///< SI
 };
+
+/// The size of a unit of this dimension, SI; none for any other text.
+std::optional<double> unit_size(std::string_view spelling, Dimension dimension) {
+  if (dimension == Dimension::number) return spelling == si_unit(dimension) ? 1.0 : ratio_unit(spelling);
+  const Unit* unit = find_unit(spelling);
+  if (unit == nullptr || unit->dimension != dimension) return std::nullopt;
+  return unit->si;
+}
 
 NumberBounds not_negative() {
   return {0.0, std::numeric_limits<double>::infinity(), true, "at least 0", "it must be at least 0"};
@@ -31,12 +42,15 @@ NumberBounds not_negative() {
 
 KeyValue<WrittenCost> unit_value() {
   const auto read = [](const StudyValue& value, WrittenCost& written) {
-    const std::string name = value.text();
-    written.unit = find_unit(name);
-    if (written.unit != nullptr && written.unit->dimension == written.dimension) return;
-    value.fail(fmt::format("is '{}', which is no unit of the part's tolerance, {}", printable(name),
-                           with_article(written.dimension)),
-               "known: " + unit_names(written.dimension));
+    written.unit = value.text();
+    const auto size = unit_size(written.unit, written.dimension);
+    if (!size) {
+      value.fail(fmt::format("is '{}', which is no unit of the part's tolerance, {}", printable(written.unit),
+                             with_article(written.dimension)),
+                 written.dimension == Dimension::number ? "known: %, ppm, um/m, 1"
+                                                        : "known: " + unit_names(written.dimension));
+    }
+    written.unit_size = *size;
   };
   return {.type = "text", .read = read, .text = [](const WrittenCost& written) {
             return in_quotes(si_unit(written.dimension));
@@ -93,8 +107,9 @@ const InnerRows<WrittenCost>& cost_keys() {
               .missing = "write the unit of T in which b is stated, e.g. {}",
               .example = "\"mm\"",
               .only_for = {name(Law::reciprocal), name(Law::reciprocal_power)},
-              .meaning = "The unit of T in which b is stated, of lengths or of angles as the part's errors are: b = 1 "
-                         "with \"mm\" costs 1 at T = 1 mm."}}};
+              .meaning =
+                  "The unit of T in which b is stated, of lengths, angles or numbers as the part's errors are: b = 1 "
+                  "with \"mm\" costs 1 at T = 1 mm."}}};
   return keys;
 }
 
@@ -123,16 +138,16 @@ StatedCost read_cost(const StudyValue& value, Dimension dimension) {
   WrittenCost written{.dimension = dimension};
   read_keys(cost_keys(), section, written, Nothing());
   StatedCost& cost = written.cost;
-  if (written.unit == nullptr || cost.b == 0.0) return cost;
-  cost.b *= std::pow(written.unit->si, cost.k);
+  if (written.unit.empty() || cost.b == 0.0) return cost;
+  cost.b *= std::pow(written.unit_size, cost.k);
   if (std::isnormal(cost.b)) return cost;
-  section.require("b").fail(fmt::format("with T in {} is {} with T in {}, which is out of range", written.unit->name,
-                                        shortest(cost.b), si_unit(dimension)),
+  section.require("b").fail(fmt::format("with T in {} is {} with T in {}, which is out of range",
+                                        printable(written.unit), shortest(cost.b), si_unit(dimension)),
                             "state the cost with a smaller power of T, or in another currency");
 }
 
 std::string cost_text(const StatedCost& cost, Dimension dimension) {
-  const WrittenCost written{cost, dimension, nullptr};
+  const WrittenCost written{.cost = cost, .dimension = dimension};
   std::vector<std::string> keys;
   for (const InnerRow<WrittenCost>& row : cost_keys().rows) {
     if (!holds_for(row.only_for, name(cost.law))) continue;

@@ -33,10 +33,11 @@ PartMembers members_of(const StudyValue& value, Dimension dimension, const Study
              "leave this part out");
 }
 
-/// The errors that a word names: "linear" or "angular" for all of that dimension that vary, else a factor set.
+/// The errors that a word names: "linear", "angular" or "relative" for all of that dimension that vary, else a factor
+/// set.
 PartMembers members_by_word(const StudyValue& value, const Study& study) {
   const ModelDescription& model = study.model();
-  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
+  for (const Dimension dimension : kErrorDimensions) {
     const std::string_view word = error_kind(dimension);
     if (value.text() == word && model.find_set(word) == nullptr) return members_of(value, dimension, study);
   }

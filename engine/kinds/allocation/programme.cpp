@@ -464,7 +464,7 @@ std::vector<double> ToleranceProgramme::proportions(const ToleranceLimits& limit
     list.push_back(sigma / std::sqrt(drawn_[i].groups.front().mean_square));
   }
   if (aim == Aim::common_factor) return list;
-  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
+  for (const Dimension dimension : kErrorDimensions) {
     const auto is_one = [&](std::size_t i) {
       return study_.model().factors[parts()[i].factors.front().value].dimension == dimension;
     };

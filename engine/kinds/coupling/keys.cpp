@@ -85,6 +85,12 @@ ErrorSource read_source(const StudySection& section, std::span<const ErrorSource
   }
   const StudyValue factors = section.require("factors");
   source.factors = read_factors(factors, model);
+  for (const FactorIndex factor : source.factors) {
+    const Factor& error = model.factors[factor.value];
+    if (error.dimension != Dimension::number) continue;
+    factors.fail("has '" + error.name + "', which is a number, but a coupling study has no size for it",
+                 "name errors that are lengths or angles");
+  }
   require_own_factors(factors, source, others, model);
   if (error_blocks(source, pattern, model).empty()) {
     factors.fail("has no factor of the limbs and components that the study asks for",

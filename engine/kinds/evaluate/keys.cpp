@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <ranges>
 
 #include "engine/base/text.h"
 #include "engine/kinds/evaluate/cases.h"
@@ -21,7 +22,7 @@ void set_case_errors(const StudyValue& value, std::string_view key, const ModelD
     errors[factor->value] = value.quantity(model.factors[factor->value].dimension);
     return;
   }
-  const Dimension dimension = key == "linear" ? Dimension::length : Dimension::angle;
+  const Dimension dimension = *std::ranges::find(kErrorDimensions, key, error_kind);
   const double size = value.quantity(dimension);
   for (std::size_t f = 0; f < errors.size(); ++f) {
     if (model.factors[f].dimension == dimension) errors[f] = size;
@@ -58,17 +59,18 @@ std::vector<double> read_case_errors(const StudySection& section, const ModelDes
   std::vector<std::string_view> known = names(model.factors);
   const std::vector<std::string_view> sets = names(model.factor_sets);
   known.insert(known.end(), sets.begin(), sets.end());
-  known.insert(known.end(), {"linear", "angular"});
+  const auto sizes = kErrorDimensions | std::views::transform(error_kind);
+  known.insert(known.end(), sizes.begin(), sizes.end());
   section.allow(known, "factor");
-  for (const std::string_view key : {"linear", "angular"}) {
+  for (const std::string_view key : sizes) {
     if (const auto value = section.find(key)) set_case_errors(*value, key, model, errors);
   }
   for (const FactorSet* set : sets_in_case(section, model)) {
-    const StudySection sizes = section.section(set->name);
-    sizes.allow();
-    if (sizes.empty()) section.find(set->name)->fail("gives no error", "write linear, angular, or both");
+    const StudySection of_set = section.section(set->name);
+    of_set.allow();
+    if (of_set.empty()) section.find(set->name)->fail("gives no error", "write linear, angular or relative");
     std::vector<double> all = errors;
-    for (const std::string& key : sizes.keys()) set_case_errors(*sizes.find(key), key, model, all);
+    for (const std::string& key : of_set.keys()) set_case_errors(*of_set.find(key), key, model, all);
     for (const FactorIndex factor : set->factors) errors[factor.value] = all[factor.value];
   }
   for (const Factor& factor : model.factors) {
@@ -149,12 +151,14 @@ StudyTables case_tables() {
                           .keys = {{.name = "FACTOR", .type = "quantity", .meaning = "One error."},
                                    {.name = "SET", .type = "table", .meaning = "The errors of a factor set."},
                                    {.name = "linear", .type = "length", .meaning = "All errors that are lengths."},
-                                   {.name = "angular", .type = "angle", .meaning = "All errors that are angles."}}};
+                                   {.name = "angular", .type = "angle", .meaning = "All errors that are angles."},
+                                   {.name = "relative", .type = "number", .meaning = "All errors that are numbers."}}};
   const StudyTable of_set{
       .paths = {"analysis.cases.errors.SET"},
       .meaning = "At least one of them.",
       .keys = {{.name = "linear", .type = "length", .meaning = "All errors of the set that are lengths."},
-               {.name = "angular", .type = "angle", .meaning = "All errors of the set that are angles."}}};
+               {.name = "angular", .type = "angle", .meaning = "All errors of the set that are angles."},
+               {.name = "relative", .type = "number", .meaning = "All errors of the set that are numbers."}}};
   return {cases, errors, of_set};
 }
 

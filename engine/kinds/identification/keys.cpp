@@ -90,7 +90,13 @@ void check_groups(const StudySection& analysis, const Study& study, const Model&
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const StudySection section = written.empty() ? analysis : written[g].section();
     for (const FactorIndex factor : study.analysis.factors) {
-      check_error_size(model, factor, groups[g].linear, groups[g].angular, section);
+      const Factor& error = model.description().factors[factor.value];
+      if (error.dimension == Dimension::number) {
+        analysis.require("factors").fail("has '" + error.name + "', which is a number, but groups have no size for it",
+                                         "name errors that are lengths or angles");
+      }
+      check_error_size(model, factor, error.dimension == Dimension::length ? groups[g].linear : groups[g].angular,
+                       section);
     }
   }
 }
