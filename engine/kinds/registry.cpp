@@ -21,11 +21,11 @@ constexpr std::array kAll{&kSensitivityKind, &kIdentificationKind, &kEvaluateKin
                           &kSobolKind,       &kAllocationKind,     &kCouplingKind};
 
 /// The order of the keys of [analysis] in the reference; a key that is not listed comes last.
-constexpr std::array<std::string_view, 30> kKeys{
+constexpr std::array<std::string_view, 31> kKeys{
     "kind",      "factors",   "samples", "draws",        "calibrated", "conf_level", "background", "reference",
     "linearity", "quantiles", "groups",  "second_order", "design",     "replicates", "pose_share", "cases",
     "limits",    "judge",     "share",   "yield",        "confidence", "aim",        "sigmas",     "cpk",
-    "parts",     "linear",    "angular", "limbs",        "components", "sources"};
+    "parts",     "linear",    "angular", "limbs",        "components", "sources",    "calibration"};
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 #include "engine/base/name_pattern.h"
 #include "engine/base/text.h"
 #include "engine/model/leading_response.h"
+#include "engine/study/calibration_keys.h"
 #include "engine/study/limit_keys.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
@@ -293,6 +294,7 @@ std::vector<StudyRow> shared_rows() {
                .lines = response_limits_lines,
                .late = 1,
                .shown = shown_limits},
+      calibration_row(),
   };
 }
 
@@ -439,6 +441,7 @@ StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<c
   for (StudyTable& limits : limit_tables()) tables.push_back(std::move(limits));
   tables.push_back(described(adaptive_keys()));
   tables.push_back(described(background_keys()));
+  for (StudyTable& calibration : calibration_tables()) tables.push_back(std::move(calibration));
   for (const StudyKind* kind : kinds) {
     if (kind->tables == nullptr) continue;
     for (StudyTable& inner : kind->tables()) tables.push_back(std::move(inner));

@@ -122,6 +122,7 @@ enum class Judge {
 };
 
 struct StudyKind;
+struct CalibrationTable;
 
 /// The analysis of a study: what is computed, and with which errors.
 struct Analysis {
@@ -133,7 +134,9 @@ struct Analysis {
   double conf_level = 0.95;                 ///< for errors that vary
   std::optional<Background> background;     ///< constant errors
   std::vector<ResponseLimit> limits;        ///< in the order of the model's responses
-  std::any asked;                           ///< the kind's own options (asked_of()); empty means defaults
+  /// How a machine is calibrated (engine/study/calibration.h); null: it is not.
+  std::shared_ptr<const CalibrationTable> calibration = nullptr;
+  std::any asked;  ///< the kind's own options (asked_of()); empty means defaults
 };
 
 /// The options of the study's kind. Precondition: the kind has options of this type.

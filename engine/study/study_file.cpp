@@ -105,16 +105,29 @@ Study study_from(const Reading& reading) {
     check_machines(study, reading);
     check_background(study, reading);
     check_other_poses(study, reading);
+    check_calibration(study, reading);
   }
   check_size(root, study);
   return study;
 }
 
-/// The keys of [analysis] for the study's kind.
+/// Throws if the study is calibrated, and its kind has no machines that could be.
+void check_calibration(const Study& study, const Reading& reading) {
+  if (study.analysis.calibration == nullptr || study.analysis.kind->has_key("calibration")) return;
+  reading.root.section("analysis")
+      .require("calibration")
+      .fail("is set, but kind = " + in_quotes(study.analysis.kind->name) + " calibrates no machine",
+            "'poesy calibrate' takes it as it is; remove it to run this study");
+}
+
+/// The keys of [analysis] for the study's kind. A calibration is kept by all kinds, because `poesy calibrate` takes it
+/// from a study of any.
 StudyRows analysis_keys_of(const Study& study) {
   const StudyKind& kind = *study.analysis.kind;
   StudyRows keys = analysis_keys(kind);
-  std::erase_if(keys.rows, [&](const StudyRow& row) { return row.name != keys.chooser && !kind.has_key(row.name); });
+  std::erase_if(keys.rows, [&](const StudyRow& row) {
+    return row.name != keys.chooser && row.name != "calibration" && !kind.has_key(row.name);
+  });
   return keys;
 }
 

@@ -159,6 +159,8 @@ StudyRow shared_analysis_row(std::string_view name);
 void read_mechanism(Study& study, const Reading& reading);
 void read_responses(Study& study, const Reading& reading);  ///< After the solver, whose metric they are of.
 void read_poses_section(Study& study, const Reading& reading);
+/// Reads a table as [poses] into the study's selection of poses.
+void read_pose_selection(const StudySection& section, Study& study, const Reading& reading);
 void read_errors_section(Study& study, const Reading& reading);
 void read_analysis(Study& study, const Reading& reading);
 void read_solver(Study& study, const Reading& reading);

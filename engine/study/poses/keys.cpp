@@ -88,7 +88,8 @@ void read_time(const StudyValue& value, Trajectory& trajectory) {
 
 const InnerRows<Trajectory>& trajectory_keys() {
   static const InnerRows<Trajectory> keys{
-      .paths = {"poses.trajectory"},
+      .paths = {"poses.trajectory", "analysis.calibration.poses.trajectory",
+                "analysis.calibration.candidates.trajectory"},
       .meaning = "A trajectory is a curve or a file.",
       .rows = {
           InnerRow<Trajectory>{
@@ -363,14 +364,16 @@ std::string beside_study(const StudySection& section, const std::string& file) {
 }
 
 const StudyRows& poses_keys() {
-  static const StudyRows keys{
-      .paths = {"poses"}, .meaning = "The poses of the platform.", .chooser = "select", .rows = poses_rows()};
+  static const StudyRows keys{.paths = {"poses", "analysis.calibration.poses", "analysis.calibration.candidates"},
+                              .meaning = "The poses of the platform.",
+                              .chooser = "select",
+                              .rows = poses_rows()};
   return keys;
 }
 
 StudyTables poses_tables() {
   return {described(poses_keys()),
-          {.paths = {"poses.count"},
+          {.paths = {"poses.count", "analysis.calibration.poses.count", "analysis.calibration.candidates.count"},
            .meaning = "For select = \"grid\": a regular grid, of which all feasible points are poses.",
            .keys = {{.name = "COORDINATE",
                      .type = "integer",
@@ -379,14 +382,15 @@ StudyTables poses_tables() {
                      .missing = "give a number for every pose coordinate of the model",
                      .meaning = "Points along this pose coordinate, evenly spaced, both ends included; 1 is the "
                                 "middle."}}},
-          {.paths = {"poses.workspace"},
+          {.paths = {"poses.workspace", "analysis.calibration.poses.workspace",
+                     "analysis.calibration.candidates.workspace"},
            .meaning = "The box in which poses are sought.",
            .keys = {{.name = "COORDINATE",
                      .type = "list of two quantities",
                      .required = true,
                      .missing = "give a range for every pose coordinate of the model",
                      .meaning = "Lower and upper end of the range of this pose coordinate."}}},
-          {.paths = {"poses.limits"},
+          {.paths = {"poses.limits", "analysis.calibration.poses.limits", "analysis.calibration.candidates.limits"},
            .meaning = "Limits of joints.",
            .keys = {{.name = "JOINT",
                      .type = "list of two quantities",
@@ -396,9 +400,12 @@ StudyTables poses_tables() {
 }
 
 void read_poses_section(Study& study, const Reading& reading) {
+  if (reading.use == StudyUse::run) static_cast<void>(reading.root.require("poses"));
+  read_pose_selection(reading.root.section("poses"), study, reading);
+}
+
+void read_pose_selection(const StudySection& section, Study& study, const Reading& reading) {
   const bool complete = reading.use == StudyUse::run;
-  if (complete) static_cast<void>(reading.root.require("poses"));
-  const StudySection section = reading.root.section("poses");
   study.poses.place = section.place();
   read_keys(poses_keys(), section, study, reading, complete ? Extent::complete : Extent::partial);
   if (study.poses.select == PoseSelection::Select::file) static_cast<void>(section.require("file"));

@@ -1,0 +1,221 @@
+#include "engine/calibration/fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/contract.h"
+
+namespace poesy::calibration {
+namespace {
+
+constexpr int kMostSteps = 30;
+constexpr int kMostHalvings = 20;
+constexpr double kShortest = 1e-9;        // of the scale
+constexpr double kRoundingOfSum = 1e-10;  // a sum that grows by this share of it has not grown
+constexpr double kRankOfFrame = 1e-9;     // of the largest pivot, among columns of norm 1
+constexpr double kStepOfPlace = 1e-4;     // m, rad or a slope
+// Of the reach, or rad: the fourth power of it and the rounding of a solve over it are both below 1e-12.
+constexpr double kStep = 5e-4;
+
+/// The four points of a central difference of fourth order, in steps, and their weights.
+/// @{
+constexpr std::array<double, 4> kPoints{-2.0, -1.0, 1.0, 2.0};
+constexpr std::array<double, 4> kWeights{1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0};
+/// @}
+
+Matrix with_rows(const Matrix& top, const Matrix& bottom) {
+  Matrix all(top.rows() + bottom.rows(), top.cols());
+  all << top, bottom;
+  return all;
+}
+
+Vector joined(const Vector& top, const Vector& bottom) {
+  Vector all(top.size() + bottom.size());
+  all << top, bottom;
+  return all;
+}
+
+/// Each row divided by a number.
+Matrix over(const Matrix& rows, const Vector& sd) { return sd.cwiseInverse().asDiagonal() * rows; }
+
+/// The step of theta over the scale.
+Vector scaled_step(const ScaledFit& at, const Vector& residual, const Matrix& prior, const Vector& prior_residual) {
+  if (prior.rows() == 0) {
+    const auto r = static_cast<Eigen::Index>(at.rank);
+    const Matrix V = at.V.leftCols(r);
+    const Vector squares = at.singular_values.head(r).array().square();
+    return V * (V.transpose() * (at.reduced.transpose() * residual)).cwiseQuotient(squares);
+  }
+  const Vector of_measurements = residual - at.frame * (at.frame.transpose() * residual);
+  return linalg::least_squares(with_rows(at.reduced, prior), Matrix(joined(of_measurements, prior_residual)));
+}
+
+/// The part of a fit that moves.
+struct Point {
+  Vector theta;
+  Vector phi;
+  Vector residual;        ///< over sd
+  Vector prior_residual;  ///< of the prior
+
+  double sum() const { return residual.squaredNorm() + prior_residual.squaredNorm(); }
+};
+
+/// A fit on its way.
+class Path {
+ public:
+  Path(const FitProblem& problem, Vector theta)
+      : problem_(&problem),
+        function_(problem.measurement, problem.directions),
+        measured_(problem.measurement.measured()) {
+    if (auto first = point(std::move(theta), problem.measurement.start())) here_ = *std::move(first);
+    has_begun_ = here_.theta.size() > 0;
+  }
+
+  bool has_begun() const { return has_begun_; }
+  const Point& here() const { return here_; }
+  std::optional<Derivatives> derivatives() const { return function_.derivatives(here_.theta, here_.phi); }
+
+  /// Makes a step. Returns its length over the scale; none if no part of it lowers the sum.
+  std::optional<double> step(const Derivatives& derivatives) {
+    const Vector& scale = problem_->directions.scale;
+    const ScaledFit at = scaled_fit(derivatives, problem_->sd, scale);
+    const Matrix prior = problem_->prior.root * scale.asDiagonal();
+    const Vector of_theta = scaled_step(at, here_.residual, prior, here_.prior_residual);
+    const Vector of_phi = places_step(derivatives, here_.residual - at.A * of_theta);
+    for (int n = 0; n <= kMostHalvings; ++n) {
+      const double share = std::ldexp(1.0, -n);
+      auto there = point(here_.theta + share * scale.cwiseProduct(of_theta), here_.phi + share * of_phi);
+      if (!there || !(there->sum() <= here_.sum() * (1.0 + kRoundingOfSum) + kLeastSum())) continue;
+      here_ = *std::move(there);
+      return share * of_theta.cwiseAbs().maxCoeff();
+    }
+    return std::nullopt;
+  }
+
+ private:
+  /// A sum of squares that rounding explains: each value is exact to 1e-14 m or rad.
+  double kLeastSum() const { return (1e-14 * problem_->sd.cwiseInverse()).squaredNorm(); }
+
+  std::optional<Point> point(Vector theta, Vector phi) const {
+    const auto values = function_.values(theta, phi);
+    if (!values) return std::nullopt;
+    Point found{std::move(theta), std::move(phi), (measured_ - *values).cwiseQuotient(problem_->sd), {}};
+    found.prior_residual = problem_->prior.root.rows() == 0
+                               ? Vector()
+                               : Vector(problem_->prior.centre - problem_->prior.root * found.theta);
+    return found;
+  }
+
+  /// The step of phi that fits what the step of theta leaves.
+  Vector places_step(const Derivatives& derivatives, const Vector& left) const {
+    if (derivatives.places.cols() == 0) return Vector(0);
+    const Matrix columns = over(derivatives.places, problem_->sd);
+    const Vector norms = columns.colwise().norm().cwiseMax(1e-300);
+    const Matrix unit = columns * norms.cwiseInverse().asDiagonal();
+    return linalg::least_squares(unit, left, kRankOfFrame).cwiseQuotient(norms);
+  }
+
+  const FitProblem* problem_;
+  FittedMeasurement function_;
+  Vector measured_;
+  Point here_;
+  bool has_begun_ = false;
+};
+
+}  // namespace
+
+Vector difference_steps(const ExactMachine& machine, const Matrix& F) {
+  const std::vector<Factor>& factors = machine.model().description().factors;
+  Vector steps = Vector::Constant(F.cols(), 1e300);
+  for (Eigen::Index f = 0; f < F.rows(); ++f) {
+    const bool is_length = factors[static_cast<std::size_t>(f)].dimension == Dimension::length;
+    const double most = kStep * (is_length ? machine.reach() : 1.0);
+    for (Eigen::Index j = 0; j < F.cols(); ++j) {
+      if (F(f, j) != 0.0) steps(j) = std::min(steps(j), most / std::abs(F(f, j)));
+    }
+  }
+  return steps;
+}
+
+std::optional<Vector> FittedMeasurement::values(const Vector& theta, const Vector& phi) const {
+  const auto displacements = measurement_->displacements(Vector(directions_->F * theta));
+  if (!displacements) return std::nullopt;
+  return measurement_->values_of(*displacements, phi);
+}
+
+std::optional<Derivatives> FittedMeasurement::derivatives(const Vector& theta, const Vector& phi) const {
+  const Eigen::Index k = directions_->F.cols();
+  const auto points = static_cast<Eigen::Index>(kPoints.size());
+  Matrix tried = (directions_->F * theta).replicate(1, k * points + 1);
+  const Vector& steps = directions_->step;
+  for (Eigen::Index j = 0; j < k; ++j) {
+    for (Eigen::Index n = 0; n < points; ++n) {
+      tried.col(j * points + n) += kPoints[static_cast<std::size_t>(n)] * steps(j) * directions_->F.col(j);
+    }
+  }
+  const auto displacements = measurement_->displacements(tried);
+  if (!displacements) return std::nullopt;
+  const auto m = static_cast<Eigen::Index>(measurement_->size());
+  Derivatives found{Matrix::Zero(m, k), Matrix::Zero(m, phi.size())};
+  for (Eigen::Index j = 0; j < k; ++j) {
+    for (Eigen::Index n = 0; n < points; ++n) {
+      const Vector values = measurement_->values_of((*displacements)[static_cast<std::size_t>(j * points + n)], phi);
+      found.errors.col(j) += kWeights[static_cast<std::size_t>(n)] / steps(j) * values;
+    }
+  }
+  for (Eigen::Index j = 0; j < phi.size(); ++j) {
+    for (std::size_t n = 0; n < kPoints.size(); ++n) {
+      Vector place = phi;
+      place(j) += kPoints[n] * kStepOfPlace;
+      found.places.col(j) += kWeights[n] / kStepOfPlace * measurement_->values_of(displacements->back(), place);
+    }
+  }
+  return found;
+}
+
+ScaledFit scaled_fit(const Derivatives& derivatives, const Vector& sd, const Vector& scale) {
+  ScaledFit found;
+  found.A = over(derivatives.errors, sd) * scale.asDiagonal();
+  const Matrix places = over(derivatives.places, sd);
+  found.frame = Matrix(places.rows(), 0);
+  if (places.cols() > 0) {
+    const Matrix unit = places * places.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal();
+    found.frame = linalg::range_and_complement(unit, linalg::rank(unit, kRankOfFrame)).range;
+  }
+  found.reduced = found.A - found.frame * (found.frame.transpose() * found.A);
+  auto svd = linalg::right_singular_vectors(found.reduced);
+  found.singular_values = std::move(svd.values);
+  found.V = std::move(svd.V);
+  const double least = found.singular_values.size() == 0 ? 0.0 : kUnseen * found.singular_values(0);
+  found.rank = static_cast<std::size_t>((found.singular_values.array() > least).count());
+  return found;
+}
+
+FitResult fit(const FitProblem& problem) {
+  FitResult result;
+  const Eigen::Index k = problem.directions.F.cols();
+  Path path(problem, problem.begin.size() == k ? problem.begin : Vector(Vector::Zero(k)));
+  result.solved = path.has_begun();
+  while (result.solved && !result.converged && result.steps < kMostSteps) {
+    const auto derivatives = path.derivatives();
+    const auto length = derivatives ? path.step(*derivatives) : std::nullopt;
+    if (!length) break;
+    result.converged = *length < kShortest;
+    ++result.steps;
+  }
+  auto derivatives = result.solved ? path.derivatives() : std::nullopt;
+  result.solved = derivatives.has_value();
+  if (!result.solved) return result;
+  result.derivatives = *std::move(derivatives);
+  result.scaled = scaled_fit(result.derivatives, problem.sd, problem.directions.scale);
+  result.theta = path.here().theta;
+  result.phi = path.here().phi;
+  result.residual = path.here().residual.cwiseProduct(problem.sd);
+  result.noise_sum = path.here().residual.squaredNorm();
+  result.sum = path.here().sum();
+  return result;
+}
+
+}  // namespace poesy::calibration

@@ -1,0 +1,677 @@
+#include "engine/study/calibration_keys.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "engine/base/name_pattern.h"
+#include "engine/base/text.h"
+#include "engine/study/calibration.h"
+#include "engine/study/table_file.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::int64_t kMostRepeats = 1'000'000;
+constexpr std::int64_t kMostNext = 1000;
+constexpr std::string_view kDistance = "distance";
+constexpr std::string_view kPose = "pose";
+/// The six components of a pose that "pose" measures.
+constexpr std::array<std::string_view, 6> kWholePose{"x", "y", "z", "theta_x", "theta_y", "theta_z"};
+
+/// What the rows of the table read with.
+struct CalibrationReading {
+  const Study& study;
+  const Reading& reading;
+  StudySection section;
+};
+
+using CalibrationRow = Key<CalibrationTable, CalibrationReading>;
+using CalibrationKeys = Keys<CalibrationTable, CalibrationReading>;
+
+/// The values of a table in the order of the file.
+std::vector<std::pair<std::string, StudyValue>> in_order(const StudySection& section) {
+  std::vector<std::pair<std::string, StudyValue>> list;
+  for (const std::string& key : section.keys()) list.emplace_back(key, *section.find(key));
+  std::ranges::stable_sort(
+      list, {}, [](const auto& entry) { return std::pair(entry.second.place().line, entry.second.place().column); });
+  return list;
+}
+
+/// Throws if a name of the user's cannot be used in expressions, or is that of an error.
+void check_own_name(const StudyValue& value, const std::string& own, std::string_view what,
+                    const ModelDescription& model) {
+  const bool is_plain = std::ranges::all_of(own, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+  if (!is_plain || (own.front() >= '0' && own.front() <= '9')) {
+    value.fail(fmt::format("is the {} '{}', whose name cannot be used in expressions", what, printable(own)),
+               "take letters, digits and _, and begin with a letter");
+  }
+  if (model.find_factor(own)) {
+    value.fail(fmt::format("gives a {} the name of the error '{}'", what, own), "give it another name");
+  }
+}
+
+/// The factor of an error in a combination: a number, or a quantity over the combination's unit, "125 mm/rad".
+double read_weight(const StudyValue& value, const Factor& factor, const FittedErrors& combination,
+                   const ModelDescription& model) {
+  const std::string remedy = "write a number, e.g. 1; where units differ with a unit, \"125 mm/rad\"";
+  if (!value.is_text()) {
+    const double weight = value.number();
+    if (weight == 0.0) value.fail("is 0", "leave this error out");
+    if (factor.dimension == combination.dimension) return weight;
+    const Factor& first = model.factors[combination.factors.front().value];
+    value.fail(fmt::format("is a number, but {} is {} and {} {}", first.name, with_article(first.dimension),
+                           factor.name, with_article(factor.dimension)),
+               fmt::format("give the factor a unit: \"... {}/{}\"", display_unit(factor.dimension).name,
+                           display_unit(first.dimension).name));
+  }
+  const std::string text(trimmed(value.text()));
+  const std::size_t slash = text.rfind('/');
+  if (slash == std::string::npos) value.fail("is '" + printable(text) + "', which has no unit over a unit", remedy);
+  const Unit* const under = find_unit(trimmed(std::string_view(text).substr(slash + 1)));
+  try {
+    const Quantity over = parse_quantity(trimmed(std::string_view(text).substr(0, slash)), factor.dimension);
+    if (over.dimension != factor.dimension || under == nullptr || under->dimension != combination.dimension) {
+      value.fail(fmt::format("is '{}', but must be {} over {}", printable(text), with_article(factor.dimension),
+                             with_article(combination.dimension)),
+                 remedy);
+    }
+    if (over.si == 0.0) value.fail("is 0", "leave this error out");
+    return over.si / under->si;
+  } catch (const QuantityError& reason) {
+    value.fail(std::string("cannot be read: ") + reason.what(), remedy);
+  }
+}
+
+FittedErrors read_combination(const StudyValue& value, const std::string& own, const ModelDescription& model) {
+  check_own_name(value, own, "combination", model);
+  const StudySection section = value.section();
+  section.allow(names(model.factors), "error");
+  FittedErrors combination{.name = own, .dimension = Dimension::number, .place = value.place()};
+  for (const auto& [key, weight] : in_order(section)) {
+    const FactorIndex factor = *model.find_factor(key);
+    if (combination.factors.empty()) combination.dimension = model.factors[factor.value].dimension;
+    combination.factors.push_back(factor);
+    combination.weights.push_back(read_weight(weight, model.factors[factor.value], combination, model));
+  }
+  if (combination.factors.empty()) value.fail("names no error", "write { ERROR = 1, ... }");
+  return combination;
+}
+
+std::vector<FittedErrors> read_combinations(const StudySection& section, const ModelDescription& model) {
+  std::vector<FittedErrors> list;
+  for (const auto& [key, value] : in_order(section.section("combinations"))) {
+    list.push_back(read_combination(value, key, model));
+  }
+  return list;
+}
+
+/// Adds an error alone. Throws if a machine has it anew at each pose.
+void add_error(const StudyValue& value, FactorIndex factor, const Study& study, std::vector<FittedErrors>& fit) {
+  const Factor& error = study.model().factors[factor.value];
+  if (std::ranges::find(fit, error.name, &FittedErrors::name) != fit.end()) return;
+  if (study.errors.is_per_pose(factor)) {
+    value.fail("fits the error '" + error.name + "', which changes from move to move", "leave it out");
+  }
+  fit.push_back({error.name, {factor}, {1.0}, error.dimension, value.place()});
+}
+
+/// Adds what one element of `fit` names: a combination, an error, a set, or errors that match a pattern.
+void add_named(const StudyValue& value, const std::vector<FittedErrors>& combinations, const Study& study,
+               std::vector<FittedErrors>& fit) {
+  const ModelDescription& model = study.model();
+  const std::string written = value.text();
+  const auto combination = std::ranges::find(combinations, written, &FittedErrors::name);
+  if (combination != combinations.end()) {
+    if (std::ranges::find(fit, written, &FittedErrors::name) != fit.end()) {
+      value.fail("names '" + printable(written) + "' a second time", "remove one of them");
+    }
+    fit.push_back(*combination);
+    fit.back().place = value.place();
+    for (const FactorIndex factor : combination->factors) {
+      if (!study.errors.is_per_pose(factor)) continue;
+      value.fail("fits the error '" + model.factors[factor.value].name + "', which changes from move to move",
+                 "leave it out of the combination");
+    }
+    return;
+  }
+  if (const FactorSet* const set = model.find_set(written)) {
+    for (const FactorIndex factor : set->factors) add_error(value, factor, study, fit);
+    return;
+  }
+  bool any = false;
+  for (std::size_t f = 0; f < model.factors.size(); ++f) {
+    if (written != "all" && !matches(written, model.factors[f].name)) continue;
+    any = true;
+    add_error(value, FactorIndex(f), study, fit);
+  }
+  if (any) return;
+  std::vector<std::string_view> known = names(model.factors);
+  for (const FittedErrors& one : combinations) known.push_back(one.name);
+  for (const FactorSet& set : model.factor_sets) known.push_back(set.name);
+  value.fail("is '" + printable(written) + "', which is no error, set or combination",
+             suggestion(written, known.size() > 40 ? std::span(known).first(40) : std::span(known)));
+}
+
+/// The column of a combination among all errors.
+std::vector<double> column_of(const FittedErrors& errors, std::size_t factors) {
+  std::vector<double> column(factors, 0.0);
+  for (std::size_t n = 0; n < errors.factors.size(); ++n) column[errors.factors[n].value] = errors.weights[n];
+  return column;
+}
+
+/// What is left of a column, of norm 1, after its parts along the others are taken away.
+struct DirectionTest {
+  std::vector<std::vector<double>> orthonormal;
+
+  double left(std::vector<double>& column) const {
+    const auto dot = [](const std::vector<double>& a, const std::vector<double>& b) {
+      double sum = 0.0;
+      for (std::size_t f = 0; f < a.size(); ++f) sum += a[f] * b[f];
+      return sum;
+    };
+    const auto scale = [](std::vector<double>& a, double by) {
+      for (double& entry : a) entry *= by;
+    };
+    scale(column, 1.0 / std::sqrt(dot(column, column)));
+    for (int twice = 0; twice < 2; ++twice) {
+      for (const std::vector<double>& other : orthonormal) {
+        const double along = dot(column, other);
+        for (std::size_t f = 0; f < column.size(); ++f) column[f] -= along * other[f];
+      }
+    }
+    const double norm = std::sqrt(dot(column, column));
+    if (norm > 0.0) scale(column, 1.0 / norm);
+    return norm;
+  }
+};
+
+/// Throws if fitted numbers are dependent whatever is measured.
+void check_directions(const std::vector<FittedErrors>& fit, const Study& study) {
+  constexpr double kDependent = 1e-9;
+  const std::size_t factors = study.model().factors.size();
+  DirectionTest test;
+  for (std::size_t n = 0; n < fit.size(); ++n) {
+    std::vector<double> column = column_of(fit[n], factors);
+    if (test.left(column) > kDependent) {
+      test.orthonormal.push_back(std::move(column));
+      continue;
+    }
+    for (std::size_t other = 0; other < n; ++other) {
+      DirectionTest one;
+      std::vector<double> first = column_of(fit[other], factors);
+      static_cast<void>(one.left(first));
+      one.orthonormal.push_back(first);
+      std::vector<double> second = column_of(fit[n], factors);
+      if (one.left(second) > kDependent) continue;
+      throw InputError(fit[n].place,
+                       fmt::format("combinations '{}' and '{}' are the same direction", fit[other].name, fit[n].name),
+                       "fit one of them");
+    }
+    throw InputError(
+        fit[n].place,
+        "combination '" + fit[n].name + "' is a sum of multiples of those before it in analysis.calibration.fit",
+        "leave one of them out");
+  }
+}
+
+void read_fit(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
+  const std::vector<FittedErrors> combinations = read_combinations(at.section, at.study.model());
+  if (value.is_text()) {
+    add_named(value, combinations, at.study, table.fit);
+  } else {
+    for (const StudyValue& element : value.list()) add_named(element, combinations, at.study, table.fit);
+  }
+  if (table.fit.empty()) value.fail("is empty", "name at least one error, set or combination");
+  check_directions(table.fit, at.study);
+}
+
+/// Throws if a response cannot be measured with a sign.
+const Response& signed_response(const StudyValue& value, const std::string& word, const ModelDescription& model) {
+  const auto found = std::ranges::find(model.responses, word, &Response::name);
+  if (found == model.responses.end()) {
+    std::vector<std::string_view> known;
+    for (const Response& response : model.responses) {
+      if (!response.is_magnitude()) known.push_back(response.name);
+    }
+    known.insert(known.end(), {kPose, kDistance});
+    value.fail("is '" + printable(word) + "', which cannot be measured", suggestion(word, known));
+  }
+  if (found->is_magnitude()) {
+    std::string remedy = "measure responses with a sign";
+    if (!found->components.empty()) {
+      std::vector<std::string> parts;
+      for (const std::size_t r : found->components) parts.push_back(model.responses[r].name);
+      remedy = fmt::format("measure {}", fmt::join(parts, ", "));
+    }
+    value.fail("is '" + word + "', which has no sign", remedy);
+  }
+  return *found;
+}
+
+void read_measured(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
+  for (const StudyValue& element : value.list()) {
+    const std::string word = element.text();
+    if (word != kPose && word != kDistance) static_cast<void>(signed_response(element, word, at.study.model()));
+    if (std::ranges::find(table.measured, word) != table.measured.end()) {
+      element.fail("names '" + word + "' a second time", "remove one of them");
+    }
+    table.measured.push_back(word);
+  }
+  if (table.measured.empty()) value.fail("is empty", "name what is measured, e.g. [\"z\"]");
+}
+
+void read_noise(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
+  for (const auto& [key, level] : in_order(value.section())) {
+    const Dimension dimension =
+        key == kDistance ? Dimension::length : signed_response(level, key, at.study.model()).dimension;
+    const double sd = level.is_zero() ? 0.0 : level.quantity(dimension);
+    if (sd < 0.0) level.fail("is below zero", "write a standard deviation, or 0");
+    table.noise.push_back({key, sd});
+  }
+  if (table.noise.empty()) value.fail("is empty", "write e.g. { z = \"5 um\" }");
+}
+
+/// Reads a table as [poses].
+PoseSelection read_selection(const StudyValue& value, const CalibrationReading& at) {
+  Study other;
+  other.mechanism = at.study.mechanism;
+  read_pose_selection(value.section(), other, at.reading);
+  return std::move(other.poses);
+}
+
+void read_poses(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
+  table.poses = read_selection(value, at);
+}
+
+void read_candidates(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
+  table.candidates = read_selection(value, at);
+}
+
+void read_pairs(const StudyValue& value, CalibrationTable& table, const CalibrationReading&) {
+  for (const StudyValue& pair : value.list()) {
+    const auto ends = pair.list(2, "write the positions of two poses: [0, 3]");
+    const auto position = [](const StudyValue& end) {
+      return static_cast<std::size_t>(end.whole_number(0, kMostPoses));
+    };
+    table.pairs.push_back({position(ends[0]), position(ends[1])});
+    if (table.pairs.back()[0] == table.pairs.back()[1]) pair.fail("is one pose twice", "write two different poses");
+  }
+}
+
+void read_prior(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
+  constexpr std::array<std::string_view, 2> kWords{"none", "tolerances"};
+  table.prior = static_cast<PriorKnowledge>(value.word(kWords));
+  if (table.prior == PriorKnowledge::none) return;
+  for (const FittedErrors& fitted : table.fit) {
+    for (const FactorIndex factor : fitted.factors) {
+      if (std::ranges::binary_search(table.with_tolerance, factor)) continue;
+      value.fail(
+          "is \"tolerances\", and " + at.study.model().factors[factor.value].name + " has no tolerance in [errors]",
+          "state it there, or write prior = \"none\"");
+    }
+  }
+}
+
+/// The drives of a mechanism with as many as its pose has coordinates; empty if it has another number.
+std::vector<std::string_view> drives_of(const ModelDescription& model) {
+  const auto chart = std::ranges::find(model.charts, "actuators", &PoseChart::name);
+  return chart == model.charts.end() ? std::vector<std::string_view>() : names(chart->coordinates);
+}
+
+void read_coordinates(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
+  const ModelDescription& model = at.study.model();
+  table.coordinates_place = value.place();
+  std::vector<std::string_view> known = names(model.pose_coordinates);
+  for (const PoseChart& chart : model.charts) {
+    if (chart.name == "actuators") continue;
+    for (const PoseCoordinate& other : chart.coordinates) {
+      if (std::ranges::find(known, other.name) == known.end()) known.push_back(other.name);
+    }
+  }
+  for (const StudyValue& element : value.list()) {
+    const std::string word(known[element.word(known)]);
+    if (std::ranges::find(table.coordinates, word) != table.coordinates.end()) {
+      element.fail("names '" + word + "' a second time", "remove one of them");
+    }
+    table.coordinates.push_back(word);
+  }
+  if (table.coordinates.size() == model.pose_coordinates.size()) return;
+  value.fail(
+      fmt::format("has {} coordinates, but a pose has {}", table.coordinates.size(), model.pose_coordinates.size()),
+      fmt::format("name as many as {}", fmt::join(names(model.pose_coordinates), ", ")));
+}
+
+void read_motors(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
+  const ModelDescription& model = at.study.model();
+  std::set<std::string> seen;
+  for (const StudyValue& motor : value.list()) {
+    std::vector<std::string>& drives = table.motors.emplace_back();
+    for (const StudyValue& drive : motor.list()) {
+      const std::string word(names(model.joints)[drive.word(names(model.joints))]);
+      if (!seen.insert(word).second) drive.fail("names '" + word + "' a second time", "a drive has one motor");
+      drives.push_back(word);
+    }
+    if (drives.empty()) motor.fail("is empty", "name the drives that this motor moves");
+  }
+  if (table.motors.size() == model.pose_coordinates.size()) return;
+  value.fail(fmt::format("has {} motors, but there are {} commanded coordinates", table.motors.size(),
+                         model.pose_coordinates.size()),
+             "say which drives move together, as many motors as coordinates");
+}
+
+void read_present(const StudyValue& value, CalibrationTable& table, const CalibrationReading&) {
+  const StudySection section = value.section();
+  section.allow(names(table.fit), "fitted error");
+  table.present.assign(table.fit.size(), 0.0);
+  for (std::size_t n = 0; n < table.fit.size(); ++n) {
+    const auto own = section.find(table.fit[n].name);
+    if (own) table.present[n] = own->is_zero() ? 0.0 : own->quantity(table.fit[n].dimension);
+  }
+}
+
+void read_controller(const StudyValue& value, CalibrationTable& table, const CalibrationReading&) {
+  for (const auto& [key, expression] : in_order(value.section())) {
+    if (const auto problem = label_problem(key)) {
+      expression.fail("has the name '" + printable(key) + "', which " + *problem, std::string(kLabelRule));
+    }
+    table.controller.push_back({key, expression.text(), expression.place()});
+  }
+}
+
+/// Throws if what the study measures lacks its noise.
+void check_measured(const CalibrationTable& table, const StudySection& section) {
+  for (const std::string& word : table.measured) {
+    const std::span<const std::string_view> whole = kWholePose;
+    const std::array<std::string_view, 1> alone{word};
+    for (const std::string_view needed : word == kPose ? whole : std::span<const std::string_view>(alone)) {
+      if (std::ranges::find(table.noise, needed, &StatedNoise::what) != table.noise.end()) continue;
+      const StudyValue value = section.require("measured");
+      value.fail(
+          fmt::format("has '{}', but analysis.calibration.noise does not say how well {} is measured", word, needed),
+          fmt::format("write noise.{} = \"...\", or 0", needed));
+    }
+  }
+}
+
+template <class Enum>
+KeyValue<CalibrationTable> choice(std::vector<WordFor<Enum>> words, Enum CalibrationTable::*member) {
+  return word_at<Enum>(std::move(words), member);
+}
+
+std::vector<CalibrationRow> calibration_rows() {
+  return {
+      CalibrationRow{.name = "fit",
+                     .value = {.type = "text or list of texts"},
+                     .missing = "name the errors that the controller can correct, e.g. {}",
+                     .example = "[\"zero_*\", \"radius\"]",
+                     .meaning = "The fitted errors: errors, patterns, sets, and names of combinations.",
+                     .reader = read_fit},
+      CalibrationRow{.name = "combinations",
+                     .value = {.type = "table"},
+                     .usual = "none",
+                     .meaning = "Errors that are fitted by one number, each its factor times the number."},
+      CalibrationRow{.name = "measured",
+                     .value = {.type = "list of texts"},
+                     .usual = "",
+                     .meaning = "For studies: what is measured, responses with a sign, \"pose\" (x, y, z and theta_x, "
+                                "theta_y, theta_z) or \"distance\".",
+                     .reader = read_measured},
+      CalibrationRow{.name = "noise",
+                     .value = {.type = "table"},
+                     .usual = "none",
+                     .meaning =
+                         "The standard deviation of one measured value of each quantity; for `poesy calibrate` of "
+                         "each column without a column sd_.",
+                     .reader = read_noise},
+      CalibrationRow{.name = "poses",
+                     .value = {.type = "table"},
+                     .usual = "the study's poses",
+                     .meaning = "For studies: where it is measured, a table as [poses].",
+                     .reader = read_poses},
+      CalibrationRow{.name = "pairs",
+                     .value = {.type = "list of pairs of integers"},
+                     .usual = "none",
+                     .meaning = "For studies: the poses, from 0, between which distances are measured.",
+                     .reader = read_pairs},
+      CalibrationRow{.name = "repeats",
+                     .value = whole_at(1, kMostRepeats, &CalibrationTable::repeats),
+                     .meaning = "Each value is the mean of so many, so its noise is divided by their square root."},
+      CalibrationRow{
+          .name = "frame",
+          .value = choice<MeasuringFrame>(
+              {{MeasuringFrame::known, "the device measures in the base's frame"},
+               {MeasuringFrame::height, "its zero of heights is unknown (1 number)"},
+               {MeasuringFrame::plane, "heights are measured from a plane, a bed, with unknown height and slopes (3)"},
+               {MeasuringFrame::rigid, "all of its frame is unknown (6)"}},
+              &CalibrationTable::frame),
+          .meaning = "What is unknown of the frame of the measuring device, and fitted too."},
+      CalibrationRow{.name = "target",
+                     .value = choice<MeasuredTarget>({{MeasuredTarget::known, "P or the point of the tool"},
+                                                      {MeasuredTarget::point, "an unknown point of the platform (3)"},
+                                                      {MeasuredTarget::rigid, "a point and axes that are unknown (6)"}},
+                                                     &CalibrationTable::target),
+                     .meaning = "What is unknown of the place on the platform that is measured, and fitted too."},
+      CalibrationRow{.name = "prior",
+                     .value = choice<PriorKnowledge>(
+                         {{PriorKnowledge::none, "least squares, as firmware does"},
+                          {PriorKnowledge::tolerances, "the distributions in [errors] count as knowledge (Bayesian)"}},
+                         &CalibrationTable::prior),
+                     .meaning = "What is known of the fitted errors before they are measured.",
+                     .reader = read_prior},
+      CalibrationRow{.name = "sd",
+                     .value = choice<NoiseLevel>(
+                         {{NoiseLevel::given, "the noise is as stated"},
+                          {NoiseLevel::estimated, "it is known up to one factor, which follows from the residual"}},
+                         &CalibrationTable::sd),
+                     .meaning = "For `poesy calibrate`: whether the noise is known."},
+      CalibrationRow{
+          .name = "coordinates",
+          .value = {.type = "list of texts"},
+          .usual = "the platform's coordinates",
+          .meaning = "What the controller commands: other coordinates of a pose, such as tip_x, tip_y, tip_z.",
+          .reader = read_coordinates},
+      CalibrationRow{.name = "motors",
+                     .value = {.type = "list of lists of texts"},
+                     .usual = "each drive is one",
+                     .meaning = "Drives that move together, as many motors as coordinates.",
+                     .reader = read_motors},
+      CalibrationRow{.name = "present",
+                     .value = {.type = "table"},
+                     .usual = "none",
+                     .meaning = "For `poesy calibrate`: fitted errors that the controller corrected while it measured. "
+                                "Estimates are totals, not increments.",
+                     .reader = read_present},
+      CalibrationRow{.name = "controller",
+                     .value = {.type = "table"},
+                     .usual = "none",
+                     .meaning = "For `poesy calibrate`: numbers to be typed in, as expressions in parameters of the "
+                                "geometry and fitted errors.",
+                     .reader = read_controller},
+      CalibrationRow{.name = "next",
+                     .value = whole_at(0, kMostNext, &CalibrationTable::next),
+                     .meaning = "For `poesy calibrate`: how many poses to propose that tell most."},
+      CalibrationRow{.name = "candidates",
+                     .value = {.type = "table"},
+                     .usual = "the study's poses",
+                     .meaning = "The poses from which these are chosen, a table as [poses].",
+                     .reader = read_candidates},
+  };
+}
+
+const CalibrationKeys& calibration_keys() {
+  static const CalibrationKeys keys{
+      .paths = {"analysis.calibration"},
+      .meaning = "How a machine is calibrated: few numbers, fitted to what is measured of it.",
+      .rows = calibration_rows()};
+  return keys;
+}
+
+void read_calibration(const StudyValue& value, Study& study, const Reading& reading) {
+  const CalibrationReading at{study, reading, value.section()};
+  auto table = std::make_shared<CalibrationTable>();
+  table->place = value.place();
+  table->with_tolerance = errors_with_tolerance(study, reading.root);
+  read_keys(calibration_keys(), at.section, *table, at);
+  check_measured(*table, at.section);
+  if (study.mechanism.calibrated) {
+    value.fail("is set beside calibrated = true, which takes away the best correction of each pose",
+               "remove one of them");
+  }
+  study.analysis.calibration = std::move(table);
+}
+
+std::string quoted_list(const std::vector<std::string>& texts) {
+  std::vector<std::string> quoted;
+  for (const std::string& text : texts) quoted.push_back(in_quotes(text));
+  return list_text(quoted);
+}
+
+std::string combination_line(const FittedErrors& fitted, const ModelDescription& model) {
+  std::vector<std::string> weights;
+  for (std::size_t n = 0; n < fitted.factors.size(); ++n) {
+    const Factor& factor = model.factors[fitted.factors[n].value];
+    const std::string number = shortest(fitted.weights[n]);
+    const std::string unit = fmt::format(" {}/{}", si_unit(factor.dimension), si_unit(fitted.dimension));
+    weights.push_back(factor.name + " = " + (factor.dimension == fitted.dimension ? number : in_quotes(number + unit)));
+  }
+  return fmt::format("combinations.{} = {{ {} }}\n", fitted.name, fmt::join(weights, ", "));
+}
+
+bool is_single(const FittedErrors& fitted, const ModelDescription& model) {
+  return model.factors[fitted.factors.front().value].name == fitted.name;
+}
+
+/// The lines of a selection of poses, as a table of its own.
+std::string selection_lines(std::string_view key, const PoseSelection& selection, const Study& study) {
+  Study other;
+  other.mechanism = study.mechanism;
+  other.poses = selection;
+  return fmt::format("\n[analysis.calibration.{}]\n", key) + keys_text(poses_keys(), other);
+}
+
+std::string calibration_lines(const Study& study) {
+  if (!study.analysis.calibration) return {};
+  const CalibrationTable& table = *study.analysis.calibration;
+  const ModelDescription& model = study.model();
+  std::vector<std::string> fit;
+  for (const FittedErrors& fitted : table.fit) fit.push_back(fitted.name);
+  std::string text = "\n[analysis.calibration]\nfit = " + quoted_list(fit) + "\n";
+  for (const FittedErrors& fitted : table.fit) {
+    if (!is_single(fitted, model)) text += combination_line(fitted, model);
+  }
+  if (!table.measured.empty()) text += "measured = " + quoted_list(table.measured) + "\n";
+  for (const StatedNoise& noise : table.noise) {
+    const auto response = std::ranges::find(model.responses, noise.what, &Response::name);
+    const Dimension dimension = response == model.responses.end() ? Dimension::length : response->dimension;
+    text += fmt::format("noise.{} = {}\n", noise.what, exact_value(noise.sd, dimension));
+  }
+  if (!table.pairs.empty()) {
+    std::vector<std::string> pairs;
+    for (const auto& [one, other] : table.pairs) pairs.push_back(fmt::format("[{}, {}]", one, other));
+    text += "pairs = " + list_text(pairs) + "\n";
+  }
+  text += keys_text(calibration_keys(), table);
+  if (!table.coordinates.empty()) text += "coordinates = " + quoted_list(table.coordinates) + "\n";
+  if (!table.motors.empty()) {
+    std::vector<std::string> motors;
+    for (const auto& drives : table.motors) motors.push_back(quoted_list(drives));
+    text += "motors = " + list_text(motors) + "\n";
+  }
+  for (std::size_t n = 0; n < table.present.size(); ++n) {
+    text += fmt::format("present.{} = {}\n", table.fit[n].name, exact_value(table.present[n], table.fit[n].dimension));
+  }
+  for (const ControllerNumber& number : table.controller) {
+    text += fmt::format("controller.{} = {}\n", in_quotes(number.name), in_quotes(number.text));
+  }
+  if (table.poses) text += selection_lines("poses", *table.poses, study);
+  if (table.candidates) text += selection_lines("candidates", *table.candidates, study);
+  return text;
+}
+
+}  // namespace
+
+std::string_view name(MeasuringFrame frame) {
+  constexpr std::array<std::string_view, 4> kNames{"known", "height", "plane", "rigid"};
+  return kNames[static_cast<std::size_t>(frame)];
+}
+
+std::string_view name(MeasuredTarget target) {
+  constexpr std::array<std::string_view, 3> kNames{"known", "point", "rigid"};
+  return kNames[static_cast<std::size_t>(target)];
+}
+
+std::string_view name(PriorKnowledge prior) { return prior == PriorKnowledge::none ? "none" : "tolerances"; }
+
+std::string_view name(NoiseLevel level) { return level == NoiseLevel::given ? "given" : "estimated"; }
+
+std::vector<FactorIndex> errors_with_tolerance(const Study& study, const StudySection& root) {
+  const StudySection errors = root.section("errors");
+  const std::vector<std::string> overrides = errors.section("override").keys();
+  const std::vector<std::optional<double>> by_zones = sigmas_by_zones(study);
+  const bool names_factors = root.section("analysis").find("factors").has_value();
+  std::vector<FactorIndex> list;
+  for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
+    const Factor& factor = study.model().factors[f];
+    const bool is_stated =
+        errors.find(error_kind(factor.dimension)) || by_zones[f] ||
+        std::ranges::any_of(overrides, [&](const std::string& key) { return matches(key, factor.name); });
+    const bool varies =
+        !names_factors || std::ranges::find(study.analysis.factors, FactorIndex(f)) != study.analysis.factors.end();
+    if (is_stated && varies) list.emplace_back(f);
+  }
+  return list;
+}
+
+StudyRow calibration_row() {
+  return {.name = "calibration",
+          .value = {.type = "table"},
+          .usual = "none",
+          .meaning =
+              "How a machine is calibrated: few numbers that its controller can correct, fitted to what is "
+              "measured of it. `poesy calibrate` fits them to a file of measurements.",
+          .reader = read_calibration,
+          .lines = calibration_lines,
+          .late = 3,
+          .shown = [](const TemplateLines&, const Study&) { return std::string(); }};
+}
+
+StudyTables calibration_tables() {
+  return {
+      described(calibration_keys()),
+      {.paths = {"analysis.calibration.combinations"},
+       .meaning = "Each combination has a name, by which it is fitted.",
+       .keys = {{.name = "NAME",
+                 .type = "table",
+                 .meaning = "Errors with their factors. The unit is that of the first error."}}},
+      {.paths = {"analysis.calibration.combinations.NAME"},
+       .meaning = "The errors of a combination.",
+       .keys = {{.name = "ERROR",
+                 .type = "number or quantity",
+                 .meaning = "The error is this factor times the fitted number: a number, or where units differ "
+                            "\"125 mm/rad\"."}}},
+      {.paths = {"analysis.calibration.noise"},
+       .meaning = "Standard deviations of one measured value.",
+       .keys = {{.name = "RESPONSE",
+                 .type = "quantity",
+                 .bounds = "at least 0",
+                 .meaning = "Of a response with a sign, or of \"distance\"."}}},
+      {.paths = {"analysis.calibration.present"},
+       .meaning = "What the controller corrected while it measured.",
+       .keys = {{.name = "FITTED", .type = "quantity", .usual = "`0`", .meaning = "The value of a fitted error."}}},
+      {.paths = {"analysis.calibration.controller"},
+       .meaning = "Numbers to be typed into a controller.",
+       .keys = {{.name = "NAME",
+                 .type = "text",
+                 .meaning = "An expression in parameters of the geometry and fitted errors: \"R - r + radius\"."}}}};
+}
+
+}  // namespace poesy
