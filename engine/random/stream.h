@@ -15,7 +15,8 @@ enum class Purpose : std::uint64_t {
   scrambled_sobol = 3,
   latin_hypercube = 4,
   second_error_samples = 5,  ///< independent of error_samples, of the same errors
-  seed_of_others = 6         ///< seeds of additional sets of machines that a study tries
+  seed_of_others = 6,        ///< seeds of additional sets of machines that a study tries
+  calibration = 7            ///< what is not known of a machine after its measurement, and noise of measurements
 };
 
 /// The address of a sequence of draws: one factor at one pose. The sample index completes it.

@@ -321,12 +321,6 @@ void read_prior(const StudyValue& value, CalibrationTable& table, const Calibrat
   }
 }
 
-/// The drives of a mechanism with as many as its pose has coordinates; empty if it has another number.
-std::vector<std::string_view> drives_of(const ModelDescription& model) {
-  const auto chart = std::ranges::find(model.charts, "actuators", &PoseChart::name);
-  return chart == model.charts.end() ? std::vector<std::string_view>() : names(chart->coordinates);
-}
-
 void read_coordinates(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
   const ModelDescription& model = at.study.model();
   table.coordinates_place = value.place();

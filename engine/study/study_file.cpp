@@ -85,6 +85,15 @@ void check_background(const Study& study, const Reading& reading) {
   }
 }
 
+/// Throws if the study is calibrated, and its kind has no machines that could be.
+void check_calibration(const Study& study, const Reading& reading) {
+  if (study.analysis.calibration == nullptr || study.analysis.kind->has_key("calibration")) return;
+  reading.root.section("analysis")
+      .require("calibration")
+      .fail("is set, but kind = " + in_quotes(study.analysis.kind->name) + " calibrates no machine",
+            "'poesy calibrate' takes it as it is; remove it to run this study");
+}
+
 Study study_from(const Reading& reading) {
   const StudySection& root = reading.root;
   Study study;
@@ -109,15 +118,6 @@ Study study_from(const Reading& reading) {
   }
   check_size(root, study);
   return study;
-}
-
-/// Throws if the study is calibrated, and its kind has no machines that could be.
-void check_calibration(const Study& study, const Reading& reading) {
-  if (study.analysis.calibration == nullptr || study.analysis.kind->has_key("calibration")) return;
-  reading.root.section("analysis")
-      .require("calibration")
-      .fail("is set, but kind = " + in_quotes(study.analysis.kind->name) + " calibrates no machine",
-            "'poesy calibrate' takes it as it is; remove it to run this study");
 }
 
 /// The keys of [analysis] for the study's kind. A calibration is kept by all kinds, because `poesy calibrate` takes it

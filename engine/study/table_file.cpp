@@ -11,8 +11,8 @@
 #include <set>
 
 #include "engine/base/contract.h"
-#include "engine/base/ratio.h"
 #include "engine/base/text.h"
+#include "engine/study/csv_title.h"
 #include "engine/study/study.h"
 #include "engine/study/text_file.h"
 
@@ -55,58 +55,21 @@ struct TableColumn {
   std::string with_unit() const { return std::string(name) + " [" + std::string(display_unit(dimension).name) + "]"; }
 };
 
-/// The parts of "z [mm]": "z" and "mm". Without brackets there is no unit.
-struct Title {
-  explicit Title(std::string_view text) : name(text) {
-    const std::size_t bracket = text.find('[');
-    if (bracket == std::string_view::npos || !text.ends_with(']')) return;
-    unit = text.substr(bracket + 1, text.size() - bracket - 2);
-    name = trimmed(text.substr(0, bracket));
-  }
-
-  std::string_view name;
-  std::optional<std::string_view> unit;
-};
-
-/// The size of a column's unit in SI.
-double size_of(const CsvCell& cell, const Title& title, Dimension dimension) {
-  if (!title.unit || *title.unit == si_unit(dimension)) return 1.0;
-  const Unit* unit = find_unit(*title.unit);
-  if (unit != nullptr && unit->dimension == dimension) return unit->si;
-  if (const auto share = ratio_unit(*title.unit); share && dimension == Dimension::number) return *share;
-  const std::string problem =
-      unit == nullptr ? "an unknown unit"
-                      : fmt::format("a unit of {}, but this column is a {}", name(unit->dimension), name(dimension));
-  throw InputError(cell.place, fmt::format("column '{}' has {}", printable(cell.text), problem),
-                   fmt::format("write one of: {}, or leave it out for SI", unit_names(dimension)));
-}
-
 [[noreturn]] void refuse_unknown(const Place& place, std::string_view name, const KnownColumns& known) {
   throw InputError(place, fmt::format("column '{}' is no {} of the model", printable(name), known.what),
                    suggestion(name, names(known.numbers)));
 }
 
-void refuse_other_tables(const CsvCell& cell) {
-  if (cell.text.find('"') != std::string_view::npos) {
-    throw InputError(cell.place, "column " + printable(cell.text) + " is in quotes, which poesy does not read",
-                     "save the table without quotes");
-  }
-  if (cell.text.find('\t') != std::string_view::npos) {
-    throw InputError(cell.place, "columns are separated by tabs, but poesy reads commas",
-                     "save the table with commas between columns");
-  }
-}
-
 TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
   using enum TableColumn::Role;
-  const Title title(cell.text);
+  const CsvTitle title(cell.text);
   const auto found = std::ranges::find(known.numbers, title.name, &KnownColumn::name);
   if (found != known.numbers.end()) {
     return {.role = number,
             .name = found->meant,
             .title = cell.text,
             .dimension = found->dimension,
-            .si = size_of(cell, title, found->dimension),
+            .si = size_of_unit(cell, title, found->dimension),
             .bare = !title.unit && found->dimension != Dimension::number};
   }
   if (contains(known.facts, title.name)) return {.role = fact, .name = title.name, .title = cell.text};
@@ -416,7 +379,7 @@ MeasuredColumn read_column(const std::string& path, std::string_view column, Dim
   bool found = false;
   MeasuredColumn read;
   for (const CsvCell& cell : lines.next()) {
-    const Title title(cell.text);
+    const CsvTitle title(cell.text);
     known.push_back(title.name);
     if (cell.text != column && title.name != column) {
       columns.push_back({.role = TableColumn::Role::fact, .name = title.name, .title = cell.text});
@@ -432,7 +395,7 @@ MeasuredColumn read_column(const std::string& path, std::string_view column, Dim
                        .name = title.name,
                        .title = cell.text,
                        .dimension = dimension,
-                       .si = size_of(cell, title, dimension)});
+                       .si = size_of_unit(cell, title, dimension)});
   }
   if (!found) throw InputError(header, "no column is '" + printable(column) + "'", suggestion(column, known));
   read.values = read_rows(lines, columns, {}, {}).values;
