@@ -69,6 +69,7 @@ class Command : public CLI::App {
 Command& add_run(Command& program);
 Command& add_check(Command& program);
 Command& add_evaluate(Command& program);
+Command& add_calibrate(Command& program);
 Command& add_show(Command& program);
 Command& add_report(Command& program);
 Command& add_replay(Command& program);

@@ -41,7 +41,7 @@ void add_commands(Command& program) {
     for (const auto add : commands) add(program).group(title);
   };
   group("Prepare a study", {add_models, add_template, add_check});
-  group("Compute", {add_run, add_merge, add_evaluate});
+  group("Compute", {add_run, add_merge, add_evaluate, add_calibrate});
   group("Look at results", {add_show, add_report, add_tolerances, add_replay, add_export, add_verify});
   group(kAboutTheProgram, {add_help, add_version, add_completion});
   program.set_help_all_flag("--help-all", "print the help of all commands");

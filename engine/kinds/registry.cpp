@@ -7,6 +7,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/kinds/allocation/kind.h"
+#include "engine/kinds/calibration/kind.h"
 #include "engine/kinds/coupling/kind.h"
 #include "engine/kinds/evaluate/kind.h"
 #include "engine/kinds/identification/kind.h"
@@ -41,6 +42,7 @@ const StudyKinds& study_kinds() {
 }
 
 const Kind* find_kind(std::string_view name) {
+  if (name == kCalibrationKind.study.name) return &kCalibrationKind;  // of results alone, not of studies
   const auto* const found = std::ranges::find(kAll, name, [](const Kind* kind) { return kind->study.name; });
   return found == kAll.end() ? nullptr : *found;
 }

@@ -214,6 +214,7 @@ class Calibration {
     result.rank = fit_.scaled.rank;
     result.frame_rank = fit_.scaled.frame_rank();
     result.steps = fit_.steps;
+    result.unfitted = table_.with_tolerance.size() - std::min(table_.with_tolerance.size(), table_.fit.size());
     result.frame = array_of<Array<double, axis::FramePart>>(fit_.phi);
     static const std::array<std::vector<std::string>, 4> kFrameParts{
         {{}, {"height"}, {"height", "slope_x", "slope_y"}, {"x", "y", "z", "rho_x", "rho_y", "rho_z"}}};

@@ -76,6 +76,7 @@ struct CalibrationResult {
   Array<double, axis::Pose, axis::Moved> left_sd;      ///< its standard deviation
   std::vector<NamedUnit> drives;                       ///< the drives
   Array<double, axis::Pose, axis::Drive> drive_shift;  ///< by how much the controller moves them
+  std::uint64_t unfitted = 0;                          ///< directions of errors with a tolerance that are not fitted
   double kept = kNaN;                                  ///< share of machines, as far as known, within all limits
   std::uint64_t left_in_device_frame = 0;              ///< whether what is left is seen in the device's frame
 
@@ -92,6 +93,9 @@ struct CalibrationResult {
   std::string file_text;    ///< its content
   std::string file_sha256;  ///< hash of its content
 };
+
+/// The names on the axis `moved`.
+std::vector<std::string> moved_names();
 
 /// The calibration in a result. Precondition: the result is one.
 inline const CalibrationResult& calibration_of(const StoredResult& result) {

@@ -1,0 +1,221 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/app/command_line.h"
+#include "engine/app/progress.h"
+#include "engine/app/results.h"
+#include "engine/app/terminal.h"
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/kinds/calibration/calibrate.h"
+#include "engine/kinds/calibration/kind.h"
+#include "engine/kinds/calibration/words.h"
+#include "engine/kinds/study_file.h"
+#include "engine/report/table.h"
+#include "engine/result/result_file.h"
+#include "engine/storage/checkpoint.h"
+#include "engine/storage/content_hash.h"
+#include "engine/study/bare_numbers.h"
+#include "engine/study/calibration.h"
+#include "engine/study/machine_file.h"
+#include "engine/study/study_file.h"
+#include "engine/study/table_file.h"
+#include "engine/study/text_file.h"
+#include "models/file/expression.h"
+#include "models/registry.h"
+
+namespace poesy::app {
+namespace {
+
+constexpr std::size_t kMostBytes = 64U << 20U;  // of a table of measurements
+
+struct CalibrateOptions {
+  std::string study;
+  std::string measured;
+  std::string result;
+};
+
+/// Opens the file of poses that a selection names, because a study that is not run has not opened it.
+void open_poses(PoseSelection& selection, const std::string& study_path, const ModelDescription& model) {
+  if (selection.select != PoseSelection::Select::file || selection.file.empty()) return;
+  const std::string path = (std::filesystem::path(study_path).parent_path() / selection.file).string();
+  selection.from_file = read_poses(path, model);
+  selection.place = {path, 2, 1};
+}
+
+/// The poses of a selection; none if it selects nothing.
+std::optional<SelectedPoses> selected(PoseSelection selection, const std::string& study_path, const Model& model) {
+  using Select = PoseSelection::Select;
+  if (selection.select == Select::file && selection.file.empty()) return std::nullopt;
+  if (selection.select != Select::file && selection.count == 0) return std::nullopt;
+  if (selection.trajectory && !selection.trajectory->file.empty()) {
+    throw InputError(selection.place, "poses of a calibration are not taken from the file of a trajectory",
+                     "write select = \"file\"");
+  }
+  open_poses(selection, study_path, model.description());
+  return select_poses(selection, model);
+}
+
+/// The poses of the rows of a table of measurements.
+SelectedPoses measured_poses(const std::string& path, const MachineFile& file, const Model& model) {
+  PoseSelection selection;
+  selection.select = PoseSelection::Select::file;
+  selection.file = path;
+  selection.from_file = file.poses;
+  selection.place = {path, 2, 1};
+  SelectedPoses poses = select_poses(selection, model);
+  const std::string doubt = bare_pose_text(path, file.poses, poses.poses, model.description());
+  if (!doubt.empty()) say(Message::warning, doubt);
+  return poses;
+}
+
+/// The poses without those that are there a second time.
+SelectedPoses without_repetition(const SelectedPoses& poses) {
+  std::vector<double> values;
+  SelectedPoses once;
+  for (std::size_t m = 0; m < poses.poses.size(); ++m) {
+    const std::span<const double> pose = poses.poses[PoseIndex(m)];
+    bool is_new = true;
+    for (std::size_t at = 0; at < values.size(); at += pose.size()) {
+      is_new = is_new && !std::ranges::equal(pose, std::span(values).subspan(at, pose.size()));
+    }
+    if (!is_new) continue;
+    values.insert(values.end(), pose.begin(), pose.end());
+    once.condition.push_back(poses.condition[m]);
+  }
+  once.poses = PoseSet(poses.poses.coordinates(), std::move(values));
+  return once;
+}
+
+/// The names that expressions for the controller may use: parameters of the geometry, then fitted errors.
+std::vector<GeometryParameter> names_in_expressions(const Study& study) {
+  std::vector<GeometryParameter> list = study.model().geometry;
+  for (const FittedErrors& fitted : study.analysis.calibration->fit) {
+    if (std::ranges::find(list, fitted.name, &GeometryParameter::name) != list.end()) {
+      throw InputError(fitted.place,
+                       "the fitted error '" + fitted.name + "' has the name of a parameter of the geometry",
+                       "give the combination another name");
+    }
+    list.push_back({fitted.name, fitted.dimension, 0.0, "a fitted error"});
+  }
+  return list;
+}
+
+/// The dimension of an expression's value. Throws if it is none that poesy prints.
+Dimension dimension_of(const file::Value& value, const ControllerNumber& number) {
+  for (const Dimension dimension : {Dimension::length, Dimension::angle, Dimension::number}) {
+    if (file::of_dimension(0.0, dimension).like(value)) return dimension;
+  }
+  throw InputError(number.place, "controller number '" + number.name + "' is " + file::dimension_text(value),
+                   "write an expression of a length, an angle or a number");
+}
+
+std::vector<TypedNumber> typed_numbers(const Study& study) {
+  std::vector<TypedNumber> list;
+  if (study.analysis.calibration->controller.empty()) return list;
+  const std::vector<GeometryParameter> parameters = names_in_expressions(study);
+  for (const ControllerNumber& number : study.analysis.calibration->controller) {
+    const file::Expression expression{number.text, "analysis.calibration.controller." + number.name, number.place,
+                                      true};
+    const auto evaluated = [=, geometry = study.mechanism.geometry](std::span<const double> fitted) {
+      std::vector<double> values = geometry;
+      values.insert(values.end(), fitted.begin(), fitted.end());
+      return file::evaluate(expression, parameters, values);
+    };
+    const std::vector<double> none(study.analysis.calibration->fit.size(), 0.0);
+    list.push_back({number.name, number.text, dimension_of(evaluated(none), number),
+                    [evaluated](std::span<const double> fitted) { return evaluated(fitted).si; }});
+  }
+  return list;
+}
+
+Study study_to_calibrate(const std::string& path) {
+  Study study = read_study(path, registry(), StudyUse::evaluate);
+  if (study.analysis.calibration == nullptr) {
+    throw InputError({path}, "there is no table [analysis.calibration]",
+                     "write it, with fit = [...] and noise = { ... }; see the guide");
+  }
+  if (study.mechanism.compared) {
+    throw InputError(study.mechanism.place, "mechanism.fidelity is \"both\", but a calibration solves at one fidelity",
+                     "write one of them");
+  }
+  return study;
+}
+
+/// The result as `poesy show` reads it.
+StoredResult shown(const Study& study, const SelectedPoses& poses, CalibrationResult found) {
+  StoredResult result = with_verdicts(study, poses, std::nullopt, {});
+  result.kind = kCalibrationKind.study.name;
+  result.found = std::move(found);
+  return result;
+}
+
+int calibrate_machine(const CalibrateOptions& options) {
+  const Study study = study_to_calibrate(options.study);
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  const MachineFile file = read_machine_file(options.measured, model->description());
+  const SelectedPoses measured = measured_poses(options.measured, file, *model);
+  const SelectedPoses predicted = selected(study.poses, options.study, *model).value_or(without_repetition(measured));
+  const auto& asked = study.analysis.calibration->candidates;
+  const auto candidates = asked ? selected(*asked, options.study, *model) : std::nullopt;
+  const std::vector<TypedNumber> typed = typed_numbers(study);
+  std::string path;
+  std::optional<RunLock> lock;
+  if (!options.result.empty()) {
+    path = check_result_path(options.result, std::array{options.study, options.measured});
+    lock.emplace(path);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  Calibrated made = calibrate({study, *model, options.measured, file, measured.poses, predicted.poses,
+                               candidates ? candidates->poses : predicted.poses, typed});
+  if (made.result.estimate.empty()) {
+    return complain(options.measured +
+                        ": a machine on the way of the fit was not solved; fit fewer errors, or take prior "
+                        "= \"tolerances\"",
+                    kTooManyNotConverged);
+  }
+  made.result.file = std::filesystem::path(options.measured).filename().string();
+  made.result.file_text = read_text(options.measured, "table of measurements", kMostBytes);
+  made.result.file_sha256 = hex(sha256(std::as_bytes(std::span(made.result.file_text))));
+  for (const std::string& warning : made.warnings) say(Message::warning, warning);
+  for (const std::string& warning : calibration_warnings(made.result)) say(Message::warning, warning);
+  const StoredResult result = shown(study, predicted, std::move(made.result));
+  print(text_of(kCalibrationReport.tables(result, {}), output_width()));
+  if (!path.empty()) {
+    write_result(path, kCalibrationKind.study.name, kCalibrationFile, study, predicted, result.found,
+                 run_facts(seconds_since(start), 1, 0));
+  }
+  if (made.converged) return kDone;
+  return complain(options.measured + ": the fit did not converge; fit fewer errors, or take prior = \"tolerances\"",
+                  kTooManyNotConverged);
+}
+
+}  // namespace
+
+Command& add_calibrate(Command& program) {
+  const auto [command, options] =
+      program.add_command("calibrate", "fit the errors of one machine to measurements of it", calibrate_machine);
+  command.add_value("study", options.study, "STUDY.toml", "study file with [analysis.calibration]")->required();
+  command
+      .add_value("--measured", options.measured, "FILE.csv",
+                 "measurements; a row is a pose and what was measured there: deviation_R, actual_C, distance")
+      ->required();
+  command.add_value("-o,--output", options.result, "RESULT.h5", "result file; default: only the summary");
+  command.examples = {{"prints the fitted errors, and what to type into the controller",
+                       "poesy calibrate study.toml --measured heights.csv"},
+                      {"keeps everything", "poesy calibrate study.toml --measured heights.csv -o machine.h5"}};
+  return command;
+}
+
+}  // namespace poesy::app

@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "engine/kinds/calibration/kind.h"
+#include "engine/kinds/calibration/result.h"
+#include "engine/kinds/calibration/words.h"
+#include "engine/report/display.h"
+#include "engine/report/tables.h"
+
+namespace poesy {
+namespace {
+
+Table fitted_table(const CalibrationResult& found) {
+  Table table{.name = "fitted", .caption = measured_text(found), .columns = {}, .notes = {residual_text(found)}};
+  const auto value = [&](const std::string& name, const auto& array, int dispensable = 0) {
+    return FilledColumn{number_column(name, name, "", dispensable),
+                        [&](std::size_t n) { return value_cell(array(n), found.fitted[n]); }};
+  };
+  fill(table, positions(found.fitted.size()),
+       {name_column(found.fitted, "fitted"),
+        unit_column(found.fitted),
+        value("estimate", found.estimate),
+        value("low", found.low, 1),
+        value("high", found.high, 1),
+        value("sd", found.sd),
+        {number_column("scale_over_sd", found.has_tolerances != 0 ? "tolerance/sd" : "scale/sd"),
+         [&](std::size_t n) { return number_cell(found.scale(n) / found.sd(n), 2); }}});
+  if (const std::string typed = typed_text(found); !typed.empty()) table.notes.push_back(typed);
+  for (std::string& note : estimate_notes(found)) table.notes.push_back(std::move(note));
+  for (std::string& note : left_notes(found)) table.notes.push_back(std::move(note));
+  return table;
+}
+
+Table frame_table(const CalibrationResult& found) {
+  Table table{
+      .name = "frame", .caption = "The unknown frame of the measuring device, and the target (SI)", .columns = {}};
+  fill(table, positions(found.frame_parts.size()),
+       {{text_column("number", "number"), [&](std::size_t n) { return text_cell(found.frame_parts[n]); }},
+        {number_column("value", "value"), [&](std::size_t n) { return number_cell(found.frame(n), 6); }}});
+  return table;
+}
+
+Table next_table(const StoredResult& result, const CalibrationResult& found) {
+  Table table{.name = "next", .caption = "Poses to measure next, the best first", .columns = {}};
+  std::vector<FilledColumn> columns;
+  for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
+    const NamedUnit& own = result.pose_coordinates[c];
+    columns.push_back({number_column(own.name, own.name, unit_text(own)),
+                       [&found, &own, c](std::size_t n) { return value_cell(found.next_pose(n, c), own, 6); }});
+  }
+  columns.push_back(
+      {number_column("gain", "gain", "bit"), [&](std::size_t n) { return number_cell(found.gain(n), 3); }});
+  fill(table, positions(found.gain.size()), columns);
+  return table;
+}
+
+std::vector<Table> calibration_result_tables(const StoredResult& result, const TableOptions&) {
+  const CalibrationResult& found = calibration_of(result);
+  std::vector<Table> tables{fitted_table(found)};
+  if (!found.frame_parts.empty()) tables.push_back(frame_table(found));
+  if (!found.gain.empty()) tables.push_back(next_table(result, found));
+  return tables;
+}
+
+SolveTally tally(const StoredResult&) { return {"", {"all errors"}, 1, {SolveCounts()}}; }
+
+Answer answer(const StoredResult& result) {
+  const CalibrationResult& found = calibration_of(result);
+  Answer lines{{"Answer", measured_text(found) + "."}, {"How sure", residual_text(found) + "."}};
+  if (const std::string typed = typed_text(found); !typed.empty()) lines.emplace_back("What to do", typed + ".");
+  return lines;
+}
+
+void add_page(const StoredResult&, std::span<const Table> tables, Page& page) {
+  Section& section = page.add_section("fitted", "The fitted errors");
+  for (const Table& table : tables) section.table(table);
+}
+
+Comparable comparable(const StoredResult& result, const StoredResult&) {
+  const CalibrationResult& found = calibration_of(result);
+  std::vector<std::vector<std::string>> units(1);
+  std::vector<double> values;
+  for (std::size_t n = 0; n < found.fitted.size(); ++n) {
+    const Unit& unit = display(found.fitted[n]);
+    units.front().emplace_back(unit.name);
+    values.push_back(found.estimate(n) / unit.si);
+  }
+  return {.option_word = "calibration",
+          .options = {"estimates"},
+          .item_word = "fitted error",
+          .items = names_of(found.fitted),
+          .quantities = {{"estimate", "estimate", std::move(units), std::move(values)}}};
+}
+
+/// Studies have other kinds.
+std::optional<StudyResult> run_nothing(const StudyRun&) { return std::nullopt; }
+
+AtPose nothing_at_pose(const Study&) { return {0.0, "values", 0.0, "solves"}; }
+
+const StudyKind kCalibrationStudy{.name = "calibration",
+                                  .asks = "which errors a machine has that was measured",
+                                  .keys = {},
+                                  .at_pose = nothing_at_pose};
+
+}  // namespace
+
+constinit const ReportKind kCalibrationReport{
+    .tally = tally,
+    .tables = calibration_result_tables,
+    .words = [](const StoredResult&) { return StudyWords{.from_tables = true, .samples = "measurements"}; },
+    .answer = answer,
+    .shown_cells = [](const StoredResult& result) { return shown_cells(result, 1); },
+    .page = add_page,
+    .comparable = comparable};
+
+constinit const Kind kCalibrationKind{.study = kCalibrationStudy,
+                                      .run = {run_nothing, nullptr, nullptr},
+                                      .file = kCalibrationFile,
+                                      .report = kCalibrationReport};
+
+}  // namespace poesy

@@ -1,0 +1,225 @@
+#include "engine/kinds/calibration/words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "engine/calibration/inference.h"
+#include "engine/report/display.h"
+
+namespace poesy {
+namespace {
+
+constexpr double kContradiction = 0.01;  // p below which something is said
+constexpr double kTogether = 0.95;       // magnitude of a correlation from which on two numbers move together
+constexpr std::size_t kAngles = 3;       // components of a displacement before its lengths
+
+std::string some(const CalibrationResult& found, const std::vector<std::size_t>& numbers) {
+  std::vector<std::string> names;
+  for (const std::size_t n : numbers) names.push_back(found.fitted[n].name);
+  return some_names(names, 18);
+}
+
+/// The directions that are not seen, in words.
+std::vector<std::string> unseen_notes(const CalibrationResult& found) {
+  const auto k = static_cast<Eigen::Index>(found.fitted.size());
+  calibration::Matrix projector(k, k);
+  for (Eigen::Index i = 0; i < k; ++i) {
+    for (Eigen::Index j = 0; j < k; ++j) projector(i, j) = found.null_projector(std::size_t(i), std::size_t(j));
+  }
+  std::vector<std::string> notes;
+  for (const calibration::Confounded& part : calibration::confounded(projector)) {
+    const std::string names = some(found, part.numbers);
+    if (part.numbers.size() == 1) {
+      notes.push_back(names + " changes nothing that was measured" + (found.frame.empty() ? "" : ", beyond the frame"));
+    } else if (!found.frame.empty()) {
+      notes.push_back(fmt::format("{}: no measurement tells them apart and from the unknown frame ({})", names,
+                                  counted(part.directions, "direction", "directions")));
+    } else {
+      notes.push_back(fmt::format("{}: no measurement tells them apart ({})", names,
+                                  counted(part.directions, "direction", "directions")));
+    }
+  }
+  if (!notes.empty() && found.has_prior != 0) notes.push_back("only the tolerances decide there");
+  return notes;
+}
+
+/// Numbers whose estimates move together.
+std::vector<std::string> together_notes(const CalibrationResult& found) {
+  std::vector<std::string> notes;
+  std::vector<bool> listed(found.fitted.size(), false);
+  for (std::size_t first = 0; first < found.fitted.size(); ++first) {
+    if (listed[first]) continue;
+    std::vector<std::size_t> part{first};
+    double least = 1.0;
+    double most = 0.0;
+    for (std::size_t n = 0; n < part.size(); ++n) {
+      for (std::size_t j = first + 1; j < found.fitted.size(); ++j) {
+        const double size = std::abs(found.correlation(part[n], j));
+        if (listed[j] || std::ranges::find(part, j) != part.end() || !(size >= kTogether)) continue;
+        part.push_back(j);
+        listed[j] = true;
+      }
+    }
+    if (part.size() < 2) continue;
+    std::ranges::sort(part);
+    for (std::size_t a = 0; a < part.size(); ++a) {
+      for (std::size_t b = a + 1; b < part.size(); ++b) {
+        const double size = std::abs(found.correlation(part[a], part[b]));
+        least = std::min(least, size);
+        most = std::max(most, size);
+      }
+    }
+    notes.push_back(
+        fmt::format("{} move together (correlations {:.3f} to {:.3f}); sums and differences of them are known "
+                    "better than each",
+                    some(found, part), least, most));
+  }
+  return notes;
+}
+
+/// The root mean square of a component over the poses, with its scatter.
+double left_rms(const CalibrationResult& found, std::size_t component) {
+  double sum = 0.0;
+  std::size_t poses = 0;
+  for (std::size_t m = 0; m < found.left_mean.length<axis::Pose>(); ++m) {
+    const double mean = found.left_mean(m, component);
+    const double sd = found.left_sd(m, component);
+    if (std::isnan(mean)) continue;
+    sum += mean * mean + (std::isnan(sd) ? 0.0 : sd * sd);
+    ++poses;
+  }
+  return std::sqrt(sum / static_cast<double>(poses));
+}
+
+bool is_measured(const CalibrationResult& found, const std::string& component) {
+  return std::ranges::any_of(found.values, [&](const std::string& value) {
+    return value.starts_with("deviation_" + component + " ") || value.starts_with("actual_" + component + " ");
+  });
+}
+
+std::string unit_of_component(std::size_t component) { return component < kAngles ? "rad" : "m"; }
+
+}  // namespace
+
+std::vector<std::string> moved_names() { return {calibration::kComponents.begin(), calibration::kComponents.end()}; }
+
+std::string measured_text(const CalibrationResult& found) {
+  std::map<std::string, std::size_t> counts;
+  for (const std::string& value : found.values) ++counts[value.substr(0, value.find(' '))];
+  std::vector<std::string> parts;
+  for (const auto& [column, count] : counts) {
+    if (column != "distance") parts.push_back(fmt::format("{} {}", count, column));
+  }
+  if (found.distances > 0) parts.push_back(counted(found.distances, "distance", "distances"));
+  return fmt::format("{}: {} at {}; {}, {}", found.file, fmt::join(parts, ", "),
+                     counted(found.measured_poses, "pose", "poses"),
+                     counted(found.fitted.size(), "fitted error", "fitted errors"),
+                     counted(found.dof, "degree of freedom", "degrees of freedom"));
+}
+
+std::string residual_text(const CalibrationResult& found) {
+  if (found.noise_is_known == 0) return "the noise is 0, so all values count alike and there are no intervals";
+  const std::string residual = fmt::format("residual {:.3g} of the noise", found.rms);
+  if (found.dof == 0) return residual + "; as many values as fitted numbers, so nothing checks the fit";
+  const std::string test =
+      fmt::format("{}; chi-square {:.3g} of {} (p = {:.2g})", residual, found.chi_square, found.dof, found.p);
+  if (found.sd_is_estimated != 0) return test + ": the noise follows from the residual";
+  return test + (found.p < kContradiction ? ": the fitted errors do not explain the measurements"
+                                          : ": nothing contradicts the fitted errors");
+}
+
+std::vector<std::string> estimate_notes(const CalibrationResult& found) {
+  std::vector<std::string> notes = unseen_notes(found);
+  for (std::string& note : together_notes(found)) notes.push_back(std::move(note));
+  const bool is_known = found.noise_is_known != 0;
+  std::string condition = fmt::format("condition {:.4g} (scaled by the tolerances and the noise)", found.condition);
+  if (is_known && found.below_noise > 0) {
+    condition +=
+        fmt::format("; {} of {} directions {} below the noise: the tolerances say more about {}", found.below_noise,
+                    found.fitted.size(), found.below_noise == 1 ? "is" : "are", found.below_noise == 1 ? "it" : "them");
+  }
+  notes.push_back(std::move(condition));
+  if (found.unfitted > 0) {
+    notes.push_back(
+        fmt::format("{} more errors have a tolerance and are not fitted: a good chi-square does not mean that "
+                    "the fitted errors are the true ones, and intervals are too narrow for them",
+                    found.unfitted));
+  }
+  return notes;
+}
+
+std::vector<std::string> left_notes(const CalibrationResult& found) {
+  std::vector<std::string> parts;
+  std::vector<std::string> unmeasured;
+  const std::vector<std::string> moved = moved_names();
+  const std::size_t poses = found.left_mean.length<axis::Pose>();
+  for (std::size_t c = 0; c < 2 * kAngles; ++c) {
+    const double rms = left_rms(found, c);
+    if (!(rms > 1e-12)) continue;
+    parts.push_back(moved[c] + " " + response_text({moved[c], unit_of_component(c)}, rms));
+    if (!is_measured(found, moved[c]) && !is_measured(found, "tip_" + moved[c])) unmeasured.push_back(moved[c]);
+  }
+  if (parts.empty()) return {};
+  std::vector<std::string> notes;
+  std::string line = fmt::format("left at the {}, predicted: {} (root mean square)", counted(poses, "pose", "poses"),
+                                 fmt::join(parts, ", "));
+  if (!unmeasured.empty()) {
+    line += fmt::format("; {} {} not measured", fmt::join(unmeasured, ", "), unmeasured.size() == 1 ? "was" : "were");
+  }
+  if (found.left_in_device_frame != 0) line += "; as the measuring device sees it";
+  notes.push_back(std::move(line));
+  if (!std::isnan(found.kept)) {
+    notes.push_back(fmt::format("the limits are kept at all poses by {} of the machines that this one may be",
+                                percent_text(found.kept)));
+  }
+  return notes;
+}
+
+std::string typed_text(const CalibrationResult& found) {
+  std::vector<std::string> parts;
+  for (std::size_t n = 0; n < found.typed.size(); ++n) {
+    const NamedUnit& typed = found.typed[n];
+    const Unit& unit = display(typed);
+    std::string text = fmt::format("{} {:.4f} -> {:.4f}", typed.name, found.typed_nominal(n) / unit.si,
+                                   found.typed_value(n) / unit.si);
+    if (!std::isnan(found.typed_sd(n))) {
+      const double half = (found.high(0) - found.estimate(0)) / found.sd(0) * found.typed_sd(n);
+      if (!std::isnan(half)) text += fmt::format(" +- {:.4f}", half / unit.si);
+    }
+    parts.push_back(text + (unit.dimension == Dimension::number ? "" : " " + std::string(unit.name)));
+  }
+  return parts.empty() ? "" : fmt::format("to type in: {}", fmt::join(parts, ", "));
+}
+
+std::vector<std::string> calibration_warnings(const CalibrationResult& found) {
+  std::vector<std::string> list;
+  if (found.noise_is_known == 0) return list;
+  std::vector<std::size_t> outliers;
+  for (std::size_t i = 0; i < found.values.size(); ++i) {
+    if (found.outlier(i) != 0) outliers.push_back(i);
+  }
+  std::ranges::stable_sort(outliers, std::ranges::greater(),
+                           [&](std::size_t i) { return std::abs(found.standardised(i)); });
+  const bool is_contradicted = found.sd_is_estimated == 0 && found.dof > 0 && found.p < kContradiction;
+  const std::string residual = fmt::format("residual {:.3g} of the noise, p = {:.1g}", found.rms, found.p);
+  for (const std::size_t i : outliers) {
+    list.push_back(fmt::format("{}: {} is {:.1f} standard deviations off; measure it again, or leave it out", residual,
+                               found.values[i], std::abs(found.standardised(i))));
+  }
+  if (is_contradicted && outliers.empty()) {
+    list.push_back(
+        found.has_prior != 0
+            ? fmt::format("estimates are far outside their tolerances (S = {:.3g} of {}): are these the sigmas?",
+                          found.chi_square, found.dof)
+            : residual + ": the fitted errors do not explain the measurements; intervals are too narrow");
+  }
+  return list;
+}
+
+}  // namespace poesy
