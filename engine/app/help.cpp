@@ -25,7 +25,7 @@ constexpr std::array kExitCodes{
     Entry{"2", "bad command line, study or data; nothing is written"},
     Entry{"3", "a file cannot be read, written or trusted, or memory is too little"},
     Entry{"4", "interrupted: poesy run goes on with --resume, poesy evaluate wrote nothing"},
-    Entry{"5", "done and the result kept, but more samples failed to converge than the study allows"},
+    Entry{"5", "done and the result kept, but more samples failed to converge than the study allows, or a fit did not"},
     Entry{"6", "done and the result kept, but a limit that the study states is not kept; 5 goes before it"}};
 constexpr std::array kFiles{Entry{"STUDY.toml", "what to compute; poesy template writes one to start from"},
                             Entry{"RESULT.h5", "what was found; HDF5, whole or absent"},

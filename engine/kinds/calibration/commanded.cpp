@@ -25,11 +25,11 @@ using calibration::Placement;
 using calibration::Vector;
 using calibration::Vector3;
 
-constexpr double kSame = 1e-9;  // m over the reach, or rad: equal up to rounding
+constexpr double kSameCoordinate = 1e-9;  // m over the reach, or rad: equal up to rounding
 constexpr const char* kDrives = "actuators";
 
 /// A coordinate of a placed platform.
-using Coordinate = std::function<double(const Placement&)>;
+using PlaceCoordinate = std::function<double(const Placement&)>;
 
 /// Angles about the axes i, j, k, in this order: R = R_i R_j R_k.
 Vector3 angles_in_order(const Matrix3& R, const std::array<Eigen::Index, 3>& order) {
@@ -44,8 +44,8 @@ Vector3 angles_in_order(const Matrix3& R, const std::array<Eigen::Index, 3>& ord
 }
 
 /// Everything that a coordinate may be: a component of P, or an angle about an axis by some convention.
-std::vector<Coordinate> possible_coordinates(Dimension dimension) {
-  std::vector<Coordinate> list;
+std::vector<PlaceCoordinate> possible_coordinates(Dimension dimension) {
+  std::vector<PlaceCoordinate> list;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     if (dimension == Dimension::length) {
       list.emplace_back([axis](const Placement& place) { return place.origin(axis); });
@@ -88,7 +88,7 @@ class Recognition {
   }
 
   /// The coordinate of this name; none if it is not recognised.
-  std::optional<Coordinate> operator()(const std::string& name) const {
+  std::optional<PlaceCoordinate> operator()(const std::string& name) const {
     constexpr std::array<std::string_view, 3> kTip{"tip_x", "tip_y", "tip_z"};
     const auto own = std::ranges::find(description_->pose_coordinates, name, &PoseCoordinate::name);
     if (own == description_->pose_coordinates.end()) {
@@ -97,15 +97,15 @@ class Recognition {
       return [axis = tip - kTip.begin()](const Placement& place) { return place.tip(axis); };
     }
     const auto c = static_cast<std::size_t>(own - description_->pose_coordinates.begin());
-    for (Coordinate& possible : possible_coordinates(own->dimension)) {
+    for (PlaceCoordinate& possible : possible_coordinates(own->dimension)) {
       if (gives(possible, c, own->dimension)) return std::move(possible);
     }
     return std::nullopt;
   }
 
  private:
-  bool gives(const Coordinate& possible, std::size_t c, Dimension dimension) const {
-    const double same = kSame * (dimension == Dimension::length ? reach_ : 1.0);
+  bool gives(const PlaceCoordinate& possible, std::size_t c, Dimension dimension) const {
+    const double same = kSameCoordinate * (dimension == Dimension::length ? reach_ : 1.0);
     for (std::size_t n = 0; n < poses_.size(); ++n) {
       if (!(std::abs(possible(places_[n]) - poses_[n][c]) < same)) return false;
     }
@@ -141,7 +141,7 @@ std::size_t count_drives(const Model& model) {
 
 /// Throws unless the drives of each motor move together wherever the perfect mechanism goes.
 void check_motors(const CalibrationTable& table, const Model& model, const PoseSet& poses) {
-  constexpr double kTogether = 1e-9;  // m or rad
+  constexpr double kMovedTogether = 1e-9;  // m or rad
   const std::vector<std::vector<double>> tests = test_poses(model, poses);
   const std::vector<double> first = model.joint_displacements(tests.front());
   for (const std::vector<double>& pose : tests) {
@@ -153,7 +153,7 @@ void check_motors(const CalibrationTable& table, const Model& model, const PoseS
     };
     for (const std::vector<std::string>& motor : table.motors) {
       for (const std::string& drive : motor) {
-        if (std::abs(moved_by(drive) - moved_by(motor.front())) < kTogether) continue;
+        if (std::abs(moved_by(drive) - moved_by(motor.front())) < kMovedTogether) continue;
         throw InputError(
             table.coordinates_place,
             fmt::format("motor {} and {}: the perfect mechanism does not move them together", motor.front(), drive),
@@ -184,7 +184,7 @@ calibration::CoordinateError commanded_coordinates(const Study& study, const Mod
     for (const PoseCoordinate& own : model.description().pose_coordinates) commanded.push_back(own.name);
   }
   const Recognition recognise(model, machine, poses);
-  std::vector<Coordinate> coordinates;
+  std::vector<PlaceCoordinate> coordinates;
   for (const std::string& name : commanded) {
     auto found = recognise(name);
     if (!found) {

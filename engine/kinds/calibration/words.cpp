@@ -208,9 +208,12 @@ std::vector<std::string> calibration_warnings(const CalibrationResult& found) {
                            [&](std::size_t i) { return std::abs(found.standardised(i)); });
   const bool is_contradicted = found.sd_is_estimated == 0 && found.dof > 0 && found.p < kContradiction;
   const std::string residual = fmt::format("residual {:.3g} of the noise, p = {:.1g}", found.rms, found.p);
-  for (const std::size_t i : outliers) {
-    list.push_back(fmt::format("{}: {} is {:.1f} standard deviations off; measure it again, or leave it out", residual,
-                               found.values[i], std::abs(found.standardised(i))));
+  if (!outliers.empty()) {
+    const std::size_t first = outliers.front();
+    const std::string others =
+        outliers.size() == 1 ? "" : fmt::format(" ({} more may be because of it)", outliers.size() - 1);
+    list.push_back(fmt::format("{}: {} is {:.1f} standard deviations off{}; measure it again, or leave it out",
+                               residual, found.values[first], std::abs(found.standardised(first)), others));
   }
   if (is_contradicted && outliers.empty()) {
     list.push_back(
