@@ -113,7 +113,7 @@ std::vector<GeometryParameter> names_in_expressions(const Study& study) {
 }
 
 /// The dimension of an expression's value. Throws if it is none that poesy prints.
-Dimension dimension_of(const file::Value& value, const ControllerNumber& number) {
+Dimension typed_dimension(const file::Value& value, const ControllerNumber& number) {
   for (const Dimension dimension : {Dimension::length, Dimension::angle, Dimension::number}) {
     if (file::of_dimension(0.0, dimension).like(value)) return dimension;
   }
@@ -134,7 +134,7 @@ std::vector<TypedNumber> typed_numbers(const Study& study) {
       return file::evaluate(expression, parameters, values);
     };
     const std::vector<double> none(study.analysis.calibration->fit.size(), 0.0);
-    list.push_back({number.name, number.text, dimension_of(evaluated(none), number),
+    list.push_back({number.name, number.text, typed_dimension(evaluated(none), number),
                     [evaluated](std::span<const double> fitted) { return evaluated(fitted).si; }});
   }
   return list;

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "models/lie/so3.h"
 
 namespace poesy::calibration {
 namespace {
@@ -19,11 +18,6 @@ std::vector<double> moved(std::span<const double> pose, const Vector& by) {
   std::vector<double> other(pose.begin(), pose.end());
   for (std::size_t c = 0; c < other.size(); ++c) other[c] += by(static_cast<Eigen::Index>(c));
   return other;
-}
-
-/// The displacement with these components, to first order.
-Displacement small_displacement(const Vector& components) {
-  return {lie::exp(Vector3(components.head<3>())), components.segment<3>(3)};
 }
 
 }  // namespace
@@ -44,24 +38,23 @@ Vector DriveCorrection::error_at(const Placement& nominal, std::span<const doubl
   return commanded_(nominal, seen_from(displacement, machine_->nominal(other), nominal));
 }
 
-DriveCorrection::ByPose DriveCorrection::by_pose(std::span<const double> pose) const {
+Matrix DriveCorrection::by_pose(std::span<const double> pose) const {
   const Placement nominal = machine_->nominal(pose);
   const auto n = static_cast<Eigen::Index>(pose.size());
-  ByPose found{Matrix(9, n), Matrix(n, n)};
+  Matrix found(n, n);
   for (Eigen::Index c = 0; c < n; ++c) {
     Vector by = Vector::Zero(n);
     by(c) = kStepOfPose;
     const Displacement up = seen_from(kNone, machine_->nominal(moved(pose, by)), nominal);
     const Displacement down = seen_from(kNone, machine_->nominal(moved(pose, -by)), nominal);
-    found.components.col(c) = (components(up, nominal) - components(down, nominal)) / (2.0 * kStepOfPose);
-    found.coordinates.col(c) = (commanded_(nominal, up) - commanded_(nominal, down)) / (2.0 * kStepOfPose);
+    found.col(c) = (commanded_(nominal, up) - commanded_(nominal, down)) / (2.0 * kStepOfPose);
   }
   return found;
 }
 
 std::optional<std::vector<double>> DriveCorrection::drive_at(std::span<const double> pose, const Vector& errors) const {
   const Placement nominal = machine_->nominal(pose);
-  const Matrix per_error = linalg::inverse(by_pose(pose).coordinates);
+  const Matrix per_error = linalg::inverse(by_pose(pose));
   std::vector<double> other(pose.begin(), pose.end());
   double before = HUGE_VAL;
   for (int n = 0; n < kMostSteps; ++n) {
@@ -75,23 +68,6 @@ std::optional<std::vector<double>> DriveCorrection::drive_at(std::span<const dou
     other = moved(other, -per_error * error);
   }
   return std::nullopt;
-}
-
-Matrix DriveCorrection::by_coordinates(std::span<const double> pose) const {
-  const ByPose found = by_pose(pose);
-  return found.components * linalg::inverse(found.coordinates);
-}
-
-Matrix DriveCorrection::coordinate_errors(std::span<const double> pose, const Matrix& components) const {
-  const Placement nominal = machine_->nominal(pose);
-  Matrix found(static_cast<Eigen::Index>(pose.size()), components.cols());
-  for (Eigen::Index j = 0; j < components.cols(); ++j) {
-    const Vector by = kStepOfPose / std::max(components.col(j).cwiseAbs().maxCoeff(), 1e-300) * components.col(j);
-    const Vector change = commanded_(nominal, small_displacement(by)) - commanded_(nominal, small_displacement(-by));
-    const double step = by.norm() / std::max(components.col(j).norm(), 1e-300);
-    found.col(j) = components.col(j).isZero(0.0) ? Vector(Vector::Zero(found.rows())) : Vector(change / (2.0 * step));
-  }
-  return found;
 }
 
 }  // namespace poesy::calibration

@@ -30,21 +30,9 @@ class DriveCorrection {
   /// if it is out of reach or not found.
   std::optional<std::vector<double>> drive_at(std::span<const double> pose, const Vector& errors) const;
 
-  /// The derivatives of the displacement's components by the drives along which commanded coordinates change by one
-  /// each, B (C B)^-1, [9 x coordinates], without errors.
-  Matrix by_coordinates(std::span<const double> pose) const;
-  /// The errors of the commanded coordinates to first order for each column of derivatives of components, C G.
-  /// components: [9 x n].
-  Matrix coordinate_errors(std::span<const double> pose, const Matrix& components) const;
-
  private:
-  /// The derivatives of components [9 x coordinates] and of coordinate errors [coordinates x coordinates] by the
-  /// pose's coordinates.
-  struct ByPose {
-    Matrix components;
-    Matrix coordinates;
-  };
-  ByPose by_pose(std::span<const double> pose) const;
+  /// The derivatives of coordinate errors [coordinates x coordinates] by the pose's coordinates.
+  Matrix by_pose(std::span<const double> pose) const;
   /// The coordinate errors if the perfect mechanism is at another pose, displaced there.
   Vector error_at(const Placement& nominal, std::span<const double> other, const Displacement& displacement) const;
 

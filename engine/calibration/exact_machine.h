@@ -54,7 +54,6 @@ class ExactMachine {
   const Model& model() const { return *model_; }            ///< The model.
   std::size_t errors() const { return no_errors_.size(); }  ///< The number of all errors, F.
   double reach() const { return reach_; }                   ///< Largest distance between joints and P at home, m.
-  bool has_tool() const { return has_tool_; }               ///< Whether the platform has a tool.
 
   /// Where the platform is without errors. Precondition: the pose is reachable.
   Placement nominal(std::span<const double> pose) const;

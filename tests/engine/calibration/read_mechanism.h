@@ -1,0 +1,48 @@
+#pragma once
+
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "engine/calibration/fit.h"
+#include "engine/model/model.h"
+#include "models/registry.h"
+
+namespace poesy::calibration {
+
+/// The text of a mechanism among the data of the tests.
+inline std::string mechanism_text(const std::string& name) {
+  std::ifstream file(std::string(POESY_TEST_DATA) + "/calibration/" + name);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// The model of a mechanism's text.
+inline std::unique_ptr<Model> model_of(const std::string& text) {
+  const CatalogEntry entry = registry().from_text(text, "mechanism.toml");
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
+  return entry.build(geometry, 0);
+}
+
+/// Columns F for the errors of these names, each with its factor 1.
+inline Matrix columns_for(const Model& model, const std::vector<std::vector<std::string>>& fitted) {
+  const ModelDescription& description = model.description();
+  Matrix F =
+      Matrix::Zero(static_cast<Eigen::Index>(description.factors.size()), static_cast<Eigen::Index>(fitted.size()));
+  for (std::size_t j = 0; j < fitted.size(); ++j) {
+    for (const std::string& name : fitted[j]) {
+      F(static_cast<Eigen::Index>(description.find_factor(name)->value), static_cast<Eigen::Index>(j)) = 1.0;
+    }
+  }
+  return F;
+}
+
+/// Directions with one scale.
+inline FittedDirections directions_for(const ExactMachine& machine, const Matrix& F, double scale) {
+  return {F, Vector::Constant(F.cols(), scale), difference_steps(machine, F)};
+}
+
+}  // namespace poesy::calibration
