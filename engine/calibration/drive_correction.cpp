@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-
 namespace poesy::calibration {
 namespace {
 

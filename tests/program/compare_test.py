@@ -42,8 +42,8 @@ class Compare(ProgramTest):
     def setUp(self):
         super().setUp()
         self.results = []
-        for name, sigma in (("a", "0.02"), ("b", "0.015"), ("c", "0.0201")):
-            self.write(f"{name}.toml", STUDY.replace("0.02 mm", f"{sigma} mm"))
+        for name, linear, angular in (("a", "0.02 mm", "0.01 deg"), ("b", "0.02 mm", "0.005 deg"), ("c", "0.0201 mm", "0.01 deg")):
+            self.write(f"{name}.toml", STUDY.replace("0.02 mm", linear).replace("0.01 deg", angular))
             self.succeeds("run", f"{name}.toml", "--quiet")
             self.results.append(f"{name}.h5")
 
@@ -59,11 +59,11 @@ class Compare(ProgramTest):
         low = rows[1]["change"] - ((rows[1]["value"] - rows[1]["low"]) ** 2 + (rows[0]["high"] - rows[0]["value"]) ** 2) ** 0.5
         self.assertAlmostEqual(rows[1]["change_low"], low, places=10)
         settings = [table for table in both["tables"] if table["name"] == "settings"]
-        self.assertEqual([row["setting"] for row in settings[0]["rows"]], ["errors.linear"])
+        self.assertEqual([row["setting"] for row in settings[0]["rows"]], ["errors.angular"])
 
     def test_two_as_text_and_as_a_report(self):
         text = " ".join(self.succeeds("show", "a.h5", "b.h5").split())
-        for words in ("Which is better: B against A", "better", "Settings that differ", "0.015 mm", "root mean square of gap"):
+        for words in ("Which is better: B against A", "better", "Settings that differ", "0.005 deg", "root mean square of gap"):
             self.assertIn(words, text)
         self.succeeds("report", "a.h5", "b.h5", "-o", "two.html")
         page = (self.folder / "two.html").read_text()

@@ -364,7 +364,8 @@ TEST(ResolvedTextOfTolerances, ReadsBackToTheSameStudy) {
   expect_reads_back(with_analysis(kLimits + kSigmas + kOnePart + "values = [\"0.0123 mm\", \"0.3 mm\"]\n"));
   expect_reads_back(with_analysis(kLimits + kSigmas + kOnePart + "tolerance = \"0.3 mm\"\n"));
   expect_reads_back(with_analysis(kLimits + kSigmas + kOnePart + "round = \"R20\"\n"));
-  expect_reads_back(with_analysis(kLimits + kSigmas + kOnePart + "round = \"0.0013 mm\"\nbounds = [\"0 mm\", \"1 mm\"]\n"));
+  expect_reads_back(
+      with_analysis(kLimits + kSigmas + kOnePart + "round = \"0.0013 mm\"\nbounds = [\"0 mm\", \"1 mm\"]\n"));
   expect_reads_back(
       with_analysis(kLimits + kSigmas +
                     "[[analysis.parts]]\nfactors = \"linear\"\n"
