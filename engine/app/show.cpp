@@ -157,10 +157,8 @@ ComparedResults compare(const ReportKind& kind, std::span<const ReportedResult> 
   ComparedResults compared;
   std::vector<const StoredResult*> stored;
   for (const ReportedResult& one : results) stored.push_back(&one.stored);
-  const std::string response = compared_response(stored);
-  std::vector<std::vector<Merit>> found;
-  for (const StoredResult* one : stored) found.push_back(merits(kind, *one, response));
-  if (std::optional<Table> table = merits_table(found)) compared.tables.push_back(std::move(*table));
+  if (std::optional<Table> table = merits_table(compared_merits(kind, stored)))
+    compared.tables.push_back(std::move(*table));
   for (std::size_t n = 1; n < results.size(); ++n) {
     Table settings = settings_table(*stored[0], *stored[n], n, false);
     if (!settings.rows.empty()) compared.tables.push_back(std::move(settings));

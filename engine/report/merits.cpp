@@ -121,15 +121,6 @@ char letter_of(std::size_t result) {
   return static_cast<char>('A' + result);
 }
 
-std::vector<Merit> merits(const ReportKind& kind, const StoredResult& result, std::string_view response) {
-  std::vector<Merit> list;
-  if (result.verdicts && result.verdicts->yield) list.push_back(yield_merit(*result.verdicts->yield));
-  if (kind.merits != nullptr) {
-    for (Merit& merit : kind.merits(result, response)) list.push_back(std::move(merit));
-  }
-  return list;
-}
-
 std::string compared_response(std::span<const StoredResult* const> results) {
   const auto in_all = [&](const std::string& name) {
     return std::ranges::all_of(results, [&](const StoredResult* result) {
@@ -140,6 +131,20 @@ std::string compared_response(std::span<const StoredResult* const> results) {
   if (const std::string name = default_ranking(first); in_all(name)) return name;
   const auto at = std::ranges::find_if(first.responses, in_all, &NamedUnit::name);
   return at == first.responses.end() ? std::string() : at->name;
+}
+
+std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results) {
+  const auto differs = [&](const StoredResult* result) { return differ_in_metric(*results.front(), *result); };
+  if (std::ranges::any_of(results, differs)) return std::vector<std::vector<Merit>>(results.size());
+  const std::string response = compared_response(results);
+  std::vector<std::vector<Merit>> found;
+  for (const StoredResult* result : results) {
+    std::vector<Merit>& list = found.emplace_back();
+    if (result->verdicts && result->verdicts->yield) list.push_back(yield_merit(*result->verdicts->yield));
+    if (kind.merits == nullptr) continue;
+    for (Merit& merit : kind.merits(*result, response)) list.push_back(std::move(merit));
+  }
+  return found;
 }
 
 MeritChange change_of(const Merit& a, const Merit& b) {

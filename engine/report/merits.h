@@ -32,13 +32,13 @@ inline constexpr std::size_t kMostResults = 26;
 /// The name of one of several results: 'A', 'B', ... Precondition: result < kMostResults.
 char letter_of(std::size_t result);
 
-/// The figures of merit of a result: its yield, if its machines were judged, then those of its kind. response: the name
-/// of the response whose totals are compared; totals are left out if the result does not have it.
-std::vector<Merit> merits(const ReportKind& kind, const StoredResult& result, std::string_view response);
-
 /// The response whose totals are compared: the first result's default_ranking() if all have it, otherwise the first
 /// that all have; empty if there is none.
 std::string compared_response(std::span<const StoredResult* const> results);
+
+/// The figures of merit of each of these results: its yield, if its machines were judged, then those of its kind for
+/// compared_response(). Empty lists if the results have different metrics, by which a number means different things.
+std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results);
 
 /// What is said of a change.
 enum class Change { better, worse, not_told_apart, without_interval };

@@ -235,9 +235,7 @@ Page comparison_page(const ReportKind& kind, std::span<const ReportedResult> res
     }
     stored.push_back(&results[n].stored);
   }
-  const std::string response = compared_response(stored);
-  std::vector<std::vector<Merit>> found;
-  for (const StoredResult* result : stored) found.push_back(merits(kind, *result, response));
+  const std::vector<std::vector<Merit>> found = compared_merits(kind, stored);
   page.answer = merits_answer(found);
   add_merits(results, found, page);
   add_studies(results, page);
