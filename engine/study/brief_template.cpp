@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kWidth = 120;
 
 /// Keys that are shown although they state their default.
-constexpr std::array<std::string_view, 8> kOftenChanged{"samples", "select", "count",  "linear",
+constexpr std::array<std::string_view, 9> kOftenChanged{"samples", "select", "count",  "linear", "relative",
                                                         "angular", "draws",  "limits", "yield"};
 /// Keys that are left out although their default is not a value.
 constexpr std::array<std::string_view, 3> kRarelyChanged{"title", "fidelity", "tolerance"};

@@ -62,7 +62,7 @@ class CommandLine(ProgramTest):
         self.succeeds("check", "--", "--study.toml")
 
     def test_too_many_results(self):
-        self.refuses("report a b c", "poesy report takes at most 2 results, not 3; write poesy report RESULT.h5 ... [options], "
+        self.refuses("report" + 27 * " a", "poesy report takes at most 26 results, not 27; write poesy report RESULT.h5 ... [options], "
                                      "see poesy report --help")
 
     def test_options(self):

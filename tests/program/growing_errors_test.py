@@ -257,7 +257,7 @@ class GrowingErrors(ProgramTest):
         said = " ".join(self.succeeds("models", "machine.toml").split())
         self.assertIn("linear error along z of frame 2, grows with q, from -20 mm", said)
         template = self.succeeds("template", "machine.toml", "monte-carlo")
-        self.assertIn('relative = { distribution = "normal", sigma = 0.001 }', template)
+        self.assertIn('\nrelative = { distribution = "normal", sigma = 0.001 }', template)
         self.write("study.toml", STUDY.format(analysis='kind = "monte-carlo"').replace("0.05 %", "50 um"))
         self.refuses("study.toml", "study.toml:5:58: errors.relative.sigma is '50 um', but must be a number; write it without a unit, or like")
         self.write("study.toml", STUDY.format(analysis='kind = "monte-carlo"').replace("0.05 %", "200 %"))

@@ -44,7 +44,7 @@ class LeadingResponse(ProgramTest):
                 self.assertIn(f"Effect of each error on {response} at", captions)
                 self.assertIn(f"features of the drawing do to {response} in", captions)
                 for kind, sign in (("allocation", ""), ("monte-carlo", "# ")):
-                    template = self.succeeds("template", "delta.toml", kind)
+                    template = self.succeeds("template", "delta.toml", kind, "--full")
                     self.assertIn(f'\n{sign}limits = {{ {response} = "0.05 mm" }}', template)
                 self.succeeds("report", f"{response}.h5", "-o", f"{response}.html")
                 text = (self.folder / f"{response}.html").read_text()

@@ -28,7 +28,7 @@ class Reference(ProgramTest):
                     text = self.succeeds("template", model, kind, *options)
                     self.write("study.toml", text)
                     study = self.succeeds("check", "study.toml")
-                    resolved.append([line for line in study.splitlines() if not line.startswith("title")])
+                    resolved.append([line for line in study.splitlines() if not line.startswith(("title", "#"))])
                     lines = [line for line in text.splitlines() if line]
                     if not options:
                         self.assertLessEqual(len(lines), 29)
