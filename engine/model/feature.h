@@ -42,7 +42,8 @@ struct Feature {
   std::size_t limb;                      ///< counts from 1
   std::size_t frame;                     ///< of the limb, that its errors change
   FeatureKind kind;                      ///< what it is
-  std::array<double, 2> size = {};       ///< m: length of an axis; sides of a rectangle; diameter of a round plane
+  /// m: length of an axis; sides of a rectangle; diameter of a round plane; nominal size of a distance, 0 if unknown
+  std::array<double, 2> size = {};
   bool one_direction = false;            ///< whether the zone of an axis or a point is between two planes
   std::vector<FactorIndex> middle = {};  ///< errors that move it: x, y of an axis; z of a plane; x, y, z; a distance
   std::vector<FactorIndex> tilt = {};    ///< errors that turn it: lean_x, lean_y of an axis; lift_x, lift_y of a plane

@@ -29,7 +29,7 @@ const Keys<WrittenZone, Nothing>& zone_keys() {
       .paths = {"limb.features.ZONE"},
       .meaning = "A zone with its datums.",
       .rows = {needed("zone", kept("length", expression, &WrittenZone::size), "\"0.05 mm\"",
-                      "Its width, or its diameter around an axis or a point."),
+                      "Its width, or its diameter around an axis or a point; or \"general\", by [drawing]."),
                optional("datums", text_at(&WrittenZone::datums), "none",
                         "The datums of the drawing, for tables: \"A|B\". The feature is toleranced in the frame of "
                         "its part.")}};
@@ -44,10 +44,6 @@ void read_zone(std::string_view key, const StudyValue& value, FeatureLines& feat
     written.size = expression(value);
   }
   check_modifiers(value, written.size->text);
-  if (written.size->text == "general") {
-    throw InputError(written.size->place, written.size->key + " is a general tolerance, which has no value here",
-                     "write the length that the standard gives, because nothing is assumed in silence");
-  }
   feature.zones.push_back({key, *written.size, written.datums});
 }
 
@@ -88,8 +84,8 @@ std::optional<std::size_t> read_axis(const StudyValue& value) {
 template <std::size_t... kPositions>
 std::vector<Row<FeatureLines>> zone_rows(std::index_sequence<kPositions...>) {
   constexpr std::string_view kMeaning =
-      "A zone of the drawing: a length, or { zone = \"0.05 mm\", datums = \"A|B\" }. A feature has at most one of "
-      "location and one of orientation.";
+      "A zone of the drawing: a length, \"general\", or { zone = \"0.05 mm\", datums = \"A|B\" }. A feature has at "
+      "most one of location and one of orientation.";
   return {optional("", read_by("length or table", &read_zone_at<kPositions>), "none", kMeaning)...};
 }
 
@@ -141,6 +137,8 @@ const Keys<FeatureLines, Nothing>& feature_keys() {
                      {"plane"}),
             needed("direction", kept("direction", direction, &F::direction), "[1, 0, 0]",
                    "Along which the distance is measured: its far end is at the joint.", {"distance"}),
+            optional("nominal_size", kept("length", expression, &F::nominal_size), "none",
+                     "How long the distance is, for tables and for a general tolerance.", {"distance"}),
             optional("z", kept("direction", direction, &F::z), "the joint's axis",
                      "Along the axis, or normal to the plane.", placed),
             optional("x", kept("direction", direction, &F::x), "that of the joint's frame",

@@ -29,6 +29,8 @@ struct ZoneLines {
   std::string_view key;  ///< "position"
   Expression size;       ///< width or diameter
   std::string datums;    ///< "A|B"; empty: none
+
+  bool is_general() const { return size.text == "general"; }  ///< Whether a standard gives its size.
 };
 
 /// A feature, as written.
@@ -46,11 +48,13 @@ struct FeatureLines {
   std::vector<Expression> size;          ///< sides of a plane, along x and y
   std::optional<Expression> diameter;    ///< of a round plane
   std::optional<Triple> direction;       ///< of a distance
-  std::optional<Triple> z;               ///< none: the joint's axis
-  std::optional<Triple> x;               ///< none: that of the joint's frame
-  ZoneShape shape = ZoneShape::usual;    ///< of its zones
-  std::string along;                     ///< "x" or "y": across the planes of its zones
-  std::vector<ZoneLines> zones;          ///< in the order of zone_traits()
+  /// How long a distance is.
+  std::optional<Expression> nominal_size;
+  std::optional<Triple> z;             ///< none: the joint's axis
+  std::optional<Triple> x;             ///< none: that of the joint's frame
+  ZoneShape shape = ZoneShape::usual;  ///< of its zones
+  std::string along;                   ///< "x" or "y": across the planes of its zones
+  std::vector<ZoneLines> zones;        ///< in the order of zone_traits()
 };
 
 /// Where the pin of a clearance is.

@@ -10,6 +10,7 @@
 #include "engine/base/text.h"
 #include "engine/fits/fit.h"
 #include "models/file/factors.h"
+#include "models/file/general.h"
 
 namespace poesy::file {
 namespace {
@@ -171,10 +172,13 @@ class FeatureBuilder {
     Feature feature{.name = {}, .label = lines.name, .limb = 0, .frame = 0, .kind = kind_of(lines)};
     feature.one_direction = lines.shape == ZoneShape::planes;
     if (lines.length) feature.size[0] = numbers_.positive(*lines.length, kLength);
+    if (lines.nominal_size) feature.size[0] = numbers_.positive(*lines.nominal_size, kLength);
     if (lines.diameter) feature.size.fill(numbers_.positive(*lines.diameter, kLength));
     for (std::size_t k = 0; k < lines.size.size(); ++k) feature.size[k] = numbers_.positive(lines.size[k], kLength);
     for (const ZoneLines& zone : lines.zones) {
-      const Zone made{zone.key, numbers_.positive(zone.size, kLength), zone.datums};
+      const double size = zone.is_general() ? general_size(zone, feature, numbers_.file().general)
+                                            : numbers_.positive(zone.size, kLength);
+      const Zone made{zone.key, size, zone.datums};
       const bool turns_only = zone_class(zone.key, feature.kind) == ZoneClass::orientation;
       (turns_only ? feature.orientation : feature.location) = made;
     }

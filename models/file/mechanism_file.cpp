@@ -739,6 +739,7 @@ const Keys<MechanismFile, Nothing>& file_keys() {
                  "What the limbs hold."),
           optional("body", kept("tables", read_bodies, &F::bodies), "none", "Rigid parts besides base and platform."),
           needed("limb", kept("tables", limbs, &F::limbs), "[{ joints = }], or [[limb]] for each", "The limbs."),
+          optional("drawing", kept("table", read_drawing, &F::general), "none", "General tolerances of the drawing."),
           optional("load", kept("table", read_load, &F::load), "none",
                    "Loads, which act where the mechanism has stiffness; [mechanism.load] of a study replaces them."),
           optional<F>("response", {.type = "tables"}, "none",
@@ -835,6 +836,7 @@ const StudyTables& mechanism_file_tables() {
         of_names({"sets"}, "SET", "list", "A set: names or patterns of errors.")};
     for (StudyTable& part : part_tables()) list.push_back(std::move(part));
     for (StudyTable& one : feature_tables()) list.push_back(std::move(one));
+    list.push_back(drawing_keys_table());
     for (StudyTable& own : own_response_tables()) list.push_back(std::move(own));
     return list;
   }();

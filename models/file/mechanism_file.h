@@ -13,6 +13,7 @@
 #include "engine/model/own_responses.h"
 #include "engine/schema/keys.h"
 #include "models/file/feature_lines.h"
+#include "models/file/general.h"
 #include "models/file/lines.h"
 #include "models/file/part_lines.h"
 
@@ -160,6 +161,7 @@ struct MechanismFile {
   ErrorsAbout about = ErrorsAbout::joint;        ///< of all errors
   std::vector<ErrorLines> errors;                ///< errors with their own names
   std::vector<SetLines> sets;                    ///< sets other than "all"
+  GeneralLines general;                          ///< general tolerances of the drawing
 
   /// Whether a limb has features.
   bool has_features() const;

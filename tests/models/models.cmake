@@ -24,7 +24,7 @@ poesy_test(file_model_test LABELS unit SOURCES models/file/errors_test.cpp model
 poesy_test(compiled_test LABELS regression SOURCES models/file/compiled_test.cpp models/file/nategh_agheli_test.cpp
            LINKS poesy_models DATA)
 poesy_test(mechanism_file_test LABELS property
-           SOURCES models/file/drawing_gaps_test.cpp models/file/expression_test.cpp models/file/features_test.cpp models/file/frames_test.cpp
+           SOURCES models/file/drawing_gaps_test.cpp models/file/expression_test.cpp models/file/features_test.cpp models/file/frames_test.cpp models/file/general_test.cpp
                    models/file/mechanism_file_test.cpp
                    models/file/mobility_test.cpp models/file/oracle_test.cpp models/file/rounding_test.cpp
                    models/file/tracking_test.cpp

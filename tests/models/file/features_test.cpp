@@ -214,8 +214,9 @@ TEST(Features, AreRefusedWithPlaceAndRemedy) {
            "m.toml:19:103: limb[0].features[1].position has the modifier (M), which depends on the actual size, which "
            "is not modelled; remove it; the zone is then the smallest that it allows"},
           {"position = { zone = \"0.05 mm\"", "position = { zone = \"general\"",
-           "m.toml:19:112: limb[0].features[1].position.zone is a general tolerance, which has no value here; write "
-           "the length that the standard gives, because nothing is assumed in silence"},
+           "m.toml:19:112: limb[0].features[1].position.zone is \"general\", but ISO 2768-2 never held for position, "
+           "coaxiality, angularity, profile and total run-out; write the length that is meant, because nothing is "
+           "assumed in silence"},
           {"position = { zone = \"0.05 mm\"", "position = { zone = \"-0.05 mm\"",
            "m.toml:19:112: limb[0].features[1].position.zone '-0.05 mm' is not greater than 0; write a value greater "
            "than 0"},
@@ -259,7 +260,7 @@ TEST(Features, AreRefusedWithPlaceAndRemedy) {
            "m.toml:26:53: limb[0].features[8].part is 'behind', which is unknown; known: before, after"},
           {"part = \"after\", kind", "part = \"after\", fit = 3, kind",
            "m.toml:26:62: unknown key 'fit' in [limb[0].features[8]]; known: kind, name, joint, axis, part, at, "
-           "length, size, diameter, direction, z, x, ... (28 in all)"},
+           "length, size, diameter, direction, nominal_size, z, ... (29 in all)"},
           {"\"A|B\" } } ]",
            "\"A|B\" } } ]\n\n[[error]]\nname = \"k\"\nlimb = 1\nframe = 1\ncomponent = \"delta_x\"\ncomponents = { "
            "delta_y = 1 }\n",
