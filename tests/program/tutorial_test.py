@@ -59,7 +59,7 @@ class Tutorial(ProgramTest):
         for block, shown in commands:
             output = self.run_block(block)
             self.assertIsNone(first_not_printed(shown, output), f"{block}\n{output}")
-        for name in ("linear-delta.toml", "study.toml", "allocation.toml"):
+        for name in ("linear-delta.toml", "study.toml", "allocation.toml", "drawn-delta.toml", "drawing.toml"):
             self.assertEqual((self.work / name).read_bytes(), (TUTORIAL / name).read_bytes(), name)
         with h5py.File(self.work / "precise.h5") as file:
             self.assertIn("convergence", file)

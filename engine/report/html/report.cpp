@@ -131,6 +131,13 @@ void add_mechanism(const ReportKind& kind, const ReportedResult& result, Page& p
   if (!section.body().empty()) page.sections.push_back(std::move(section));
 }
 
+/// Adds the section with the features of the drawing, if there are any.
+void add_features(std::span<const Table> tables, Page& page) {
+  Section section("features", "The features of the drawing");
+  section.table(tables, "features");
+  if (!section.body().empty()) page.sections.push_back(std::move(section));
+}
+
 /// The page of one result.
 Page page_of(const ReportKind& kind, const ReportedResult& result) {
   Page page;
@@ -140,7 +147,9 @@ Page page_of(const ReportKind& kind, const ReportedResult& result) {
   page.warnings = warnings(kind, result);
   add_responses(result.stored, page);
   add_mechanism(kind, result, page);
-  kind.page(result.stored, result_tables(kind, result.stored, {default_ranking(result.stored)}), page);
+  const std::vector<Table> tables = result_tables(kind, result.stored, {default_ranking(result.stored)});
+  kind.page(result.stored, tables, page);
+  add_features(tables, page);
   add_glossary(result.stored, page);
   add_outcomes(kind, result, page);
   add_what_was_run(kind, {&result, 1}, page);
