@@ -26,7 +26,7 @@ struct Ends {
 
 /// The limit between two ends. A response without sign is limited by its magnitude.
 ValueLimit between(const StudyValue& value, const Ends& ends, const Response& response) {
-  const auto text = [&](double end) { return to_text({end, response.dimension}); };
+  const auto text = [&](double end) { return readable_text({end, response.dimension}); };
   if (!(ends.from < ends.to)) {
     value.fail("runs from " + text(ends.from) + " to " + text(ends.to),
                "write the lower end first, and two different ends");

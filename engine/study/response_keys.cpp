@@ -40,7 +40,7 @@ void check_other_poses(const Study& study, const Reading& reading) {
     throw InputError(reading.root.section("errors").place(),
                      "machines draw '" + study.model().factors[anew->value].name + "' anew at each pose, and '" +
                          relative->name + "' is less its value at another pose",
-                     "leave out draws = \"per pose\" or this response");
+                     "name errors without it in analysis.factors, or leave out draws = \"per pose\" or this response");
   }
   if (is_machine || study.analysis.kind->has_pose_before) return;
   for (const OwnResponse& own : study.mechanism.responses) {

@@ -25,6 +25,12 @@ constexpr std::array<std::string_view, 1> kShapes{"normal"};
 
 void read_shape(const StudyValue& value, WrittenScatter&) { static_cast<void>(value.word(kShapes)); }
 
+/// A zone of any size divided by more is too small for the standard deviation of an error.
+NumberBounds above_zero_to_a_million(std::string_view example) {
+  return {0.0, 1e6, false, "greater than 0 and less than 1e6",
+          fmt::format("it must lie between 0 and 1e6, e.g. {}", example)};
+}
+
 /// A number within bounds, for a member that may have none.
 KeyValue<WrittenScatter> number(std::optional<double> WrittenScatter::*member, const NumberBounds& bounds) {
   return {
@@ -47,13 +53,13 @@ const InnerRows<WrittenScatter>& scatter_keys() {
                            .example = "\"normal\"",
                            .meaning = "Shape of the distribution."},
                InnerRow<W>{.name = "sigmas",
-                           .value = number(&W::sigmas, above_zero("3")),
+                           .value = number(&W::sigmas, above_zero_to_a_million("3")),
                            .usual = "",
                            .meaning = "Half a zone in standard deviations of a coordinate of an extreme point. 3 of "
                                       "them keep 99.73 % of distances, 98.89 % of points in a disc and 97.07 % in a "
                                       "ball."},
                InnerRow<W>{.name = "cpk",
-                           .value = number(&W::cpk, above_zero("1.33")),
+                           .value = number(&W::cpk, above_zero_to_a_million("1.33")),
                            .usual = "",
                            .meaning = "Instead: a third of that."},
                InnerRow<W>{.name = "within",

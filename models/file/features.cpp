@@ -21,6 +21,8 @@ using Eigen::Index;
 /// A share of a column below this is rounding.
 constexpr double kRounding = 1e-13;
 
+constexpr double kSmallestSize = 1e-12;  ///< of a feature, m
+
 /// Where a feature is, in the base frame at home.
 struct FeatureFrame {
   Matrix3 axes;    ///< columns x, y, z
@@ -167,18 +169,26 @@ class FeatureBuilder {
                      "write another x");
   }
 
+  /// A size, a zone or a clearance: none that is positive is so small that a slope or a scatter of it leaves the
+  /// doubles.
+  double size(const Expression& expression) const {
+    const double value = numbers_.positive(expression, kLength);
+    if (value >= kSmallestSize) return value;
+    throw InputError(expression.place, expression.key + " '" + expression.text + "' is below 1e-09 mm",
+                     "write a size that a drawing may have");
+  }
+
   /// Sizes and zones, without the number of a limb.
   Feature described(const FeatureLines& lines) const {
     Feature feature{.name = {}, .label = lines.name, .limb = 0, .frame = 0, .kind = kind_of(lines)};
     feature.one_direction = lines.shape == ZoneShape::planes;
-    if (lines.length) feature.size[0] = numbers_.positive(*lines.length, kLength);
-    if (lines.nominal_size) feature.size[0] = numbers_.positive(*lines.nominal_size, kLength);
-    if (lines.diameter) feature.size.fill(numbers_.positive(*lines.diameter, kLength));
-    for (std::size_t k = 0; k < lines.size.size(); ++k) feature.size[k] = numbers_.positive(lines.size[k], kLength);
+    if (lines.length) feature.size[0] = size(*lines.length);
+    if (lines.nominal_size) feature.size[0] = size(*lines.nominal_size);
+    if (lines.diameter) feature.size.fill(size(*lines.diameter));
+    for (std::size_t k = 0; k < lines.size.size(); ++k) feature.size[k] = size(lines.size[k]);
     for (const ZoneLines& zone : lines.zones) {
-      const double size = zone.is_general() ? general_size(zone, feature, numbers_.file().general)
-                                            : numbers_.positive(zone.size, kLength);
-      const Zone made{zone.key, size, zone.datums};
+      const double width = zone.is_general() ? general_size(zone, feature, numbers_.file().general) : size(zone.size);
+      const Zone made{zone.key, width, zone.datums};
       const bool turns_only = zone_class(zone.key, feature.kind) == ZoneClass::orientation;
       (turns_only ? feature.orientation : feature.location) = made;
     }
@@ -216,7 +226,7 @@ class FeatureBuilder {
 
   Clearance by_ends(const ClearanceLines& lines) const {
     const double least = numbers_.length(*lines.least);
-    const double most = numbers_.positive(*lines.most, kLength);
+    const double most = size(*lines.most);
     if (least < 0.0 || least > most) {
       throw InputError(lines.least->place, lines.least->key + " '" + lines.least->text + "' is not between 0 and most",
                        "write the smaller clearance first; a pin that is pressed in has none");

@@ -92,7 +92,7 @@ TEST(LimitKeys, SayWhatIsWrong) {
   const std::vector<BadLimit> list{
       {kPerMachine,
        "z = ^[\"2 mm\", \"-1 mm\"]",
-       {"analysis.limits.z runs from 0.002 m to -0.001 m", "lower end first"}},
+       {"analysis.limits.z runs from 2 mm to -1 mm", "lower end first"}},
       {kPerMachine, "z = ^[\"2 mm\", \"2 mm\"]", {"two different ends"}},
       {kPerMachine, "z = ^[\"2 mm\"]", {"the lower one first; { to = ... } has one end"}},
       {kPerMachine, "z = [\"2 mm\", ^\"2 deg\"]", {"analysis.limits.z[1] is '2 deg', but must be a length"}},
