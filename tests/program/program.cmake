@@ -17,6 +17,7 @@ function(program_test name label)
 endfunction()
 
 program_test(bad_input unit)
+program_test(wrong_words unit)
 program_test(csv unit)
 program_test(frames regression)
 program_test(untrusted robustness)
