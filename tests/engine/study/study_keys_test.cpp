@@ -445,6 +445,7 @@ TEST(StudyKeys, HaveTheBoundsThatTheyName) {
               {"\"9.99e-31 m\"", "\"9.99e-31 rad\""},
               "it must be at least 1e-30 m or 1e-30 rad"},
       Outside{"the smaller one first", {"[\"1 mm\", 0]", "[\"1 deg\", 0]"}, "the smaller limit first"},
+      Outside{"greater than 0 and less than 1e6", {"0", "1e6"}, "it must lie between 0 and 1e6"},
       Outside{"greater than 1", {"1"}, "it must be greater than 1"},
       Outside{"between 0 and 1", {"0", "1", "[0]", "[1]"}, "it must lie between 0 and 1"},
       Outside{"at least 8", {"7", "[\"1 mm\"]"}, "at least 8"},
