@@ -12,7 +12,11 @@ namespace {
 
 constexpr int kMostSteps = 30;
 constexpr int kMostHalvings = 20;
-constexpr double kShortest = 1e-9;        // of the scale
+constexpr double kShortest = 1e-9;  // of the scale
+// A step that changes all values together by less than this share of their noise moves no estimate by more than this
+// share of its standard deviation.
+constexpr double kShortestInNoise = 1e-8;
+constexpr double kRounding = 1e-15;       // m or rad, of an exact solve
 constexpr double kRoundingOfSum = 1e-10;  // a sum that grows by this share of it has not grown
 constexpr double kRankOfFrame = 1e-9;     // of the largest pivot, among columns of norm 1
 constexpr double kStepOfPlace = 1e-4;     // m, rad or a slope
@@ -65,11 +69,12 @@ struct Point {
 /// A fit on its way.
 class Path {
  public:
-  Path(const FitProblem& problem, Vector theta)
+  explicit Path(const FitProblem& problem)
       : problem_(&problem),
         function_(problem.measurement, problem.directions),
         measured_(problem.measurement.measured()) {
-    if (auto first = point(std::move(theta), problem.measurement.start())) here_ = *std::move(first);
+    const Vector none = Vector::Zero(problem.directions.F.cols());
+    if (auto first = point(none, problem.measurement.start())) here_ = *std::move(first);
     has_begun_ = here_.theta.size() > 0;
   }
 
@@ -77,8 +82,9 @@ class Path {
   const Point& here() const { return here_; }
   std::optional<Derivatives> derivatives() const { return function_.derivatives(here_.theta, here_.phi); }
 
-  /// Makes a step. Returns its length over the scale; none if no part of it lowers the sum.
-  std::optional<double> step(const Derivatives& derivatives) {
+  /// Makes a step. Returns whether it was so short that nothing remains to be done; none if no part of it lowers the
+  /// sum.
+  std::optional<bool> step(const Derivatives& derivatives) {
     const Vector& scale = problem_->directions.scale;
     const ScaledFit at = scaled_fit(derivatives, problem_->sd, scale);
     const Matrix prior = problem_->prior.root * scale.asDiagonal();
@@ -87,16 +93,17 @@ class Path {
     for (int n = 0; n <= kMostHalvings; ++n) {
       const double share = std::ldexp(1.0, -n);
       auto there = point(here_.theta + share * scale.cwiseProduct(of_theta), here_.phi + share * of_phi);
-      if (!there || !(there->sum() <= here_.sum() * (1.0 + kRoundingOfSum) + kLeastSum())) continue;
+      if (!there || !(there->sum() <= here_.sum() * (1.0 + kRoundingOfSum) + 100.0 * least_sum())) continue;
       here_ = *std::move(there);
-      return share * of_theta.cwiseAbs().maxCoeff();
+      return share * of_theta.cwiseAbs().maxCoeff() < kShortest ||
+             share * (at.reduced * of_theta).norm() < std::max(kShortestInNoise, 10.0 * std::sqrt(least_sum()));
     }
     return std::nullopt;
   }
 
  private:
-  /// A sum of squares that rounding explains: each value is exact to 1e-14 m or rad.
-  double kLeastSum() const { return (1e-14 * problem_->sd.cwiseInverse()).squaredNorm(); }
+  /// A sum of squares that rounding explains.
+  double least_sum() const { return (kRounding * problem_->sd.cwiseInverse()).squaredNorm(); }
 
   std::optional<Point> point(Vector theta, Vector phi) const {
     const auto values = function_.values(theta, phi);
@@ -195,14 +202,13 @@ ScaledFit scaled_fit(const Derivatives& derivatives, const Vector& sd, const Vec
 
 FitResult fit(const FitProblem& problem) {
   FitResult result;
-  const Eigen::Index k = problem.directions.F.cols();
-  Path path(problem, problem.begin.size() == k ? problem.begin : Vector(Vector::Zero(k)));
+  Path path(problem);
   result.solved = path.has_begun();
   while (result.solved && !result.converged && result.steps < kMostSteps) {
     const auto derivatives = path.derivatives();
-    const auto length = derivatives ? path.step(*derivatives) : std::nullopt;
-    if (!length) break;
-    result.converged = *length < kShortest;
+    const auto is_last = derivatives ? path.step(*derivatives) : std::nullopt;
+    if (!is_last) break;
+    result.converged = *is_last;
     ++result.steps;
   }
   auto derivatives = result.solved ? path.derivatives() : std::nullopt;

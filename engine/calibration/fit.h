@@ -69,16 +69,15 @@ ScaledFit scaled_fit(const Derivatives& derivatives, const Vector& sd, const Vec
 
 /// A least-squares problem.
 struct FitProblem {
-  const Measurement& measurement;
-  const FittedDirections& directions;
-  Vector sd;          ///< [m] standard deviations, or equal weights
-  Prior prior = {};   ///< what is known before
-  Vector begin = {};  ///< [k] where theta begins; empty: at 0
+  const Measurement& measurement;      ///< what was measured
+  const FittedDirections& directions;  ///< what is fitted
+  Vector sd;                           ///< [m] standard deviations, or equal weights
+  Prior prior = {};                    ///< what is known before
 };
 
 /// The estimate.
 struct FitResult {
-  bool converged = false;   ///< whether a step was below 1e-9 of the scale
+  bool converged = false;   ///< whether a step was below 1e-9 of the scale, or 1e-8 of the noise
   bool solved = true;       ///< whether all machines on the way were solved; otherwise nothing else is valid
   std::size_t steps = 0;    ///< number of steps
   Vector theta;             ///< [k] fitted numbers, SI

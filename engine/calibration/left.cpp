@@ -9,7 +9,9 @@
 namespace poesy::calibration {
 namespace {
 
-constexpr double kStepOfPlace = 1e-4;  // m, rad or a slope
+constexpr double kStepOfPlace = 1e-5;  // m, rad or a slope
+// Of the steps of the four-point formula: differences of two points are exact to 1e-10 with it.
+constexpr double kShareOfStep = 0.02;
 
 /// The displacement as the device sees it whose frame is taken for that of `believed`.
 Displacement seen_by_device(const Displacement& displacement, const Placement& nominal, const Vector& actual,
@@ -29,6 +31,31 @@ Displacement seen_by_device(const Displacement& displacement, const Placement& n
     seen.moved.z() += slopes.x() + slopes.y() * place.x() + slopes.z() * place.y();
   }
   return seen;
+}
+
+/// The derivatives of what is left by the errors and places that are known, [9 x (k + places)].
+Matrix left_derivatives(ExactMachine& machine, std::span<const double> pose, std::span<const double> drive_at,
+                        const Vector& at, const Corrected& corrected, const Knowledge& known) {
+  const Eigen::Index k = known.theta.size();
+  const Eigen::Index places = known.phi.size();
+  const Vector steps = kShareOfStep * known.directions.step;
+  Matrix errors = at.replicate(1, 2 * (k + places));
+  Matrix phi = known.phi.replicate(1, 2 * (k + places));
+  for (Eigen::Index j = 0; j < k; ++j) {
+    errors.col(2 * j) += steps(j) * known.directions.F.col(j);
+    errors.col(2 * j + 1) -= steps(j) * known.directions.F.col(j);
+  }
+  for (Eigen::Index j = 0; j < places; ++j) {
+    phi(j, 2 * (k + j)) += kStepOfPlace;
+    phi(j, 2 * (k + j) + 1) -= kStepOfPlace;
+  }
+  const Matrix left = left_of_machines(machine, pose, drive_at, errors, phi, corrected);
+  Matrix G(left.rows(), k + places);
+  for (Eigen::Index j = 0; j < k + places; ++j) {
+    const double step = j < k ? steps(j) : kStepOfPlace;
+    G.col(j) = (left.col(2 * j) - left.col(2 * j + 1)) / (2.0 * step);
+  }
+  return G;
 }
 
 }  // namespace
@@ -73,28 +100,14 @@ std::optional<LeftAtPose> left_at(ExactMachine& machine, const DriveCorrection& 
                                   std::span<const double> pose, const Corrected& corrected, const Knowledge& known) {
   auto drive_at = correction.drive_at(pose, corrected.errors);
   if (!drive_at) return std::nullopt;
-  const Eigen::Index k = known.theta.size();
-  const Eigen::Index places = known.phi.size();
-  const Vector& steps = known.directions.step;
-  Matrix errors = known.errors().replicate(1, 2 * (k + places) + 1);
-  Matrix phi = known.phi.replicate(1, 2 * (k + places) + 1);
-  for (Eigen::Index j = 0; j < k; ++j) {
-    errors.col(2 * j) += steps(j) * known.directions.F.col(j);
-    errors.col(2 * j + 1) -= steps(j) * known.directions.F.col(j);
-  }
-  for (Eigen::Index j = 0; j < places; ++j) {
-    phi(j, 2 * (k + j)) += kStepOfPlace;
-    phi(j, 2 * (k + j) + 1) -= kStepOfPlace;
-  }
-  const Matrix left = left_of_machines(machine, pose, *drive_at, errors, phi, corrected);
-  if (!left.allFinite()) return std::nullopt;
-  Matrix G(9, k + places);
-  for (Eigen::Index j = 0; j < k + places; ++j) {
-    const double step = j < k ? steps(j) : kStepOfPlace;
-    G.col(j) = (left.col(2 * j) - left.col(2 * j + 1)) / (2.0 * step);
-  }
+  const Vector errors = known.errors();
+  const Matrix mean = left_of_machines(machine, pose, *drive_at, errors, known.phi, corrected);
+  const bool is_nominal = corrected.frame == Frame::known;
+  const Matrix G = left_derivatives(machine, pose, is_nominal ? pose : std::span<const double>(*drive_at),
+                                    is_nominal ? Vector(Vector::Zero(errors.size())) : errors, corrected, known);
+  if (!mean.allFinite() || !G.allFinite()) return std::nullopt;
   const Vector squares = (G * known.covariance).cwiseProduct(G).rowwise().sum();
-  return LeftAtPose{*std::move(drive_at), left.rightCols(1), squares.cwiseMax(0.0).cwiseSqrt()};
+  return LeftAtPose{*std::move(drive_at), mean, squares.cwiseMax(0.0).cwiseSqrt()};
 }
 
 }  // namespace poesy::calibration

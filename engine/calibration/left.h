@@ -37,7 +37,7 @@ struct Corrected {
 struct LeftAtPose {
   std::vector<double> drive_at;  ///< pose at which the perfect mechanism has the corrected drives
   Components mean;               ///< exact displacement for the estimated errors
-  Components sd;                 ///< standard deviations, to first order
+  Components sd;  ///< standard deviations, to first order: at no errors, with an unknown frame at the estimate
 };
 
 /// The displacements that are left at a pose for B machines, [9 x B]. errors: [F x B]; phi: [places x B] their places

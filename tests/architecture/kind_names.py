@@ -18,10 +18,12 @@ REGISTRY = "engine/kinds/registry.cpp"
 # What a model does, and the command that solves rows of errors.
 # Sobol' points are a sequence of engine/random.
 # Tolerances at least cost are a part of engine/stats.
+# A table of any study says how machines are calibrated; results of `poesy calibrate` are of a kind that no study has.
 WORDS_OF_OTHERS = {
     "evaluate": ("engine/app/evaluate.cpp",),
     "sobol": ("engine/random/low_discrepancy.cpp",),
     "allocation": (),
+    "calibration": ("engine/study/calibration_keys.cpp", "engine/study/study_file.cpp"),
 }
 TEXT = re.compile(r'"(?:\\.|[^"\\])*"')
 COMMENT = re.compile(r'"(?:\\.|[^"\\])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)

@@ -45,9 +45,9 @@ TABLES = [
     (titled("name", "part"), "1:1", "column 'part' is unknown"),
     (titled("name", "name [mm]"), "1:1", "it holds names"),
     (titled("to,", "sd_x,"), "1:44", "column 'sd_x' belongs to no measured column"),
-    (titled("to,", "sd_z [um],"), "1:55", "column 'distance' needs a column 'to'"),
+    (titled("to,", "sd_z [um],"), "1:54", "column 'distance' needs a column 'to'"),
     (titled("name,", "sd_z,"), "1:44", "column 'to' needs a column 'name'"),
-    (titled("distance [mm]", "tip_x [mm]"), "1:47", "column 'tip_x' is unknown"),
+    (titled("distance [mm]", "distance [rad]"), "1:47", "a unit of angle, but this column is a length"),
     (titled("distance [mm]", "sd_z [um]"), "1:44", "column 'to' needs a column 'distance'"),
     ("name,x,y,z\np0,0,0,0\n", "1:1", "no column is measured: deviation_*, actual_*, or distance"),
     (titled("deviation_z", "actual_theta_z"), "1:27", "column 'actual_theta_z' is unknown"),
@@ -74,9 +74,9 @@ TABLES = [
     (replaced(1, ""), "3:1", "this line should have 7 cells, but has 1"),
     ("x [mm],y [mm],z [mm],deviation_z [um],sd_z [um]\n0,0,0,-240,-5\n", "2:12", "a standard deviation is below zero"),
     ("x [mm],y [mm],z [mm],deviation_z [um]\n0,0,0,\n", "2:1", "no value is measured"),
-    ("x [mm],y [mm],z [mm],deviation_z [um]\n0,0,5000,1\n", "2", "5000"),
+    ("x [mm],y [mm],z [mm],deviation_z [um]\n0,0,0,1\n500,0,0,1\n0,1,0,2\n", "3:1", "pose 2 (x = 0.5 m, y = 0 m, z = 0 m) is out of reach"),
     ("x [mm],y [mm],z [mm],deviation_x [um]\n0,0,0,1\n0,10,0,1\n5,0,0,2\n", "1:1", "deviation_x has neither a column sd_x nor noise"),
-    ("x [mm],y [mm],z [mm],deviation_z [um]\n0,0,0,1\n0,10,0,1\n", None, "3 fitted errors and 2 measured values: measure at more "
+    ("x [mm],y [mm],z [mm],deviation_z [um]\n0,0,0,1\n0,10,0,1\n", None, "3 fitted errors and 2 measured values; measure at more "
      "poses, fit fewer, or take prior = \"tolerances\""),
 ]
 

@@ -334,7 +334,8 @@ class Calibration {
     if (const std::string unjudged = kept.not_judged(); !unjudged.empty()) made.warnings.push_back(unjudged);
   }
 
-  /// The kinds of values of the file that are measured at a candidate: one row of derivatives each, over its noise.
+  /// The kinds of values of the file that are measured at a candidate: one row of derivatives each, over its noise, for
+  /// small errors.
   std::vector<Matrix> rows_of_candidates() {
     std::vector<calibration::MeasuredValue> kinds;
     for (const calibration::MeasuredValue& value : measurement_.values()) {
@@ -344,6 +345,7 @@ class Calibration {
       });
       if (same == kinds.end()) kinds.push_back(value);
     }
+    const Vector none = Vector::Zero(fit_.theta.size());
     std::vector<Matrix> rows;
     for (std::size_t c = 0; c < machine_.candidates.size() && !kinds.empty(); ++c) {
       const std::vector<double> pose = pose_of(machine_.candidates, c);
@@ -355,7 +357,7 @@ class Calibration {
       }
       const calibration::Measurement measurement(exact_, {{pose, pose}}, values, frame(), target());
       const auto derivatives =
-          calibration::FittedMeasurement(measurement, columns_.directions).derivatives(fit_.theta, fit_.phi);
+          calibration::FittedMeasurement(measurement, columns_.directions).derivatives(none, fit_.phi);
       Matrix all = Matrix::Zero(sd.size(), fit_.theta.size() + fit_.phi.size());
       if (derivatives) {
         all << derivatives->errors * columns_.directions.scale.asDiagonal(), derivatives->places;

@@ -20,14 +20,15 @@ Matrix covariance_of(const ErrorModel& errors, const std::vector<FactorIndex>& f
   Matrix covariance = Matrix::Zero(position(factors.size()), position(factors.size()));
   for (std::size_t n = 0; n < factors.size(); ++n) covariance(position(n), position(n)) = sd(n) * sd(n);
   for (const CorrelatedErrors& block : errors.correlated) {
+    const Eigen::Map<const Matrix> correlation(block.correlation.data(), position(block.factors.size()),
+                                               position(block.factors.size()));  // symmetric
     for (std::size_t i = 0; i < factors.size(); ++i) {
       for (std::size_t j = 0; j < factors.size(); ++j) {
         const auto a = std::ranges::find(block.factors, factors[i]);
         const auto b = std::ranges::find(block.factors, factors[j]);
         if (i == j || a == block.factors.end() || b == block.factors.end()) continue;
-        const auto row = static_cast<std::size_t>(a - block.factors.begin());
-        const auto column = static_cast<std::size_t>(b - block.factors.begin());
-        covariance(position(i), position(j)) = block.correlation[row * block.factors.size() + column] * sd(i) * sd(j);
+        covariance(position(i), position(j)) =
+            correlation(a - block.factors.begin(), b - block.factors.begin()) * sd(i) * sd(j);
       }
     }
   }
