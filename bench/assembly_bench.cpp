@@ -109,11 +109,14 @@ const std::vector<Mechanism> kMechanisms{{"linear-delta", "platform", {0.03, -0.
                                          {"upr2-rpu-beams", "stiffness", {-0.25, 0.2, -0.15}},
                                          {"upr2-rpu", "platform", {-0.25, 0.2, -0.15}},
                                          {"tripteron", "platform", {}},
-                                         {"ups6", "platform", {}}};
+                                         {"ups6", "platform", {}},
+                                         {"rps3", "platform", {}},
+                                         {"rrr3", "platform", {}}};
 
 /// Whether the product compares limbs in pairs, or with one platform where they can meet.
 bool is_unbranched(const Mechanism& mechanism) {
-  return mechanism.file == "upr2-rpu" || mechanism.file == "tripteron" || mechanism.file == "ups6";
+  return mechanism.file == "upr2-rpu" || mechanism.file == "tripteron" || mechanism.file == "ups6" ||
+         mechanism.file == "rps3" || mechanism.file == "rrr3";
 }
 
 }  // namespace

@@ -3,13 +3,14 @@
 // Included only by kernels.cpp, which is compiled once for each instruction set.
 
 #include "models/assembly/kernel_constant.h"
+#include "models/assembly/kernel_meet.h"
 #include "models/assembly/kernel_own.h"
 
 namespace poesy::assembly {
 
 /// Limbs against bodies, for batches of samples: the equations of Solver, from where first order leads, in which p is
 /// carried as an unknown: in its place C^-1 xi would turn rounding into force, and converge for small errors alone.
-/// Step: ConstantStep or OwnStep. A lane depends on its own sample only: one that has settled stays where it is.
+/// Step: ConstantStep, MeetStep or OwnStep. A lane depends on its own sample only: one that has settled stays where it is.
 template <class T, class Step>
 class AssemblyKernel {
  public:
@@ -92,10 +93,13 @@ class AssemblyKernel {
 /// Solves a block with batches of T.
 template <class T>
 void solve_assemblies(const KernelProblem& problem, const KernelBlock& block) {
-  if (problem.has_own_matrices) {
-    AssemblyKernel<T, OwnStep<T>>(problem, block).solve();
-  } else {
-    AssemblyKernel<T, ConstantStep<T>>(problem, block).solve();
+  switch (problem.step) {
+    case KernelStep::constant:
+      return AssemblyKernel<T, ConstantStep<T>>(problem, block).solve();
+    case KernelStep::meet:
+      return AssemblyKernel<T, MeetStep<T>>(problem, block).solve();
+    case KernelStep::own:
+      return AssemblyKernel<T, OwnStep<T>>(problem, block).solve();
   }
 }
 

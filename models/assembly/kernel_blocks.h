@@ -2,14 +2,33 @@
 
 // Included only by kernels.cpp, which is compiled once for each instruction set.
 
+#include <type_traits>
 #include <vector>
 
 #include "models/assembly/kernel_problem.h"
 
 namespace poesy::assembly {
 
-/// A pivot below this share of the diagonal is not safe.
-inline constexpr double kSafePivot = 1e-5;
+/// Calls work(number of passive joints) with a constant.
+template <class Work>
+void with_passive(std::size_t passive, Work work) {
+  switch (passive) {
+    case 0:
+      return work(std::integral_constant<std::size_t, 0>());
+    case 1:
+      return work(std::integral_constant<std::size_t, 1>());
+    case 2:
+      return work(std::integral_constant<std::size_t, 2>());
+    case 3:
+      return work(std::integral_constant<std::size_t, 3>());
+    case 4:
+      return work(std::integral_constant<std::size_t, 4>());
+    case 5:
+      return work(std::integral_constant<std::size_t, 5>());
+    default:
+      return work(std::integral_constant<std::size_t, kMostOwnJoints>());
+  }
+}
 
 /// The matrix of bodies in blocks [6 x 6], of which only those are kept that limbs or the elimination fill: the
 /// platform goes last, because it touches most others.
@@ -18,9 +37,10 @@ class BodyMatrix {
  public:
   using Mask = typename T::MaskType;  ///< a truth value for each lane
 
-  /// With the pattern of this assembly.
-  explicit BodyMatrix(const KernelProblem& problem)
+  /// With the pattern of this assembly. safe: a pivot below this share of the diagonal is not safe.
+  BodyMatrix(const KernelProblem& problem, double safe)
       : count_(problem.bodies.size() - 1),
+        safe_(safe),
         is_filled_(count_ * count_),
         blocks_(36 * count_ * count_),
         pivots_(6 * count_) {
@@ -58,7 +78,7 @@ class BodyMatrix {
       for (int m = 0; m < 6; ++m) diagonal[m] = pivot[7 * m];
       factor_block(pivot, &pivots_[6 * k]);
       for (int m = 0; m < 6; ++m) {
-        safe = safe & (pivot[7 * m] > T(kSafePivot) * diagonal[m]) & (diagonal[m] > T(0.0));
+        safe = safe & (pivot[7 * m] > T(safe_) * diagonal[m]) & (diagonal[m] > T(0.0));
       }
       for (std::size_t j = k + 1; j < count_; ++j) {
         if (is_filled_[count_ * k + j]) lower_solve(pivot, at(k, j), 6);
@@ -150,6 +170,7 @@ class BodyMatrix {
   }
 
   std::size_t count_;            ///< bodies without the base
+  double safe_;                  ///< share of the diagonal
   std::vector<bool> is_filled_;  ///< [count x count]
   std::vector<T> blocks_;        ///< [count x count] blocks by rows
   std::vector<T> pivots_;        ///< inverse pivots

@@ -2,33 +2,13 @@
 
 // Included only by kernels.cpp, which is compiled once for each instruction set.
 
-#include <type_traits>
-
 #include "models/assembly/kernel_blocks.h"
 #include "models/assembly/kernel_state.h"
 
 namespace poesy::assembly {
 
-/// Calls work(number of passive joints) with a constant.
-template <class Work>
-void with_passive(std::size_t passive, Work work) {
-  switch (passive) {
-    case 0:
-      return work(std::integral_constant<std::size_t, 0>());
-    case 1:
-      return work(std::integral_constant<std::size_t, 1>());
-    case 2:
-      return work(std::integral_constant<std::size_t, 2>());
-    case 3:
-      return work(std::integral_constant<std::size_t, 3>());
-    case 4:
-      return work(std::integral_constant<std::size_t, 4>());
-    case 5:
-      return work(std::integral_constant<std::size_t, 5>());
-    default:
-      return work(std::integral_constant<std::size_t, kMostOwnJoints>());
-  }
-}
+/// A pivot below this share of the diagonal is not safe.
+inline constexpr double kSafePivot = 1e-5;
 
 /// Rounds of Newton's method: with the matrix of each sample's own, made in the first and then in every fourth round.
 /// Limbs have regular C. With S the columns of J, ad xi for the bracket with the
@@ -50,7 +30,7 @@ class OwnStep {
       : problem_(problem),
         present_(problem.limbs.size()),
         limbs_(problem.limbs.size()),
-        matrix_(problem),
+        matrix_(problem, kSafePivot),
         twists_(6 * problem.bodies.size(), T(0.0)) {}
 
   /// Moves the lanes that go on.

@@ -119,6 +119,13 @@ struct KernelMap {
   std::vector<double> by_load;              ///< [6 limbs] of the load
 };
 
+/// With which matrices rounds step.
+enum class KernelStep : std::uint8_t {
+  constant,  ///< the inverse of the nominal pose
+  meet,      ///< projections of each sample, where limbs have no wrenches
+  own        ///< matrices of each sample
+};
+
 /// An assembly at a pose, with its errors.
 struct KernelProblem {
   std::vector<KernelMotion> bodies;  ///< nominal; the base too
@@ -128,7 +135,9 @@ struct KernelProblem {
   std::vector<double> inverse;       ///< [size x size] of their nominal matrix, row by row
   std::vector<double> load;          ///< [6 x bodies]
   bool carries;                      ///< whether there are wrenches: limbs deform each other, or a load acts
-  bool has_own_matrices;             ///< whether each sample gets its own matrix instead of the inverse
+  KernelStep step;                   ///< of rounds
+  double measured[6];                ///< from a twist to that by which its mismatch is measured, at most 1
+  double unmeasured[6];              ///< and back
   bool wants_wrenches;               ///< whether wrenches must have settled too
   double tolerance;                  ///< of a body's move
   int most_rounds;                   ///< then a sample is left to another solver

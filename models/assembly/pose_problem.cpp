@@ -1,6 +1,7 @@
 #include "models/assembly/pose_problem.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/linalg/decompositions.h"
@@ -163,27 +164,52 @@ void PoseProblem::set_limb(const Equilibrium& equations, std::size_t e) {
   problem_.limbs.push_back(std::move(made));
 }
 
-/// What samples need for matrices of their own, if they get them: limbs have wrenches, and none of them is rigid in any
-/// direction.
+/// What samples need for matrices of their own: limbs have wrenches, and none of them is rigid in any direction; or
+/// limbs have no wrenches.
 void PoseProblem::set_own_matrices(const Equilibrium& equations) {
-  problem_.has_own_matrices = problem_.carries;
+  problem_.step = KernelStep::constant;
+  for (const KernelLimb& limb : problem_.limbs) {
+    if (limb.passive > kMostOwnJoints) return;
+  }
+  if (problem_.carries && !is_soft(equations)) return;
+  problem_.step = problem_.carries ? KernelStep::own : KernelStep::meet;
+  const std::span<const double, 6> W = problem_.report.metric;
+  const double largest = *std::ranges::max_element(W);
+  for (std::size_t k = 0; k < 6; ++k) {
+    problem_.measured[k] = std::sqrt(W[k] / largest);
+    problem_.unmeasured[k] = 1.0 / problem_.measured[k];
+  }
+  const Matrix measured = Eigen::Map<const Screw>(problem_.measured).asDiagonal();
   for (std::size_t e = 0; e < problem_.limbs.size(); ++e) {
     KernelLimb& limb = problem_.limbs[e];
-    const Matrix6& C = equations.compliance(e);
-    const Eigen::VectorXd softness = linalg::eigenvalues(C);
-    const bool is_soft = softness[0] > kRigid * softness[5];
-    problem_.has_own_matrices = problem_.has_own_matrices && is_soft && limb.passive <= kMostOwnJoints;
-    if (!problem_.has_own_matrices) return;
+    if (!problem_.carries) {
+      set_idle(equations, e, measured * measured);
+      continue;
+    }
     limb.is_diagonal = model_->assembly.metric == Metric::platform;
-    const Matrix stiffness = linalg::inverse(C);
+    const Matrix stiffness = linalg::inverse(equations.compliance(e));
     for (Index k = 0; k < 36; ++k) limb.stiffness[k] = stiffness(k / 6, k % 6);
-    const Matrix& give = equations.give(e);
-    const Matrix columns = equations.twists_in_units() * pose_.limbs[e].passive;
-    const Matrix idle = Matrix::Identity(give.rows(), give.rows()) - give * columns;  // onto what moves nothing
-    const double size = (columns.transpose() * stiffness * columns).trace() / static_cast<double>(give.rows());
-    const bool has_idle = equations.carry(e).cols() + give.rows() > 6;
-    copy_rows(has_idle ? Matrix(size * idle) : Matrix::Zero(give.rows(), give.rows()), limb.idle);
+    set_idle(equations, e, stiffness);
   }
+}
+
+/// Whether no limb is rigid in any direction.
+bool PoseProblem::is_soft(const Equilibrium& equations) const {
+  for (std::size_t e = 0; e < problem_.limbs.size(); ++e) {
+    const Eigen::VectorXd softness = linalg::eigenvalues(equations.compliance(e));
+    if (!(softness[0] > kRigid * softness[5])) return false;
+  }
+  return true;
+}
+
+/// What keeps a limb's freedoms that move nothing where they are, as large as other entries of S^T weight S.
+void PoseProblem::set_idle(const Equilibrium& equations, std::size_t e, const Matrix& weight) {
+  const Matrix& give = equations.give(e);
+  const Matrix columns = equations.twists_in_units() * pose_.limbs[e].passive;
+  const Matrix idle = Matrix::Identity(give.rows(), give.rows()) - give * columns;  // onto what moves nothing
+  const double size = (columns.transpose() * weight * columns).trace() / static_cast<double>(give.rows());
+  const bool has_idle = equations.carry(e).cols() + give.rows() > 6;
+  copy_rows(has_idle ? Matrix(size * idle) : Matrix::Zero(give.rows(), give.rows()), problem_.limbs[e].idle);
 }
 
 void PoseProblem::set_report() {

@@ -64,6 +64,8 @@ class PoseProblem {
   void set_limb(const Equilibrium& equations, std::size_t e);
   void set_report();
   void set_own_matrices(const Equilibrium& equations);
+  bool is_soft(const Equilibrium& equations) const;
+  void set_idle(const Equilibrium& equations, std::size_t e, const Eigen::MatrixXd& weight);
   void solve_first_order(const Equilibrium& equations);
   Eigen::MatrixXd twists_of_entries(const Equilibrium& equations) const;
   static double* row_of(const Entry& entry, std::size_t stride, std::vector<double>& values);
