@@ -1,5 +1,6 @@
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <numeric>
@@ -37,8 +38,9 @@ enum class Code {
 struct Case {
   Mechanism mechanism;
   Code code;
-  double size;      ///< standard deviation of errors, mm and deg
-  std::string isa;  ///< instruction set
+  double size;       ///< standard deviation of errors, mm and deg
+  std::string isa;   ///< instruction set
+  bool one = false;  ///< whether errors vary one after the other, in ranges that are known, and not all at once
 };
 
 std::string text_of(const Mechanism& mechanism) {
@@ -94,8 +96,16 @@ void solves(benchmark::State& state, const Case& which) {
   const auto fidelity = which.code == Code::first_order ? chain::Fidelity::first_order : chain::Fidelity::exact;
   const std::unique_ptr<Evaluator> evaluator =
       of_product ? model->evaluator(options) : assembly::assembly_evaluator(limbs, options, fidelity);
+  std::size_t n = 0;
   for (auto _ : state) {
-    evaluator->evaluate({pose, none, varied, values, kSamples}, {responses, status, iterations, {}});
+    SampleBlock block{pose, none, varied, values, kSamples};
+    if (which.one) {
+      block.varied = block.varied.subspan(n, 1);
+      block.values = block.values.subspan(n * kSamples, kSamples);
+      block.range = *std::ranges::max_element(block.values);
+      n = (n + 1) % errors;
+    }
+    evaluator->evaluate(block, {responses, status, iterations, {}});
     benchmark::DoNotOptimize(responses.data());
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSamples));
@@ -130,10 +140,12 @@ int main(int argc, char** argv) {
     for (const std::string& isa : bench::instruction_sets()) {
       add({mechanism, Code::assembly, 0.1, isa}, "0.1");
       add({mechanism, Code::assembly, 1.0, isa}, "1");
+      add({mechanism, Code::assembly, 1.0, isa, true}, "one");
       add({mechanism, Code::first_order, 0.1, isa}, "first-order");
       if (!is_unbranched(mechanism)) continue;
       add({mechanism, Code::product, 0.1, isa}, "0.1/pairs");
       add({mechanism, Code::product, 1.0, isa}, "1/pairs");
+      add({mechanism, Code::product, 1.0, isa, true}, "one/pairs");
     }
   }
   benchmark::Initialize(&argc, argv);

@@ -1,6 +1,10 @@
 #include "models/assembly/block_solver.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "engine/base/contract.h"
 #include "models/chain/assembly.h"
@@ -8,6 +12,42 @@
 namespace poesy::assembly {
 
 using Eigen::Index;
+
+namespace {
+
+constexpr std::size_t kTerms = KernelStart::kTerms;
+
+/// If one of the last coefficients of series is larger, states are not smooth
+/// over the range. In units of the reach and rad.
+constexpr double kTrustedTail = 1e-6;
+
+double chebyshev(std::size_t n, std::size_t node) {
+  return std::cos(std::numbers::pi / static_cast<double>(kTerms) * static_cast<double>(n) *
+                  (static_cast<double>(node) + 0.5));
+}
+
+/// Series through states at the nodes, [rows x kTerms] both; empty if they are
+/// not smooth.
+std::vector<double> series_of(std::span<const double> states) {
+  std::array<double, kTerms * kTerms> weights;
+  for (std::size_t n = 0; n < kTerms; ++n) {
+    for (std::size_t k = 0; k < kTerms; ++k) {
+      weights[kTerms * n + k] = (n == 0 ? 1.0 : 2.0) / static_cast<double>(kTerms) * chebyshev(n, k);
+    }
+  }
+  std::vector<double> coefficients;
+  for (std::size_t row = 0; row < states.size(); row += kTerms) {
+    for (std::size_t n = 0; n < kTerms; ++n) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < kTerms; ++k) sum += weights[kTerms * n + k] * states[row + k];
+      if (n + 3 >= kTerms && !(std::abs(sum) < kTrustedTail)) return {};
+      coefficients.push_back(sum);
+    }
+  }
+  return coefficients;
+}
+
+}  // namespace
 
 ErrorFrames::ErrorFrames(const AssemblyModel& model) : model_(&model) {
   for (const Limb& limb : model.assembly.limbs) {
@@ -50,15 +90,36 @@ void BlockSolver::run(KernelWork work, PoseProblem& problem, const SampleBlock& 
   ends_.resize(stride);
   iterations_.resize(stride);
   double* responses = is_whole ? outcomes.responses.data() : responses_.data();
-  work(solved, {samples.count, stride, values_.data(), responses, ends_.data(), iterations_.data()});
+  work(solved, {samples.count, stride, problem.values(), responses, ends_.data(), iterations_.data()});
   if (is_whole) return;
   for (std::size_t row = 0; row < rows; ++row) {
     std::copy_n(responses + row * stride, samples.count, outcomes.responses.data() + row * samples.count);
   }
 }
 
+/// Solves samples at the nodes of series over the range of the varied error, so
+/// that others start nearly solved.
+void BlockSolver::predict_starts(PoseProblem& problem, const SampleBlock& samples) {
+  if (problem.has_starts(samples)) return;
+  std::array<double, kTerms> nodes;
+  for (std::size_t k = 0; k < kTerms; ++k) nodes[k] = samples.range * chebyshev(1, k);
+  const KernelProblem& solved = problem.with({samples.pose, samples.errors, samples.varied, nodes, kTerms}, values_);
+  responses_.resize(solved.report.rows(solved.bodies.size(), solved.limbs.size()) * kTerms);
+  ends_.resize(kTerms);
+  iterations_.resize(kTerms);
+  states_.resize(solved.rows_of_state() * kTerms);
+  kernels_.solve(
+      solved, {kTerms, kTerms, problem.values(), responses_.data(), ends_.data(), iterations_.data(), states_.data()});
+  const bool are_solved = std::ranges::all_of(ends_, [](KernelEnd end) { return end == KernelEnd::converged; });
+  problem.set_starts(samples, are_solved ? series_of(states_) : std::vector<double>());
+}
+
 void BlockSolver::solve(PoseProblem& problem, const SampleBlock& samples, const OutcomeBlock& outcomes) {
   solver_.prepare(problem.pose());
+  // By stiffness results keep their bits, which depend on where solves start.
+  const bool is_predicted =
+      model_->assembly.metric == Metric::platform && samples.varied.size() == 1 && samples.range > 0.0;
+  if (is_predicted) predict_starts(problem, samples);
   run(kernels_.solve, problem, samples, outcomes);
   nearing_.assign(samples.count, 0.0);
   const bool may_hold_open = model_->over_constrained || model_->assembly.metric == Metric::stiffness;

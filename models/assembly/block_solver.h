@@ -42,6 +42,7 @@ class BlockSolver {
 
  private:
   void run(KernelWork work, PoseProblem& problem, const SampleBlock& samples, const OutcomeBlock& outcomes);
+  void predict_starts(PoseProblem& problem, const SampleBlock& samples);
   void solve_one(PoseProblem& problem, std::span<const std::vector<Transform>> frames, std::size_t sample,
                  const OutcomeBlock& outcomes);
 
@@ -49,11 +50,12 @@ class BlockSolver {
   Kernels kernels_;
   Solver solver_;
   ErrorFrames frames_;
-  std::vector<double> values_;             ///< [entries x stride]
+  std::vector<double> values_;             ///< scratch of the problem
   std::vector<double> responses_;          ///< [responses x stride]
   std::vector<KernelEnd> ends_;            ///< [stride]
   std::vector<double> nearing_;            ///< [count] see Closure
   std::vector<std::uint32_t> iterations_;  ///< [stride]
+  std::vector<double> states_;             ///< [rows of a state x KernelStart::kTerms] of nodes
 };
 
 }  // namespace poesy::assembly

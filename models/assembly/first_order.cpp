@@ -13,7 +13,11 @@ FirstOrder::FirstOrder(const Assembly& assembly, const Nominal& pose, std::span<
   equations_.set(pose.limbs, ranks);
   Matrix load(6 * static_cast<Index>(pose.load.size()), 1);
   for (std::size_t b = 0; b < pose.load.size(); ++b) load.middleRows<6>(6 * static_cast<Index>(b)) = pose.load[b];
-  by_load_ = equations_.solve(Matrix::Zero(6 * static_cast<Index>(assembly.limbs.size()), 1), load);
+  Matrix mismatch(6 * static_cast<Index>(pose.mismatch.size()), 1);
+  for (std::size_t e = 0; e < pose.mismatch.size(); ++e) {
+    mismatch.middleRows<6>(6 * static_cast<Index>(e)) = pose.mismatch[e];
+  }
+  by_load_ = equations_.solve(mismatch, load);
   is_regular_ = by_load_.wrenches.allFinite() && by_load_.twists.allFinite();
 }
 

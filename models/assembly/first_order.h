@@ -18,7 +18,7 @@ class FirstOrder {
 
   /// The bodies' twists and the limbs' wrenches by twists of limbs' ends, [6 limbs x k].
   Balance effect(const Eigen::MatrixXd& xi) const;
-  /// The same of the load alone, one column.
+  /// The same of the load alone, and of the mismatch that rounded numbers leave, one column.
   const Balance& by_load() const { return by_load_; }
 
  private:

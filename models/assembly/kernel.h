@@ -10,7 +10,8 @@ namespace poesy::assembly {
 
 /// Limbs against bodies, for batches of samples: the equations of Solver, from where first order leads, in which p is
 /// carried as an unknown: in its place C^-1 xi would turn rounding into force, and converge for small errors alone.
-/// Step: ConstantStep, MeetStep or OwnStep. A lane depends on its own sample only: one that has settled stays where it is.
+/// Step: ConstantStep, MeetStep or OwnStep. A lane depends on its own sample only: one that has settled stays where it
+/// is.
 template <class T, class Step>
 class AssemblyKernel {
  public:
@@ -32,7 +33,7 @@ class AssemblyKernel {
 
   void solve_batch(std::size_t at) {
     state_.begin(at);
-    before_ = {.places = T(1.0), .wrenches = T(1e300)};
+    before_ = {.places = T(problem_.start.is_used ? 1e300 : 1.0), .wrenches = T(1e300)};
     Mask active = T(0.0) < T(1.0);
     Mask left = active;
     T iterations(0.0);
@@ -44,6 +45,7 @@ class AssemblyKernel {
       left = left & !settled;
       active = active & !(settled | change.refused);
     }
+    if (block_.states != nullptr) state_.store(block_.states + at);
     state_.report(outcome_);
     reporter_.write(outcome_, at);
     end(at, left, iterations);
@@ -93,6 +95,7 @@ class AssemblyKernel {
 /// Solves a block with batches of T.
 template <class T>
 void solve_assemblies(const KernelProblem& problem, const KernelBlock& block) {
+  if (problem.start.is_used) return AssemblyKernel<T, ConstantStep<T>>(problem, block).solve();
   switch (problem.step) {
     case KernelStep::constant:
       return AssemblyKernel<T, ConstantStep<T>>(problem, block).solve();

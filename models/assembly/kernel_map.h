@@ -62,7 +62,7 @@ class KernelMapper {
     const double* of = map_.matrix.data() + row * map_.entries;
     const double* value = block_.values + at;
     for (std::size_t v = 0; v < map_.entries; ++v, of += kRows, value += block_.stride) {
-      const T x = T::load(value);
+      const T x = T(map_.units[v]) * T::load(value);
       for (std::size_t k = 0; k < rows; ++k) sum[k] = madd(T(of[k]), x, sum[k]);
     }
     for (std::size_t k = 0; k < rows; ++k) coordinates_[row + k] = sum[k];

@@ -181,7 +181,8 @@ class LaneErrors {
  private:
   T entry(const KernelError& error, int n) const {
     const int row = error.varied[n];
-    return row < 0 ? T(error.constant[n]) : T::load(values_ + static_cast<std::size_t>(row) * stride_);
+    if (row < 0) return T(error.constant[n]);
+    return T(error.unit[n]) * T::load(values_ + static_cast<std::size_t>(row) * stride_);
   }
 
   /// g <- g * error

@@ -28,6 +28,7 @@ struct KernelError {
   bool turns;          ///< whether an angle varies or is not 0
   bool inverted;       ///< the limb's last one
   int varied[6];       ///< row of the values of each entry of [omega; v]; -1: it is constant
+  double unit[6];      ///< by which these values are multiplied
   double constant[6];  ///< of entries that do not vary
 };
 
@@ -113,10 +114,23 @@ struct KernelMap {
   static constexpr std::size_t kRows = 12;  ///< that are multiplied at once
   std::size_t entries;                      ///< values that vary
   std::size_t stresses;                     ///< coordinates of the wrenches that limbs put on each other
+  std::vector<double> units;                ///< [entries] by which values are multiplied
   std::vector<double> offset;               ///< [rows, padded]
   std::vector<double> matrix;               ///< [rows / kRows, padded][entries][kRows]
   std::vector<double> wrenches;             ///< [6 limbs x stresses] of a unit of each stress, row by row
   std::vector<double> by_load;              ///< [6 limbs] of the load
+};
+
+/// Where solves with one varied error start: Chebyshev series of the state in t
+/// = scale (value - centre), for |t| <= 1. A state has the twists of bodies
+/// without the base [6 x (bodies - 1)], the wrenches of limbs [6 x limbs], and
+/// what passive joints are displaced by from the nominal pose.
+struct KernelStart {
+  static constexpr std::size_t kTerms = 16;  ///< of a series
+  bool is_used;                              ///< by these samples
+  double centre;                             ///< of the error's range
+  double scale;                              ///< 1 / half of its width
+  std::vector<double> coefficients;          ///< [rows of a state x kTerms]
 };
 
 /// With which matrices rounds step.
@@ -143,6 +157,10 @@ struct KernelProblem {
   int most_rounds;                   ///< then a sample is left to another solver
   KernelReport report;               ///< of each sample
   KernelMap map;                     ///< first order
+  KernelStart start;                 ///< of one varied error
+
+  /// Rows of a state.
+  std::size_t rows_of_state() const { return 6 * (bodies.size() - 1 + limbs.size()) + joints; }
 };
 
 /// How the kernel left a sample.
@@ -156,6 +174,8 @@ struct KernelBlock {
   double* responses;          ///< [responses x stride] SI; of samples that are left, anything
   KernelEnd* ends;            ///< [stride]; first order does not write it
   std::uint32_t* iterations;  ///< [stride]; first order does not write it
+  double* states = nullptr;   ///< [rows of a state x stride] where solves ended;
+                              ///< null: nobody asks
 };
 
 /// Lanes of the widest instruction set.

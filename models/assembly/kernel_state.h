@@ -32,23 +32,33 @@ class LaneAssembly {
 
   /// With the errors of the lanes from sample `at` on, where first order leads.
   void begin(std::size_t at) {
-    const T* coordinates = mapper_.coordinates(at);
-    for (std::size_t b = 1; b < bodies.size(); ++b) {
-      bodies[b] = product(motion_of(coordinates + 6 * (b - 1)), in_lanes<T>(problem_.bodies[b]));
-    }
-    if (problem_.carries) mapper_.wrenches(coordinates, wrenches.data());
     const LaneErrors<T> errors(block_, at);
-    const T* dq = coordinates + mapper_.first_joint();
     std::size_t segment = 0;
-    std::size_t joint = 0;
     for (const KernelLimb& limb : problem_.limbs) {
       for (const KernelSegment& one : limb.segments) segments_[segment++] = errors.segment(one);
-      for (const KernelJoint& one : limb.joints) {
-        if (one.passive < 0) continue;
-        displacements[joint] = T(one.displacement) + dq[joint];
-        ++joint;
-      }
     }
+    if (!problem_.start.is_used) return start_by_map(at);
+    const T t =
+        T(problem_.start.scale) * (T(problem_.map.units[0]) * T::load(block_.values + at) - T(problem_.start.centre));
+    const Mask outside = !(abs(t) < T(1.0 + 1e-9));
+    if (any(outside)) start_by_map(at);
+    start_by_series(t, !outside);
+  }
+
+  /// Writes where bodies, wrenches and joints are, from the lanes' first row
+  /// on; see KernelStart.
+  void store(double* row) const {
+    const auto put = [&](T value) {
+      value.store(row);
+      row += block_.stride;
+    };
+    for (std::size_t b = 1; b < bodies.size(); ++b) {
+      T twist[6];
+      log_of(bodies[b], in_lanes<T>(problem_.bodies[b]), twist);
+      for (const T& entry : twist) put(entry);
+    }
+    for (const T& entry : wrenches) put(entry);
+    for_each_joint([&](const KernelJoint& one, std::size_t joint) { put(displacements[joint] - T(one.displacement)); });
   }
 
   /// Where the limb's end would be without forces. at_joint(joint, frame): called for each joint before its motion.
@@ -98,6 +108,57 @@ class LaneAssembly {
   std::vector<T> wrenches;       ///< [6 x limbs] p
 
  private:
+  /// visit(joint, its place among passive joints of all limbs)
+  template <class Visit>
+  void for_each_joint(Visit visit) const {
+    std::size_t joint = 0;
+    for (const KernelLimb& limb : problem_.limbs) {
+      for (const KernelJoint& one : limb.joints) {
+        if (one.passive >= 0) visit(one, joint++);
+      }
+    }
+  }
+
+  void start_by_map(std::size_t at) {
+    const T* coordinates = mapper_.coordinates(at);
+    for (std::size_t b = 1; b < bodies.size(); ++b) {
+      bodies[b] = product(motion_of(coordinates + 6 * (b - 1)), in_lanes<T>(problem_.bodies[b]));
+    }
+    if (problem_.carries) mapper_.wrenches(coordinates, wrenches.data());
+    const T* dq = coordinates + mapper_.first_joint();
+    for_each_joint(
+        [&](const KernelJoint& one, std::size_t joint) { displacements[joint] = T(one.displacement) + dq[joint]; });
+  }
+
+  /// In these lanes.
+  void start_by_series(T t, Mask lanes) {
+    constexpr std::size_t kTerms = KernelStart::kTerms;
+    T terms[kTerms] = {T(1.0), t};
+    for (std::size_t n = 2; n < kTerms; ++n) terms[n] = nmadd(T(1.0), terms[n - 2], (t + t) * terms[n - 1]);
+    const double* of = problem_.start.coefficients.data();
+    const auto next = [&] {
+      T even = T(of[0]) * terms[0];
+      T odd = T(of[1]) * terms[1];
+      for (std::size_t n = 2; n < kTerms; n += 2) {
+        even = madd(T(of[n]), terms[n], even);
+        odd = madd(T(of[n + 1]), terms[n + 1], odd);
+      }
+      of += kTerms;
+      return even + odd;
+    };
+    for (std::size_t b = 1; b < bodies.size(); ++b) {
+      T twist[6];
+      for (T& entry : twist) entry = next();
+      const Motion moved = product(motion_of(twist), in_lanes<T>(problem_.bodies[b]));
+      for (int k = 0; k < 9; ++k) bodies[b].r[k] = select(lanes, moved.r[k], bodies[b].r[k]);
+      for (int k = 0; k < 3; ++k) bodies[b].p[k] = select(lanes, moved.p[k], bodies[b].p[k]);
+    }
+    for (T& entry : wrenches) entry = select(lanes, next(), entry);
+    for_each_joint([&](const KernelJoint& one, std::size_t joint) {
+      displacements[joint] = select(lanes, T(one.displacement) + next(), displacements[joint]);
+    });
+  }
+
   void displaced(std::size_t b, LaneDisplacement<T>& made) const {
     const Motion nominal = in_lanes<T>(problem_.bodies[b]);
     const Motion& body = bodies[b];

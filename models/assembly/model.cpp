@@ -53,6 +53,21 @@ class AssemblyEvaluator final : public Evaluator {
 
 }  // namespace
 
+Nominal AssemblyModel::at(std::span<const double> pose) const {
+  Nominal placed = nominal(assembly, joint_displacements(pose));
+  if (!rounded) return placed;
+  Solver solver(assembly, ranks, {.tolerance = chain::kToleranceByMetric});
+  solver.prepare(placed);
+  std::vector<std::vector<Transform>> frames;
+  for (const Limb& limb : assembly.limbs) frames.push_back(limb.chain.home);
+  Solution found = solver.solve(frames);
+  placed.bodies = std::move(found.bodies);
+  placed.displacements = std::move(found.displacements);
+  placed.limbs = std::move(found.limbs);
+  placed.mismatch = std::move(found.mismatch);
+  return placed;
+}
+
 Screw term_twist(const AssemblyModel& model, const Nominal& pose, const chain::ErrorTerm& term) {
   const Limb& limb = model.assembly.limbs[term.limb];
   return term.at(pose.displacements) *

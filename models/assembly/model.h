@@ -20,12 +20,13 @@ struct AssemblyModel {
   std::size_t idle = 0;                  ///< freedoms of passive joints that move no body
   bool deforms = true;                   ///< whether errors may keep limbs and bodies apart, or loads act
   bool over_constrained = true;          ///< whether limbs deform each other
+  bool rounded = false;                  ///< whether numbers are, so that perfect limbs fit their bodies almost
   double stiffness = 0.0;                ///< N/m: the largest force that moving a limb's end makes at home
   /// Nominal displacements of all joints at a reachable pose, limb by limb (rad, m).
   std::function<std::vector<double>(std::span<const double> pose)> joint_displacements;
 
-  /// The perfect assembly at a reachable pose.
-  Nominal at(std::span<const double> pose) const { return nominal(assembly, joint_displacements(pose)); }
+  /// The perfect assembly at a reachable pose. With rounded numbers bodies and joints are where it is in equilibrium.
+  Nominal at(std::span<const double> pose) const;
 };
 
 /// The twist of the limb's end by what a unit of an error adds to this entry.

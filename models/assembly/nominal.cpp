@@ -82,6 +82,7 @@ Nominal nominal(const Assembly& assembly, std::span<const double> displacements)
                .limbs = std::vector<LimbState>(assembly.limbs.size()),
                .compliance = {},
                .load = {},
+               .mismatch = std::vector<Screw>(assembly.limbs.size(), Screw::Zero()),
                .W = {}};
   const auto state_of = [&](std::size_t e) {
     const Limb& limb = assembly.limbs[e];

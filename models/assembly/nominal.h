@@ -14,6 +14,7 @@ struct Nominal {
   std::vector<LimbState> limbs;       ///< [limbs]
   std::vector<Matrix6> compliance;    ///< [limbs] C
   std::vector<Screw> load;            ///< [bodies] wrench from outside; the base's is 0
+  std::vector<Screw> mismatch;        ///< [limbs] xi; 0 but where numbers are rounded
   Matrix6 W;                          ///< metric of the platform's points
 };
 

@@ -272,6 +272,8 @@ void PoseProblem::solve_first_order(const Equilibrium& equations) {
     const Matrix& carry = equations.carry(e);
     right.block(equations.first_wrenches()[e], 0, carry.cols(), columns - 1) =
         carry.transpose() * twists.middleRows(6 * index(e), 6);
+    right.block(equations.first_wrenches()[e], columns - 1, carry.cols(), 1) =
+        carry.transpose() * equations.twists_in_units() * pose_.mismatch[e];
   }
   for (Index k = 0; k < moves; ++k) right(lambdas + k, columns - 1) = -problem_.load[static_cast<std::size_t>(6 + k)];
   right.rightCols(size).setIdentity();
@@ -298,6 +300,7 @@ void PoseProblem::solve_first_order(const Equilibrium& equations) {
     copy_rows(wrenches.rightCols(1), problem_.map.by_load);
     Matrix wanted = equations.compliance(e) * wrenches;
     wanted.leftCols(columns - 1) -= twists.middleRows(6 * index(e), 6);
+    wanted.rightCols(1) -= equations.twists_in_units() * pose_.mismatch[e];
     if (limb.to != kBase) wanted += bodies.middleRows(6 * index(limb.to - 1), 6);
     if (limb.from != kBase) wanted -= bodies.middleRows(6 * index(limb.from - 1), 6);
     coordinates_.middleRows(moves + stresses + index(limb.first_joint), index(limb.passive)) =
@@ -310,18 +313,44 @@ double* PoseProblem::row_of(const Entry& entry, std::size_t stride, std::vector<
   return values.data() + static_cast<std::size_t>(entry.row) * stride;
 }
 
-/// Constants of entries, and the values of those that vary.
-void PoseProblem::read_values(const SampleBlock& samples, std::vector<double>& values) {
-  const std::size_t stride = padded(samples.count);
+/// What does not vary of entries.
+void PoseProblem::set_constants(const SampleBlock& samples) {
   for (Entry& entry : entries_) {
     entry.constant = 0.0;
     entry.row = -1;
+    entry.unit = 1.0;
   }
   std::vector<bool> varies(model_->terms.size(), false);
   for (const FactorIndex factor : samples.varied) varies[factor.value] = true;
   for (std::size_t f = 0; f < varies.size(); ++f) {
     if (varies[f]) continue;
     for (const Addition& one : additions(f)) entries_[one.entry].constant += one.scale * samples.errors[f];
+  }
+}
+
+/// Entries take the values of samples in whole batches as they are, if each error is an entry of its own. Returns
+/// whether they are.
+bool PoseProblem::take_values(const SampleBlock& samples) {
+  if (samples.count != padded(samples.count)) return false;
+  int rows = 0;
+  for (const FactorIndex factor : samples.varied) {
+    const std::span<const Addition> of = additions(factor.value);
+    if (of.size() != 1) return false;
+    Entry& entry = entries_[of.front().entry];
+    if (entry.row >= 0 || entry.constant != 0.0) return false;
+    entry.row = rows++;
+    entry.unit = of.front().scale;
+  }
+  values_ = samples.values.data();
+  return true;
+}
+
+/// The values of entries that vary, as sums.
+void PoseProblem::add_values(const SampleBlock& samples, std::vector<double>& values) {
+  const std::size_t stride = padded(samples.count);
+  for (Entry& entry : entries_) {
+    entry.row = -1;
+    entry.unit = 1.0;
   }
   int rows = 0;
   for (const FactorIndex factor : samples.varied) {
@@ -341,6 +370,7 @@ void PoseProblem::read_values(const SampleBlock& samples, std::vector<double>& v
       for (std::size_t b = 0; b < samples.count; ++b) to[b] += one.scale * from[b];
     }
   }
+  values_ = values.data();
 }
 
 /// Segments between the limb's joints.
@@ -393,6 +423,8 @@ void PoseProblem::set_map() {
   map.entries = column.size();
   map.offset.assign(blocks * kRows, 0.0);
   map.matrix.assign(blocks * kRows * map.entries, 0.0);
+  map.units.clear();
+  for (const Index n : column) map.units.push_back(entries_[static_cast<std::size_t>(n)].unit);
   for (std::size_t row = 0; row < rows; ++row) {
     map.offset[row] = offset[index(row)];
     double* to = map.matrix.data() + row / kRows * kRows * map.entries + row % kRows;
@@ -400,22 +432,47 @@ void PoseProblem::set_map() {
   }
 }
 
-const KernelProblem& PoseProblem::with(const SampleBlock& samples, std::vector<double>& values) {
-  read_values(samples, values);
+const KernelProblem& PoseProblem::with(const SampleBlock& samples, std::vector<double>& scratch) {
+  set_constants(samples);
+  if (!take_values(samples)) add_values(samples, scratch);
   for (std::size_t e = 0; e < problem_.limbs.size(); ++e) {
     for (std::size_t j = first_[e]; j < first_[e + 1]; ++j) {
-      errors_[j] = {false, j + 1 == first_[e + 1], {-1, -1, -1, -1, -1, -1}, {}};
+      errors_[j] = {false, j + 1 == first_[e + 1], {-1, -1, -1, -1, -1, -1}, {}, {}};
     }
   }
   for (const Entry& entry : entries_) {
     KernelError& error = errors_[first_[entry.limb] + entry.frame];
     error.varied[entry.component] = entry.row;
+    error.unit[entry.component] = entry.unit;
     error.constant[entry.component] = entry.constant;
     error.turns = error.turns || (entry.component < 3 && (entry.row >= 0 || entry.constant != 0.0));
   }
   for (std::size_t e = 0; e < problem_.limbs.size(); ++e) set_segments(e);
   set_map();
+  use_starts(samples);
   return problem_;
+}
+
+bool PoseProblem::has_starts(const SampleBlock& samples) const {
+  return started_ && samples.varied.size() == 1 && started_->factor.value == samples.varied.front().value &&
+         started_->range == samples.range && std::ranges::equal(started_->errors, samples.errors);
+}
+
+void PoseProblem::set_starts(const SampleBlock& samples, std::vector<double> coefficients) {
+  started_ = {samples.varied.front(), samples.range, {samples.errors.begin(), samples.errors.end()}};
+  problem_.start.coefficients = std::move(coefficients);
+}
+
+/// The series are in the first of the values that vary.
+void PoseProblem::use_starts(const SampleBlock& samples) {
+  problem_.start.is_used = !problem_.start.coefficients.empty() && has_starts(samples);
+  if (!problem_.start.is_used) return;
+  const std::span<const Addition> of = additions(samples.varied.front().value);
+  double scale = 0.0;  // of the error in its first entry
+  for (const Addition& one : of) scale += one.entry == of.front().entry ? one.scale : 0.0;
+  problem_.start.is_used = scale != 0.0;
+  problem_.start.centre = entries_[of.front().entry].constant;
+  problem_.start.scale = 1.0 / (scale * samples.range);
 }
 
 }  // namespace poesy::assembly

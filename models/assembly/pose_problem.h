@@ -34,9 +34,20 @@ class PoseProblem {
   /// Whether the linear equations of the nominal pose have a unique solution.
   bool is_regular() const { return coordinates_.allFinite(); }
 
-  /// The problem with the errors of these samples, until the next call. values: what the kernel reads, [entries x
-  /// padded(samples)].
-  const KernelProblem& with(const SampleBlock& samples, std::vector<double>& values);
+  /// The problem with the errors of these samples, until the next call. scratch: for the values, if those of the
+  /// samples are not what the kernel reads.
+  const KernelProblem& with(const SampleBlock& samples, std::vector<double>& scratch);
+
+  /// What the kernel reads since the last call of with(), [entries x padded(samples)].
+  const double* values() const { return values_; }
+
+  /// Whether starts are known of samples with the varied error, its range and
+  /// the constant errors of these.
+  bool has_starts(const SampleBlock& samples) const;
+
+  /// Samples like these start by these series, see KernelStart; empty: by first
+  /// order, as others do.
+  void set_starts(const SampleBlock& samples, std::vector<double> coefficients);
 
  private:
   /// An entry of a frame's error, in rad or units of the reach.
@@ -46,6 +57,14 @@ class PoseProblem {
     std::size_t component;  ///< of [omega; v]
     double constant = 0.0;  ///< what does not vary of it
     int row = -1;           ///< among the values; -1: it does not vary
+    double unit = 1.0;      ///< by which its values are multiplied
+  };
+
+  /// Samples for which starts were computed.
+  struct Started {
+    FactorIndex factor;          ///< that varies
+    double range;                ///< of it
+    std::vector<double> errors;  ///< of samples
   };
 
   /// What an error adds to an entry.
@@ -69,9 +88,12 @@ class PoseProblem {
   void solve_first_order(const Equilibrium& equations);
   Eigen::MatrixXd twists_of_entries(const Equilibrium& equations) const;
   static double* row_of(const Entry& entry, std::size_t stride, std::vector<double>& values);
-  void read_values(const SampleBlock& samples, std::vector<double>& values);
+  bool take_values(const SampleBlock& samples);
+  void add_values(const SampleBlock& samples, std::vector<double>& values);
+  void set_constants(const SampleBlock& samples);
   void set_segments(std::size_t e);
   void set_map();
+  void use_starts(const SampleBlock& samples);
 
   const AssemblyModel* model_;
   Nominal pose_;
@@ -83,6 +105,8 @@ class PoseProblem {
   std::vector<std::size_t> first_;   ///< [limbs + 1] where the frames of a limb begin among all
   std::vector<KernelError> errors_;  ///< [frames of all limbs]
   Eigen::MatrixXd coordinates_;      ///< [coordinates x (entries + 1)] of a unit of each, and of the load
+  const double* values_ = nullptr;   ///< see values()
+  std::optional<Started> started_;   ///< of the last call of set_starts()
   KernelProblem problem_;
   std::optional<Closure> closure_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "models/assembly/calibration.h"
 #include "models/assembly/model.h"
 #include "models/assembly/separation.h"
 #include "models/assembly/sketch.h"
@@ -69,7 +70,9 @@ class BranchedModel final : public TrackedModel {
   BranchedModel(const MechanismFile& file, Checked found, assembly::Metric metric, chain::Fidelity fidelity)
       : TrackedModel(file, found),
         model_(assembly_model(mechanism(), tracker(), found.home, metric)),
-        fidelity_(fidelity) {
+        fidelity_(fidelity),
+        has_forces_of_drives_(metric == assembly::Metric::stiffness &&
+                              found.home.loop_equations - found.home.passive_rank > found.home.over_constraints) {
     set_responses(assembly::responses_of(model_), model_.over_constrained);
     check_names(mechanism(), description().responses);
     ModelDescription& description = described();
@@ -77,13 +80,18 @@ class BranchedModel final : public TrackedModel {
     if (!model_.deforms) return;
     description.metric = metric == assembly::Metric::stiffness ? "stiffness" : "platform";
     if (model_.assembly.load.acts_on(model_.assembly.bodies) && metric == assembly::Metric::stiffness) return;
-    description.deformation = DeformationMeasure{0, assembly::effect_rounding(model_, description.responses[0])};
+    description.deformation =
+        DeformationMeasure{0, std::max(assembly::effect_rounding(model_, description.responses[0]), nominal_gap())};
   }
 
   double condition(std::span<const double> pose) const override { return assembly::condition(model_, pose); }
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
     return assembly::assembly_evaluator(model_, options, fidelity_);
+  }
+
+  std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
+    return has_forces_of_drives_ ? nullptr : assembly::calibrated_evaluator(model_, options, fidelity_);
   }
 
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
@@ -117,8 +125,24 @@ class BranchedModel final : public TrackedModel {
   }
 
  private:
+  /// The largest gap, over poses of the workspace, up to which rounded numbers may cause it: what they cause without
+  /// errors, and as much again.
+  double nominal_gap() const {
+    if (!model_.rounded) return 0.0;
+    const std::vector<double> no_errors(model_.terms.size(), 0.0);
+    double largest = 0.0;
+    for (const PoseMobility& pose : workspace_mobility(mechanism())) {
+      if (!pose.reached()) continue;
+      const SolveTrace found =
+          assembly::assembly_trace(model_, pose.pose, no_errors, SolverOptions(), chain::Fidelity::first_order);
+      largest = std::max(largest, found.responses[0]);
+    }
+    return 2.0 * largest;
+  }
+
   assembly::AssemblyModel model_;
   chain::Fidelity fidelity_;
+  bool has_forces_of_drives_;  ///< whether more drives than freedoms put forces on limbs, which corrections change
 };
 
 }  // namespace
@@ -133,6 +157,7 @@ assembly::AssemblyModel assembly_model(const Mechanism& mechanism, std::shared_p
       .idle = home.left_when_locked,
       .deforms = metric == assembly::Metric::stiffness || home.passive_rank < home.loop_equations,
       .over_constrained = home.passive_rank < home.loop_equations,
+      .rounded = metric == assembly::Metric::platform && mechanism.precision.rounded(),
       .joint_displacements = {}};
   const assembly::Nominal at_home =
       assembly::nominal(model.assembly, std::vector<double>(model.assembly.joints(), 0.0));

@@ -76,6 +76,10 @@ Eigen::MatrixXd weighed(const lie::Matrix6<double>& root, const Eigen::MatrixXd&
 }
 
 double mismatch(const Mechanism& unit, const lie::Matrix6<double>& root, const Eigen::VectorXd& residual) {
+  if (unit.is_branched()) {
+    const double square = weighed(root, residual).squaredNorm();
+    return std::sqrt(2.0 / static_cast<double>(unit.loops()) * square);
+  }
   double sum = 0.0;
   const std::vector<chain::LimbPair> pairs = chain::pairs_of(unit.limbs.size());
   for (const chain::LimbPair& pair : pairs) {

@@ -37,7 +37,8 @@ lie::Matrix6<double> metric_root(const Mechanism& unit, const PlatformPose& pose
 Eigen::MatrixXd weighed(const lie::Matrix6<double>& root, const Eigen::MatrixXd& rows);
 
 /// The limbs' mismatch for this residual as a share of the reach, defined like the response `gap`: the root mean square
-/// over the pairs of |r_k - r_i| by the metric.
+/// over the pairs of |r_k - r_i| by the metric, or, where limbs branch, over the independent loops, of which each has
+/// two limbs.
 double mismatch(const Mechanism& unit, const lie::Matrix6<double>& root, const Eigen::VectorXd& residual);
 
 }  // namespace poesy::file

@@ -141,6 +141,8 @@ struct Mechanism {
 
   /// Number of joints that have a displacement, over all limbs.
   std::size_t moving() const;
+  /// Number of independent loops.
+  std::size_t loops() const { return limbs.size() - (bodies.size() - 1); }
   /// Whether there are bodies other than base and platform.
   bool is_branched() const { return bodies.size() > 2; }
   /// Whether anything has stiffness.

@@ -39,19 +39,15 @@ struct PoseEquations {
   Vector mismatch;  ///< [D] mismatch in this basis
 };
 
-PoseEquations equations_at(const Mechanism& unit, double reach, const Tracked& tracked) {
+PoseEquations equations_at(const Mechanism& unit, const Tracked& tracked) {
   PoseEquations made;
-  const std::vector<double> q = scaled_displacements(unit, tracked.displacements, 1.0 / reach);
-  made.state.resize(static_cast<Index>(q.size()) + 6);  // a mechanism without further bodies
-  std::ranges::copy(q, made.state.begin());
-  for (std::size_t c = 0; c < 6; ++c) {
-    made.state[static_cast<Index>(q.size() + c)] = tracked.pose[c] / (c < 3 ? reach : 1.0);
-  }
+  made.state = tracked.state;
   const LoopEquations loops = loop_equations(unit, made.state);
   std::vector<std::size_t> free;
-  for (std::size_t k = 0; k < q.size() + 6; ++k) {
-    const bool given = k >= q.size() && std::ranges::find(unit.coordinates, k - q.size(), &Coordinate::component) !=
-                                            unit.coordinates.end();
+  const std::size_t moving = unit.moving();  // the platform's pose follows
+  for (std::size_t k = 0; k < static_cast<std::size_t>(made.state.size()); ++k) {
+    const bool given = k >= moving && std::ranges::find(unit.coordinates, k - moving, &Coordinate::component) !=
+                                          unit.coordinates.end();
     if (!given) free.push_back(k);
   }
   made.root = metric_root(unit, pose_of(unit, made.state));
@@ -106,7 +102,7 @@ std::vector<lie::Matrix6<double>> effects_of_axes(const Mechanism& unit, const S
   for (std::size_t i = 0; i < position; ++i) k += unit.limbs[i].moving();
   const Limb& limb = unit.limbs[position];
   std::vector<lie::Matrix6<double>> effects;
-  Transform g = limb.home.front();
+  Transform g = transform_of(unit, state, limb.from) * limb.home.front();
   for (std::size_t j = 0; j < suspect.first + suspect.count; ++j) {
     const Joint& joint = limb.joints[j];
     const Transform before = g * joint.at_home.inverse();
@@ -189,7 +185,7 @@ InputError misfit(const Mechanism& mechanism, std::span<const PoseMobility> pose
   std::vector<PoseEquations> equations;
   double mismatch = 0.0;
   for (const PoseMobility& pose : poses) {
-    equations.push_back(equations_at(unit, mechanism.reach, pose.tracked));
+    equations.push_back(equations_at(unit, pose.tracked));
     mismatch = std::max(mismatch, pose.tracked.mismatch);
   }
   std::optional<Correction> best;
@@ -198,15 +194,15 @@ InputError misfit(const Mechanism& mechanism, std::span<const PoseMobility> pose
     if (!best || correction.is_left.norm() < best->is_left.norm()) best = std::move(correction);
   }
   // The gap is over pairs, the remaining mismatch over limbs: sum over pairs |r_k - r_i|^2 = limbs sum |r_i|^2.
-  const auto limbs = static_cast<double>(unit.limbs.size());
-  const double is_left = mechanism.reach * best->is_left.maxCoeff() *
-                         std::sqrt(limbs / static_cast<double>(chain::pairs_of(unit.limbs.size()).size()));
+  const double is_left =
+      mechanism.reach * best->is_left.maxCoeff() * std::sqrt(2.0 / static_cast<double>(unit.loops()));
   const std::size_t first = best->suspect.limbs.front();
   const Joint& joint = unit.limbs[first].joints[best->suspect.first];
   return {joint.place,
-          fmt::format("the limbs do not fit each other: in the workspace they hold the platform up to {} apart, {:.1e} "
+          fmt::format("the limbs do not fit each other: in the workspace they hold {} up to {} apart, {:.1e} "
                       "of the reach, and up to 1e-4 of it counts as rounding",
-                      small_length_text(mismatch), mismatch / mechanism.reach),
+                      unit.is_branched() ? "bodies" : "the platform", small_length_text(mismatch),
+                      mismatch / mechanism.reach),
           fmt::format("look at joint '{}' of limb {}{}: with {}, {} would be left", joint.name, first + 1,
                       best->suspect.limbs.size() > 1 ? " and its copies" : "",
                       corrected_text(joint.at_home, mechanism.reach, *best), small_length_text(is_left))};

@@ -115,7 +115,8 @@ Checked checked(Mechanism mechanism, Workspace workspace) {
     if (workspace == Workspace::in_reach) check_mobility(mechanism, home, poses);
   });
   if (!problem && !open) return {std::move(mechanism), std::move(home)};
-  if (mechanism.is_branched() && problem) throw *problem;  // numbers of branched mechanisms are treated as exact
+  // With stiffness, limbs that fit only to some digits would press on each other as parts do not.
+  if (mechanism.is_branched() && mechanism.is_elastic() && problem) throw *problem;
   std::optional<InputError> nearly;
   for (Gap gap : gaps_of(home.singular_values)) {
     for (const double margin : kMargins) {

@@ -271,6 +271,7 @@ Tracked Tracker::track(std::span<const double> numbers) const {
   tracked.platform.p *= reach_;
   for (std::size_t k = 0; k < 3; ++k) tracked.pose[k] *= reach_;
   tracked.displacements = scaled_displacements(unit_, {state.data(), unit_.moving()}, reach_);
+  tracked.state = std::move(state);
   return tracked;
 }
 

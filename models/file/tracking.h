@@ -23,6 +23,7 @@ struct Tracked {
   /// Whether the path ended because the loops stay open beyond, although no pose on it is singular.
   bool open = false;
   double mismatch = 0.0;  ///< m: gap of the limbs at the end if numbers are rounded; else 0
+  State state = {};       ///< at the end, with lengths in units of the reach
 };
 
 /// The numbers that define the configuration: the coordinates of the platform (inverse kinematics), or the

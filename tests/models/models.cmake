@@ -33,9 +33,10 @@ poesy_test(assembly_oracle_test LABELS unit SOURCES models/assembly/closure_test
            LINKS poesy_models nlohmann_json::nlohmann_json DATA)
 poesy_test(assembly_properties_test LABELS property
            SOURCES models/assembly/balance_test.cpp models/assembly/block_solver_test.cpp
+                   models/assembly/calibration_test.cpp
                    models/assembly/closed_forms_test.cpp models/assembly/cuts_test.cpp
                    models/assembly/loops_test.cpp
-                   models/assembly/properties_test.cpp
+                   models/assembly/properties_test.cpp models/assembly/starts_test.cpp
            LINKS poesy_models DATA)
 poesy_test(platform_points_test LABELS unit SOURCES models/file/platform_points_test.cpp LINKS poesy_models DATA)
 poesy_test(branched_file_test LABELS property SOURCES models/file/branched_file_test.cpp LINKS poesy_models DATA)

@@ -50,6 +50,17 @@ std::string rrr3(double tilt, int digits = 17, const lie::Matrix3<double>& R = l
   return text;
 }
 
+/// The same with its second limb cut by a body that ends it at joint A: a branched file.
+std::string cut_rrr3(double tilt) {
+  std::string text = rrr3(tilt);
+  const std::size_t second = text.find("[[limb]]", text.find("[[limb]]") + 1);
+  const std::size_t end = text.find("\n", text.find("\"A\"", second));
+  text.replace(end - 1, 1, " ]\n[[limb]]\nfrom = \"elbow\"\njoints = [");
+  text.insert(second, "[[body]]\nname = \"elbow\"\nat = [0, 0, 0]\n");
+  text.insert(text.find("joints", second), "to = \"elbow\"\n");
+  return text;
+}
+
 /// Three cranks that keep the platform parallel, the third shorter by this: at home, where they are parallel, that
 /// shows in nothing.
 std::string cranks(double shorter) {
@@ -219,6 +230,67 @@ TEST_P(Tilts, PosesByTheDrives) {
   }
 }
 
+/// A limb cut in two by a body moves the platform as the whole limb does, up to the difference between pairs and
+/// bodies, and that of the poses, which share the mismatch otherwise.
+TEST_P(Tilts, ALimbMayBeCutByABody) {
+  struct Error {
+    const char* whole;
+    const char* cut;  ///< limb 2 is cut, so the third one is limb 4
+    double size;
+  };
+  const std::array errors{Error{"epsilon_1_1_x", "epsilon_1_1_x", 1e-4}, Error{"delta_3_2_y", "delta_4_2_y", 1e-4},
+                          Error{"delta_1_2_x", "delta_1_2_x", 5e-5}};
+  for (const std::size_t fidelity : {0u, 1u}) {
+    const std::unique_ptr<Model> whole = model_of(rrr3(GetParam()), fidelity);
+    const std::unique_ptr<Model> cut = model_of(cut_rrr3(GetParam()), fidelity);
+    EXPECT_EQ(cut->remarks().size(), 1u);
+    for (const double size : {0.0, 1.0}) {
+      std::vector<double> of_whole = none(*whole);
+      std::vector<double> of_cut = none(*cut);
+      for (const Error& error : errors) {
+        of_whole[whole->description().find_factor(error.whole)->value] = size * error.size;
+        of_cut[cut->description().find_factor(error.cut)->value] = size * error.size;
+      }
+      for (const std::vector<double>& pose : poses_) {
+        const std::vector<double> wanted = responses_of(*whole, pose, of_whole);
+        const std::vector<double> found = responses_of(*cut, pose, of_cut);
+        for (std::size_t r = 3; r < wanted.size(); ++r) {  // of the platform
+          EXPECT_NEAR(found[r], wanted[r], size * (5e-9 + 1e-3 * GetParam()) + 1e-13);
+        }
+      }
+    }
+  }
+}
+
+/// Without errors the gap is the one that the tilt makes of the exact mechanism: in the frame of the body the tilt
+/// about joint B, and behind the joint the tilt back.
+TEST_P(Tilts, TheMismatchOfACutLimbIsThatOfTheTilt) {
+  const std::unique_ptr<Model> exact = model_of(cut_rrr3(0.0));
+  EXPECT_TRUE(exact->remarks().empty());
+  std::vector<double> tilt = none(*exact);
+  const double angle = std::atan(GetParam());
+  const lie::Matrix3<double> B = mechanism_of(rrr3(0.0)).limbs[1].joints[1].at_home.R;
+  tilt[exact->description().find_factor("epsilon_3_0_y")->value] = angle;
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    tilt[exact->description().find_factor(std::string("epsilon_3_1_") + "xyz"[c])->value] = -angle * B(1, c);
+  }
+  for (const std::size_t fidelity : {0u, 1u}) {
+    const std::unique_ptr<Model> rounded = model_of(cut_rrr3(GetParam()), fidelity);
+    double largest = 0.0;
+    for (const std::vector<double>& pose : poses_) {
+      const std::vector<double> expected = responses_of(*exact, pose, tilt);
+      const std::vector<double> found = responses_of(*rounded, pose, none(*rounded));
+      EXPECT_GT(found[0], 0.0);
+      for (std::size_t r = 0; r < 3; ++r) EXPECT_NEAR(found[r], expected[r], 1e-3 * expected[r] + 1e-15);
+      largest = std::max(largest, found[0]);
+    }
+    const double told = checked_of(cut_rrr3(GetParam())).mismatch;
+    EXPECT_GT(told, largest / 3.0);
+    EXPECT_LT(told, largest * 3.0);
+    EXPECT_LE(told, rounded->description().deformation->rounding);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Sizes, Tilts, testing::Values(1e-10, 3.7e-6, 1e-5, 1e-4),
                          [](const auto& instance) { return "Tilt" + std::to_string(instance.index); });
 
@@ -344,6 +416,13 @@ TEST(Rounding, NamesTheJointWhoseNumbersWouldDo) {
 TEST(Rounding, LeavesMistakesMistakes) {
   EXPECT_NE(problem_of(rrr3(0.1)).find("platform.coordinates are not independent"), std::string::npos)
       << problem_of(rrr3(0.1));
+}
+
+/// A body's joint that is far off is named, with its limb's label.
+TEST(MisfitOfBranched, NamesTheJoint) {
+  const std::string problem = problem_of(cut_rrr3(3e-3));
+  EXPECT_NE(problem.find("the limbs do not fit each other"), std::string::npos) << problem;
+  EXPECT_NE(problem.find("look at joint 'B' of limb 3"), std::string::npos) << problem;
 }
 
 }  // namespace

@@ -1,0 +1,149 @@
+#include "models/assembly/calibration.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "engine/linalg/decompositions.h"
+
+namespace poesy::assembly {
+namespace {
+
+using Eigen::Index;
+using Matrix = Eigen::MatrixXd;
+
+/// A drive that moves the platform by less than this share of what the others
+/// do corrects nothing.
+constexpr double kNothing = 1e-9;
+
+Index index(std::size_t value) { return static_cast<Index>(value); }
+
+/// Twists of limbs' ends by a unit of each drive, with all joints that it
+/// moves: [6 limbs x drives].
+Matrix driven_twists(const AssemblyModel& model, const Nominal& at) {
+  const Index rows = 6 * index(at.limbs.size());
+  Matrix twists(rows, 0);
+  std::map<std::size_t, Index> shared;  // columns of drives that move several joints
+  for (std::size_t e = 0; e < at.limbs.size(); ++e) {
+    const std::vector<chain::Joint>& joints = model.assembly.limbs[e].chain.joints;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (!joints[j].actuated || joints[j].fixed) continue;
+      const auto known = joints[j].drive == 0 ? shared.end() : shared.find(joints[j].drive);
+      const Index column = known == shared.end() ? twists.cols() : known->second;
+      if (column == twists.cols()) {
+        twists.conservativeResize(Eigen::NoChange, column + 1);
+        twists.col(column).setZero();
+        if (joints[j].drive > 0) shared[joints[j].drive] = column;
+      }
+      twists.block<6, 1>(6 * index(e), column) += at.limbs[e].twist(joints[j], j);
+    }
+  }
+  return twists;
+}
+
+/// From the platform's twist to the twists of all bodies by which the best
+/// correction moves them, [6 bodies x 6].
+Matrix taken_by_drives(const AssemblyModel& model, const Nominal& at) {
+  const FirstOrder first_order(model.assembly, at, model.ranks);
+  Matrix moved = first_order.effect(driven_twists(model, at)).twists;
+  const Matrix6 root = linalg::cholesky_root(at.W);
+  Matrix measured = root * moved.middleRows<6>(6 * index(kPlatform));
+  const Eigen::RowVectorXd lengths = measured.colwise().norm();
+  for (Index d = 0; d < measured.cols(); ++d) {
+    const double scale = lengths[d] > kNothing * lengths.maxCoeff() ? 1.0 / lengths[d] : 0.0;
+    measured.col(d) *= scale;
+    moved.col(d) *= scale;
+  }
+  return moved * linalg::pseudo_inverse(measured) * root;
+}
+
+/// Row by row the values of one body's displacement in a block of outcomes.
+class Rows {
+ public:
+  /// first: row of the displacement of the body's origin along x.
+  Rows(const OutcomeBlock& outcomes, std::size_t first, std::size_t sample)
+      : value_(outcomes.responses.data() + first * outcomes.status.size() + sample), stride_(outcomes.status.size()) {}
+
+  double& operator[](std::size_t row) { return value_[row * stride_]; }
+  Vector3 triple(std::size_t row) { return {(*this)[row], (*this)[row + 1], (*this)[row + 2]}; }
+  void set(std::size_t row, const Vector3& values) {
+    for (std::size_t k = 0; k < 3; ++k) (*this)[row + k] = values[index(k)];
+  }
+
+ private:
+  double* value_;
+  std::size_t stride_;
+};
+
+class CalibratedEvaluator final : public Evaluator {
+ public:
+  CalibratedEvaluator(const AssemblyModel& model, chain::Fidelity fidelity, std::unique_ptr<Evaluator> uncorrected)
+      : model_(&model), fidelity_(fidelity), uncorrected_(std::move(uncorrected)) {
+    std::size_t row = model.deforms ? 3 : 0;
+    for (std::size_t b = kPlatform; b < model.assembly.bodies.size(); ++b) {
+      first_rows_.push_back(row);
+      row += 8 + (b == kPlatform && model.assembly.tool ? 4 : 0);
+    }
+  }
+
+  void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
+    uncorrected_->evaluate(samples, outcomes);
+    const Nominal at = model_->at(samples.pose);
+    const Matrix taken = taken_by_drives(*model_, at);
+    if (!taken.allFinite()) {
+      std::ranges::fill(outcomes.status, SolveStatus::singular);
+      return;
+    }
+    for (std::size_t b = 0; b < samples.count; ++b) correct(taken, at, b, outcomes);
+  }
+
+ private:
+  void correct(const Matrix& taken, const Nominal& at, std::size_t sample, const OutcomeBlock& outcomes) const {
+    Rows platform(outcomes, first_rows_.front(), sample);
+    Screw twist;  // about the base's origin
+    twist.head<3>() = platform.triple(3);
+    twist.tail<3>() = platform.triple(0) - Vector3(twist.head<3>()).cross(at.bodies[kPlatform].p);
+    const Eigen::VectorXd by_drives = taken * twist;
+    bool is_finite = true;
+    for (std::size_t n = 0; n < first_rows_.size(); ++n) {
+      const std::size_t body = kPlatform + n;
+      Rows rows(outcomes, first_rows_[n], sample);
+      const Vector3 turned = by_drives.segment<3>(6 * index(body));
+      const Vector3 moved = Vector3(by_drives.segment<3>(6 * index(body) + 3)) + turned.cross(at.bodies[body].p);
+      set(rows, rows.triple(0) - moved, rows.triple(3) - turned);
+      is_finite = is_finite && rows.triple(0).allFinite() && rows.triple(3).allFinite();
+    }
+    if (model_->assembly.tool) set_tool(platform, at.bodies[kPlatform].R * *model_->assembly.tool);
+    if (usable(outcomes.status[sample]) && !is_finite) outcomes.status[sample] = SolveStatus::non_finite;
+  }
+
+  static void set(Rows& rows, const Vector3& moved, const Vector3& theta) {
+    rows.set(0, moved);
+    rows.set(3, theta);
+    rows[6] = moved.norm();
+    rows[7] = theta.norm();
+  }
+
+  void set_tool(Rows& platform, const Vector3& arm) const {
+    const Vector3 theta = platform.triple(3);
+    const Vector3 by_turn = fidelity_ == chain::Fidelity::first_order ? Vector3(theta.cross(arm))
+                                                                      : lie::moved_by_rotation<double>(theta, arm);
+    const Vector3 tip = platform.triple(0) + by_turn;
+    platform.set(8, tip);
+    platform[11] = tip.norm();
+  }
+
+  const AssemblyModel* model_;
+  chain::Fidelity fidelity_;
+  std::unique_ptr<Evaluator> uncorrected_;
+  std::vector<std::size_t> first_rows_;  ///< of each body but the base
+};
+
+}  // namespace
+
+std::unique_ptr<Evaluator> calibrated_evaluator(const AssemblyModel& model, const SolverOptions& options,
+                                                chain::Fidelity fidelity) {
+  return std::make_unique<CalibratedEvaluator>(model, fidelity, assembly_evaluator(model, options, fidelity));
+}
+
+}  // namespace poesy::assembly
