@@ -57,6 +57,12 @@ Matrix taken_by_drives(const AssemblyModel& model, const Nominal& at) {
   return moved * linalg::pseudo_inverse(measured) * root;
 }
 
+/// What a pose's corrections follow from.
+struct Correction {
+  Nominal at;
+  Matrix taken;  ///< see taken_by_drives()
+};
+
 /// Row by row the values of one body's displacement in a block of outcomes.
 class Rows {
  public:
@@ -88,16 +94,27 @@ class CalibratedEvaluator final : public Evaluator {
 
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
     uncorrected_->evaluate(samples, outcomes);
-    const Nominal at = model_->at(samples.pose);
-    const Matrix taken = taken_by_drives(*model_, at);
-    if (!taken.allFinite()) {
+    const Correction& correction = correction_at(samples.pose);
+    if (!correction.taken.allFinite()) {
       std::ranges::fill(outcomes.status, SolveStatus::singular);
       return;
     }
-    for (std::size_t b = 0; b < samples.count; ++b) correct(taken, at, b, outcomes);
+    for (std::size_t b = 0; b < samples.count; ++b) correct(correction.taken, correction.at, b, outcomes);
   }
 
  private:
+  static constexpr std::size_t kMostPoses = 256;  ///< that are remembered
+
+  const Correction& correction_at(std::span<const double> pose) {
+    if (corrections_.size() > kMostPoses) corrections_.clear();
+    std::vector<double> key(pose.begin(), pose.end());
+    const auto known = corrections_.find(key);
+    if (known != corrections_.end()) return known->second;
+    Nominal at = model_->at(pose);
+    Matrix taken = taken_by_drives(*model_, at);
+    return corrections_.emplace(std::move(key), Correction{std::move(at), std::move(taken)}).first->second;
+  }
+
   void correct(const Matrix& taken, const Nominal& at, std::size_t sample, const OutcomeBlock& outcomes) const {
     Rows platform(outcomes, first_rows_.front(), sample);
     Screw twist;  // about the base's origin
@@ -136,7 +153,8 @@ class CalibratedEvaluator final : public Evaluator {
   const AssemblyModel* model_;
   chain::Fidelity fidelity_;
   std::unique_ptr<Evaluator> uncorrected_;
-  std::vector<std::size_t> first_rows_;  ///< of each body but the base
+  std::vector<std::size_t> first_rows_;                    ///< of each body but the base
+  std::map<std::vector<double>, Correction> corrections_;  ///< by pose
 };
 
 }  // namespace

@@ -114,7 +114,7 @@ class Printer(Branched):
                 self.assertLess(np.abs(np.stack(found[:3], -1) - origins[:, :, k - 1]).max(), 1e-14)
                 self.assertLess(np.abs(np.stack(found[3:], -1) - turns[:, k - 1]).max(), 1e-14)
 
-    def run_yield(self, sizes, limits, file=FILE, samples=20000):
+    def run_yield(self, sizes, limits, file=FILE, samples=20000, calibrated=False):
         """Share of the machines within the limits at all places, and its interval."""
         self.write(file, (DATA / file).read_text())
         self.write("places.csv", table(columns(PLACES, "xyz")))
@@ -131,6 +131,7 @@ kind = "monte-carlo"
 draws = "per machine"
 factors = {list(sizes)}
 samples = {samples}
+calibrated = {str(calibrated).lower()}
 limits = {{ {", ".join(f'{name} = "{limit}"' for name, limit in limits.items())} }}
 """)
         self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet")
@@ -165,7 +166,11 @@ limits = {{ {", ".join(f'{name} = "{limit}"' for name, limit in limits.items())}
         own = self.own_yield(dict.fromkeys(rods, 1e-4),
                              lambda moved: np.linalg.norm(moved[..., 3:], axis=-1) <= np.radians(0.1))
         self.assertAlmostEqual(own, 0.0324, delta=0.002)
-        self.assert_yield(self.run_yield(dict.fromkeys(rods, "0.1 mm"), {"rotation": "0.1 deg"}), own)
+        for calibrated in (False, True):
+            found = self.run_yield(dict.fromkeys(rods, "0.1 mm"), {"rotation": "0.1 deg"}, calibrated=calibrated)
+            self.assert_yield(found, own)
+        found = self.run_yield(dict.fromkeys(rods, "0.1 mm"), {"position": "1 nm"}, calibrated=True)
+        self.assertEqual(found, 1.0)  # they can displace it
 
     def test_yield_of_all_errors(self):
         """Two limits at once."""
