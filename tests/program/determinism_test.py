@@ -5,7 +5,7 @@ import itertools
 import h5py
 
 from poesy_program import STUDY, ProgramTest, main
-from resumption import DESIGNED, FORCES, GIVEN, ZONES
+from resumption import DESIGNED, DESIGNED_HEAD, FORCES, GIVEN, ZONES
 
 
 class Determinism(ProgramTest):
@@ -73,6 +73,14 @@ analysis = {{ kind = "coupling", linear = ["0.1 mm", "0.3 mm", "0.5 mm"], limbs 
     def test_designers_words(self):
         for study in (DESIGNED, GIVEN, ZONES, FORCES):
             self.assertEqual(len({self.content_hash(study, "--threads", n) for n in (1, 2, 5)}), 1, study)
+
+    def test_designers_words_in_other_kinds(self):
+        zeroed = '[[response]]\nname = "rise"\nsum = { nozzle_z = 1 }\nrelative_to = { x = 0, y = 0, z = "200 mm" }\n'
+        errors = 'factors = ["rail_*", "rod_?", "batch", "sag_?"]\n'
+        for analysis in ('kind = "sensitivity"\nsamples = 1200\n', 'kind = "sobol"\nsamples = 256\n',
+                         'kind = "monte-carlo"\nsamples = 1200\nlimits = { rise = "0.2 mm" }\n'):
+            study = DESIGNED_HEAD + zeroed + "[analysis]\n" + analysis + errors
+            self.assertEqual(len({self.content_hash(study, "--threads", n) for n in (1, 2, 5)}), 1, analysis)
 
     def test_identification_and_cases(self):
         head, rest = STUDY.split("[analysis]")
