@@ -314,6 +314,47 @@ limits = {{ bowl = ["-0.06 mm", "0.07 mm"] }}
         self.assert_share(self.yield_of(), own)
 
 
+class GearRatio(Case):
+    """Case 19: the ratio of a gear is off by 0.1 %, so a drive is off by that share of its way from the end stop."""
+
+    PLACES = np.array([(0.0, 0.0, 0.05), (0.05, 0.0, 0.05), (-0.025, 0.0433, 0.05), (-0.05, 0.0, 0.05)])
+    STOP = np.array([(0.0, 0.0, 0.252)])
+
+    def setUp(self):
+        super().setUp()
+        if "grows_with" not in self.succeeds("template", "--reference"):
+            self.skipTest("this poesy has no errors along the way")
+        start = RotaryDelta().drives(self.STOP)[0, 0]
+        mechanism = ARMS.replace('error = [ { name = "zero", limb = "each", frame = "q", component = "epsilon_z" } ]',
+                                 'error = [ { name = "gear", limb = "each", frame = "q", component = "epsilon_z", '
+                                 f'grows_with = "q", from = "{start.item()!r} rad" }} ]')
+        study = Bowl.STUDY.replace('angular = { distribution = "uniform", half_width = "0.1 deg" }',
+                                   'relative = { distribution = "normal", sigma = "0.1 %" }')
+        study = study.replace('draws = "per machine"', 'draws = "per machine"\nfactors = ["gear_*"]')
+        self.say(mechanism, study, self.PLACES)
+
+    def displacement(self, gears):
+        """[4 x N x 3]"""
+        delta = RotaryDelta()
+        ways = delta.drives(self.PLACES) - delta.drives(self.STOP)
+        none = np.zeros((len(gears), 3))
+        return np.concatenate([delta.displacement(place[None], none, none, none, gears * way)
+                               for place, way in zip(self.PLACES, ways)])
+
+    def test_displacements(self):
+        gears = np.vstack([np.full(3, 1e-3), np.random.default_rng(14).normal(0.0, 1e-3, (20, 3))])
+        found = np.moveaxis(self.evaluated({f"gear_{k + 1}": gears[:, k] for k in range(3)}, "x", "y", "z"), 0, -1)
+        np.testing.assert_allclose(found, self.displacement(gears), rtol=0.0, atol=1e-12)
+        np.testing.assert_allclose(1e6 * found[:, 0, 2], [-277.2, -268.4, -268.4, -267.5], atol=0.05)
+
+    def test_yield(self):
+        z = self.displacement(np.random.default_rng(15).normal(0.0, 1e-3, (MACHINES, 3)))[..., 2]
+        own = (np.abs(z) <= 2e-4).all(axis=0).mean()
+        self.assertTrue(0.2 < own < 0.9, own)
+        study = (self.folder / "study.toml").read_text()
+        self.assert_share(self.yield_of(study.replace('bowl = ["-0.06 mm", "0.07 mm"]', 'z = "0.2 mm"')), own)
+
+
 # jlane1590/machinekit-files, modparakins.h: numbers in inches.
 FEET = [(1.850, 0), (1.102, 0), (-0.925, 1.602), (-0.551, 0.954), (-0.925, -1.602), (-0.551, -0.954)]
 BALLS = [(1.207, 1.012), (0.123, -0.698), (-1.480, 0.539), (0.543, 0.456), (0.274, -1.551), (-0.666, 0.243)]
