@@ -363,6 +363,4 @@ WRONG_ALLOCATIONS = [
      "'0.002 mm', less than '0.2 mm' before it; write the smaller bound"),
     ('["0.002 mm", "0.2 mm"]', '["0.002 deg", "0.2 deg"]',
      "is '0.002 deg', but must be a length; write it like \"1 mm\""),
-    ('probe_position = "0.15 mm"', 'probe_position = { to = "0.15 mm", share = 0.5 }',
-     'at each pose alone, which do not show it; write a limit on a response'),
 ]

@@ -7,7 +7,7 @@ import numpy as np
 from poesy_program import MECHANISMS, ProgramTest, main
 from six_rods import PLACES, machines, rod_effects
 
-SEEDS, MACHINES = 40, 300  # studies of each kind, and machines in each
+SEEDS, MACHINES = 30, 300  # studies of each kind, and machines in each
 DRAWS = 400_000  # of the truth: its standard error is less than a fifth of that of all studies together
 Z = 3.9  # two-sided alpha 1e-4, for each of the three questions to each kind
 RODS = [f"rod_{k}" for k in range(1, 7)]
