@@ -37,11 +37,11 @@ struct Clearance {
 
 /// A feature of a part with the errors by which it is displaced, all lengths (m).
 struct Feature {
-  std::string name;                      ///< "rail_1"
-  std::string label;                     ///< name on the drawing, the same in all limbs: "rail"
-  std::size_t limb;                      ///< counts from 1
-  std::size_t frame;                     ///< of the limb, that its errors change
-  FeatureKind kind;                      ///< what it is
+  std::string name;   ///< "rail_1"
+  std::string label;  ///< name on the drawing, the same in all limbs: "rail"
+  std::size_t limb;   ///< counts from 1
+  std::size_t frame;  ///< of the limb, that its errors change
+  FeatureKind kind;   ///< what it is
   /// m: length of an axis; sides of a rectangle; diameter of a round plane; nominal size of a distance, 0 if unknown
   std::array<double, 2> size = {};
   bool one_direction = false;            ///< whether the zone of an axis or a point is between two planes
