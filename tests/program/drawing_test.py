@@ -285,6 +285,14 @@ bounds = ["0.002 mm", "0.2 mm"]
             np.testing.assert_allclose([float(row["zone_mm"]) for row in rows], wanted, rtol=1e-12)
             self.succeeds("run", f"{name}_certificate.toml", "-o", "again.h5", "--quiet")
 
+    def test_steps_that_are_too_coarse(self):
+        parts = self.ALLOCATION.replace("0.2 mm", "1 mm") + 'round = "0.2 mm"\n'
+        self.write("coarse.toml", STUDY.format(analysis=parts, fidelity="first-order",
+                                               zones='errors.zones = { distribution = "normal", sigmas = 3 }'))
+        done = self.poesy("run", "coarse.toml", "--quiet")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("widen the limit, or lower the bounds of parts, or round to finer steps", done.stderr.decode())
+
     def test_values(self):
         """Zones of a list of values."""
         values = 'values = ["0.004 mm", "0.0063 mm", "0.01 mm", "0.016 mm", "0.025 mm"]'

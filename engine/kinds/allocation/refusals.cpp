@@ -23,6 +23,13 @@ std::string row_text(const StudyRun& run, std::size_t row) {
   return fmt::format("{} at pose {}", run.study.model().responses[limit.response].name, row % poses);
 }
 
+/// How parts can have lower tolerances.
+std::string finer_parts(const SearchProblem& problem) {
+  const bool has_steps =
+      std::ranges::any_of(problem.programme.parts(), [](const AllocatedPart& part) { return part.round.has_value(); });
+  return std::string("lower the bounds of parts") + (has_steps ? ", or round to finer steps" : "");
+}
+
 }  // namespace
 
 void refuse_perfect_beyond(const SearchProblem& problem) {
@@ -70,7 +77,7 @@ void refuse_infeasible(const SearchProblem& problem, const Infeasible& infeasibl
                    fmt::format("the limit of {} on {} cannot be kept: with every tolerance at its lowest the root mean "
                                "square is {}",
                                stated, row, text(fixed + infeasible.need)),
-                   "widen the limit, or lower the bounds of parts");
+                   "widen the limit, or " + finer_parts(problem));
 }
 
 void refuse_lowest(const SearchProblem& problem, std::uint64_t rejects) {
@@ -79,7 +86,7 @@ void refuse_lowest(const SearchProblem& problem, std::uint64_t rejects) {
       fmt::format("{} % of the machines within the limits cannot be had: with every tolerance at its lowest, {} of {} "
                   "machines are not within them, and {} may be",
                   100.0 * problem.options.yield, rejects, problem.run.study.analysis.samples, problem.allowed.design),
-      "widen a limit, ask for a smaller yield, or lower the bounds of parts");
+      "widen a limit, ask for a smaller yield, or " + finer_parts(problem));
 }
 
 void refuse_perfect(const SearchProblem& problem, std::uint64_t rejects) {
