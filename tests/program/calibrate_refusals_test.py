@@ -160,6 +160,11 @@ class Refusals(ProgramTest):
         said = self.refused(STUDY.replace("[analysis]\n", "[analysis]\ncalibrated = true\n"), table())
         self.assertIn("is set beside calibrated = true", said)
 
+    def test_more_places_than_values(self):
+        study = STUDY.replace(FIT, FIT + '\nprior = "tolerances"\nframe = "plane"')
+        said = self.refused(study, "x [mm],y [mm],z [mm],deviation_z [um]\n0,0,0,1\n0,10,0,1\n0,10,0,1\n")
+        self.assertIn("3 numbers of frame and target and 3 measured values; measure at more poses", said)
+
     def test_study_without_the_table(self):
         said = self.refused(STUDY.split("[analysis]")[0], table())
         self.assertIn("there is no table [analysis.calibration]", said)

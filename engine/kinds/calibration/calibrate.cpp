@@ -183,6 +183,11 @@ class Calibration {
   void check_count() const {
     const std::size_t fitted = table_.fit.size() + places();
     const std::size_t measured = machine_.file.values.size();
+    if (places() > 0 && places() >= measured) {
+      throw InputError({machine_.path},
+                       fmt::format("{} numbers of frame and target and {} measured values", places(), measured),
+                       "measure at more poses, or in a known frame");
+    }
     if (has_prior() || fitted <= measured) return;
     const std::string of_places = places() == 0 ? "" : fmt::format(" with {} numbers of frame and target", places());
     throw InputError({machine_.path},
@@ -371,6 +376,11 @@ class Calibration {
   void set_next(Calibrated& made) {
     if (!weights_.is_noise) {
       made.warnings.emplace_back("next poses are not chosen, because the noise is 0");
+      return;
+    }
+    if (fit_.scaled.frame_rank() < places()) {
+      made.warnings.emplace_back(
+          "next poses are not chosen, because the measurements do not determine the frame and the target");
       return;
     }
     const Eigen::Index k = fit_.theta.size();
