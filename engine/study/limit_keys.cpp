@@ -156,12 +156,12 @@ StudyTables limit_tables() {
                  .bounds = "above 0 and at most 1",
                  .usual = "`1`",
                  .meaning = "Of the poses of a machine at least this share must be within the ends. With draws = "
-                            "\"per machine\", or for cases."},
+                            "\"per machine\", in an allocation, or for cases."},
                 {.name = "spread",
                  .type = "quantity",
                  .bounds = "greater than 0",
                  .meaning = "Instead of ends: the largest less the smallest value over the poses of a machine is "
-                            "good up to here. With draws = \"per machine\", or for cases."}}}};
+                            "good up to here. With draws = \"per machine\", in an allocation, or for cases."}}}};
 }
 
 StudyValue limit_value(const StudySection& analysis, const Study& study, const ResponseLimit& limit) {

@@ -204,10 +204,17 @@ class Flatness(ProgramTest):
         self.assertGreater(own, 0.98 - 4.0 * np.sqrt(0.98 * 0.02 / MACHINES))
         self.assertLess(own, 0.99)
         self.assertIn("z: -0.02 mm to 0.1 mm; limit: the least distance", re.sub(r"\s+", " ", self.succeeds("show", "out.h5")))
-        self.write("study.toml", (self.folder / "study.toml").read_text().replace('["-0.02 mm", "0.1 mm"]', '{ spread = "0.1 mm" }'))
-        done = self.poesy("run", "study.toml", "-o", "out.h5", "--quiet")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn(b"tolerances are found by mean squares at each pose alone", done.stderr)
+
+    def test_tolerances_under_a_spread(self):
+        self.write("study.toml", STUDY.replace("monte-carlo", "allocation").replace('draws = "per machine"\n', "") +
+                   'yield = 0.98\nsigmas = 3\nlimits = { z = { spread = "0.1 mm" } }\n[[analysis.parts]]\nname = "rods"\n'
+                   f'factors = {RODS}\ncost = {{ law = "reciprocal", b = 1, unit = "mm" }}\n')
+        self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet")
+        with h5py.File(self.folder / "out.h5") as file:
+            sigma = file["allocation/sigma"][0]
+        own = (np.ptp(bed(np.random.default_rng(7).normal(0.0, sigma, (MACHINES, 6))), axis=1) <= 1e-4).mean()
+        self.assertGreater(own, 0.98 - 4.0 * np.sqrt(0.98 * 0.02 / MACHINES))
+        self.assertLess(own, 0.99)
 
 
 if __name__ == "__main__":

@@ -37,12 +37,14 @@ program_test(growing_errors regression)
 program_test(leading_response unit)
 program_test(calibrate regression)
 program_test(calibrate_refusals unit)
+program_test(allocation_over_poses statistical)
 program_test(own_responses regression)
 program_test(relative_responses statistical)
 program_test(branched statistical)
 program_test(load regression)
 set_property(TEST program.calibrate program.calibrate_refusals program.drawing program.compare program.flatness
-             program.growing_errors program.leading_response program.mechanism_file program.relative_responses program.shared_drive
+             program.growing_errors program.leading_response program.allocation_over_poses program.mechanism_file
+             program.relative_responses program.shared_drive
              program.assembly program.branched program.load
              APPEND PROPERTY ENVIRONMENT POESY_DATA=${CMAKE_CURRENT_SOURCE_DIR}/data)
 program_test(determinism determinism)

@@ -86,6 +86,11 @@ const Group<Result> kAllocation{
       "of the mechanism with perfect parts to the nearer end",
       Presence::where_computed},
      {"limit_to", &Result::limit_to, kResponseUnit, "Upper end of the limit, infinity for none; NaN likewise",
+      Presence::where_computed},
+     {"limit_pose_share", &Result::limit_pose_share, "1",
+      "Share of the poses of a machine at which the limit is to be kept; NaN likewise", Presence::where_computed},
+     {"limit_is_spread", &Result::limit_is_spread, "1",
+      "1: the limit is on the largest less the smallest value over the poses of a machine; 0: on values; NaN likewise",
       Presence::where_computed}}};
 
 const Group<Result> kCurve{

@@ -144,25 +144,27 @@ StudyRow samples_row() {
 StudyRow limits_row() {
   StudyRow row = shared_analysis_row("limits");
   row.required = true;
-  row.meaning = "Limits of responses: a machine is good where it is within all of them at every pose.";
+  row.meaning = "Limits of responses: a machine is good where it keeps all of them.";
   row.shown = [](const TemplateLines& lines, const Study& study) { return template_limits(lines, study.model(), ""); };
   return row;
 }
 
 StudyRow aim_row() {
-  return {.name = "aim",
-          .value = asked_value(word_at<Aim>(
-              {{Aim::least_cost, "the least sum of the parts' costs"},
-               {Aim::equal_effect, "each part uses the same share of the limit that it uses most"},
-               {Aim::equal_tolerance,
-                "one T for all lengths and one for all angles, in the ratio of their usual sizes in [errors]"},
-               {Aim::common_factor,
-                "the standard deviations of [errors], all times the largest factor that the limits allow"}},
-              &AllocationOptions::aim)),
-          .usual = "\"least-cost\" where a part has a cost, else \"equal-effect\"",
-          .example = "\"least-cost\"",
-          .meaning = "Which of the tolerances that keep the limits.",
-          .commented = true};
+  return {
+      .name = "aim",
+      .value = asked_value(word_at<Aim>(
+          {{Aim::least_cost, "the least sum of the parts' costs"},
+           {Aim::equal_effect, "each part uses the same share of the limit that it uses most"},
+           {Aim::equal_tolerance,
+            "one T for all lengths, one for all angles, and one for all numbers, in the ratio of their usual sizes in "
+            "[errors]"},
+           {Aim::common_factor,
+            "the standard deviations of [errors], all times the largest factor that the limits allow"}},
+          &AllocationOptions::aim)),
+      .usual = "\"least-cost\" where a part has a cost, else \"equal-effect\"",
+      .example = "\"least-cost\"",
+      .meaning = "Which of the tolerances that keep the limits.",
+      .commented = true};
 }
 
 std::vector<StudyRow> allocation_rows() {
@@ -219,16 +221,16 @@ void require_all(const Study& study, const StudySection& section) {
   static_cast<void>(section.require("parts", "write [[analysis.parts]] with factors, e.g. factors = \"linear\""));
 }
 
-/// Refuses limits over the poses of a machine.
+/// Refuses a limit on the spread of a response without a sign.
 void check_limits(const Study& study, const StudySection& section) {
   for (const ResponseLimit& limit : study.analysis.limits) {
-    if (!limit.allowed.is_over_poses()) continue;
+    const Response& response = study.model().responses[limit.response];
+    if (!limit.allowed.is_spread() || !response.is_magnitude()) continue;
     limit_value(section, study, limit)
-        .fail(fmt::format("is {}, but tolerances are found by mean squares at each pose alone, which do not show it",
-                          limit.allowed.is_spread() ? "a limit on the spread over the poses"
-                                                    : "to be kept at a share of the poses"),
-              "write a limit on a response at each pose, or one that is relative_to a pose; a study of kind "
-              "\"monte-carlo\" finds the yield under this limit");
+        .fail("is a limit on the spread over the poses, but " + response.name +
+                  " has no sign, and tolerances are found by differences of responses between poses, which are linear",
+              "limit the spread of a response with a sign; a study of kind \"monte-carlo\" finds the yield under this "
+              "limit");
   }
 }
 

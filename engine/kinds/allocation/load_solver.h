@@ -58,8 +58,14 @@ class LoadSolver : protected UnitSolver {
     return errors;
   }
 
+  /// Begins to collect what limits over poses need of this many machines.
+  void begin_poses(std::size_t machines) {
+    const std::size_t poses = plan_->poses().size();
+    if (limits_.any_over_poses()) at_poses_.assign(limits_.size() * machines * poses, 0.0);
+  }
+
   /// Solves the drawn machines at one pose and raises their loads [B]. Sets missing [B] to 1 where a machine is not
-  /// solved, and beyond [K x B] to 1 where it breaks a limit.
+  /// solved, and beyond [K x B] to 1 where it breaks a limit. Limits over poses wait for end_poses().
   UnitOutcomes add_pose(PoseIndex pose, std::span<double> loads, std::span<std::uint8_t> missing,
                         std::span<std::uint8_t> beyond) {
     const std::size_t count = loads.size();
@@ -71,7 +77,11 @@ class LoadSolver : protected UnitSolver {
       const double* const y = &outcomes.responses[limits_.response(k) * count];
       for (std::size_t b = 0; b < count; ++b) {
         if (!counts(outcomes.status[b], plan_->not_converged())) continue;
-        const double load = limits_.load(k, pose, y[b]);
+        const double load = limits_.is_spread(k) ? y[b] : limits_.load(k, pose, y[b]);
+        if (limits_.is_over_poses(k)) {
+          values_over_poses(k, b, count)[pose.value] = load;
+          continue;
+        }
         loads[b] = std::max(loads[b], load);
         if (load > 1.0) beyond[k * count + b] = 1;
       }
@@ -79,9 +89,29 @@ class LoadSolver : protected UnitSolver {
     return outcomes;
   }
 
+  /// Raises the loads of the machines by limits over poses, and sets beyond, as add_pose() does. Loads of machines that
+  /// are not solved at a pose say nothing.
+  void end_poses(std::span<double> loads, std::span<std::uint8_t> beyond) {
+    const std::size_t count = loads.size();
+    for (std::size_t k = 0; k < limits_.size(); ++k) {
+      if (!limits_.is_over_poses(k)) continue;
+      for (std::size_t b = 0; b < count; ++b) {
+        const double load = limits_.load_over_poses(k, values_over_poses(k, b, count));
+        loads[b] = std::max(loads[b], load);
+        if (load > 1.0) beyond[k * count + b] = 1;
+      }
+    }
+  }
+
   const RelativeLimits& limits_;  ///< K limits
 
  private:
+  /// [M] What the limit needs of a machine at each pose.
+  std::span<double> values_over_poses(std::size_t k, std::size_t machine, std::size_t count) {
+    const std::size_t poses = plan_->poses().size();
+    return std::span(at_poses_).subspan((k * count + machine) * poses, poses);
+  }
+
   /// Fills the row of an error with the uniforms of these machines at a pose.
   void draw_row(std::size_t error, PoseIndex pose, std::span<const std::size_t> machines) {
     const std::size_t count = machines.size();
@@ -93,6 +123,8 @@ class LoadSolver : protected UnitSolver {
       from = to;
     }
   }
+
+  std::vector<double> at_poses_;  ///< [K x B x M] for limits over poses; empty without one
 };
 
 }  // namespace poesy

@@ -70,7 +70,9 @@ class LoadEvaluator : private LoadSolver {
     found.load.assign(count, 0.0);
     missing_.assign(count, 0);
     beyond_.assign(limits_.size() * count, 0);
+    begin_poses(count);
     for (std::size_t m = 0; m < poses; ++m) add(m, found);
+    end_poses(found.load, beyond_);
     for (std::size_t b = 0; b < count; ++b) {
       if (missing_[b] == 0) continue;
       if (found.load[b] <= 1.0) ++found.unsolved;

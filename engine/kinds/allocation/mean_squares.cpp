@@ -25,12 +25,19 @@ struct AddedSquares {
   std::vector<double> base;
   std::vector<double> added;    ///< [K x P] sums over the draws
   std::vector<double> counted;  ///< [P] draws that were solved
+  /// [K x P x kNodes] of limits on spreads: the response at each node of each error alone; NaN where it is not solved,
+  /// and among others. Empty without such a limit.
+  std::vector<double> nodes;
 
   AddedSquares() = default;
-  AddedSquares(std::size_t limits, std::size_t errors) : base(limits, kNaN), added(limits * errors), counted(errors) {}
+  AddedSquares(const RelativeLimits& limits, std::size_t errors)
+      : base(limits.size(), kNaN),
+        added(limits.size() * errors),
+        counted(errors),
+        nodes(limits.any_spread() ? added.size() * kNodes : 0, kNaN) {}
 
   void state(Archive& archive) {
-    for (auto* list : {&base, &added, &counted}) archive.reals(*list);
+    for (auto* list : {&base, &added, &counted, &nodes}) archive.reals(*list);
   }
 };
 
@@ -64,7 +71,7 @@ class AddedSquaresEvaluator : private UnitSolver {
 
   AddedSquares operator()(std::size_t n) {
     const std::size_t errors = plan_->factors().size();
-    AddedSquares found(limits_.size(), errors);
+    AddedSquares found(limits_, errors);
     const std::size_t samples = pieces_.alone(n) ? 1 : pieces_.draws_of(n);
     constexpr std::size_t kMostPairs = Plan::kUnitSamples / kNodes;
     for (std::size_t first = 0; first < samples * errors; first += kMostPairs) {
@@ -118,6 +125,10 @@ class AddedSquaresEvaluator : private UnitSolver {
         continue;
       }
       const auto values = outcomes.responses.subspan(limits_.response(k) * samples + pair * kNodes, kNodes);
+      if (limits_.is_spread(k)) {
+        if (alone) std::ranges::copy(values, &found.nodes[(k * plan_->factors().size() + p) * kNodes]);
+        continue;
+      }
       const double centre = limits_.centre(k, pose);
       const std::array y{values[0] - centre, values[1] - centre, values[2] - centre};
       if (alone && p == 0) found.base[k] = y[1] * y[1];
@@ -140,14 +151,16 @@ struct SquareSums {
   std::vector<double> alone;    ///< [L x P]
   std::vector<double> among;    ///< [L x P] summed over draws
   std::vector<double> counted;  ///< [M x P] draws
+  std::vector<double> nodes;    ///< [L x P x kNodes] of limits on spreads; empty without one
 
-  SquareSums(const Pieces& all, std::size_t limits, std::size_t error_count)
+  SquareSums(const Pieces& all, const RelativeLimits& limits, std::size_t error_count)
       : pieces(&all),
         errors(error_count),
-        base(limits * all.poses),
+        base(limits.size() * all.poses),
         alone(base.size() * errors),
         among(alone.size()),
-        counted(all.poses * errors) {}
+        counted(all.poses * errors),
+        nodes(limits.any_spread() ? alone.size() * kNodes : 0, kNaN) {}
 
   void add(std::size_t n, const AddedSquares& found) {
     const std::size_t m = pieces->pose(n).value;
@@ -159,18 +172,23 @@ struct SquareSums {
         (is_alone ? alone : among)[row * errors + p] += found.added[k * errors + p];
       }
     }
+    for (std::size_t k = 0; k < found.base.size() && is_alone && !nodes.empty(); ++k) {
+      const std::size_t of_limit = errors * kNodes;
+      std::copy_n(&found.nodes[k * of_limit], of_limit, &nodes[(k * pieces->poses + m) * of_limit]);
+    }
     for (std::size_t p = 0; p < errors && !is_alone; ++p) counted[m * errors + p] += found.counted[p];
   }
 
   void state(Archive& archive, const NumberRange&) {
-    for (auto* list : {&base, &alone, &among, &counted}) archive.reals(*list);
+    for (auto* list : {&base, &alone, &among, &counted, &nodes}) archive.reals(*list);
     const auto is_sum = [](double sum) { return std::abs(sum) <= kLargestSum; };
     const auto is_count = [&](double n) {
       return n >= 0.0 && n <= static_cast<double>(pieces->draws) && n == std::floor(n);
     };
     const bool is_possible = std::ranges::all_of(base, [&](double y) { return is_sum(y) && y >= 0.0; }) &&
                              std::ranges::all_of(alone, is_sum) && std::ranges::all_of(among, is_sum) &&
-                             std::ranges::all_of(counted, is_count);
+                             std::ranges::all_of(counted, is_count) &&
+                             std::ranges::all_of(nodes, [&](double y) { return std::isnan(y) || is_sum(y); });
     archive.expect(is_possible, "has sums that no responses give");
   }
 };
@@ -188,18 +206,100 @@ struct SquareJob {
   NumberRange units(const Shard& shard) const { return shard.of(pieces.count()); }
   std::uint64_t expected(std::size_t n) const { return kNodes * errors() * (pieces.alone(n) ? 1 : pieces.draws_of(n)); }
   AddedSquaresEvaluator worker() const { return {plan, model, limits, pieces}; }
-  AddedSquares unit(std::size_t) const { return {limits.size(), errors()}; }
+  AddedSquares unit(std::size_t) const { return {limits, errors()}; }
   SolveCounts solves(std::size_t n, const AddedSquares&) const { return as_converged(expected(n)); }
-  SquareSums sums() const { return {pieces, limits.size(), errors()}; }
+  SquareSums sums() const { return {pieces, limits, errors()}; }
 };
 
-MeanSquares mean_squares_of(const SquareSums& sums, const Plan& plan) {
+/// Fills in the rows of limits on spreads, to first order in single errors: of the responses less their mean over the
+/// poses where they are solved. An error that is drawn anew at each pose is independent from pose to pose.
+class SpreadRows {
+ public:
+  SpreadRows(SquareSums& sums, const SquareJob& job) : sums_(sums), job_(job), poses_(job.pieces.poses) {}
+
+  void fill(std::size_t k) {
+    rounding_ = job_.model.rounding(job_.limits.response(k));
+    for (std::size_t p = 0; p < sums_.errors; ++p) {
+      take_mean(k, p);
+      (job_.plan.is_per_pose(p) ? add_per_pose(k, p) : add_fixed(k, p));
+    }
+  }
+
+ private:
+  using Nodes = std::array<double, kNodes>;
+
+  /// The response at the nodes of an error, less the mean over the poses.
+  Nodes centred(std::size_t k, std::size_t m, std::size_t p) const {
+    Nodes y{};
+    for (std::size_t at = 0; at < kNodes; ++at) y[at] = node(k, m, p, at) - mean_[at];
+    return y;
+  }
+
+  double node(std::size_t k, std::size_t m, std::size_t p, std::size_t at) const {
+    return sums_.nodes[((k * poses_ + m) * sums_.errors + p) * kNodes + at];
+  }
+  bool is_solved(std::size_t k, std::size_t m, std::size_t p) const { return !std::isnan(node(k, m, p, 1)); }
+
+  void take_mean(std::size_t k, std::size_t p) {
+    solved_ = 0.0;
+    mean_ = {};
+    for (std::size_t m = 0; m < poses_; ++m) {
+      if (!is_solved(k, m, p)) continue;
+      solved_ += 1.0;
+      for (std::size_t at = 0; at < kNodes; ++at) mean_[at] += node(k, m, p, at);
+    }
+    for (double& one : mean_) one /= solved_;
+  }
+
+  void set(std::size_t k, std::size_t m, std::size_t p, double base, double added) {
+    const std::size_t row = k * poses_ + m;
+    sums_.base[row] = base * base;
+    sums_.alone[row * sums_.errors + p] = added;
+  }
+
+  void add_fixed(std::size_t k, std::size_t p) {
+    for (std::size_t m = 0; m < poses_; ++m) {
+      if (!is_solved(k, m, p)) continue;
+      const Nodes y = centred(k, m, p);
+      const bool moves = std::max(std::abs(y[0] - y[1]), std::abs(y[2] - y[1])) > rounding_;
+      set(k, m, p, y[1], moves ? 0.5 * (y[0] * y[0] + y[2] * y[2]) - y[1] * y[1] : 0.0);
+    }
+  }
+
+  void add_per_pose(std::size_t k, std::size_t p) {
+    double all = 0.0;
+    for (std::size_t m = 0; m < poses_; ++m) all += is_solved(k, m, p) ? own_square(k, m, p) : 0.0;
+    const double own = 1.0 - 1.0 / solved_;
+    for (std::size_t m = 0; m < poses_; ++m) {
+      if (!is_solved(k, m, p)) continue;
+      const double square = own_square(k, m, p);
+      set(k, m, p, centred(k, m, p)[1], own * own * square + (all - square) / (solved_ * solved_));
+    }
+  }
+
+  /// What the error adds at its own pose to the mean square about the response without it.
+  double own_square(std::size_t k, std::size_t m, std::size_t p) const {
+    const double low = node(k, m, p, 0) - node(k, m, p, 1);
+    const double high = node(k, m, p, 2) - node(k, m, p, 1);
+    return std::max(std::abs(low), std::abs(high)) > rounding_ ? 0.5 * (low * low + high * high) : 0.0;
+  }
+
+  SquareSums& sums_;
+  const SquareJob& job_;
+  std::size_t poses_;
+  double rounding_ = 0.0;  ///< of the response
+  double solved_ = 0.0;    ///< poses where the error is solved
+  Nodes mean_{};           ///< over these poses
+};
+
+MeanSquares mean_squares_of(const SquareSums& sums, const RelativeLimits& limits, const Plan& plan) {
   MeanSquares found{sums.base, std::vector<double>(sums.alone.size()), {}};
   for (std::size_t row = 0; row < sums.base.size(); ++row) {
     for (std::size_t p = 0; p < sums.errors; ++p) {
       const std::size_t at = row * sums.errors + p;
       const double draws = sums.counted[row % sums.pieces->poses * sums.errors + p];
-      const double among = draws > 0.0 ? sums.among[at] / draws : sums.alone[at];
+      const double among =
+          draws > 0.0 && !limits.is_spread(row / sums.pieces->poses) ? sums.among[at] / draws : sums.alone[at];
       const double sigma = plan.distributions()[p].standard_deviation();
       found.value[row] += 0.5 * (sums.alone[at] + among);
       found.slope[at] = std::max(0.0, among) / (sigma * sigma);
@@ -213,9 +313,12 @@ MeanSquares mean_squares_of(const SquareSums& sums, const Plan& plan) {
 std::optional<MeanSquares> mean_squares(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                         std::size_t draws, const RunOptions& options) {
   const SquareJob job{plan, model, {plan, model, limits}, {plan.poses().size(), draws}};
-  const auto sums = fold_units(job, options);
+  auto sums = fold_units(job, options);
   if (!sums) return std::nullopt;
-  MeanSquares found = mean_squares_of(*sums, plan);
+  for (std::size_t k = 0; k < limits.size(); ++k) {
+    if (job.limits.is_spread(k)) SpreadRows(*sums, job).fill(k);
+  }
+  MeanSquares found = mean_squares_of(*sums, job.limits, plan);
   for (std::size_t k = 0; k < limits.size(); ++k) {
     for (std::size_t m = 0; m < job.pieces.poses; ++m) found.room.push_back(job.limits.room(k, PoseIndex(m)));
   }

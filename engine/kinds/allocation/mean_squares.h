@@ -34,9 +34,10 @@ inline constexpr std::size_t kDrawsAmongOthers = 64;
 ///
 ///     value = y(c)^2 + sum of (o + t) / 2,     slope = t / sigma^2,
 ///
-/// without noise where errors do not interact, and with draws = 0, where t = o. A sample that is not solved counts as
-/// ten times the limit where the error is alone, and is left out among others. The result has the same bits for any
-/// number of threads and on all ranks. Empty when stopped.
+/// without noise where errors do not interact, and with draws = 0, where t = o. Of a limit on a spread y is the
+/// response less its mean over the poses, and t = o always. A sample that is not solved counts as ten times the limit
+/// where the error is alone, and is left out among others. The result has the same bits for any number of threads and
+/// on all ranks. Empty when stopped.
 std::optional<MeanSquares> mean_squares(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                         std::size_t draws, const RunOptions& options);
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
-#include "engine/base/contract.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
 
@@ -28,30 +28,55 @@ class PerfectSolver : private UnitSolver {
 
 RelativeLimits::RelativeLimits(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits)
     : limits_(limits.begin(), limits.end()), centre_({limits.size(), plan.poses().size()}, 0.0) {
-  POESY_EXPECTS(!any_over_poses(limits));
-  const auto is_magnitude = [](const ResponseLimit& limit) { return limit.allowed.is_magnitude(); };
-  if (std::ranges::all_of(limits_, is_magnitude)) return;
+  const auto is_from_zero = [](const ResponseLimit& limit) {
+    return limit.allowed.is_magnitude() || limit.allowed.is_spread();
+  };
+  if (std::ranges::all_of(limits_, is_from_zero)) return;
   PerfectSolver solve(plan, model);
   for (std::size_t m = 0; m < plan.poses().size(); ++m) {
     const std::vector<double> responses = solve(PoseIndex(m));
     for (std::size_t k = 0; k < limits_.size(); ++k) {
-      if (!is_magnitude(limits_[k])) centre_(k, m) = responses[limits_[k].response];
+      if (!is_from_zero(limits_[k])) centre_(k, m) = responses[limits_[k].response];
     }
   }
 }
 
+bool RelativeLimits::any_spread() const {
+  return std::ranges::any_of(limits_, [](const ResponseLimit& limit) { return limit.allowed.is_spread(); });
+}
+
 double RelativeLimits::room(std::size_t k, PoseIndex pose) const {
   const ValueLimit& limit = limits_[k].allowed;
+  if (limit.is_spread()) return 0.5 * limit.to();
   if (limit.is_magnitude()) return limit.to();
   return std::min(limit.to() - centre(k, pose), centre(k, pose) - limit.from());
 }
+
+namespace {
+
+/// The load, at most 1 exactly if the limit holds, whatever the rounding.
+double rounded_load(double load, bool holds) {
+  return holds ? std::min(load, 1.0) : std::max(load, std::nextafter(1.0, 2.0));
+}
+
+}  // namespace
 
 double RelativeLimits::load(std::size_t k, PoseIndex pose, double value) const {
   const ValueLimit& limit = limits_[k].allowed;
   const double away = value - centre(k, pose);
   const double end = (away < 0.0 ? limit.from() : limit.to()) - centre(k, pose);
-  const double load = away / end;
-  return limit.holds(value) ? std::min(load, 1.0) : std::max(load, std::nextafter(1.0, 2.0));
+  return rounded_load(away / end, limit.holds(value));
+}
+
+double RelativeLimits::load_over_poses(std::size_t k, std::span<double> at_poses) const {
+  const ValueLimit& limit = limits_[k].allowed;
+  if (limit.is_spread()) {
+    const double spread = limit.deciding(at_poses, at_poses.size());
+    return rounded_load(spread / limit.to(), limit.holds(spread));
+  }
+  const auto place = at_poses.begin() + static_cast<std::ptrdiff_t>(limit.poses_beyond(at_poses.size()));
+  std::ranges::nth_element(at_poses, place, std::ranges::greater());
+  return *place;
 }
 
 }  // namespace poesy

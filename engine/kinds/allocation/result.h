@@ -172,6 +172,12 @@ struct AllocationResult {
   Array<double, axis::Response> limit_from;
   Array<double, axis::Response> limit_to;
   /// @}
+  /// Share of the poses of a machine at which each limit is to be kept, and 1 for a limit on the spread over the poses
+  /// (else 0); empty if all limits are on values at each pose.
+  /// @{
+  Array<double, axis::Response> limit_pose_share;
+  Array<double, axis::Response> limit_is_spread;
+  /// @}
   Array<double, axis::Response> saving;  ///< what a limit wider by one percent at all poses would save, to first order
 
   Aim aim = Aim::least_cost;  ///< what the study optimised

@@ -190,15 +190,21 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
   if (!std::ranges::all_of(stated, [](const ResponseLimit& one) { return one.allowed.is_magnitude(); })) {
     found.limit_from = found.limit_to = found.limit;
   }
+  if (any_over_poses(stated)) found.limit_pose_share = found.limit_is_spread = found.limit;
   for (std::size_t k = 0; k < stated.size(); ++k) {
     const std::size_t r = stated[k].response;
     if (!found.limit_from.empty()) {
       found.limit_from(r) = stated[k].allowed.from();
       found.limit_to(r) = stated[k].allowed.to();
     }
+    if (!found.limit_pose_share.empty()) {
+      found.limit_pose_share(r) = stated[k].allowed.share();
+      found.limit_is_spread(r) = stated[k].allowed.is_spread() ? 1.0 : 0.0;
+    }
     const std::span rooms = std::span(squares.room).subspan(k * poses, poses);
     const double least = *std::ranges::min_element(rooms);
-    found.limit(r) = least;
+    const double limit_of_room = stated[k].allowed.is_spread() ? 2.0 : 1.0;  // RelativeLimits::room
+    found.limit(r) = limit_of_room * least;
     double sum = 0.0;
     for (std::size_t m = 0; m < poses; ++m) {
       const std::size_t row = k * poses + m;
@@ -207,10 +213,10 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
       found.limit_use(r, m) = std::sqrt(std::max(0.0, square)) / allowed;
       if (multiplier.empty()) continue;
       // The room is (share x limit)^2 less the effect of the fixed errors.
-      found.multiplier(r, m) = multiplier[row] * 2.0 * candidate.share * allowed;
+      found.multiplier(r, m) = multiplier[row] * 2.0 * candidate.share * allowed / limit_of_room;
       sum += found.multiplier(r, m) * (rooms[m] / least);
     }
-    if (!multiplier.empty()) found.saving(r) = 0.01 * least * sum;
+    if (!multiplier.empty()) found.saving(r) = 0.01 * found.limit(r) * sum;
   }
 }
 

@@ -81,7 +81,9 @@ std::string drawing_number(double tolerance, const std::string& si_unit) {
 }
 
 std::string drawing_text(double tolerance, const std::string& si_unit) {
-  return fmt::format("+-{} {}", drawing_number(tolerance, si_unit), display_unit(dimension_of(si_unit)).name);
+  const std::string number = "+-" + drawing_number(tolerance, si_unit);
+  const Unit& unit = display_unit(dimension_of(si_unit));
+  return unit.dimension == Dimension::number ? number : fmt::format("{} {}", number, unit.name);
 }
 
 }  // namespace poesy

@@ -187,6 +187,26 @@ double largest(std::span<const double> at_poses) {
   return pose ? at_poses[*pose] : 0.0;
 }
 
+/// The limit on a response.
+ValueLimit limit_on(const Result& found, std::size_t r) {
+  const double most = found.limit(r);
+  if (!found.limit_is_spread.empty() && found.limit_is_spread(r) == 1.0) return ValueLimit::of_spread(most);
+  const bool has_ends = !found.limit_from.empty() && found.limit_from(r) < found.limit_to(r);  // a file may be damaged
+  const ValueLimit limit = has_ends ? ValueLimit::between(found.limit_from(r), found.limit_to(r)) : ValueLimit(most);
+  const double share = found.limit_pose_share.empty() ? 1.0 : found.limit_pose_share(r);
+  return share > 0.0 && share < 1.0 ? limit.at_share(share) : limit;
+}
+
+/// A limit in words, if it is more than a magnitude at each pose; else empty.
+std::string limit_note(const StoredResult& result, std::size_t r) {
+  const ValueLimit limit = limit_on(allocation_of(result), r);
+  if (limit.is_plain()) return {};
+  const auto text = [&](double value) { return response_text(result.responses[r], value); };
+  const std::string note = fmt::format("{}: {}", result.responses[r].name, limit_text(limit, text));
+  if (limit.is_magnitude() || limit.is_spread()) return note;
+  return note + "; limit: the least distance of the mechanism with perfect parts from the nearer end";
+}
+
 Table use_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   std::vector<FilledColumn> columns{name_column(result.responses, "response"),
@@ -214,14 +234,7 @@ Table use_table(const StoredResult& result) {
         "it is one unit wider at one pose alone, the one where that saves most");
   }
   for (const std::size_t r : limited_responses(found)) {
-    const bool has_ends =
-        !found.limit_from.empty() && found.limit_from(r) < found.limit_to(r);  // a file may be damaged
-    if (!has_ends || found.limit_from(r) == -found.limit_to(r)) continue;
-    const auto text = [&](double value) { return response_text(result.responses[r], value); };
-    table.notes.push_back(fmt::format(
-        "{}: {}; limit: the least distance of the mechanism with perfect parts from the "
-        "nearer end",
-        result.responses[r].name, limit_text(ValueLimit::between(found.limit_from(r), found.limit_to(r)), text)));
+    if (std::string note = limit_note(result, r); !note.empty()) table.notes.push_back(std::move(note));
   }
   fill(table, limited_responses(found), columns);
   return table;

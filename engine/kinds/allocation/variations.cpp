@@ -64,6 +64,7 @@ class VariationEvaluator : private LoadSolver {
     const auto machines = varied_.machines_of(piece);
     numbers_.assign(machines.begin(), machines.end());
     count_ = machines.size();
+    if (limits_.any_over_poses()) return solve_all(piece);
     draw(numbers_);
     drawn_.assign(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(plan_->factors().size() * count_));
     VariedLoads found{&varied_, std::vector<double>(varied_.loads_of(piece)), 0};
@@ -76,6 +77,37 @@ class VariationEvaluator : private LoadSolver {
   }
 
  private:
+  /// Solves each variation at all poses, because limits over poses need them all.
+  VariedLoads solve_all(std::size_t piece) {
+    VariedLoads found{&varied_, {}, varied_.loads_of(piece) * plan_->poses().size()};
+    std::vector<double> loads(count_);
+    for (const Variation& variation : varied_.variations) {
+      loads.assign(count_, 0.0);
+      missing_.assign(count_, 0);
+      beyond_.assign(limits_.size() * count_, 0);
+      draw(numbers_);
+      begin_poses(count_);
+      scale(variation, {});
+      for (std::size_t m = 0; m < plan_->poses().size(); ++m) {
+        const std::span<const std::size_t> anew = draw_per_pose(PoseIndex(m), numbers_);
+        if (!anew.empty()) scale(variation, anew);
+        add_pose(PoseIndex(m), loads, missing_, beyond_);
+      }
+      end_poses(loads, beyond_);
+      for (std::size_t b = 0; b < count_; ++b) found.load.push_back(missing_[b] == 1 ? kInfinity : loads[b]);
+    }
+    return found;
+  }
+
+  /// Multiplies the drawn errors by the factors of a variation: those that machines draw anew at a pose, or without any
+  /// the others.
+  void scale(const Variation& variation, std::span<const std::size_t> anew) {
+    for (const auto& [p, factor] : variation) {
+      if (plan_->is_per_pose(p) != !anew.empty()) continue;
+      for (std::size_t b = 0; b < count_; ++b) values_[p * count_ + b] *= factor;
+    }
+  }
+
   /// Solves the machines without variations.
   void solve_without(VariedLoads& found) {
     at_pose_.assign(plan_->poses().size() * count_, 0.0);
