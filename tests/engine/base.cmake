@@ -1,4 +1,4 @@
-poesy_test(base_test LABELS unit SOURCES engine/base/array_test.cpp engine/base/bytes_test.cpp engine/base/name_pattern_test.cpp engine/base/plain_file_test.cpp
+poesy_test(base_test LABELS unit SOURCES engine/base/array_test.cpp engine/base/bytes_test.cpp engine/base/name_pattern_test.cpp engine/base/plain_file_test.cpp engine/base/ratio_test.cpp
            engine/base/text_test.cpp engine/base/units_test.cpp engine/base/value_limit_test.cpp
            LINKS poesy_base)
 poesy_test(drawing_test LABELS unit SOURCES engine/drawing/share_inside_test.cpp engine/drawing/worst_case_test.cpp engine/drawing/zone_scatter_test.cpp
