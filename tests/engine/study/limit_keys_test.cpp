@@ -90,9 +90,7 @@ TEST(LimitKeys, SayWhatIsWrong) {
   const std::string rms = "kind = \"monte-carlo\"\n";
   const std::string share = "kind = \"monte-carlo\"\njudge = \"share\"\nshare = 0.9\n";
   const std::vector<BadLimit> list{
-      {kPerMachine,
-       "z = ^[\"2 mm\", \"-1 mm\"]",
-       {"analysis.limits.z runs from 2 mm to -1 mm", "lower end first"}},
+      {kPerMachine, "z = ^[\"2 mm\", \"-1 mm\"]", {"analysis.limits.z runs from 2 mm to -1 mm", "lower end first"}},
       {kPerMachine, "z = ^[\"2 mm\", \"2 mm\"]", {"two different ends"}},
       {kPerMachine, "z = ^[\"2 mm\"]", {"the lower one first; { to = ... } has one end"}},
       {kPerMachine, "z = [\"2 mm\", ^\"2 deg\"]", {"analysis.limits.z[1] is '2 deg', but must be a length"}},
