@@ -181,8 +181,8 @@ int calibrate_machine(const CalibrateOptions& options) {
                                candidates ? candidates->poses : predicted.poses, typed});
   if (made.result.estimate.empty()) {
     return complain(options.measured +
-                        ": a machine on the way of the fit was not solved; fit fewer errors, or take prior "
-                        "= \"tolerances\"",
+                        ": a machine on the way of the fit was not solved; look at the units of its columns, of which "
+                        "those without one are in SI, fit fewer errors, or take prior = \"tolerances\"",
                     kTooManyNotConverged);
   }
   made.result.file = std::filesystem::path(options.measured).filename().string();
@@ -197,7 +197,9 @@ int calibrate_machine(const CalibrateOptions& options) {
                  run_facts(seconds_since(start), 1, 0));
   }
   if (made.converged) return kDone;
-  return complain(options.measured + ": the fit did not converge; fit fewer errors, or take prior = \"tolerances\"",
+  return complain(options.measured +
+                      ": the fit did not converge, so nothing of it is to be typed in; look at the units of its "
+                      "columns, fit fewer errors, or take prior = \"tolerances\"",
                   kTooManyNotConverged);
 }
 

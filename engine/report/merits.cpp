@@ -17,18 +17,6 @@ namespace {
 
 constexpr int kDigits = 4;
 
-/// The yield in percent; its interval counts measured parts too, if there are some.
-Merit yield_merit(const YieldVerdict& yield) {
-  const Interval machines{yield.ci_low, yield.ci_high};
-  const Interval interval = yield.with_parts.value_or(machines);
-  return {.what = "yield",
-          .unit = "%",
-          .value = 100.0 * yield.value,
-          .low = 100.0 * interval.low,
-          .high = 100.0 * interval.high,
-          .most_best = true};
-}
-
 const Merit* find(std::span<const Merit> merits, std::string_view what) {
   const auto at = std::ranges::find(merits, what, &Merit::what);
   return at == merits.end() ? nullptr : &*at;
@@ -133,17 +121,24 @@ std::string compared_response(std::span<const StoredResult* const> results) {
   return at == first.responses.end() ? std::string() : at->name;
 }
 
+Merit yield_merit(const YieldVerdict& yield) {
+  const Interval machines{yield.ci_low, yield.ci_high};
+  const Interval interval = yield.with_parts.value_or(machines);
+  return {.what = "yield",
+          .unit = "%",
+          .value = 100.0 * yield.value,
+          .low = 100.0 * interval.low,
+          .high = 100.0 * interval.high,
+          .most_best = true};
+}
+
 std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results) {
   const auto differs = [&](const StoredResult* result) { return differ_in_metric(*results.front(), *result); };
-  if (std::ranges::any_of(results, differs)) return std::vector<std::vector<Merit>>(results.size());
+  if (kind.merits == nullptr || std::ranges::any_of(results, differs))
+    return std::vector<std::vector<Merit>>(results.size());
   const std::string response = compared_response(results);
   std::vector<std::vector<Merit>> found;
-  for (const StoredResult* result : results) {
-    std::vector<Merit>& list = found.emplace_back();
-    if (result->verdicts && result->verdicts->yield) list.push_back(yield_merit(*result->verdicts->yield));
-    if (kind.merits == nullptr) continue;
-    for (Merit& merit : kind.merits(*result, response)) list.push_back(std::move(merit));
-  }
+  for (const StoredResult* result : results) found.push_back(kind.merits(*result, response));
   return found;
 }
 

@@ -36,8 +36,11 @@ char letter_of(std::size_t result);
 /// that all have; empty if there is none.
 std::string compared_response(std::span<const StoredResult* const> results);
 
-/// The figures of merit of each of these results: its yield, if its machines were judged, then those of its kind for
-/// compared_response(). Empty lists if the results have different metrics, by which a number means different things.
+/// The yield of machines as a figure of merit; its interval counts measured parts too, if there are some.
+Merit yield_merit(const YieldVerdict& yield);
+
+/// The figures of merit of each of these results, totals for compared_response(). Empty lists if the kind has none, or
+/// the results have different metrics, by which a number means different things.
 std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results);
 
 /// What is said of a change.
@@ -45,10 +48,10 @@ enum class Change { better, worse, not_told_apart, without_interval };
 
 /// The change of a figure of merit from A to B.
 struct MeritChange {
-  double value = kNaN;  ///< b - a, in the unit shown
-  double low = kNaN;    ///< lower end of its interval; NaN if one of both values has none
-  double high = kNaN;   ///< upper end
-  Change verdict = Change::without_interval;
+  double value = kNaN;                        ///< b - a, in the unit shown
+  double low = kNaN;                          ///< lower end of its interval; NaN if one of both values has none
+  double high = kNaN;                         ///< upper end
+  Change verdict = Change::without_interval;  ///< what is said of it
 };
 
 /// The interval is made from those of both values (Zou and Donner 2008, Statistics in Medicine 27, 1693-1702; for

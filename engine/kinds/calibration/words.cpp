@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 
+#include "engine/base/nan.h"
 #include "engine/calibration/inference.h"
 #include "engine/report/display.h"
 
@@ -182,16 +183,18 @@ std::vector<std::string> left_notes(const CalibrationResult& found) {
 }
 
 std::string typed_text(const CalibrationResult& found) {
+  double quantile = kNaN;  // half an interval over its standard deviation: the same for all fitted errors that have one
+  for (std::size_t k = 0; k < found.estimate.size() && std::isnan(quantile); ++k) {
+    quantile = (found.high(k) - found.estimate(k)) / found.sd(k);
+  }
   std::vector<std::string> parts;
   for (std::size_t n = 0; n < found.typed.size(); ++n) {
     const NamedUnit& typed = found.typed[n];
     const Unit& unit = display(typed);
     std::string text = fmt::format("{} {:.4f} -> {:.4f}", typed.name, found.typed_nominal(n) / unit.si,
                                    found.typed_value(n) / unit.si);
-    if (!std::isnan(found.typed_sd(n))) {
-      const double half = (found.high(0) - found.estimate(0)) / found.sd(0) * found.typed_sd(n);
-      if (!std::isnan(half)) text += fmt::format(" +- {:.4f}", half / unit.si);
-    }
+    const double half = quantile * found.typed_sd(n);
+    if (!std::isnan(half)) text += fmt::format(" +- {:.4f}", half / unit.si);
     parts.push_back(text + (unit.dimension == Dimension::number ? "" : " " + std::string(unit.name)));
   }
   return parts.empty() ? "" : fmt::format("to type in: {}", fmt::join(parts, ", "));
@@ -212,8 +215,11 @@ std::vector<std::string> calibration_warnings(const CalibrationResult& found) {
     const std::size_t first = outliers.front();
     const std::string others =
         outliers.size() == 1 ? "" : fmt::format(" ({} more may be because of it)", outliers.size() - 1);
-    list.push_back(fmt::format("{}: {} is {:.1f} standard deviations off{}; measure it again, or leave it out",
-                               residual, found.values[first], std::abs(found.standardised(first)), others));
+    const std::string_view advice =
+        outliers.size() == 1 ? "measure it again, or leave it out"
+                             : "measure it again, or fit more errors: these may not explain the measurements";
+    list.push_back(fmt::format("{}: {} is {:.1f} standard deviations off{}; {}", residual, found.values[first],
+                               std::abs(found.standardised(first)), others, advice));
   }
   if (is_contradicted && outliers.empty()) {
     list.push_back(

@@ -455,15 +455,18 @@ ErrorShares error_shares(const StoredResult& result) {
           .at_poses = {at_poses.begin(), at_poses.end()}};
 }
 
-/// The root mean square of the response over the samples of all poses.
+/// The yield of machines, and the root mean square of the response over the samples of all poses.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   const MonteCarloResult& found = monte_carlo_of(result);
+  std::vector<Merit> list;
+  if (result.verdicts && result.verdicts->yield) list.push_back(yield_merit(*result.verdicts->yield));
   const auto at = std::ranges::find(result.responses, name, &NamedUnit::name);
-  if (at == result.responses.end() || found.overall_rms.empty()) return {};
+  if (at == result.responses.end() || found.overall_rms.empty()) return list;
   const auto r = static_cast<std::size_t>(at - result.responses.begin());
-  return {{.what = fmt::format("root mean square of {}", name),
-           .unit = unit_text(*at),
-           .value = found.overall_rms(r) / display(*at).si}};
+  list.push_back({.what = fmt::format("root mean square of {}", name),
+                  .unit = unit_text(*at),
+                  .value = found.overall_rms(r) / display(*at).si});
+  return list;
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {

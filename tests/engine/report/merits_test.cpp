@@ -55,6 +55,14 @@ TEST(MeritChange, CoversTheTrueChangeAtLeastAsOftenAsItSays) {
   EXPECT_GE(covered, 0.95 * kTrials - 3.09 * std::sqrt(0.95 * 0.05 * kTrials));
 }
 
+TEST(MeritChange, IsCertainOfExactNumbers) {
+  const Merit a{.what = "cost", .value = 4.0, .low = 4.0, .high = 4.0};
+  const Merit b{.what = "cost", .value = 3.0, .low = 3.0, .high = 3.0};
+  EXPECT_EQ(change_of(a, b).verdict, Change::better);
+  EXPECT_EQ(change_of(b, a).verdict, Change::worse);
+  EXPECT_EQ(change_of(a, a).verdict, Change::not_told_apart);
+}
+
 TEST(MeritChange, SaysNothingWithoutIntervals) {
   const MeritChange change = change_of({.what = "cost", .value = 4.0}, {.what = "cost", .value = 3.0});
   EXPECT_EQ(change.value, -1.0);
