@@ -1,7 +1,6 @@
 #pragma once
 
-#include <limits>
-
+#include "engine/base/nan.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/result/result_file.h"
 #include "tests/engine/kinds/stored.h"
@@ -11,7 +10,6 @@ namespace poesy {
 /// A sensitivity result of four errors, one of which has no index, and three responses. By the published index the
 /// errors have another order than by the corrected one.
 inline StoredResult ranked_result() {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   StoredResult result;
   result.kind = "sensitivity";
   result.model = "some model";
