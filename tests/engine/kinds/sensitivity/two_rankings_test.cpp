@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -162,10 +164,11 @@ TEST(TwoRankings, SayWhatEachResultIs) {
 TEST(TwoRankings, AsJsonHaveBothResultsAndTheTau) {
   const StoredResult a = published();
   const StoredResult b = by_platform();
-  const RankedResult ranked_a{a, "a.h5", "x", tally_of(a).total()};
-  const RankedResult ranked_b{b, "b.h5", "gap", tally_of(b).total()};
-  const TwoRankings rankings = two_rankings(ranked_a, ranked_b);
-  const auto all = nlohmann::json::parse(json_of(ranked_a, ranked_b, rankings));
+  const std::array<RankedResult, 2> both{
+      {{a, "a.h5", "x", tally_of(a).total()}, {b, "b.h5", "gap", tally_of(b).total()}}};
+  const TwoRankings rankings = two_rankings(both[0], both[1]);
+  const auto all =
+      nlohmann::json::parse(json_of(both, {.tables = {rankings.table}, .tau = rankings.tau, .remarks = {}}));
   EXPECT_EQ(all["kendall_tau"].get<double>(), rankings.tau);
   EXPECT_EQ(all["results"][0]["path"], "a.h5");
   EXPECT_EQ(all["results"][1]["response"], "gap");
