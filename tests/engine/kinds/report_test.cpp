@@ -637,8 +637,10 @@ TEST_F(HtmlReport, OfTwoResultsSaysFirstHowTheStudiesDiffer) {
   b.stored.facts.host = "elsewhere";
   const std::string html = report(a, b);
   check_page(html);
-  EXPECT_EQ(all(body(html), "<section id=\"([^\"]*)\"").at(html.find("id=\"warnings\"") == std::string::npos ? 1 : 2),
-            "studies");
+  const auto sections = all(body(html), "<section id=\"([^\"]*)\"");
+  const std::size_t first = html.find("id=\"warnings\"") == std::string::npos ? 1 : 2;
+  EXPECT_EQ(sections.at(first), "which-is-better");
+  EXPECT_EQ(sections.at(first + 1), "studies");
   const std::string rows = table(html, "settings");
   EXPECT_NE(rows.find("<th scope=\"row\">errors.linear</th><td>sigma = 1 mm</td><td>sigma = 0.01 mm</td>"),
             std::string::npos)
@@ -650,7 +652,7 @@ TEST_F(HtmlReport, OfTwoResultsSaysFirstHowTheStudiesDiffer) {
   EXPECT_NE(table(html, "what_was_run").find("elsewhere"), std::string::npos);
   EXPECT_EQ(table(html, "what_was_run").find("threads"), std::string::npos);
   EXPECT_NE(table(html, "what_was_run_alike").find("threads"), std::string::npos);
-  EXPECT_NE(report(a, a).find("Both studies have the same settings."), std::string::npos);
+  EXPECT_NE(report(a, a).find("The studies of A and B have the same settings."), std::string::npos);
 }
 
 TEST_F(HtmlReport, OfTwoResultsHasTheTotals) {
@@ -702,7 +704,7 @@ TEST_F(HtmlReport, OfTwoResultsOfEveryKindIsWhole) {
 TEST_F(HtmlReport, RefusesResultsWithNothingInCommon) {
   const ReportedResult a = sensitivity();
   ReportedResult b = a;
-  b.stored.model = "another";
+  b.stored.kind = "sobol";
   EXPECT_THROW(report(a, b), InputError);
   b = a;
   b.stored.factors = {{"c", "m"}, {"d", "m"}};

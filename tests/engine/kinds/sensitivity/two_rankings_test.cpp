@@ -141,10 +141,12 @@ TEST(TwoRankings, AreInTheOrderAskedFor) {
   EXPECT_EQ(table.rows[1][3].text, "1");
 }
 
-TEST(TwoRankings, AreOfOneKindAndMechanism) {
+TEST(TwoRankings, AreOfOneKind) {
   const StoredResult a = published();
   StoredResult b = by_platform();
   b.model = "another";
+  EXPECT_NO_THROW(two_rankings({a, "a.h5", "x", {}}, {b, "b.h5", "gap", {}}));
+  b.kind = "sobol";
   EXPECT_THROW(two_rankings({a, "a.h5", "x", {}}, {b, "b.h5", "gap", {}}), InputError);
 }
 
