@@ -230,7 +230,11 @@ class Interruption(FolderTest):
         environment = os.environ | {"TMPDIR": str(self.folder)}  # where the study's file is kept
         command = [sys.executable, "-B", "-c", INTERRUPTED, json.dumps(asked), str(self.folder / "out.h5")]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, start_new_session=True) as run:
-            time.sleep(2.5)
+            begun = self.folder / "out.h5.lock"
+            end = time.monotonic() + 100
+            while not begun.exists() and time.monotonic() < end:
+                time.sleep(0.05)
+            time.sleep(1)
             if to_group:
                 os.killpg(run.pid, signal.SIGINT)
             else:
