@@ -82,7 +82,9 @@ class Drawing {
   std::string all(std::size_t mark) {
     bodies();
     for (std::size_t i = 0; i < sketch_->limbs.size(); ++i) limb(i);
-    for (const SketchedFeature& one : sketch_->features) feature(one);
+    if (!sketch_->frames.empty()) {  // a feature has its place in a frame
+      for (const SketchedFeature& one : sketch_->features) feature(one);
+    }
     if (mark < sketch_->errors.size()) frame(sketch_->errors[mark]);
     return std::move(text_);
   }
