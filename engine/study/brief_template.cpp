@@ -19,11 +19,11 @@ constexpr std::array<std::string_view, 9> kOftenChanged{"samples", "select", "co
 /// Keys that are left out although their default is not a value.
 constexpr std::array<std::string_view, 3> kRarelyChanged{"title", "fidelity", "tolerance"};
 
+constexpr std::string_view kHead = "# What is usually changed; every key with its explanation: poesy template --full\n";
+
 bool is_in(std::span<const std::string_view> names, std::string_view name) {
   return std::ranges::find(names, name) != names.end();
 }
-
-constexpr std::string_view kHead = "# What is usually changed; every key with its explanation: poesy template --full\n";
 
 /// The path of a table's header: "analysis.parts" of "[[analysis.parts]]".
 std::string_view path_of(std::string_view header) {

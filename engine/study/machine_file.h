@@ -47,7 +47,7 @@ std::vector<std::string_view> measurable(const ModelDescription& model);
 /// and any of: deviation_R for a response R, actual_C for a coordinate x, y, z, tip_x, tip_y or tip_z, sd_R and sd_C
 /// and sd_distance for standard deviations, name, to, distance. A name may have a unit in brackets; otherwise numbers
 /// are SI. An empty cell, or nan, is a missing value. Throws InputError with line and column for a column that is
-/// unknown, repeated, missing or of no use, a unit that does not fit, a cell that is no number, a pose that is not
+/// unknown, repeated, missing or of no use, a unit that does not fit, a cell without a number, a pose that is not
 /// whole, a name that is taken or unknown, a distance without its other end, and a file without any measured value;
 /// FileError if the file cannot be read.
 MachineFile read_machine_file(const std::string& path, const ModelDescription& model);

@@ -19,7 +19,7 @@ LENGTHS = slice(3, 6)  # of the components of a displacement
 
 
 def numbers(values):
-    """A list of the file, in which null stands for what is not determined."""
+    """A list of the file, in which null means: not determined."""
     return np.array(values, dtype=float)
 
 

@@ -18,7 +18,8 @@ calibration::CoordinateError commanded_coordinates(const Study& study, const Mod
 /// The drives of a study: as the model names them, or those of its motors.
 std::vector<NamedUnit> drives_of(const Study& study);
 
-/// [drives] The displacements of the drives at one pose less those at another; NaN for a drive that is no single joint.
+/// [drives] The displacements of the drives at one pose less those at another; NaN for a drive that moves several
+/// joints.
 std::vector<double> drive_shift(const Model& model, const std::vector<NamedUnit>& drives, std::span<const double> pose,
                                 std::span<const double> drive_at);
 
