@@ -26,8 +26,8 @@ struct ReportKind {
   std::vector<Table> (*tables)(const StoredResult&, const TableOptions&);  ///< tables that only this kind has
   /// Compares the rankings of errors in two results; null: it ranks nothing.
   TwoRankings (*two_rankings)(const RankedResult& a, const RankedResult& b, RowOrder order) = nullptr;
-  /// Figures of merit, by which results are compared first. response: that of totals; one that the result may not have.
-  /// Null: the kind has none.
+  /// Figures of merit, by which results are compared first. response: that of totals, which the result has; empty: no
+  /// totals. Null: the kind has none.
   std::vector<Merit> (*merits)(const StoredResult&, std::string_view response) = nullptr;
   bool sorts = false;                                   ///< whether its ranked tables support every RowOrder
   Settling (*settling)(const StoredResult&) = nullptr;  ///< null: the kind is not sampled

@@ -460,12 +460,12 @@ std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   const MonteCarloResult& found = monte_carlo_of(result);
   std::vector<Merit> list;
   if (result.verdicts && result.verdicts->yield) list.push_back(yield_merit(*result.verdicts->yield));
-  const auto at = std::ranges::find(result.responses, name, &NamedUnit::name);
-  if (at == result.responses.end() || found.overall_rms.empty()) return list;
-  const auto r = static_cast<std::size_t>(at - result.responses.begin());
+  if (name.empty() || found.overall_rms.empty()) return list;
+  const std::size_t r = response_named(result, name);
+  const NamedUnit& response = result.responses[r];
   list.push_back({.what = fmt::format("root mean square of {}", name),
-                  .unit = unit_text(*at),
-                  .value = found.overall_rms(r) / display(*at).si});
+                  .unit = unit_text(response),
+                  .value = found.overall_rms(r) / display(response).si});
   return list;
 }
 

@@ -228,11 +228,10 @@ Comparable comparable_sensitivity(const StoredResult& result, const StoredResult
 }
 
 std::vector<Merit> sensitivity_merits(const StoredResult& result, std::string_view response) {
-  const auto at = std::ranges::find(result.responses, response, &NamedUnit::name);
-  if (at == result.responses.end()) return {};
-  const auto r = static_cast<std::size_t>(at - result.responses.begin());
+  if (response.empty()) return {};
+  const std::size_t r = response_named(result, response);
   return {{.what = fmt::format("predicted root mean square of {}", response),
-           .unit = unit_text(*at),
+           .unit = unit_text(result.responses[r]),
            .value = total_rms(result, r)}};
 }
 
