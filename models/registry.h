@@ -4,7 +4,7 @@
 
 namespace poesy {
 
-/// The only list of mechanisms.
+/// The catalog of all mechanisms that are built into the program. No other list of them exists.
 const Catalog& registry();
 
 }  // namespace poesy

@@ -23,7 +23,7 @@
 namespace poesy::app {
 namespace {
 
-/// The speeds that a trajectory requires of the mechanism; empty for other poses.
+/// A line on the speeds that a trajectory requires of the mechanism; empty if the poses are not a trajectory.
 std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& model) {
   if (poses.time.empty()) return {};
   std::string text = fmt::format("# trajectory: {} poses from {:.6g} s to {:.6g} s", poses.poses.size(),
@@ -40,14 +40,15 @@ std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& 
 
 using Clock = std::chrono::steady_clock;
 
-/// Seconds that one thread takes for this work, measured on 1 to 64 pieces within about `longest` seconds.
+/// The time that one thread needs for this work, s. It is estimated from 1 to 64 pieces of the work, which take about
+/// `longest` seconds at most.
 double measured_seconds(const WorkOutlook& work, double longest) {
   constexpr std::size_t kPieces = 64;
   if (work.prepare) work.prepare();
   const Clock::time_point start = Clock::now();
   double done = 0.0;
   for (std::size_t n = 0; n < kPieces && (n == 0 || seconds_since(start) < longest); ++n) {
-    // Starts in the middle; steps of the golden ratio spread any number of pieces evenly.
+    // The first piece is in the middle of the work. Steps by the golden ratio spread any number of pieces evenly.
     const double at = 0.5 + static_cast<double>(n) * 0.6180339887498949;
     done += work.do_piece(at - std::floor(at));
   }
@@ -60,7 +61,7 @@ double measured_seconds(const std::vector<WorkOutlook>& all, double longest) {
   return sum;
 }
 
-/// Seconds that one thread takes to compose and hash one byte of a result file.
+/// The time that one thread needs to compose and hash one byte of a result file, s.
 double composing_seconds() {
   constexpr std::size_t kNumbers = 1 << 17U;
   const std::vector<double> numbers(kNumbers, 1.0);
@@ -76,7 +77,7 @@ std::string time_text(const ExpectedTime& time) {
   return time.least == time.most ? most : "at least about " + readable_duration(time.least) + ", at most " + most;
 }
 
-/// The peak memory of this process in bytes, which includes the model, the poses and a solver, as in a run.
+/// The peak memory of this process, bytes. As in a run, it includes the model, the poses and a solver.
 double own_peak() {
   constexpr double kUnit = 1024.0;  // unit of ru_maxrss, bytes
   struct rusage usage {};
@@ -86,7 +87,8 @@ double own_peak() {
 
 std::string cost_text(const Outlook& expected) {
   const std::size_t threads = resolved_threads(0);
-  const ExpectedTime time = expected_time(expected, threads, 0.25);  // first, because a solver then has its memory
+  // Measured before own_peak(), so that the peak includes the memory of a solver.
+  const ExpectedTime time = expected_time(expected, threads, 0.25);
   return fmt::format(
       "# memory: about {:.3g} MB at the peak, when the result file of about {:.3g} MB is written\n"
       "# time: {} on {} threads of this machine{}\n",

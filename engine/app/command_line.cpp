@@ -20,8 +20,8 @@ std::string shown_name(const CLI::Option& option) {
 
 bool is_option(const std::string& word) { return word.size() > 1 && word.front() == '-'; }
 
-/// "did you mean 'run'? " if a known word is similar or begins like this one, otherwise empty. An option of one letter
-/// gets no suggestion, because all other letters are equally similar.
+/// A suggestion, "did you mean 'run'? ", if a known word is similar or begins with this word; otherwise empty. An
+/// option of one letter gets no suggestion, because all other letters are equally similar.
 std::string nearest_text(const std::string& word, const std::vector<std::string>& known) {
   if (is_option(word) && word.size() == 2) return {};
   const std::vector<std::string_view> views(known.begin(), known.end());
@@ -36,9 +36,9 @@ std::string unknown_option(const std::string& word, const CLI::App& command) {
                      nearest_text(name, option_names(command)), see_help(command));
 }
 
-// Each of these functions describes one kind of mistake; none if it was not made.
+// Each of these functions looks for one sort of mistake. It returns the message, or none if the mistake was not made.
 
-/// A required argument is missing.
+/// The message that a required argument is missing.
 std::optional<std::string> missing(const CLI::App& command) {
   std::vector<std::string> list;
   for (const CLI::Option* option : command.get_options()) {
@@ -50,7 +50,7 @@ std::optional<std::string> missing(const CLI::App& command) {
                      see_help(command));
 }
 
-/// Two options exclude each other.
+/// The message that two options exclude each other.
 std::optional<std::string> excluded(const CLI::App& command) {
   for (const CLI::Option* one : command.get_options()) {
     for (const CLI::Option* other : one->get_excludes()) {
@@ -62,7 +62,7 @@ std::optional<std::string> excluded(const CLI::App& command) {
   return std::nullopt;
 }
 
-/// An option has no value, or is given twice.
+/// The message that an option has no value, or is given twice.
 std::optional<std::string> wrong_number_of_values(const CLI::App& command, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr) return std::nullopt;
   for (const CLI::Option* option : command.get_options()) {
@@ -78,7 +78,7 @@ std::optional<std::string> wrong_number_of_values(const CLI::App& command, const
   return std::nullopt;
 }
 
-/// There are more positional arguments than the command takes.
+/// The message that there are more positional arguments than the command takes.
 std::optional<std::string> too_many_by_place(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     if (!option->get_positional()) continue;

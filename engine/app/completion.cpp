@@ -16,16 +16,16 @@
 namespace poesy::app {
 namespace {
 
-/// The shells for which there is a script.
+/// The shells for which there is a completion script.
 constexpr std::array<std::string_view, 2> kShells{"bash", "zsh"};
 
-/// The code with which each shell's script completes a value.
+/// How the script of each shell completes a value.
 struct Offer {
   std::string bash = "nothing";
   std::string zsh = " ";
 };
 
-/// The names of the responses of all mechanisms by all metrics, each once.
+/// The names of the responses of all mechanisms under all metrics. Each name appears once.
 std::vector<std::string_view> known_responses() {
   std::vector<std::string_view> names;
   const auto add = [&](const CatalogEntry& entry) {
@@ -53,7 +53,7 @@ std::vector<std::string_view> words_for(const std::string& value, const Command&
   return words;
 }
 
-/// How to complete a value; its name in help determines what it is.
+/// How to complete the value of an option. The name of the value in help tells what it is.
 Offer offer_for(const CLI::Option& option, const Command& program) {
   const std::string value = value_of(option);
   if (value == "DIR") return {"folders", "_files -/"};
@@ -115,7 +115,7 @@ _poesy() {
 complete -F _poesy poesy
 )";
 
-/// Lines for _poesy_value: how to complete the value of each option and each positional argument.
+/// Lines of the function _poesy_value in bash, which complete the value of each option and each positional argument.
 std::string bash_values(const Command& command, const Command& program) {
   std::string text;
   std::size_t place = 0;
@@ -136,7 +136,7 @@ std::string bash_options(const CLI::App& command, const std::string& name) {
   return fmt::format("    '{}') value='words {}' ;;\n", name, fmt::join(option_names(command), " "));
 }
 
-/// A script to be sourced by bash 4 or newer, without dependencies.
+/// The completion script for bash 4 or newer, which needs nothing else.
 std::string bash_completion(const Command& program) {
   std::string names;
   std::string values;
@@ -155,7 +155,7 @@ std::string bash_completion(const Command& program) {
       kBashBegin, names, values, options, kBashEnd);
 }
 
-/// Puts a backslash before each of these characters, and quotes the text for use between single quotes.
+/// Puts a backslash before each of the special characters, and makes the text safe between single quotes.
 std::string escaped(const std::string& text, std::string_view special) {
   std::string safe;
   for (const char c : text) {
@@ -169,14 +169,15 @@ std::string escaped(const std::string& text, std::string_view special) {
   return safe;
 }
 
-/// The value of an option for zsh: ":RESULT.h5:_files ..."; empty for a flag.
+/// The end of an option's description for zsh, which states the option's value: ":RESULT.h5:_files ...". Empty for a
+/// flag.
 std::string zsh_value(const CLI::Option& option, const Command& program) {
   const std::string value = value_of(option);
   if (value.empty()) return {};
   return fmt::format(":{}:{}", escaped(value, ":\\"), offer_for(option, program).zsh);
 }
 
-/// One argument of zsh's _arguments.
+/// An option or a positional argument, in the form of zsh's _arguments. place: number of the positional argument.
 std::string zsh_argument(const CLI::Option& option, std::size_t place, const Command& program) {
   const std::string value = zsh_value(option, program);
   if (option.get_positional()) {
@@ -199,7 +200,7 @@ std::string zsh_arguments(const Command& command, const Command& program, std::s
   return text;
 }
 
-/// A function for $fpath, which may also be sourced after compinit.
+/// The completion script for zsh, a function for $fpath that may also be sourced after compinit.
 std::string zsh_completion(const Command& program) {
   std::string commands;
   std::string cases;

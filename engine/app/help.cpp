@@ -14,7 +14,7 @@
 namespace poesy::app {
 namespace {
 
-/// A name and its meaning.
+/// A name in a list of help, and its meaning.
 struct Entry {
   std::string_view name;
   std::string_view meaning;
@@ -39,23 +39,23 @@ constexpr std::array kEnvironment{
 
 constexpr std::size_t kNarrowest = 30;
 constexpr std::size_t kWidest = 110;     ///< longer lines are hard to read
-constexpr std::size_t kTwoColumns = 72;  ///< narrower help has meanings below names
-constexpr std::size_t kMeanings = 28;    ///< column where meanings begin
+constexpr std::size_t kTwoColumns = 72;  ///< if help is narrower than this, meanings are below names
+constexpr std::size_t kMeanings = 28;    ///< column at which meanings begin
 constexpr std::size_t kBelow = 6;
 
-/// Columns for help on stdout.
+/// The width of help in columns.
 std::size_t help_width() {
   const std::size_t width = output_width();
   return width == kUnlimitedWidth ? kUsualWidth : std::clamp(width, kNarrowest, kWidest);
 }
 
-/// A paragraph after `begin`, whose further lines are indented to column `indent`.
+/// A paragraph of help. begin: precedes its first line. indent: column at which further lines start.
 std::string paragraph(const std::string& words, std::size_t indent = 0, const std::string& begin = {}) {
   const auto lines = wrapped(words, help_width() - indent, help_width() - begin.size());
   return fmt::format("{}{}\n", begin, fmt::join(lines, "\n" + std::string(indent, ' ')));
 }
 
-/// A name, with its meaning beside or below it.
+/// A name in help, with its meaning beside it or below.
 std::string entry(std::string_view name, std::string_view meaning) {
   std::string begin = fmt::format("  {}", name);
   std::string above;
@@ -74,7 +74,8 @@ std::string entries(const std::string& title, std::span<const Entry> list) {
   return text;
 }
 
-/// Help with CLI11's groups, wrapped to the terminal. help2man reads the help of all commands.
+/// Formats help with the groups of CLI11, wrapped to the width of the terminal. help2man makes the manual page from the
+/// help of all commands.
 class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter() { label("Positionals", "Arguments"); }
@@ -102,7 +103,7 @@ class HelpFormatter : public CLI::Formatter {
   }
 
  private:
-  /// A command with its options, indented for the help of all commands.
+  /// The options, notes and examples of a command, indented for the help of all commands.
   std::string expanded(const Command& command) const {
     std::string text = "\n" + paragraph(command.get_description()) + make_positionals(&command);
     text += make_groups(&command, CLI::AppFormatMode::Sub) + notes(command) + examples(command);

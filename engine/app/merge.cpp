@@ -24,7 +24,7 @@ struct MergeOptions {
   std::string result;
 };
 
-/// The sum of the times of all shards.
+/// The times of all shards, added up.
 RunTime time_of(const std::vector<StoredShard>& shards) {
   RunTime sum;
   for (const StoredShard& shard : shards) {
@@ -34,21 +34,21 @@ RunTime time_of(const std::vector<StoredShard>& shards) {
   return sum;
 }
 
-/// The largest value of all shards.
+/// The largest value of a fact among all shards.
 std::size_t most(const std::vector<StoredShard>& shards, std::size_t RunFacts::*fact) {
   std::size_t largest = 0;
   for (const StoredShard& shard : shards) largest = std::max(largest, shard.facts.*fact);
   return largest;
 }
 
-/// The bytes of all stages together.
+/// The number of bytes of the states of all stages.
 std::size_t state_bytes(std::span<const Bytes> states) {
   std::size_t sum = 0;
   for (const Bytes& state : states) sum += state.size();
   return sum;
 }
 
-/// Bytes that the shards take at least while they are read. A missing file counts as zero.
+/// The least memory that reading the shards takes, bytes. A missing file counts as zero.
 std::size_t file_bytes(std::span<const std::string> paths) {
   std::size_t sum = 0;
   for (const std::string& path : paths) {
@@ -59,12 +59,13 @@ std::size_t file_bytes(std::span<const std::string> paths) {
   return sum;
 }
 
-/// Peak memory: the states stay until all of them are restored.
+/// The peak memory of merging, bytes. The states stay in memory until all are restored.
 std::size_t peak_of(std::span<const Bytes> states, const MemoryOutlook& run) {
   return state_bytes(states) + run.accumulators + run.result;
 }
 
-/// needed: set to the text of the memory that merging takes, as soon as it is known.
+/// Merges the shards and writes the result. needed: set to the memory that merging needs, as text, as soon as this is
+/// known.
 int merge(const MergeOptions& options, const std::string& path, std::string& needed) {
   std::vector<StoredShard> shards;
   for (const std::string& shard : options.shards) shards.push_back(read_shard(shard));
@@ -74,7 +75,7 @@ int merge(const MergeOptions& options, const std::string& path, std::string& nee
   const Study& study = whole.study;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   needed = memory_text(peak_of(merged, outlook(study, *model, whole.poses.poses).memory));
-  // From here on it is a resumed run of the whole study, all of whose stages are done.
+  // From here on, the merge is a resumed run of the whole study of which all stages are done.
   Checkpoints done({}, {}, std::move(merged));
   const Job job{.study = study,
                 .model = *model,

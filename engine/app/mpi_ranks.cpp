@@ -51,8 +51,9 @@ bool is_first_process() { return find_launch().value_or(Launch()).rank == 0; }
 
 namespace {
 
-/// A long message is sent in pieces, so that a rank without memory for it can still receive it; otherwise the sender
-/// would wait forever. The tag of a piece is the number of pieces that follow, limited to the tags that every MPI has.
+/// A long message is sent in pieces. A rank without memory for the whole message can then still receive it and drop it;
+/// otherwise the sender would wait forever. The tag of a piece is the number of pieces that follow, limited to the tags
+/// that every MPI supports.
 constexpr std::size_t kPieceBytes = std::size_t{4} << 20U;
 constexpr std::size_t kMostTag = 32767;
 
@@ -73,11 +74,11 @@ std::size_t count_on_this_machine() {
   return static_cast<std::size_t>(size);
 }
 
-/// Ranks connected by MPI, which ends the program if one of its calls fails (MPI's default).
+/// Ranks that are connected by MPI. MPI ends the program if one of its calls fails, which is MPI's default.
 class MpiRanks : public LaunchedRanks {
  public:
   MpiRanks() {
-    // Only one thread calls at a time: the one that leads or follows a stage.
+    // Only one thread makes MPI calls at a time: the one that leads or follows a stage.
     int provided = MPI_THREAD_SINGLE;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
     int number = 0;
@@ -103,7 +104,7 @@ class MpiRanks : public LaunchedRanks {
 
   void send(std::size_t to, std::shared_ptr<const Bytes> bytes) override {
     under_way_.reserve(under_way_.size() + bytes->size() / kPieceBytes +
-                       1);  // so that all of its pieces are sent, or none
+                       1);  // either all pieces of the message are sent, or none
     std::size_t sent = 0;
     do {
       const std::size_t count = std::min(kPieceBytes, bytes->size() - sent);
@@ -151,10 +152,10 @@ class MpiRanks : public LaunchedRanks {
 
   struct Receiving {
     Bytes bytes;
-    bool lost = false;  ///< whether there was no memory for it
+    bool lost = false;  ///< true if there was no memory for the message
   };
 
-  /// Where to put the next piece; pieces of a lost message go into a buffer that is not read.
+  /// The memory for the next piece of a message. Pieces of a lost message go into a buffer that is not read.
   std::byte* room_in(Receiving& receiving, std::size_t count, std::size_t following) {
     const std::size_t before = receiving.bytes.size();
     try {
@@ -181,7 +182,7 @@ class MpiRanks : public LaunchedRanks {
   std::size_t size_ = 1;
   bool threads_allowed_ = false;
   std::vector<Sending> under_way_;
-  std::vector<Receiving> partial_;  ///< [size] messages with missing pieces
+  std::vector<Receiving> partial_;  ///< [size] messages of which pieces are still missing
   std::unique_ptr<std::byte[]> nowhere_ = std::make_unique_for_overwrite<std::byte[]>(kPieceBytes);
 };
 

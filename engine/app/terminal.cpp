@@ -86,7 +86,7 @@ void say(Message kind, const std::string& text) {
 }
 
 std::optional<bool> asked(const std::string& question) {
-  constexpr int kLook = 100;  // ms between checks for an interrupt
+  constexpr int kLook = 100;  // ms, interval of checks for an interrupt
   if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0) return std::nullopt;
   std::fputs(("poesy: " + printable_line(question) + " [y/N] ").c_str(), stderr);
   std::fflush(stderr);
@@ -95,7 +95,7 @@ std::optional<bool> asked(const std::string& question) {
     if (::poll(&input, 1, kLook) <= 0) continue;
     char first = '\n';
     if (::read(STDIN_FILENO, &first, 1) < 1) return false;
-    tcflush(STDIN_FILENO, TCIFLUSH);  // discards the rest of the line
+    tcflush(STDIN_FILENO, TCIFLUSH);  // discards the remaining input of the line
     return first == 'y' || first == 'Y';
   }
   std::fputs("\n", stderr);
@@ -124,7 +124,7 @@ int exit_code_of(const std::function<int()>& action) {
 const std::atomic<bool>& catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  // SIGHUP comes when a terminal is closed; nohup lets the program ignore it.
+  // A closed terminal sends SIGHUP; nohup lets the program ignore it.
   if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   return interrupted;
 }

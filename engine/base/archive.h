@@ -14,22 +14,23 @@
 
 namespace poesy {
 
-/// Writes or reads the state of an object; one list of members serves both directions.
+/// Writes or reads the state of an object. The class lists its members once, for both directions:
 ///
 ///     void Moments::state(Archive& archive) {
 ///       archive.number(count_);
 ///       archive.real(mean_);
 ///     }
 ///
-/// What is read may come from any source, so state() checks it with expect(), which throws BytesError.
+/// Bytes to read may come from any source. So state() must check them with expect(), which throws BytesError.
 class Archive {
  public:
-  explicit Archive(ByteWriter& to) : to_(&to) {}        ///< Writes to this writer. Refers to it.
-  explicit Archive(ByteReader& from) : from_(&from) {}  ///< Reads from this reader. Refers to it.
+  explicit Archive(ByteWriter& to) : to_(&to) {}        ///< An archive that writes to `to`, which must outlive it.
+  explicit Archive(ByteReader& from) : from_(&from) {}  ///< An archive that reads from `from`, which must outlive it.
 
-  bool reads() const { return from_ != nullptr; }  ///< Whether members are read.
+  bool reads() const { return from_ != nullptr; }  ///< Returns true if the archive reads, false if it writes.
 
-  /// A whole number, an index or an enumeration, up to `most`.
+  /// Writes or reads a whole number, an index or an enumeration, up to `most`. The functions below do the same for
+  /// other types.
   template <class Whole>
   void number(Whole& value, std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
     if (reads()) {
@@ -41,16 +42,16 @@ class Archive {
       to_->number(static_cast<std::uint64_t>(value));
     }
   }
-  /// A double, bit by bit.
+  /// Writes or reads a double, bit by bit.
   void real(double& value) { reals(std::span(&value, 1)); }
-  /// Several doubles.
+  /// Writes or reads several doubles.
   template <class... Doubles>
   void real(double& value, Doubles&... more) {
     real(value);
     real(more...);
   }
-  /// The state of an object that exists in both directions, or of a list of objects whose number both know. A packed
-  /// object has write(ByteWriter&) and a static read(ByteReader&) instead of state().
+  /// Writes or reads the state of an object, or of a list of objects whose number the reader knows. When reading, the
+  /// object already exists. A packed object has write(ByteWriter&) and a static read(ByteReader&) instead of state().
   template <class Object>
   void object(Object& object) {
     if constexpr (requires { object.state(*this); }) {
@@ -61,12 +62,12 @@ class Archive {
       packed(object);
     }
   }
-  /// The states of several objects.
+  /// Writes or reads the states of several objects.
   template <class... Objects>
   void objects(Objects&... objects) {
     (object(objects), ...);
   }
-  /// Doubles whose number is known in both directions.
+  /// Writes or reads doubles without their number, which the reader knows.
   void reals(std::span<double> values) {
     if (reads()) {
       from_->reals(values);
@@ -74,7 +75,7 @@ class Archive {
       to_->reals(values);
     }
   }
-  /// A list of `count` doubles; empty before reading.
+  /// Writes or reads a list of `count` doubles. Reading fills an empty list.
   void list(std::vector<double>& values, std::size_t count) {
     if (reads()) {
       values = from_->reals(count);
@@ -82,20 +83,21 @@ class Archive {
       to_->reals(values);
     }
   }
-  /// An object that may be missing. Before reading, it is constructed with these sizes.
+  /// Writes or reads an object that may be missing. The reader constructs it with these sizes, and then reads its
+  /// state.
   template <class Object, class... Sizes>
   void optional(std::optional<Object>& value, const Sizes&... sizes) {
     if (!flag(value.has_value())) return value.reset();
     if (reads()) value.emplace(sizes...);
     object(*value);
   }
-  /// A bool. Returns what was written when reading.
+  /// Writes or reads a bool. When reading, returns the bool that was written.
   bool flag(bool value) {
     std::uint64_t holds = value ? 1 : 0;
     number(holds, 1);
     return holds == 1;
   }
-  /// A text of any length.
+  /// Writes or reads a text of any length.
   void text(std::string& value) {
     if (reads()) {
       value = from_->text();
@@ -103,7 +105,7 @@ class Archive {
       to_->text(value);
     }
   }
-  /// Bytes of any length.
+  /// Writes or reads a list of bytes of any length.
   void block(Bytes& bytes) {
     if (reads()) {
       const std::span<const std::byte> read = from_->block();
@@ -112,18 +114,20 @@ class Archive {
       to_->block(bytes);
     }
   }
-  /// A number that both directions know. Throws BytesError if another one is read.
+  /// Writes a number that the reader knows already, or checks it: throws BytesError, with this problem as its text, if
+  /// the number that is read differs.
   void known(std::uint64_t value, const char* problem) {
     std::uint64_t read = value;
     number(read);
     expect(read == value, problem);
   }
-  /// Throws BytesError if a condition on what was read does not hold.
+  /// When reading, throws BytesError with this problem as its text unless the condition holds.
   void expect(bool holds, const char* problem) const {
     if (reads() && !holds) throw BytesError(problem);
   }
 
-  /// An object whose packed form has write(ByteWriter&) and read(ByteReader&, ...), which returns the object.
+  /// Writes or reads an object with write(ByteWriter&) and a static read(ByteReader&, known...) that returns the
+  /// object.
   template <class Object, class... Known>
   void packed(Object& object, const Known&... known) {
     if (reads()) {
@@ -132,7 +136,7 @@ class Archive {
       object.write(*to_);
     }
   }
-  /// Whether there are bytes left to read.
+  /// Returns true if there are bytes left to read.
   bool is_left() const { return reads() && from_->left() > 0; }
 
  private:
@@ -147,8 +151,8 @@ void write_state(const Object& object, ByteWriter& to) {
   archive.object(const_cast<Object&>(object));  // writing does not change it
 }
 
-/// Reads the state of an object that is constructed with these sizes. Throws BytesError for bytes that it cannot have
-/// written.
+/// Reads the state of an object that is constructed with these sizes. Throws BytesError for bytes that such an object
+/// cannot have written.
 template <class Object, class... Sizes>
 Object read_state(ByteReader& from, const Sizes&... sizes) {
   Object object(sizes...);

@@ -16,28 +16,29 @@
 
 namespace poesy {
 
-/// A text as a parameter of a template.
+/// A text that can be a parameter of a template.
 template <std::size_t kSize>
 struct AxisName {
-  /// Copies a literal.
+  /// Copies a string literal.
   constexpr AxisName(const char (&literal)[kSize]) { std::ranges::copy(literal, text); }  // NOLINT: implicit
 
-  char text[kSize]{};  ///< its characters and a zero
+  char text[kSize]{};  ///< characters of the text and a final zero
 };
 
-/// An axis with its name in result files. Axes of one name are the same axis.
+/// A named axis of an array; the name is that in result files. Axes with the same name are the same axis.
 template <AxisName kText>
 struct Axis {
-  static constexpr std::string_view kName{kText.text, sizeof(kText.text) - 1};  ///< Its name.
+  /// The name of the axis in result files.
+  static constexpr std::string_view kName{kText.text, sizeof(kText.text) - 1};
 };
 
-/// A type that names an axis.
+/// A type with a member kName, which names an axis.
 template <class T>
 concept NamedAxis = requires {
   { T::kName } -> std::convertible_to<std::string_view>;
 };
 
-// The axes that many arrays have. A kind of study adds its own in the same way.
+// The axes of most arrays. A kind of study defines further axes in the same way.
 namespace axis {
 using Response = Axis<"response">;    ///< Responses of the model.
 using Factor = Axis<"factor">;        ///< Errors of the study.
@@ -47,7 +48,8 @@ using Component = Axis<"component">;  ///< Components of a vector.
 using Joint = Axis<"joint">;          ///< Joints that have a displacement.
 }  // namespace axis
 
-/// The lengths of axes, the slowest first, and the positions of elements (row-major).
+/// The lengths of the axes of an array, and the positions of its elements. Elements are row-major: the last axis varies
+/// fastest.
 template <NamedAxis... Axes>
 class AxisLayout {
  public:
@@ -64,7 +66,7 @@ class AxisLayout {
   const Lengths& lengths() const { return lengths_; }  ///< The lengths of all axes.
   /// The number of elements.
   std::size_t elements() const { return product(lengths_); }
-  /// The positions on each axis of the element with this number.
+  /// The positions, on each axis, of the element with this number in row-major order.
   Lengths positions(std::size_t place) const {
     Lengths at{};
     for (std::size_t k = kAxes; k-- > 0; place /= lengths_[k]) at[k] = place % lengths_[k];
@@ -80,7 +82,8 @@ class AxisLayout {
   }
 
  protected:
-  /// The number of the first element at these positions on the first axes, and how many there are.
+  /// The elements at these positions on the first axes, as a range in row-major order: the number of the first element,
+  /// and how many elements there are.
   template <std::integral... Positions>
   std::pair<std::size_t, std::size_t> part(Positions... positions) const {
     constexpr std::size_t kFixed = sizeof...(Positions);
@@ -94,7 +97,7 @@ class AxisLayout {
     const std::size_t count = product(std::span(lengths_).subspan(kFixed));
     return {place * count, count};
   }
-  /// The product of lengths.
+  /// The product of the lengths of axes.
   static std::size_t product(std::span<const std::size_t> lengths) {
     return std::accumulate(lengths.begin(), lengths.end(), std::size_t{1}, std::multiplies());
   }
@@ -151,7 +154,7 @@ class Array : public AxisLayout<Axes...> {
   }
 
   std::size_t size() const { return elements_.size(); }  ///< The number of elements.
-  bool empty() const { return elements_.empty(); }       ///< Whether there are none.
+  bool empty() const { return elements_.empty(); }       ///< Returns true if there are no elements.
 
   /// The element at these positions, one for each axis.
   /// @{
@@ -189,7 +192,7 @@ class Array : public AxisLayout<Axes...> {
   auto end() const { return elements_.end(); }
   /// @}
 
-  /// Whether lengths and elements are equal.
+  /// Returns true if lengths and elements are equal.
   bool operator==(const Array& other) const { return this->lengths_ == other.lengths_ && elements_ == other.elements_; }
 
  private:
@@ -202,7 +205,7 @@ class Array : public AxisLayout<Axes...> {
   std::vector<T> elements_;
 };
 
-/// Resizes arrays along the same axes; all elements are then default-constructed.
+/// Gives several arrays with the same axes these lengths. All elements are default-constructed.
 template <class First, class... Others>
 void make_room(const typename First::Lengths& lengths, First& first, Others&... others) {
   first = First(lengths);

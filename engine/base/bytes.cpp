@@ -57,7 +57,7 @@ void ByteWriter::raw(std::span<const std::byte> bytes) {
 
 std::size_t ByteWriter::most_at_once() const { return sink_ ? kPiece : std::numeric_limits<std::size_t>::max(); }
 
-/// Passes full pieces to the sink.
+/// Passes a piece to the sink as soon as kPiece bytes are collected.
 void ByteWriter::hand_on() {
   if (!sink_ || bytes_.size() < kPiece) return;
   sink_(std::span(bytes_).first(kPiece));

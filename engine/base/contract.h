@@ -12,8 +12,8 @@ namespace poesy::detail {
 
 }  // namespace poesy::detail
 
-/// A precondition between parts of the program. A failure is a bug, never bad input. It is checked where
-/// POESY_CONTRACTS is defined (preset `debug` and the sanitizers), and costs nothing in release builds.
+/// Checks a precondition of a function. A failure is a bug in the program, never bad input. The check exists only if
+/// POESY_CONTRACTS is defined (presets `debug`, `asan` and `tsan`), so it costs nothing in release builds.
 #ifdef POESY_CONTRACTS
 #define POESY_EXPECTS(condition) \
   ((condition) ? static_cast<void>(0) : ::poesy::detail::contract_broken(#condition, __FILE__, __LINE__))

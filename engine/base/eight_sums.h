@@ -6,12 +6,12 @@
 
 namespace poesy {
 
-/// The number of partial sums. With eight, an addition need not wait for the previous one, and they fill whole vectors.
-/// Value k is added to sum k mod 8 on every instruction set.
+/// The number of partial sums. With eight sums, an addition need not wait for the previous one, and the sums fill whole
+/// vector registers. Value k is added to sum k mod 8 on every instruction set.
 inline constexpr std::size_t kSums = 8;
-using Sums = std::array<double, kSums>;  ///< A partial sum for each place in a vector.
+using Sums = std::array<double, kSums>;  ///< Eight partial sums of one total.
 
-/// The sum of all eight.
+/// The sum of the eight partial sums.
 inline double total(const Sums& sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
 
 }  // namespace poesy

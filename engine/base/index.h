@@ -5,20 +5,22 @@
 
 namespace poesy {
 
-/// A position in one kind of list. Positions of different lists are different types.
+/// A position in a list. Positions in different kinds of lists have different types, so that they cannot be mixed up.
 template <class List>
 struct Index {
-  std::size_t value = 0;  ///< counts from 0
+  std::size_t value = 0;  ///< position, from 0
 
   constexpr Index() = default;
-  /// Explicit, so that positions of different lists do not mix.
+  /// Explicit, so that a plain number does not become a position by accident.
   constexpr explicit Index(std::size_t position) : value(position) {}
-  friend constexpr auto operator<=>(const Index&, const Index&) = default;  ///< Compares positions.
+  /// Compares two positions in the same kind of list.
+  friend constexpr auto operator<=>(const Index&, const Index&) = default;
 };
 
-/// Position of an error source in its model's list of all error sources.
+/// Position of an error in the list of all errors (factors) of its model.
 using FactorIndex = Index<struct FactorList>;
-using PoseIndex = Index<struct PoseList>;      ///< Position of a pose in a study's pose set.
-using SampleIndex = Index<struct SampleList>;  ///< Position of a sample in the stream of one (factor, pose).
+using PoseIndex = Index<struct PoseList>;  ///< Position of a pose in a study's pose set.
+/// Number of a sample in the sequence of draws of one factor at one pose.
+using SampleIndex = Index<struct SampleList>;
 
 }  // namespace poesy

@@ -7,7 +7,9 @@ namespace poesy {
 bool matches(std::string_view pattern, std::string_view text) {
   std::size_t p = 0;
   std::size_t t = 0;
-  std::size_t star = std::string_view::npos;  // position of the last '*', and the text from which it was tried
+  // star: position of the last '*' in the pattern. tried: position in the text at which the pattern behind this '*' was
+  // tried.
+  std::size_t star = std::string_view::npos;
   std::size_t tried = 0;
   while (t < text.size()) {
     if (p < pattern.size() && pattern[p] == '*') {

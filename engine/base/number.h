@@ -6,7 +6,7 @@
 
 namespace poesy {
 
-/// A number in a table. Whole numbers are kept as such, because a double holds them exactly only up to 2^53.
+/// A number in a table. Whole numbers have types of their own, because a double is exact only up to 2^53.
 using Number = std::variant<double, std::int64_t, std::uint64_t>;
 
 /// Converts a value to a number: a flag to 0 or 1, an enumeration to its position.
@@ -25,7 +25,7 @@ Number to_number(const Value& value) {
   }
 }
 
-/// Converts to the nearest double.
+/// The double nearest to a number.
 inline double to_double(const Number& number) {
   return std::visit([](auto value) { return static_cast<double>(value); }, number);
 }

@@ -24,7 +24,7 @@ std::optional<double> parse_ratio(std::string_view text) {
   if (end == std::string_view::npos) return std::nullopt;
   const std::string number(trimmed(body.substr(0, end + 1)));
   const std::string_view unit = trimmed(body.substr(end + 1));
-  // The exponent keeps the digits: 0.1 % is the double next to 0.001.
+  // The factor is written as an exponent, because a multiplication would round: 0.1 % is the double nearest to 0.001.
   if (unit == "%") return parse_number(number + "e-2");
   if (unit == "ppm") return parse_number(number + "e-6");
   const std::optional<double> value = parse_number(number);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Defines macros for the sanitizers of this build, which compilers name differently: POESY_ADDRESS_SANITIZER,
-// POESY_THREAD_SANITIZER, and POESY_SANITIZED for either.
+// Defines macros that say which sanitizers this build has, because each compiler has its own macros:
+// POESY_ADDRESS_SANITIZER, POESY_THREAD_SANITIZER, and POESY_SANITIZED if it has either.
 #if defined(__SANITIZE_ADDRESS__)
 #define POESY_ADDRESS_SANITIZER
 #endif

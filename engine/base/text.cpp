@@ -36,14 +36,14 @@ bool is_plain(const std::string& word) {
   });
 }
 
-/// The word in quotes for a shell.
+/// The word in single quotes, so that a shell reads it unchanged.
 std::string quoted(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
 }
 
-/// The word for a shell that supports $'...' (bash, ksh, zsh), with control characters as bytes.
+/// The word in the form $'...', with escapes for control characters (for bash, ksh and zsh).
 std::string escaped_for_shell(const std::string& word) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string text = "$'";
@@ -59,7 +59,7 @@ std::string escaped_for_shell(const std::string& word) {
   return text + "'";
 }
 
-/// Whether the blank is inside a number: "12 000", "5 %".
+/// Returns true if a blank between these two texts is inside a number, such as "12 000" or "5 %".
 bool within_number(std::string_view before, std::string_view after) {
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   return !before.empty() && !after.empty() && digit(before.back()) && (digit(after.front()) || after.front() == '%');

@@ -16,44 +16,47 @@ std::string lower_case(std::string_view text);
 
 std::string_view trimmed(std::string_view text);  ///< The text without leading and trailing blanks and tabs.
 
-/// The number of bytes of the UTF-8 character at the start of this text, which must not be empty. 0 for an invalid one:
-/// a truncated or overlong form, a surrogate, a number above U+10FFFF.
+/// The number of bytes of the UTF-8 character at the start of this text, which must not be empty. It is 0 for an
+/// invalid character: a truncated or overlong form, a surrogate, a number above U+10FFFF.
 std::size_t character_length(std::string_view text);
 
 std::uint32_t code_point(std::string_view character);  ///< The code point of a text that is one UTF-8 character.
 
-/// Whether a character affects its neighbours: a control character, the end of a line or paragraph (U+2028, U+2029), or
-/// one that changes the direction of writing (Bidi_Control of Unicode 15), with which a name can imitate another.
+/// Returns true if a character affects its neighbours: a control character, the end of a line or paragraph (U+2028,
+/// U+2029), or a character that changes the direction of writing (Bidi_Control of Unicode 15). With the last sort, a
+/// name could be made to look like another name.
 bool is_control(std::uint32_t code);
 
 std::size_t text_width(std::string_view text);  ///< The number of characters of a UTF-8 text.
 
-/// The lines of a text that is broken at blanks, but not within numbers ("12 000", "5 %"). Each line has at most
-/// `width` characters, the first one `first` if given; a longer word has its own line.
+/// The lines of a text after line breaks at blanks, but not within numbers such as "12 000" or "5 %". A line has at
+/// most `width` characters; the first line has at most `first`, if that is given. A longer word has its own line.
 std::vector<std::string> wrapped(std::string_view text, std::size_t width, std::optional<std::size_t> first = {});
 
 /// A user's text for a message: on one line, valid UTF-8, cut off after about `most` bytes, with "?" instead of control
 /// characters.
 std::string printable(std::string_view text, std::size_t most = 60);
 
-std::string printable_line(std::string_view text);  ///< The same without cutting.
+std::string printable_line(std::string_view text);  ///< A user's text for a message, as printable(), but not cut off.
 
-/// The sign with which a text begins a formula in a spreadsheet (= + - @, also of full width), after blanks and
-/// characters of zero width; empty if there is none.
+/// The sign that makes a spreadsheet read a text as a formula (= + - @, also of full width). Blanks and characters of
+/// zero width before it are skipped. Empty if the text does not begin with such a sign.
 std::string_view formula_sign(std::string_view text);
 
-/// A command line for a shell, on one line.
+/// A command line of these words, quoted for a shell where necessary, on one line.
 std::string shell_command(const std::vector<std::string>& words);
 
-/// The known word that is similar to this one, as after a typing error; empty if there is none.
+/// The known word that this word may mean, if it has a typing error; empty if no word is similar enough.
 std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
 
-/// "did you mean 'sigma'?" if a known word is similar, otherwise the known words: "known: sigma, half_width".
+/// A hint for an unknown word: "did you mean 'sigma'?" if a known word is similar, otherwise all known words: "known:
+/// sigma, half_width".
 std::string suggestion(std::string_view word, std::span<const std::string_view> known);
 
-std::string either(std::span<const std::string_view> words);  ///< The words as alternatives: "a, b or c".
+/// The words as a list of alternatives, such as "a, b or c".
+std::string either(std::span<const std::string_view> words);
 
-/// The names of things, for suggestion().
+/// The member `name` of each thing, for suggestion().
 template <class Named>
 std::vector<std::string_view> names(const std::vector<Named>& things) {
   std::vector<std::string_view> list;
@@ -61,7 +64,8 @@ std::vector<std::string_view> names(const std::vector<Named>& things) {
   return list;
 }
 
-/// The first line in which two texts differ, one of each text, in quotes; "nothing more" if a text has ended.
+/// The first line in which two texts differ: the line of the first text and the line of the second text, in quotes;
+/// "nothing more" for a text that has ended.
 std::pair<std::string, std::string> first_difference(const std::string& one, const std::string& other);
 
 }  // namespace poesy

@@ -43,7 +43,7 @@ constexpr std::array<Unit, 24> kUnits{{{"m", Dimension::length, 1.0},
 constexpr std::array<Dimension, 7> kAll{Dimension::length, Dimension::angle,  Dimension::time,  Dimension::number,
                                         Dimension::force,  Dimension::moment, Dimension::energy};
 
-/// The name of a dimension, its SI unit, and the unit that people read; in the order of the enumeration.
+/// The name of a dimension, its SI unit, and the unit in which reports show it. The table is in the order of Dimension.
 struct DimensionWords {
   std::string_view name;
   std::string_view si_unit;
@@ -69,7 +69,7 @@ struct Spelling {
 constexpr std::array<Spelling, 5> kSpellings{
     {{"\xC2\xB5m", "um"}, {"\xCE\xBCm", "um"}, {"\xC2\xB0", "deg"}, {"\xC2\xB5J", "uJ"}, {"\xCE\xBCJ", "uJ"}}};
 
-/// The number as std::to_chars writes it in this format.
+/// The number as text in a format of std::to_chars.
 template <class... Format>
 std::string number_text(double value, Format... format) {
   std::array<char, 32> text{};
@@ -80,7 +80,7 @@ std::string number_text(double value, Format... format) {
 /// A number at the beginning of a text.
 struct NumberRead {
   double value = 0.0;
-  std::errc failure{};    ///< no failure: there is a number, which may be infinite or NaN
+  std::errc failure{};    ///< default: a number was read, which may be infinite or NaN
   std::string_view rest;  ///< the text after the number
 };
 
@@ -95,7 +95,7 @@ NumberRead read_number(std::string_view text) {
   return read;
 }
 
-/// Whether a number that is out of range is too small, rather than too large.
+/// Returns true if a number that is out of range is too small, false if it is too large.
 bool is_too_small(std::string_view number) {
   const std::size_t exponent = number.find_first_of("eE");
   if (exponent != std::string_view::npos) return number.substr(exponent + 1).starts_with('-');

@@ -10,13 +10,15 @@ namespace poesy::calibration {
 /// A pose that is worth measuring.
 struct NextPose {
   std::size_t candidate;  ///< position among the candidates
-  double gain;            ///< information about the fitted numbers, in bits, beyond that of the poses before it
+  /// Information about the fitted numbers, in bits, in addition to that of the poses chosen before.
+  double gain;
 };
 
-/// The candidates with the largest gains, one after the other; the first of equals. The gain of a candidate with the
-/// rows a is half the binary logarithm of det(Q + a^T a) / det Q, where Q is the information about the fitted numbers
-/// that is left after the other columns were fitted (the Schur complement). information: [(k + places) x (k + places)],
-/// positive definite. rows: of each candidate [values x (k + places)], over standard deviations.
+/// Chooses candidates one after the other. Each time it takes the candidate with the largest gain, or the first of
+/// several equal ones. The gain of a candidate with derivatives a is half the binary logarithm of det(Q + a^T a) / det
+/// Q. Here Q is the information about the `fitted` first numbers after all other numbers were fitted (the Schur
+/// complement). information: [(k + places) x (k + places)], positive definite, for k = fitted. rows: for each
+/// candidate, the derivatives of its values [values x (k + places)] over their standard deviations.
 std::vector<NextPose> next_poses(linalg::Matrix information, const std::vector<linalg::Matrix>& rows,
                                  std::size_t fitted, std::size_t count);
 

@@ -14,10 +14,10 @@ namespace {
 using std::numbers::pi;
 using std::numbers::sqrt2;
 
-/// The share of a normal within `k` standard deviations.
+/// The probability that a standard normal is within +-k.
 double in_interval(double k) { return std::erf(k / sqrt2); }
 
-/// The share of points in a disc, and in a ball, of k standard deviations of a coordinate.
+/// The probability that two, or three, independent standard normals are within a disc, or a ball, of radius k.
 double in_disc(double k) { return -std::expm1(-0.5 * k * k); }
 double in_ball(double k) { return in_interval(k) - std::sqrt(2.0 / pi) * k * std::exp(-0.5 * k * k); }
 
@@ -26,8 +26,9 @@ double integral(const F& f, double from, double to) {
   return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(f, from, to, 15, 1e-12);
 }
 
-/// The share of two ends, each with coordinates of standard deviation 1 and correlated to each other, within k: given
-/// one end, the other is normal about `correlation` times it.
+/// The probability that both ends of an axis are within k of their nominal position. Each coordinate of an end has
+/// standard deviation 1. The same coordinate of both ends has this correlation, so that given one end, the other end is
+/// normal about `correlation` times the first.
 double ends_inside(double k, double correlation, bool one_direction) {
   const double rest = std::sqrt(std::max(0.0, (1.0 - correlation) * (1.0 + correlation)));
   if (rest < 1e-6) return one_direction ? in_interval(k) : in_disc(k);
@@ -50,7 +51,8 @@ double ends_inside(double k, double correlation, bool one_direction) {
       0.0, k);
 }
 
-/// The share of planes within half a width: |z| and the largest lift of an extreme point add up.
+/// The probability that all extreme points of a plane are within +-half: |z| of the middle plus the largest lift of an
+/// extreme point is at most `half`. middle, tilt: standard deviations of z and of each lift error (m).
 double plane_inside(FeatureKind kind, double half, double middle, double tilt) {
   const auto density = [&](double lift) {
     const double x = lift / tilt;

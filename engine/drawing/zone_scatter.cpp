@@ -11,19 +11,20 @@ namespace {
 
 using std::numbers::sqrt2;
 
-/// The standard deviation of a tilt by a zone of orientation of width 1, where half of it is one of them.
+/// The standard deviation of each tilt error in a zone of orientation of width 1, if half a zone is one standard
+/// deviation of a coordinate of an extreme point.
 double tilt_of_orientation(FeatureKind kind) {
   if (kind == FeatureKind::axis) return 1.0;
   return kind == FeatureKind::round ? 0.5 : 0.5 / sqrt2;
 }
 
-/// Sigma of the middle that a zone of location leaves beside that of orientation.
+/// The standard deviation of the middle in a zone of location, if the tilt has a zone of orientation of this width.
 double middle_beside(double location, double orientation, double sigmas) {
   return std::sqrt((location - orientation) * (location + orientation)) / (2.0 * sigmas);
 }
 
-/// The ends of a pin are in discs whose diameter is the clearance; middle and lean are half their sum and their
-/// difference.
+/// Each end of a pin is displaced within a disc whose diameter is the clearance. The displacement of the middle is half
+/// the sum of the displacements of both ends, and the lean is their difference.
 FeatureSigmas clearance_sigmas(const Clearance& clearance) {
   const double size = std::sqrt(clearance.mean_square);
   const double of_end = size / (clearance.touches ? 2.0 * sqrt2 : 4.0);

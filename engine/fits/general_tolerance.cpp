@@ -7,14 +7,14 @@
 namespace poesy {
 namespace {
 
-/// Tolerances for lengths up to and including this one; mm, 0 where there is none.
+/// Tolerances of all classes (mm) for lengths up to and including `up_to` (mm); 0 if the class has no value.
 template <std::size_t kClasses>
 struct LengthStep {
   double up_to;
   std::array<double, kClasses> tolerance;
 };
 
-constexpr double kSmallest = 0.5;  // mm
+constexpr double kSmallest = 0.5;  // mm: the shortest length of ISO 2768-1
 
 constexpr std::array<LengthStep<4>, 8> kLengths{{{3, {0.05, 0.1, 0.2, 0}},
                                                  {6, {0.05, 0.1, 0.3, 0.5}},
@@ -40,7 +40,7 @@ constexpr std::array<LengthStep<3>, 4> kSymmetry{
 
 constexpr std::array<LengthStep<3>, 1> kRunout{{{3000, {0.1, 0.2, 0.5}}}};
 
-/// The value of a table in metres, for a length in metres.
+/// The entry of a table (m) for a length (m) and a class; none if there is no entry.
 template <std::size_t kClasses>
 std::optional<double> value(std::span<const LengthStep<kClasses>> table, double length, std::size_t of) {
   const double size = length * 1e3 * (1.0 - 1e-12);  // a size in metres may be rounded up past a step

@@ -6,13 +6,13 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kTabulated = 13;  // IT01 to IT11
-constexpr std::size_t kFive = 5;        // five grades coarser is ten times as wide, from IT7 on
+constexpr std::size_t kTabulated = 13;  // number of grades in the table: IT01 to IT11
+constexpr std::size_t kFive = 5;        // from IT7 on, a zone five grades coarser is ten times as wide
 
-/// The widths of the zones for sizes up to and including this one.
+/// The widths of the tolerance zones for sizes up to and including `up_to`.
 struct SizeStep {
-  double up_to;                               ///< mm
-  std::array<double, kTabulated> micrometre;  ///< IT01, IT0, IT1, ..., IT11; 0 where there is none
+  double up_to;                               ///< largest nominal size, mm
+  std::array<double, kTabulated> micrometre;  ///< widths for IT01, IT0, IT1, ..., IT11; 0 if there is none
 };
 
 constexpr std::array<SizeStep, 21> kSteps{{{3, {0.3, 0.5, 0.8, 1.2, 2, 3, 4, 6, 10, 14, 25, 40, 60}},

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRounding = 1e-12;
 
-/// R20 in hundredths. R10 has every second of them, R5 every fourth.
+/// The numbers of R20, in hundredths. R10 has every second of them, R5 every fourth.
 constexpr std::array<int, 20> kHundredths{100, 112, 125, 140, 160, 180, 200, 224, 250, 280,
                                           315, 355, 400, 450, 500, 560, 630, 710, 800, 900};
 
@@ -20,14 +20,14 @@ constexpr std::size_t stride(PreferredSeries series) {
   return series == PreferredSeries::r20 ? 1 : series == PreferredSeries::r10 ? 2 : 4;
 }
 
-/// A decimal number with the bits of its text.
+/// hundredths x 10^(power - 2), with the bits of the decimal number as it is written.
 double decimal(int hundredths, int power) {
   const int exponent = power - 2;
   const double size = std::pow(10.0, std::abs(exponent));
   return exponent < 0 ? hundredths / size : hundredths * size;
 }
 
-/// The power of ten of the value's first digit, where a value that is rounding below one has that one.
+/// The power of ten of the value's first digit. A value that is below a power of ten only by rounding gets that power.
 int power_of(double value) {
   POESY_EXPECTS(value > 0.0 && std::isfinite(value));
   return static_cast<int>(std::floor(std::log10(value * (1.0 + kRounding))));

@@ -7,9 +7,9 @@
 
 namespace poesy {
 
-/// What the features of a mechanism's drawing do in their zones, to first order (DrawingResult): from the slopes of the
-/// responses by each error, differences of two solves at a sixteenth of its standard deviation. None where features do
-/// not scatter in zones, and for studies that draw no errors.
+/// The effect of a drawing's features on the responses, to first order (DrawingResult). The slopes are central
+/// differences with a step of a sixteenth of an error's standard deviation. Empty if the study draws no errors, or if
+/// no features scatter in zones.
 std::optional<DrawingResult> drawing_result(const StudyRun& run);
 
 }  // namespace poesy

@@ -8,22 +8,22 @@
 
 namespace poesy {
 
-/// Every kind of study, in the order in which users see them. This is the only list.
+/// Every kind of study, in the order in which messages and help list them. There is no other list of kinds.
 std::span<const Kind* const> kinds();
 
-/// The part of the kinds that study files use.
+/// The part of each kind that reads study files.
 const StudyKinds& study_kinds();
 
-/// The kind of this name; null if there is none.
+/// The kind with this name, including kinds that only results have; null if there is none.
 const Kind* find_kind(std::string_view name);
 
 /// The kind of a study.
 const Kind& kind_of(const Study& study);
 
-/// The kind of a result. Precondition: its kind exists.
+/// The kind of a result. Precondition: the kind exists.
 const Kind& kind_of(const StoredResult& result);
 
-/// The kinds whose solves can be replayed, for messages.
+/// The kinds whose solves `poesy replay` can repeat, as text for messages.
 std::string_view replayable_kinds();
 
 }  // namespace poesy

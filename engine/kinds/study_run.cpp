@@ -17,7 +17,7 @@ std::optional<StudyResult> run_study(const Study& study, const Model& model, con
   const StudyRun run{.study = study, .model = model, .poses = poses, .options = with_checkpoints};
   const RunKind& kind = kind_of(study).run;
   std::optional<StudyResult> result = kind.run(run);
-  // A kind that confirms its result finds other sizes than those of the study.
+  // A kind that confirms its result changes the tolerances, so the study's drawing would not describe the result.
   if (result && !kind.confirms) result->drawing = drawing_result(run);
   return result;
 }
@@ -49,7 +49,8 @@ void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
 }
 
 Outlook outlook(const Study& study, const Model& model, const PoseSet& poses) {
-  constexpr std::size_t kEmptyFile = 55'000;  // about 90 datasets and groups of HDF5 with their attributes
+  // Bytes of a result file without numbers: about 90 datasets and groups of HDF5 with their attributes.
+  constexpr std::size_t kEmptyFile = 55'000;
   Outlook expected = kind_of(study).run.outlook(study, model, poses);
   expected.memory.file += kEmptyFile + resolved_text(study).size();
   return expected;

@@ -11,19 +11,18 @@
 
 namespace poesy {
 
-/// Runs a study of any kind at these poses. model: of the study's mechanism. Empty when stopped, for a shard, and on
-/// the ranks after rank 0.
+/// Runs a study of any kind at these poses. model: the model of the study's mechanism. Returns nothing if the run was
+/// stopped, for a shard, and on ranks other than rank 0.
 std::optional<StudyResult> run_study(const Study& study, const Model& model, const PoseSet& poses,
                                      const RunOptions& options = {});
 
-/// The same at the poses that the study selects, with the model that it names. Throws InputError as select_poses()
-/// does.
+/// Runs a study at the poses that it selects, with the model that it names. Throws InputError as select_poses() does.
 std::optional<StudyResult> run_study(const Study& study, const RunOptions& options = {});
 
 /// Estimates the work of a run without doing it. Refers to all arguments.
 Outlook outlook(const Study& study, const Model& model, const PoseSet& poses);
 
-/// Throws InputError unless the study, at this many poses, can be divided into this many shards.
+/// Throws InputError unless the study can be divided into this many shards at this many poses.
 void check_shard(const Shard& shard, const Study& study, std::size_t poses);
 
 }  // namespace poesy

@@ -12,7 +12,7 @@ namespace {
 
 using Jacobi = Eigen::JacobiSVD<Matrix>;
 
-/// Columns of Q from `first` on.
+/// The columns of Q [size x size] from `first` on.
 Matrix last_columns(const auto& Q, Eigen::Index size, Eigen::Index first) {
   Matrix base = Matrix::Zero(size, size - first);
   base.bottomRows(size - first).setIdentity();

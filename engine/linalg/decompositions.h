@@ -4,24 +4,25 @@
 #include <cstddef>
 #include <optional>
 
-/// Decompositions of small dense matrices as plain functions. Each template takes the compiler seconds, so only this
-/// folder instantiates them. Matrices of fixed size are passed without a copy if they are column-major.
+/// Decompositions of small dense matrices as plain functions. Each Eigen template takes the compiler seconds, so only
+/// this folder instantiates them. Matrices of fixed size are passed without a copy if they are column-major.
 namespace poesy::linalg {
 
-using Matrix = Eigen::MatrixXd;                ///< of any size
-using Vector = Eigen::VectorXd;                ///< of any size
-using ConstMatrix = Eigen::Ref<const Matrix>;  ///< a matrix, or a part of one, that is only read
-using ConstVector = Eigen::Ref<const Vector>;  ///< a vector, or a part of one, that is only read
+using Matrix = Eigen::MatrixXd;                ///< a matrix of any size
+using Vector = Eigen::VectorXd;                ///< a vector of any size
+using ConstMatrix = Eigen::Ref<const Matrix>;  ///< a matrix, or a block of one, that is only read
+using ConstVector = Eigen::Ref<const Vector>;  ///< a vector, or a segment of one, that is only read
 
-/// A = U diag(values) V^T with orthogonal U [rows x rows] and V [columns x columns]. If A has more columns than rows,
-/// the last columns of V belong to singular values of zero.
+/// The decomposition A = U diag(values) V^T with orthogonal U [rows x rows] and V [columns x columns]. If A has more
+/// columns than rows, the last columns of V belong to singular values of zero.
 struct SingularValueDecomposition {
-  Matrix U;       ///< empty unless computed
-  Vector values;  ///< [min(rows, columns)] the largest first
-  Matrix V;       ///< empty unless computed
+  Matrix U;       ///< left singular vectors; empty unless computed
+  Vector values;  ///< [min(rows, columns)] singular values, the largest first
+  Matrix V;       ///< right singular vectors; empty unless computed
 };
 
-/// The decomposition of a matrix with at least one row and one column, by Jacobi rotations.
+/// Functions for the singular value decomposition, by Jacobi rotations, of a matrix with at least one row and one
+/// column.
 /// @{
 Vector singular_values(const ConstMatrix& A);
 SingularValueDecomposition right_singular_vectors(const ConstMatrix& A);  ///< The decomposition without U.
@@ -37,14 +38,14 @@ Vector least_squares(const ConstMatrix& A, const ConstVector& b, double threshol
 /// The X whose columns minimise |A x - b|. Precondition: the columns of A are independent.
 Matrix least_squares(const ConstMatrix& A, const ConstMatrix& B);
 
-/// The Moore-Penrose inverse [columns x rows]. Pivots below the rounding of the largest count as 0.
+/// The Moore-Penrose inverse [columns x rows]. Pivots below rounding error, relative to the largest, count as 0.
 Matrix pseudo_inverse(const ConstMatrix& A);
 
 /// An orthonormal basis [rows x (rows - rank)] of the space orthogonal to all columns of A. Pivots below threshold
 /// times the largest count as 0.
 Matrix orthogonal_complement(const ConstMatrix& A, double threshold);
 
-/// The same for independent columns: [rows x (rows - columns)], without pivoting.
+/// The orthonormal basis [rows x (rows - columns)] for a matrix with independent columns, without pivoting.
 Matrix orthogonal_complement(const ConstMatrix& A);
 
 /// Orthonormal bases of the range of A and of its orthogonal complement.
@@ -53,13 +54,14 @@ struct RangeAndComplement {
   Matrix complement;  ///< [rows x (rows - rank)]
 };
 
-/// The bases for a matrix of known rank; further pivots count as 0.
+/// The bases for a matrix of known rank. Pivots beyond the rank count as 0.
 RangeAndComplement range_and_complement(const ConstMatrix& A, std::size_t rank);
 
-/// The upper triangle R [columns x columns] with |R y| = |A y| for every y. Rows beyond those of A are 0.
+/// The upper triangular R [columns x columns] with |R y| = |A y| for every y. If A has fewer rows than columns, the
+/// last rows of R are 0.
 Matrix upper_triangle(const ConstMatrix& A);
 
-/// The upper triangle U with U^T U = W. Precondition: W is symmetric and positive definite.
+/// The upper triangular U with U^T U = W. Precondition: W is symmetric and positive definite.
 Matrix cholesky_root(const ConstMatrix& W);
 
 /// The solution of A x = b; none if the symmetric A is not positive definite.
@@ -71,35 +73,36 @@ struct EigenDecomposition {
   Matrix vectors;  ///< orthonormal columns, in the order of the values
 };
 
-/// The decomposition of a symmetric matrix.
+/// The decomposition of a symmetric matrix, and its eigenvalues alone.
 /// @{
 EigenDecomposition eigen_decomposition(const ConstMatrix& A);
-Vector eigenvalues(const ConstMatrix& A);  ///< The smallest first.
+Vector eigenvalues(const ConstMatrix& A);  ///< The eigenvalues, smallest first.
 /// @}
 
-/// P A = L U of a [6 x 6] matrix, with row pivoting. It allocates no memory, so it may be called for each sample.
+/// The factors P A = L U of a [6 x 6] matrix, with row pivoting. No memory is allocated, so a solver may use them for
+/// each sample.
 class LuFactors6 {
  public:
   using Matrix6 = Eigen::Matrix<double, 6, 6>;  ///< type of the matrix
   using Vector6 = Eigen::Matrix<double, 6, 1>;  ///< type of a right-hand side or a solution
-  using Places = Eigen::Matrix<int, 6, 1>;      ///< positions of rows, counted from 0
+  using Places = Eigen::Matrix<int, 6, 1>;      ///< type of a list of row positions, counted from 0
 
   explicit LuFactors6(const Matrix6& A);  ///< Factors A, which may be singular.
 
   Vector6 solve(const Vector6& b) const;  ///< The solution x of A x = b. Precondition: A is not singular.
-  Matrix6 inverse() const;                ///< Precondition: A is not singular.
+  Matrix6 inverse() const;                ///< The inverse of A. Precondition: A is not singular.
   double determinant() const;             ///< The determinant of A.
   Vector6 pivots() const { return factors_.diagonal(); }  ///< The diagonal of U.
   const Places& row_places() const { return places_; }    ///< The position to which P moves each row of A.
 
  private:
-  Matrix6 factors_;  ///< L below the diagonal (its diagonal is 1), and U
+  Matrix6 factors_;  ///< L below the diagonal (the diagonal of L is 1), and U on and above it
   Places places_;
-  int sign_;  ///< determinant of P
+  int sign_;  ///< determinant of P, +1 or -1
 };
 
 /// The solution X of A X = B for a square A, with row pivoting. Precondition: A is not singular.
 Matrix solve(const ConstMatrix& A, const ConstMatrix& B);
-Matrix inverse(const ConstMatrix& A);  ///< Precondition: A is square and not singular.
+Matrix inverse(const ConstMatrix& A);  ///< The inverse of A. Precondition: A is square and not singular.
 
 }  // namespace poesy::linalg

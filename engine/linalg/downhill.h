@@ -4,9 +4,9 @@
 
 namespace poesy::linalg {
 
-/// Minimises a sum of squares by damped steps (Levenberg 1944, Marquardt 1963). No step increases the sum, so it ends
-/// in the valley where it began, even if no square can vanish and undamped steps would jump. Returns whether it
-/// converged: whether a step was shorter than `shortest`. Problem has:
+/// Minimises a sum of squares by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). No step increases the sum.
+/// So the iteration stays in the valley where it began, even if the squares cannot all vanish and undamped steps would
+/// jump. Returns whether it converged: whether a step was shorter than `shortest`. The type Problem has these members:
 ///
 ///     double sum_of_squares()               the sum at the present point
 ///     double try_step(double damping)       computes a step whose normal matrix has its diagonal times

@@ -11,65 +11,71 @@
 
 namespace poesy {
 
-/// What a feature of a part is. A plane is a rectangle or round.
+/// The geometric kind of a feature of a part. `rectangle` and `round` are planes of this shape.
 enum class FeatureKind { axis, rectangle, round, point, distance };
 
-/// What a zone limits.
+/// What a tolerance zone limits.
 enum class ZoneClass {
-  location,     ///< where the feature is, and with it how it is turned
-  orientation,  ///< how it is turned
-  size          ///< how long a distance is
+  location,     ///< the position of the feature, and with it the orientation
+  orientation,  ///< the orientation alone
+  size          ///< the length of a distance
 };
 
-/// A tolerance of a drawing.
+/// A tolerance of a drawing, as a zone in which a feature must be.
 struct Zone {
-  std::string_view key;  ///< "position"; see zone_traits()
-  double size;           ///< width or diameter as written; of a distance the larger or smaller one by this (m)
-  std::string datums;    ///< "A|B"; empty: none
+  std::string_view key;  ///< such as "position"; see zone_traits()
+  /// Width or diameter of the zone as written on the drawing; for a distance, the largest deviation +- (m).
+  double size;
+  std::string datums;  ///< datums of the zone, such as "A|B"; empty: none
 };
 
-/// The clearance of a pin in a bore, as a difference of diameters (m).
+/// The clearance of a pin in a bore: the difference of their diameters (m).
 struct Clearance {
-  double most;          ///< the largest
-  double mean_square;   ///< m^2, over the parts that are made
-  bool touches = true;  ///< whether the pin touches the bore; otherwise it is anywhere in it
+  double most;         ///< largest clearance
+  double mean_square;  ///< mean square of the clearance over the manufactured parts, m^2
+  /// True if the pin always touches the bore; false if it may be anywhere within the clearance.
+  bool touches = true;
 };
 
-/// A feature of a part with the errors by which it is displaced, all lengths (m).
+/// A feature of a part, and the errors that displace it. All lengths are in m.
 struct Feature {
-  std::string name;   ///< "rail_1"
-  std::string label;  ///< name on the drawing, the same in all limbs: "rail"
-  std::size_t limb;   ///< counts from 1
-  std::size_t frame;  ///< of the limb, that its errors change
-  FeatureKind kind;   ///< what it is
-  /// m: length of an axis; sides of a rectangle; diameter of a round plane; nominal size of a distance, 0 if unknown
+  std::string name;   ///< name of the feature, such as "rail_1"
+  std::string label;  ///< name on the drawing, the same in all limbs, such as "rail"
+  std::size_t limb;   ///< limb of the part, counted from 1
+  std::size_t frame;  ///< frame of the limb that the errors of the feature displace
+  FeatureKind kind;   ///< geometric kind of the feature
+  /// Size in m: length of an axis; sides of a rectangle; diameter of a round plane; nominal size of a distance, 0 if
+  /// unknown.
   std::array<double, 2> size = {};
-  bool one_direction = false;            ///< whether the zone of an axis or a point is between two planes
-  std::vector<FactorIndex> middle = {};  ///< errors that move it: x, y of an axis; z of a plane; x, y, z; a distance
-  std::vector<FactorIndex> tilt = {};    ///< errors that turn it: lean_x, lean_y of an axis; lift_x, lift_y of a plane
-  std::optional<Zone> location = {};     ///< also the tolerance of a distance
-  std::optional<Zone> orientation = {};  ///< of class orientation
-  /// Instead of zones: an axis is loose in its bore, at each pose in another way.
+  bool one_direction = false;  ///< true if the zone of an axis or a point is between two planes
+  /// Errors that move the feature: x, y for an axis; z for a plane; x, y, z for a point; the error of a distance.
+  std::vector<FactorIndex> middle = {};
+  /// Errors that turn the feature: lean_x, lean_y for an axis; lift_x, lift_y for a plane.
+  std::vector<FactorIndex> tilt = {};
+  std::optional<Zone> location = {};     ///< zone of class location; for a distance, its tolerance
+  std::optional<Zone> orientation = {};  ///< zone of class orientation
+  /// Clearance of the axis of a pin that is loose in its bore. Such a feature has no zones. Its place in the bore
+  /// changes from pose to pose.
   std::optional<Clearance> clearance = {};
 
-  std::vector<FactorIndex> errors() const;  ///< All errors: those that move it, then those that turn it.
+  std::vector<FactorIndex> errors() const;  ///< All errors: first those that move the feature, then those that turn it.
 };
 
-/// What a kind of zone is.
+/// The properties of one type of zone.
 struct ZoneTraits {
-  std::string_view key;   ///< in files: "position"
-  ZoneClass of;           ///< what it limits on a plane
-  std::string_view sign;  ///< UTF-8, as on a drawing
+  std::string_view key;   ///< name in files, such as "position"
+  ZoneClass of;           ///< property of the feature that the zone limits if the feature is a plane
+  std::string_view sign;  ///< symbol on a drawing, UTF-8
 };
 
-/// All kinds of zones, in the order of ISO 1101.
+/// The properties of all types of zones, in the order of ISO 1101.
 const std::vector<ZoneTraits>& zone_traits();
 
-/// The kind of this key. Precondition: it is one.
+/// The properties of zones with this key. Precondition: the list has the key.
 const ZoneTraits& zone_traits(std::string_view key);
 
-/// What a zone of this key limits on a feature of this kind: a run-out of an axis is a location, because a pointer
-/// shows twice the eccentricity.
+/// The property that a zone with this key limits on a feature of this kind. It is ZoneTraits::of, with one exception: a
+/// run-out of an axis limits its location, because a dial gauge shows twice the eccentricity.
 ZoneClass zone_class(std::string_view key, FeatureKind kind);
 
 }  // namespace poesy

@@ -9,46 +9,47 @@
 
 namespace poesy {
 
-/// A response of the model with its weight.
+/// A term of a user's response: another response times a weight.
 struct ResponseTerm {
-  std::size_t response;                      ///< position among the model's, or behind them among the earlier own ones
-  double weight = 1.0;                       ///< SI
-  Dimension weighed_in = Dimension::number;  ///< of the weight: a number, or a length
+  std::size_t response;  ///< position in the list of the model's responses followed by the user's earlier ones
+  double weight = 1.0;   ///< factor on the response, SI
+  Dimension weighed_in = Dimension::number;  ///< dimension of the weight: number or length
 };
 
-/// The pose whose value is subtracted from a response, with the same errors.
+/// The pose at which a response is evaluated with the same errors. Its value there is subtracted from the response.
 struct ReferencePose {
-  std::vector<double> pose = {};  ///< [pose coordinates], SI; empty: the pose before (SampleBlock::previous)
-  Place place = {};               ///< for messages
+  std::vector<double> pose = {};  ///< [pose coordinates], SI; empty: the previous pose (SampleBlock::previous)
+  Place place = {};               ///< place in the study file, for messages
 
-  bool is_previous() const { return pose.empty(); }  ///< Whether it is the pose before.
+  bool is_previous() const { return pose.empty(); }  ///< Returns true if the reference is the previous pose.
 };
 
-/// A response that somebody forms from those of a model.
+/// A response that a user defines from the responses of a model.
 struct OwnResponse {
-  std::string name;                 ///< unlike those of the model
-  Dimension dimension;              ///< of what is formed
-  bool is_norm;                     ///< whether it is the root of the sum of the terms' squares, else their sum
-  std::vector<ResponseTerm> terms;  ///< at least one, each response once
-  std::string description = {};     ///< for people; empty: what it is formed of
-  /// The pose whose value is subtracted; only of a sum, whose terms have none. If it is the pose before, the value at a
-  /// pose without one before is 0.
+  std::string name;                 ///< name that differs from those of the model's responses
+  Dimension dimension;              ///< dimension of this response
+  bool is_norm;                     ///< true: root of the sum of the squares of the terms; false: sum of the terms
+  std::vector<ResponseTerm> terms;  ///< terms, at least one; each response once
+  std::string description = {};     ///< explanation for users; empty: the list of the terms
+  /// The pose at which the subtracted value is taken. Only a sum of terms that are not relative may have one. At the
+  /// first pose, which has no previous pose, a response relative to the previous pose is 0.
   std::optional<ReferencePose> relative_to = {};
 };
 
-/// The dimension of a term: that of its response, or what a length makes of it, which is a length of an angle and a
-/// moment of a force. Empty where nothing is known of the product.
+/// The dimension of a term, which is a response times a weight. A weight without unit keeps the dimension of the
+/// response. If the weight is a length, the product with an angle is a length, and the product with a force is a
+/// moment. Empty for other products.
 std::optional<Dimension> dimension_of(const ResponseTerm& term, const ModelDescription& model);
 
-/// The description with these responses behind its own, and first among those that a summary shows.
+/// The description with these responses appended. A summary shows them first.
 ModelDescription described(ModelDescription model, const std::vector<OwnResponse>& own);
 
-/// The model with these responses behind its own, formed before anything is counted. A sample without a solution at a
-/// pose that a response is relative to has none at any pose. Throws InputError at its place if a response is relative
-/// to a pose that the model does not reach.
+/// The model with these responses appended. They are computed sample by sample, before any statistics. If a sample is
+/// not solved at the reference pose of a response, it counts as not solved at every pose. Throws InputError, with the
+/// place of the pose in the study, if a response is relative to a pose that the model does not reach.
 std::unique_ptr<Model> with_responses(std::unique_ptr<Model> model, std::vector<OwnResponse> own);
 
-/// The mechanism with these responses. Its other metrics and loads stay without them.
+/// The catalog entry with these responses. The entries for its other metrics and loads do not get them.
 CatalogEntry with_responses(CatalogEntry entry, const std::vector<OwnResponse>& own);
 
 }  // namespace poesy

@@ -10,8 +10,9 @@ namespace poesy {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNegligibleExponent = 40.0;  ///< a process this many mu above the best one has no weight
-constexpr int kMaxNewtonSteps = 100;          ///< for the common size of a pair
+/// A process whose lagrangian is this many mu above the least has no weight.
+constexpr double kNegligibleExponent = 40.0;
+constexpr int kMaxNewtonSteps = 100;  ///< largest number of Newton steps in common_size()
 
 /// The size in [lo, hi] that minimises cost + price x size.
 double size_within(const CostLaw& cost, double lo, double hi, double price, Stacking stacking) {
@@ -19,7 +20,8 @@ double size_within(const CostLaw& cost, double lo, double hi, double price, Stac
   return std::fmax(lo, std::fmin(hi, price > 0.0 ? cost.cheapest_size(price, stacking) : kInfinity));
 }
 
-/// The cost of a pair whose inner part is as large as the outer one allows, by the size of the outer part.
+/// The cost of both parts of a pair as a function of the outer part's size, with the largest inner part that fits in
+/// it.
 CostCurve common_curve(const SizedProcess& process, double size, Stacking stacking) {
   const double share = process.inner->share;
   const CostCurve outer = process.cost.curve(size, stacking);
@@ -28,7 +30,8 @@ CostCurve common_curve(const SizedProcess& process, double size, Stacking stacki
           outer.curvature + share * share * inner.curvature};
 }
 
-/// The sizes of the outer part for which the inner part can be as large as the outer one allows.
+/// The range of sizes of a pair's outer part in which the bounds of the inner part allow it the largest size, share x
+/// size of the outer part.
 struct CommonRange {
   double lo;
   double hi;
@@ -40,13 +43,14 @@ CommonRange common_range(const SizedProcess& process) {
   return {lo, std::fmax(lo, std::fmin(process.hi, inner.hi / inner.share))};
 }
 
-/// The common size that minimises cost + price x size, by Newton's method for the logarithm of the slope as a function
-/// of the logarithm of the size, which is nearly linear. An error of the size changes the minimum by its square only.
+/// The size of a pair's outer part that minimises cost + price x size if the inner part has the largest size, share x
+/// size of the outer part. Newton's method solves for the logarithm of the slope as a function of the logarithm of the
+/// size, which is nearly linear. An error of the size changes the minimum only by its square.
 double common_size(const SizedProcess& process, double price, Stacking stacking) {
   auto [lo, hi] = common_range(process);
   if (lo == hi || price <= 0.0 || common_curve(process, hi, stacking).slope + price <= 0.0) return hi;
   if (lo > 0.0 && common_curve(process, lo, stacking).slope + price >= 0.0) return lo;
-  // Either law alone asks for no larger size than both together.
+  // The best size for one cost law alone is at most the best size for both, so it is a lower bound.
   const double share = process.inner->share;
   double size = lo;
   if (!process.cost.is_constant()) size = std::fmax(size, process.cost.cheapest_size(price, stacking));
@@ -60,7 +64,7 @@ double common_size(const SizedProcess& process, double price, Stacking stacking)
     const double change = std::log(-curve.slope / price) * -curve.slope / (size * curve.curvature);
     double next = size * std::exp(change);
     if (!(next >= lo && next <= hi)) next = 0.5 * (lo + hi);
-    const bool ends = std::abs(next - size) <= 1e-9 * size;  // the next change is about its square
+    const bool ends = std::abs(next - size) <= 1e-9 * size;  // the next change is about the square of this one
     size = next;
     if (ends) break;
   }
@@ -87,7 +91,7 @@ ProcessResponse pair_response(const SizedProcess& process, const Prices& prices,
   return {size, cost, cost + prices.own * size + prices.inner * within, within};
 }
 
-/// The decrease of sizes per unit of their prices.
+/// The decrease of the sizes of a part, or of a pair, per unit of their prices.
 struct InverseCurvature {
   double own;
   double inner = 0.0;
@@ -114,7 +118,7 @@ InverseCurvature pair_curvature(const SizedProcess& process, const ProcessRespon
   return {common, share * share * common, share * common};
 }
 
-/// A part in no pair.
+/// The functions for a part that is in no pair.
 struct PlainPart {
   static ProcessResponse response(const SizedProcess& process, const Prices& prices, Stacking stacking) {
     const double size = size_within(process.cost, process.lo, process.hi, prices.own, stacking);
@@ -127,7 +131,7 @@ struct PlainPart {
   static constexpr bool kHasInner = false;
 };
 
-/// Both parts of a pair.
+/// The functions for both parts of a pair.
 struct PairOfParts {
   static ProcessResponse response(const SizedProcess& process, const Prices& prices, Stacking stacking) {
     return pair_response(process, prices, stacking);
@@ -138,7 +142,8 @@ struct PairOfParts {
   static constexpr bool kHasInner = true;
 };
 
-/// Mixes processes. Sizes are shifted by those of the main process, because a variance needs differences.
+/// Computes the mean over the processes. Sizes are taken relative to those of the main process, so that the variance
+/// does not lose digits.
 template <class Kind>
 void mix(std::span<const SizedProcess> processes, ProcessRange allowed, double mu, Stacking stacking,
          BestResponse& part) {

@@ -5,52 +5,56 @@
 
 #include "engine/optimise/sized_problem.h"
 
-/// The sizes at least cost + price x size, for given prices: the minimum inside Lagrange's bound.
+/// The sizes that minimise cost + price x size at given prices. Lagrange's lower bound is a sum of these minima.
 namespace poesy {
 
-/// The prices of a unit of size: sums over the limits of multiplier x effect.
+/// The prices of a unit of size, for a part and for the inner part of its pair (Within in least_cost.h). A price is the
+/// sum over the limits of multiplier x effect.
 struct Prices {
-  double own;          ///< of the part, >= 0
-  double inner = 0.0;  ///< of the inner part of a pair; may be negative, but own + share x inner is not
+  double own;          ///< price of the part's own size, >= 0
+  double inner = 0.0;  ///< price of the size of the pair's inner part, 0 without a pair; may be negative, but own +
+                       ///< Within::share x inner is >= 0
 };
 
-/// The best sizes of one process.
+/// The best sizes within one process.
 struct ProcessResponse {
-  double size;              ///< in [lo, hi]
-  double cost;              ///< cost of the sizes
-  double lagrangian;        ///< cost + price x size, which is least at these sizes
-  double inner_size = 0.0;  ///< of the inner part of a pair, within its bounds and the outer part
+  double size;              ///< best size, in [lo, hi]
+  double cost;              ///< cost at these sizes
+  double lagrangian;        ///< cost + price x size, minimal at these sizes
+  double inner_size = 0.0;  ///< size of a pair's inner part: within its bounds and at most share x size
 };
 
-/// The best response of a process.
+/// The sizes within one process that minimise cost + price x size.
 ProcessResponse process_response(const SizedProcess& process, const Prices& prices, Stacking stacking);
 
-/// The inner part of a pair in a best response.
+/// The best response of the inner part of a pair (Within in least_cost.h).
 struct InnerResponse {
-  double price = 0.0;              ///< price of a unit of its size
-  double size = 0.0;               ///< mean of the mix
-  double inverse_curvature = 0.0;  ///< decrease of its size per unit of its price
-  double cross = 0.0;              ///< decrease of its size per unit of the outer part's price, and the reverse
-  double deviation = 0.0;          ///< standard deviation of its sizes in the mix
+  double price = 0.0;              ///< price of a unit of the inner part's size
+  double size = 0.0;               ///< mean size over the mixed processes
+  double inverse_curvature = 0.0;  ///< decrease of the inner part's size per unit of its price
+  /// Decrease of the inner part's size per unit of the outer part's price. It equals the decrease of the outer part's
+  /// size per unit of the inner part's price.
+  double cross = 0.0;
+  double deviation = 0.0;  ///< standard deviation of the size over the mixed processes
 };
 
-/// The best response of a part, or of both parts of a pair, at given multipliers. If several processes are allowed it
-/// is a mix of them.
+/// The best response of a part, or of both parts of a pair, at given multipliers. If several processes are allowed, the
+/// response is a weighted mean over them (a mix).
 struct BestResponse {
-  double price = 0.0;              ///< price of a unit of its size: sum over the limits of multiplier x effect
-  double size = 0.0;               ///< mean of the mix
+  double price = 0.0;              ///< price of a unit of the part's size: sum over the limits of multiplier x effect
+  double size = 0.0;               ///< mean size over the mixed processes
   double inverse_curvature = 0.0;  ///< decrease of the size per unit of price
-  double cost = 0.0;               ///< mean of the mix
+  double cost = 0.0;               ///< mean cost over the mixed processes
   double lagrangian = 0.0;         ///< least cost + price x size over all sizes of all processes
-  double deviation = 0.0;          ///< standard deviation of the sizes of the mix
+  double deviation = 0.0;          ///< standard deviation of the size over the mixed processes
   std::size_t main = 0;            ///< position of the process with the largest weight
-  InnerResponse inner;             ///< zeros for a part in no pair
+  InnerResponse inner;             ///< inner part of a pair; zeros for a part that is in no pair
 
-  Prices prices() const { return {price, inner.price}; }  ///< The prices of both parts.
+  Prices prices() const { return {price, inner.price}; }  ///< The prices of the part and of its pair's inner part.
 };
 
-/// The best response of a part to prices. Processes are mixed by weights exp(-lagrangian / mu), as in a Boltzmann
-/// distribution of temperature mu.
+/// The best response of a part to prices. The weight of a process is proportional to exp(-lagrangian / mu), as in a
+/// Boltzmann distribution of temperature mu.
 BestResponse best_response(std::span<const SizedProcess> processes, ProcessRange allowed, const Prices& prices,
                            double mu, Stacking stacking);
 

@@ -15,11 +15,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The position of a process for each part.
+/// [parts] The position of the chosen process of each part.
 using Choice = std::vector<std::size_t>;
 
 struct Node {
-  double bound;        ///< no choice below this node costs less
+  double bound;        ///< lower bound on the cost of all choices below this node
   std::size_t number;  ///< how many nodes were made before this one
   std::vector<ProcessRange> allowed;
   std::vector<double> multipliers;  ///< multipliers of the parent node
@@ -28,9 +28,9 @@ struct Node {
   bool operator<(const Node& other) const { return std::tie(other.bound, other.number) < std::tie(bound, number); }
 };
 
-/// The cost of the largest sizes of a process that use no more of any limit than those of a response; infinite if there
-/// are none. The use of a limit grows with the size of the inner part, and with that of the outer part beyond what the
-/// inner part needs.
+/// The cost of a process at its largest sizes that use no more of any limit than the sizes of `most` do; infinite if
+/// the process has no such sizes. For a pair, the use of a limit grows with the inner size, and with the outer size
+/// beyond the one that just holds the inner part.
 double cost_within(const SizedProcess& process, const BestResponse& most, Stacking stacking) {
   const auto cost = [&](const CostLaw& law, double size) { return law.at(tolerance_of(size, stacking)); };
   if (!process.inner) return cost(process.cost, std::fmin(process.hi, most.size));
@@ -42,26 +42,26 @@ double cost_within(const SizedProcess& process, const BestResponse& most, Stacki
   return cost(process.cost, size) + (inner.left_out ? 0.0 : cost(inner.cost, within));
 }
 
-/// The size of the inner part of a pair in a process of one size.
+/// The size of a pair's inner part in a process that allows only one size.
 double inner_size(const SizedProcess& process) {
   return process.inner->left_out ? process.inner->share * process.lo : process.inner->lo;
 }
 
-/// The cost of a process of one size.
+/// The cost of a process that allows only one size.
 double single_cost(const SizedProcess& process, Stacking stacking) {
   const double own = process.cost.at(tolerance_of(process.lo, stacking));
   if (!process.inner || process.inner->left_out) return own;
   return own + process.inner->cost.at(tolerance_of(inner_size(process), stacking));
 }
 
-/// Another process of one size for a part.
+/// A change of one part to a coarser and cheaper process.
 struct Raise {
-  double saving;        ///< of cost
+  double saving;        ///< decrease of the cost
   std::size_t part;     ///< position of the part
-  std::size_t process;  ///< position of its process
+  std::size_t process;  ///< position of the new process
 };
 
-/// How much the cost of sizes differs within a mix.
+/// The spread of price x size within a mix. The part with the largest spread is branched first.
 double spread_of(const BestResponse& part) {
   return part.price * part.deviation + std::abs(part.inner.price) * part.inner.deviation;
 }
@@ -91,15 +91,16 @@ class BranchAndBound {
   SearchOptions options_;
   DualPath dual_path_;
   std::priority_queue<Node> open_;
-  std::map<Choice, double> solved_;   ///< lower bounds of the leaves that were solved
-  std::vector<ConvexSolution> best_;  ///< the best solutions by cost, at most as many as are wanted
-  std::vector<double> relaxed_;       ///< [L] multipliers at the root
-  double closed_ = kInfinity;         ///< the lowest bound of what was pruned or solved
-  std::size_t nodes_ = 0;             ///< nodes that were expanded
+  std::map<Choice, double> solved_;  ///< lower bounds of the leaves that were solved
+  /// The best solutions, ascending by cost; at most one more than SearchOptions::alternatives.
+  std::vector<ConvexSolution> best_;
+  std::vector<double> relaxed_;  ///< [limits] multipliers at the root
+  double closed_ = kInfinity;    ///< lowest lower bound among pruned and solved nodes
+  std::size_t nodes_ = 0;        ///< nodes that were expanded
   std::size_t made_ = 0;
 };
 
-/// The cost from which on choices are discarded.
+/// Choices that cost more than this are discarded.
 double BranchAndBound::cutoff() const {
   if (best_.size() <= options_.alternatives) return kInfinity;
   const double cost = best_.back().allocation.cost;
@@ -110,7 +111,8 @@ void BranchAndBound::push(double bound, std::vector<ProcessRange> allowed, std::
   open_.push({bound, made_++, std::move(allowed), std::move(multipliers)});
 }
 
-/// Solves for these processes and records the result. Returns its lower bound, or infinity if infeasible.
+/// Solves the convex programme of one choice and records its solution. Returns the lower bound, or infinity if
+/// infeasible.
 double BranchAndBound::solve_leaf(const Choice& choice) {
   if (const auto known = solved_.find(choice); known != solved_.end()) return known->second;
   double& bound = solved_[choice];
@@ -128,7 +130,7 @@ double BranchAndBound::solve_leaf(const Choice& choice) {
   return bound;
 }
 
-/// Whether the smallest sizes keep every limit.
+/// Whether the lowest allowed sizes keep every limit.
 bool BranchAndBound::is_feasible(const std::vector<ProcessRange>& allowed) const {
   const std::vector<double> lo = lowest(sized_, allowed);
   const double most = 1.0 - 4.0 * rounding_margin(lo.size());
@@ -138,8 +140,8 @@ bool BranchAndBound::is_feasible(const std::vector<ProcessRange>& allowed) const
   return true;
 }
 
-/// A choice that keeps the limits: for each part the cheapest process that can make the size of the relaxation or a
-/// smaller one.
+/// A choice that keeps the limits: for each part, the cheapest process that allows a size no larger than the
+/// relaxation's.
 Choice BranchAndBound::round_down(const std::vector<ProcessRange>& allowed, const PathPoint& point) const {
   Choice choice;
   for (std::size_t i = 0; i < allowed.size(); ++i) {
@@ -156,8 +158,8 @@ Choice BranchAndBound::round_down(const std::vector<ProcessRange>& allowed, cons
   return choice;
 }
 
-/// Improves a choice of single values greedily: the part that saves most takes its next larger value, or a pair any
-/// cheaper ones, as long as the limits allow it.
+/// Improves a choice of single values greedily, as long as the limits allow it. In each step the part that saves most
+/// takes its next larger value; a pair may take any cheaper values.
 void BranchAndBound::raise_greedily(Choice& choice) const {
   std::vector<double> sizes(choice.size());
   for (std::size_t i = 0; i < choice.size(); ++i) {
@@ -190,7 +192,7 @@ void BranchAndBound::raise_greedily(Choice& choice) const {
   }
 }
 
-/// The ways to make one part of a choice of single values coarser and cheaper, the best first.
+/// The ways to make one part of a choice of single values coarser and cheaper, the largest saving first.
 std::vector<Raise> BranchAndBound::raises(const Choice& choice) const {
   std::vector<Raise> found;
   for (std::size_t i = 0; i < choice.size(); ++i) {
@@ -210,7 +212,7 @@ std::vector<Raise> BranchAndBound::raises(const Choice& choice) const {
   return found;
 }
 
-/// Removes processes at the ends of the ranges that cannot belong to one of the best choices.
+/// Removes processes at the ends of the ranges that cannot belong to a choice cheaper than the cutoff.
 void BranchAndBound::prune_by_bound(std::vector<ProcessRange>& allowed, const PathPoint& point, double bound) {
   const double most = cutoff();
   for (std::size_t i = 0; i < allowed.size(); ++i) {
@@ -227,7 +229,7 @@ void BranchAndBound::prune_by_bound(std::vector<ProcessRange>& allowed, const Pa
   }
 }
 
-/// Divides the range of the part whose mix spreads most, next to its main process, and queues both halves.
+/// Splits the range of the part whose mix spreads most, next to its main process, and queues both halves.
 void BranchAndBound::branch(const std::vector<ProcessRange>& allowed, const PathPoint& point, double bound) {
   std::size_t part = allowed.size();
   double most = -1.0;
@@ -270,7 +272,7 @@ void BranchAndBound::expand(const Node& node) {
     close(bound);
     return;
   }
-  // Pruning needs the bound of the same point as the multipliers. It may be lower than that of the parent node.
+  // Pruning needs a bound and multipliers of the same point. The bound may be lower than the parent node's.
   prune_by_bound(allowed, point, point.lower_bound);
   branch(allowed, point, bound);
 }

@@ -7,11 +7,11 @@
 
 namespace poesy {
 
-/// Finds the choice of processes at least cost by branch and bound. A node is a range of each part's processes. Its
-/// bound is Lagrange's, and its relaxation is the least cost of mixed processes. The node with the lowest bound is
-/// expanded next. A process is pruned if the bound with it is above the cost of the best known choice. The caller sets
-/// `bound` and `use` of the result. None if no choice keeps the limits, which only pairs can cause. Precondition: some
-/// part has several processes.
+/// Finds the choice of processes with the least cost by branch and bound. A node allows a range of processes for each
+/// part. Its lower bound is Lagrange's. Its relaxation is the least cost if processes may be mixed. The node with the
+/// lowest bound is expanded next. A process is pruned if the lower bound with it exceeds the cost of the best known
+/// choice. The caller sets `bound` and `use` of the result. Returns none if no choice keeps the limits, which can
+/// happen only with pairs. Precondition: some part has several processes.
 std::optional<LeastCost> branch_and_bound(const AllocationProblem& problem, const SizedProblem& sized,
                                           const SearchOptions& options);
 

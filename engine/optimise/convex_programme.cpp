@@ -10,21 +10,21 @@
 namespace poesy {
 namespace {
 
-constexpr double kNegligible = 1e-9;  ///< a multiplier below this share of the sum counts as 0
-constexpr double kGoodGap = 1e-11;    ///< a relative gap below which multipliers are not improved
+constexpr double kNegligible = 1e-9;  ///< a multiplier below this share of the sum of all multipliers counts as 0
+constexpr double kGoodGap = 1e-11;    ///< multipliers are not improved if the relative gap is below this
 
 const Process& process_of(const AllocationProblem& problem, const SizedProblem& sized, std::size_t part) {
   return problem.parts[part][sized.processes[part].front().index];
 }
 
-/// The tolerance of a size; exactly a bound's if the size is at the bound.
+/// The tolerance of a size. At a bound it is exactly the bound's tolerance.
 double tolerance_within(const Process& process, double size, Stacking stacking) {
   if (size == size_of(process.hi, stacking)) return process.hi;
   if (size <= size_of(process.lo, stacking)) return process.lo;
   return std::clamp(tolerance_of(size, stacking), process.lo, process.hi);
 }
 
-/// Sets the tolerances of inner parts.
+/// Sets the tolerances of the inner parts of pairs.
 void set_inner(const AllocationProblem& problem, const SizedProblem& sized, std::span<const double> sizes,
                std::span<double> tolerance) {
   for (const Within& pair : sized.pairs) {
@@ -36,7 +36,7 @@ void set_inner(const AllocationProblem& problem, const SizedProblem& sized, std:
   }
 }
 
-/// The lowest sizes [N]. Those of a pair have the proportion of `sizes`, as far as bounds allow it, because the lowest
+/// [parts] The lowest sizes. In a pair they keep the proportion of `sizes` where bounds allow it, because the smallest
 /// inner part may use more of a limit than a larger one.
 std::vector<double> lowest_like(const SizedProblem& sized, std::span<const double> sizes) {
   std::vector<double> lo;
@@ -50,8 +50,7 @@ std::vector<double> lowest_like(const SizedProblem& sized, std::span<const doubl
   return lo;
 }
 
-/// The tolerances of sizes [N] after moving them towards the lowest bounds. keep: the share of the distance that is
-/// kept.
+/// The tolerances [parts] that belong to the sizes lo + keep (sizes - lo), with the lowest sizes lo of lowest_like().
 std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedProblem& sized,
                                   std::span<const double> sizes, double keep) {
   std::vector<double> tolerance(sizes.size());
@@ -67,7 +66,8 @@ std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedP
   return tolerance;
 }
 
-/// The largest share of the distance from the lowest bounds that keeps the limits.
+/// The largest s from 0 to 1 for which the sizes lo + s (sizes - lo) keep all limits, with the lowest sizes lo of
+/// lowest_like().
 double share_within(const SizedProblem& sized, std::span<const double> sizes) {
   const double room = 1.0 - 4.0 * rounding_margin(sized.parts());
   const std::vector<double> lo = lowest_like(sized, sizes);
@@ -80,8 +80,8 @@ double share_within(const SizedProblem& sized, std::span<const double> sizes) {
   return share;
 }
 
-/// The tolerances of sizes [N], moved towards the lowest bounds where rounding would break a limit; none if even the
-/// lowest bounds break one.
+/// The tolerances of sizes [parts], which move towards the lowest bounds where rounding would break a limit. None if
+/// even the lowest bounds break a limit.
 std::optional<std::vector<double>> tolerances_within(const AllocationProblem& problem, const SizedProblem& sized,
                                                      std::span<const double> sizes) {
   for (const double keep : {1.0, share_within(sized, sizes), 0.0}) {
@@ -106,7 +106,7 @@ double cost_of(const AllocationProblem& problem, const SizedProblem& sized, std:
   return cost;
 }
 
-/// Multipliers [K] of a working set and the lower bound that they prove.
+/// Multipliers [K] of the K limits in a working set, and the lower bound on the cost that they prove.
 struct DualCertificate {
   std::vector<std::size_t> working_set;
   std::vector<double> multipliers;
@@ -120,7 +120,7 @@ DualCertificate certify(const SizedProblem& sized, std::vector<std::size_t> work
   return {std::move(working_set), std::move(multipliers), bound};
 }
 
-/// The same with negligible multipliers set to 0, if the bound remains as good.
+/// The certificate with negligible multipliers set to 0, if its bound is still about as good as that of `whole`.
 DualCertificate without_negligible(const SizedProblem& sized, const DualCertificate& whole, double cost) {
   const double sum = std::accumulate(whole.multipliers.begin(), whole.multipliers.end(), 0.0);
   DualCertificate less = whole;
@@ -129,8 +129,9 @@ DualCertificate without_negligible(const SizedProblem& sized, const DualCertific
   return cost - less.bound <= 2.0 * (cost - whole.bound) + kGoodGap * std::abs(cost) ? less : whole;
 }
 
-/// Adds multipliers of tight limits: the smallest ones for which the lowest bounds are the best sizes of their parts.
-/// An infinite one is left out. The bound does not change, because these parts have no other size.
+/// Adds multipliers of tight limits: the smallest ones for which the lowest bounds are the best sizes of the parts
+/// under the limit. An infinite multiplier is omitted. The lower bound does not change, because these parts have no
+/// other size.
 void add_tight_limits(const AllocationProblem& problem, const SizedProblem& sized, DualCertificate& found) {
   for (std::size_t l = 0; l < sized.limits; ++l) {
     if (!sized.tight[l]) continue;

@@ -8,23 +8,23 @@
 #include "engine/optimise/least_cost.h"
 #include "engine/optimise/sized_problem.h"
 
-/// The tolerances at least cost if every part has one process: a convex programme.
+/// The tolerances with the least cost if each part has one process: a convex programme.
 namespace poesy {
 
-/// The solution of a convex programme and its proof.
+/// The solution of a convex programme and its proof of optimality.
 struct ConvexSolution {
-  Allocation allocation;           ///< the tolerances at least cost
+  Allocation allocation;           ///< the tolerances with the least cost
   double lower_bound = 0.0;        ///< lower bound on the cost with these processes
-  std::vector<double> multiplier;  ///< [L] multipliers from which the bound follows
+  std::vector<double> multiplier;  ///< [limits] multipliers of the limits that prove the lower bound
 };
 
-/// Solves the problem. sized: has one process of each part. working_set: limits that are likely to bind; the search for
-/// multipliers starts with these. None if the lowest bounds break a limit.
+/// Solves the problem. sized: has one process for each part. working_set: limits that are likely to bind, with which
+/// the search for multipliers starts. None if the lowest tolerances break a limit.
 std::optional<ConvexSolution> solve_convex(const AllocationProblem& problem, const SizedProblem& sized,
                                            std::span<const std::size_t> working_set);
 
-/// [L] The multipliers of all limits, per unit of room, from those of a working set in SizedProblem's units. Negligible
-/// ones are set to 0.
+/// [limits] The multipliers of all limits, in cost per unit of room. multipliers: those of the working set, in the
+/// units of SizedProblem. Negligible ones become 0.
 std::vector<double> limit_multipliers(const ToleranceLimits& limits, std::span<const std::size_t> working_set,
                                       std::span<const double> multipliers);
 

@@ -33,7 +33,7 @@ double with_own_logarithm(double value) {
   for (int step = 0; step < 20; ++step) {
     const double change = (value - z - std::log(z)) / (1.0 + z);
     z *= 1.0 + change;
-    if (std::abs(change) < 1e-9) break;  // the next change is about its square
+    if (std::abs(change) < 1e-9) break;  // the next change is about the square of this one
   }
   return z;
 }
@@ -99,7 +99,8 @@ double CostLaw::cheapest_size(double price, Stacking stacking) const {
     const double q = exponent(stacking);
     return root(q * b_ / price, q + 1.0);
   }
-  // In the worst case b / decay exp(-T / decay) = price; for squares b / (2 T decay) exp(-T / decay) = price.
+  // The slope equation is b / decay exp(-T / decay) = price in the worst case, and b / (2 T decay) exp(-T / decay) =
+  // price for squares.
   if (stacking == Stacking::worst_case) return std::fmax(0.0, shape_ * std::log(b_ / (shape_ * price)));
   const double value = std::log(b_) - 2.0 * std::log(shape_) - std::log(2.0 * price);
   const double tolerance = shape_ * with_own_logarithm(value);

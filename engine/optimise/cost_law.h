@@ -4,35 +4,35 @@
 /// (Chase, Greenwood, Loosli and Hauglund 1990, Manuf. Rev. 3, 49-59).
 namespace poesy {
 
-/// How the effects of tolerances add up under a limit.
+/// How effects on a response add up under a limit L. The effect of a tolerance T is a T, with its own factor a.
 enum class Stacking {
   root_sum_square,  ///< sum of a^2 T^2 <= L^2: the limit is linear in T^2
   worst_case        ///< sum of |a| T <= L: the limit is linear in T
 };
 
-/// The size of a tolerance T >= 0: T^2, or T in the worst case. Limits are linear in sizes.
+/// The size of a tolerance T >= 0: T^2 if effects add up as squares, T in the worst case. Limits are linear in sizes.
 double size_of(double tolerance, Stacking stacking);
 /// The tolerance of a size >= 0.
 double tolerance_of(double size, Stacking stacking);
 
 /// A cost and its derivatives with respect to the size.
 struct CostCurve {
-  double value;      ///< in the unit of the costs
-  double slope;      ///< <= 0
-  double curvature;  ///< >= 0
+  double value;      ///< cost, in the unit of the costs
+  double slope;      ///< first derivative with respect to the size, <= 0
+  double curvature;  ///< second derivative with respect to the size, >= 0
 };
 
-/// The cost of a part as a function of its tolerance. Each law is convex and non-increasing in T and in T^2, so the
-/// least cost under limits is a convex programme. A law with b = 0 is constant.
+/// The cost of a part as a function of its tolerance T. Each law is convex and non-increasing in T and in T^2, so the
+/// least cost under limits is a convex programme. Laws whose coefficient b is 0 are constant.
 class CostLaw {
  public:
-  /// The same cost for every tolerance.
+  /// The law with the same cost for every tolerance.
   static CostLaw constant(double cost);
-  /// fixed + b / T. Precondition: b >= 0.
+  /// The law fixed + b / T. Precondition: b >= 0.
   static CostLaw reciprocal(double fixed, double b);
-  /// fixed + b / T^power. Preconditions: b >= 0, power > 0.
+  /// The law fixed + b / T^power. Preconditions: b >= 0, power > 0.
   static CostLaw reciprocal_power(double fixed, double b, double power);
-  /// fixed + b exp(-T / decay). Preconditions: b >= 0, decay > 0, in the unit of T.
+  /// The law fixed + b exp(-T / decay). decay: in the unit of T. Preconditions: b >= 0, decay > 0.
   static CostLaw exponential(double fixed, double b, double decay);
 
   /// The cost of a tolerance T >= 0; infinite for T = 0 if the law divides by T.
@@ -49,13 +49,13 @@ class CostLaw {
  private:
   enum class Form { constant, power, exponential };
   CostLaw(Form form, double fixed, double b, double shape);
-  /// The exponent q of a cost that falls as 1 / size^q.
+  /// The exponent q of the law, whose cost falls as 1 / size^q; see size_of().
   double exponent(Stacking stacking) const;
 
   Form form_;
   double fixed_;
   double b_;
-  double shape_;  ///< exponent of T, or the decay
+  double shape_;  ///< exponent of T (power) or decay length of T (exponential)
 };
 
 }  // namespace poesy

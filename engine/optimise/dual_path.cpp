@@ -12,26 +12,28 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kMuReduction = 0.1;  ///< factor from the mu of one maximum to that of the next
-constexpr double kRelativeGap =
-    1e-12;  ///< gap at the end of the path, over the part of the cost that tolerances can change
-constexpr double kSmallestMu = 1e-16;  ///< mu over its scale, below which rounding ends the path
-constexpr double kSmallestMixingMu =
-    3e-8;                                ///< the same for mixes, over the part of the cost that tolerances can change
-constexpr int kMaxNewtonSteps = 60;      ///< for one maximum
-constexpr int kMaxLineSearchSteps = 60;  ///< along one direction
-constexpr int kMaxIterations = 400;      ///< maxima, and additions to the working set
-constexpr std::size_t kAddedAtOnce = 4;  ///< violated limits that join the working set in one iteration
+/// Factor by which the parameter mu of the path (DualPath) falls from one point to the next.
+constexpr double kMuReduction = 0.1;
+/// Relative gap at the end of the path. The reference is the part of the cost that tolerances can change.
+constexpr double kRelativeGap = 1e-12;
+/// The path ends at this mu, relative to its scale, because rounding dominates below.
+constexpr double kSmallestMu = 1e-16;
+/// The path ends at this mu if processes are mixed. It is relative to the part of the cost that tolerances can change.
+constexpr double kSmallestMixingMu = 3e-8;
+constexpr int kMaxNewtonSteps = 60;      ///< largest number of Newton steps for one maximum
+constexpr int kMaxLineSearchSteps = 60;  ///< largest number of trial steps along one direction
+constexpr int kMaxIterations = 400;      ///< largest number of maxima and of additions to the working set, together
+constexpr std::size_t kAddedAtOnce = 4;  ///< number of violated limits that join the working set in one iteration
 
-/// The scale of the part of a mix's cost that tolerances can change.
+/// The part of a mix's cost that tolerances can change.
 double changeable(std::span<const SizedProcess> processes, ProcessRange allowed, const BestResponse& part) {
   double least = kInfinity;
   for (std::size_t p = allowed.first; p < allowed.last; ++p) least = std::fmin(least, processes[p].fixed_cost());
   return std::fmax(0.0, part.cost - least);
 }
 
-/// A scale for multipliers: the value of the use of a limit if each part has an equal share of the limit that it
-/// affects most.
+/// A scale for multipliers: the price of the whole room of a limit if each part uses an equal share of the limit that
+/// it affects most.
 double multiplier_scale(const SizedProblem& problem, std::span<const ProcessRange> allowed) {
   const auto parts = static_cast<double>(problem.parts());
   double sum = 0.0;
@@ -50,8 +52,8 @@ double multiplier_scale(const SizedProblem& problem, std::span<const ProcessRang
   return costs > 0.0 && std::isfinite(costs) ? costs : 1.0;
 }
 
-/// Factorises a symmetric matrix [K x K], of which the lower half is given, in place (Cholesky). Adds a little to the
-/// diagonal, because rounding may leave the matrix not quite positive definite.
+/// Factorises a symmetric matrix [K x K] in place (Cholesky), given its lower half. Adds a little to the diagonal,
+/// because rounding may leave the matrix not quite positive definite.
 void factorise(std::vector<double>& matrix, std::size_t k) {
   double trace = 0.0;
   for (std::size_t r = 0; r < k; ++r) trace += matrix[r * k + r];
@@ -69,7 +71,7 @@ void factorise(std::vector<double>& matrix, std::size_t k) {
   }
 }
 
-/// Solves in place with a factor of factorise().
+/// Solves in place with the Cholesky factor from factorise().
 void solve(const std::vector<double>& factor, std::vector<double>& x) {
   const std::size_t k = x.size();
   for (std::size_t r = 0; r < k; ++r) {
@@ -109,7 +111,7 @@ double lower_bound(const SizedProblem& problem, std::span<const ProcessRange> al
   }
   for (const double multiplier : multipliers) bound -= multiplier;
   magnitude = std::accumulate(multipliers.begin(), multipliers.end(), magnitude);
-  // Each number results from at most some 64 operations, and one for each limit and each part.
+  // Each number comes from at most about 64 operations, plus one for each limit and each part.
   const double operations = static_cast<double>(problem.parts() + working_set.size()) + 64.0;
   return bound - operations * kEpsilon * magnitude;
 }
@@ -117,7 +119,7 @@ double lower_bound(const SizedProblem& problem, std::span<const ProcessRange> al
 DualPath::DualPath(const SizedProblem& problem, std::vector<std::size_t> working_set)
     : problem_(problem),
       room_(1.0 - rounding_margin(problem.parts())),
-      is_in_set_(problem.tight),  // tight limits never join, because their parts are already fixed
+      is_in_set_(problem.tight),  // tight limits never join the working set, because their parts are already fixed
       responses_(problem.parts()),
       sizes_(problem.parts()),
       inner_prices_(problem.parts()) {
@@ -143,7 +145,7 @@ void DualPath::begin(std::span<const double> start, double mu) {
 /// Computes the best responses at the multipliers, and the slack of the limits.
 void DualPath::update_responses(double mu) {
   const std::size_t parts = problem_.parts();
-  std::fill(sizes_.begin(), sizes_.end(), 0.0);  // holds the prices at first
+  std::fill(sizes_.begin(), sizes_.end(), 0.0);  // sizes_ first holds the prices
   for (std::size_t k = 0; k < working_set_.size(); ++k) {
     for (std::size_t i = 0; i < parts; ++i) sizes_[i] += multipliers_[k] * effects_[k * parts + i];
   }
@@ -162,7 +164,8 @@ void DualPath::update_responses(double mu) {
   }
 }
 
-/// Whether multiplier x slack is between mu / 2 and 3 mu / 2 for all limits, which are then kept.
+/// Whether multiplier x slack is between mu / 2 and 3 mu / 2 for every limit of the working set. All these limits are
+/// then kept.
 bool DualPath::is_centred(double mu) const {
   for (std::size_t k = 0; k < working_set_.size(); ++k) {
     if (!(std::abs(mu - multipliers_[k] * slack_[k]) <= 0.5 * mu)) return false;
@@ -179,7 +182,8 @@ bool DualPath::centre(double mu) {
   return is_centred(mu);
 }
 
-/// [K x N] P A G, with P = diag(multipliers) and the inverse curvatures G, which are diagonal except for pairs.
+/// [limits of the working set x parts] P A G, where P = diag(multipliers), A are the effects and G are the inverse
+/// curvatures. G is diagonal except for pairs.
 std::vector<double> DualPath::scaled_effects() const {
   const std::size_t parts = problem_.parts();
   std::vector<double> scaled(effects_.size());
@@ -198,8 +202,8 @@ std::vector<double> DualPath::scaled_effects() const {
   return scaled;
 }
 
-/// Newton's direction in units of the multipliers: (P A G A' P + mu I) d = mu - P slack. Returns false if the direction
-/// is not finite because numbers overflow.
+/// Finds Newton's direction d relative to the multipliers: (P A G A' P + mu I) d = mu - P slack, in the notation of
+/// scaled_effects(). Returns false if the direction is not finite because numbers overflow.
 bool DualPath::find_newton_direction(double mu) {
   const std::size_t count = working_set_.size();
   const std::size_t parts = problem_.parts();
@@ -218,9 +222,9 @@ bool DualPath::find_newton_direction(double mu) {
   return std::ranges::all_of(direction_, [](double one) { return std::isfinite(one); });
 }
 
-/// Line search. The function is concave, so its slope falls along the direction. A step is too long if the slope there
-/// is more negative than half the first slope. Then the search looks for a small slope between this step and one before
-/// it, because parts that reach a bound bend the function sharply.
+/// Searches along Newton's direction. The function is concave, so its slope falls along the direction. A step is too
+/// long if the slope at its end is more negative than half the first slope. The search then looks for a small slope
+/// between this step and a shorter one, because the function bends sharply where parts reach a bound.
 void DualPath::search_line(double mu) {
   const std::vector<double> before = multipliers_;
   double step = 1.0;
@@ -233,7 +237,7 @@ void DualPath::search_line(double mu) {
     return sum;
   };
   const double steep = slope();
-  std::pair<double, double> near{0.0, steep};  // step and slope
+  std::pair<double, double> near{0.0, steep};  // a step that is too short: its length, and the slope at its end
   std::pair<double, double> far{kInfinity, 0.0};
   for (int attempt = 0; attempt < kMaxLineSearchSteps; ++attempt) {
     for (std::size_t k = 0; k < before.size(); ++k) multipliers_[k] = before[k] * (1.0 + step * direction_[k]);
@@ -248,7 +252,7 @@ void DualPath::search_line(double mu) {
   }
 }
 
-/// Adds a few of the most violated limits to the working set. Returns false if none is violated.
+/// Adds a few of the most violated limits to the working set. Returns false if no limit is violated.
 bool DualPath::add_violated_limits(double mu) {
   struct Violation {
     double excess;

@@ -8,53 +8,55 @@
 #include "engine/optimise/best_response.h"
 #include "engine/optimise/sized_problem.h"
 
-/// The Lagrange dual of the least cost, and its central path. For given multipliers of the limits, each part's best
-/// size is independent of the others, and the sum of the parts' costs and of multiplier x (use - room) is a lower bound
-/// on the least cost.
+/// The Lagrange dual of the least-cost problem, and its central path. Given multipliers of the limits, the best size of
+/// each part does not depend on the other parts. The sum of the parts' costs and of multiplier x (use - room) is then a
+/// lower bound on the least cost.
 namespace poesy {
 
-/// A lower bound on the cost from any multipliers [K] >= 0 of the limits `working_set` [K]: no tolerances within these
-/// bounds and the limits cost less. It is lowered by what rounding may have added.
+/// The lower bound on the cost that multipliers >= 0 of the limits in the working set prove: all tolerances within the
+/// allowed processes and the limits cost at least this much. A margin for rounding is subtracted.
 double lower_bound(const SizedProblem& problem, std::span<const ProcessRange> allowed,
                    std::span<const std::size_t> working_set, std::span<const double> multipliers);
 
-/// When to stop following the path. By default it is followed to its end.
+/// When to stop following the central path. By default it is followed to its end.
 struct PathTarget {
-  /// The path is left when its lower bound is this high. Set it to the cost of the best known choice, because a node
-  /// with a higher bound is pruned.
+  /// Stop when the lower bound of the path reaches this value. Set it to the cost of the best known choice, because a
+  /// node with a higher bound is pruned.
   double cutoff = std::numeric_limits<double>::infinity();
-  /// The path is also left when its bound can no longer reach the cutoff. Set it in branch and bound, which then
-  /// divides the node whatever its exact bound is. Do not set it if the multipliers themselves are wanted.
+  /// Also stop when the lower bound can no longer reach the cutoff. Set it in branch and bound, where such a node is
+  /// divided whatever its exact bound is. Do not set it if the multipliers themselves are wanted.
   bool only_to_branch = false;
 };
 
-/// The end of the path.
+/// The point at which the path was left.
 struct PathPoint {
-  /// [N] Their sizes keep all limits, unless rounding ended the path too soon; this may happen if the lowest bounds
-  /// leave hardly any room of a limit. The inner part of a pair has a size only: the response of the outer part is that
-  /// of both.
+  /// [parts] Responses of the parts. Their sizes keep all limits, except if rounding ended the path too soon. That may
+  /// happen if the lowest bounds leave hardly any room in a limit. The response of a pair's outer part describes both
+  /// parts; the element of the inner part contains only its size.
   std::vector<BestResponse> parts;
-  std::vector<double> multipliers;  ///< [K] in the order of DualPath::working_set()
+  std::vector<double> multipliers;  ///< [working set] multipliers, in the order of DualPath::working_set()
   double lower_bound = 0.0;         ///< lower_bound() at these multipliers
-  double cost = 0.0;  ///< cost of the mixes; if the limits are kept, an upper bound on the least cost with mixes
+  /// Mean cost of the mixed processes; if the limits are kept, an upper bound on the least cost of mixes.
+  double cost = 0.0;
 };
 
-/// The central path of the dual (interior-point method; Boyd and Vandenberghe 2004, Convex Optimization, chapter 11).
-/// Its points maximise the lower bound plus mu x (sum of the logarithms of the multipliers), with processes mixed at
-/// temperature mu, while mu falls to zero. At each point every limit has multiplier x slack = mu, so sizes keep the
-/// limits and the cost is at most (limits + sum of the logarithms of the numbers of processes) x mu above the bound.
-/// The function is concave, with one variable for each limit in the working set; Newton's method finds each maximum.
-/// Limits join the working set when sizes break them.
+/// The central path of the dual (interior-point method; Boyd and Vandenberghe 2004, Convex Optimization, chapter 11). A
+/// point of the path maximises the lower bound plus mu x (sum of the logarithms of the multipliers), with processes
+/// mixed at temperature mu. The parameter mu falls to zero along the path. At each point every limit has multiplier x
+/// slack = mu, so the sizes keep the limits. The cost exceeds the bound by at most (limits + sum of the logarithms of
+/// the numbers of processes) x mu. The maximised function is concave and has one variable for each limit in the working
+/// set; Newton's method finds each maximum. A limit joins the working set when sizes break it.
 class DualPath {
  public:
-  /// Refers to the problem. The working set begins with these limits.
+  /// Keeps a reference to the problem. The working set begins with these limits.
   explicit DualPath(const SizedProblem& problem, std::vector<std::size_t> working_set = {});
 
-  /// Follows the path. start: multipliers [<= K] of the first limits of working_set(). Precondition: the smallest
-  /// allowed sizes keep every limit.
+  /// Follows the path. start: multipliers of the limits of working_set() in their order; the last ones may be missing.
+  /// Precondition: the lowest allowed sizes keep every limit.
   PathPoint follow(std::span<const ProcessRange> allowed, std::span<const double> start, const PathTarget& target);
 
-  const std::vector<std::size_t>& working_set() const { return working_set_; }  ///< [K] limits that took part so far
+  /// [working set] The limits that have joined the working set so far.
+  const std::vector<std::size_t>& working_set() const { return working_set_; }
 
  private:
   void add_limit(std::size_t limit);
@@ -69,17 +71,17 @@ class DualPath {
   PathPoint here() const;
 
   const SizedProblem& problem_;
-  double room_;  ///< room of every limit: 1 less a margin for rounding
+  double room_;  ///< room of every limit: 1 minus a margin for rounding
   std::span<const ProcessRange> allowed_;
   std::vector<std::size_t> working_set_;
-  std::vector<char> is_in_set_;          ///< [L]
-  std::vector<double> effects_;          ///< [K x N] effects on the limits of the working set
-  std::vector<double> multipliers_;      ///< [K]
-  std::vector<double> slack_;            ///< [K] slack of the limits at these multipliers
-  std::vector<double> direction_;        ///< [K] Newton's step over the multipliers
-  std::vector<BestResponse> responses_;  ///< [N]
-  std::vector<double> sizes_;            ///< [N]
-  std::vector<double> inner_prices_;     ///< [N] price of the inner part of a pair; 0 for other parts
+  std::vector<char> is_in_set_;      ///< [limits] 1 if a limit is in the working set
+  std::vector<double> effects_;      ///< [working set x parts] effects of the parts on the limits of the working set
+  std::vector<double> multipliers_;  ///< [working set] multipliers of the limits of the working set
+  std::vector<double> slack_;        ///< [working set] slack (room - use) of these limits at the multipliers
+  std::vector<double> direction_;    ///< [working set] Newton's step, relative to the multipliers
+  std::vector<BestResponse> responses_;  ///< [parts] best responses of the parts
+  std::vector<double> sizes_;            ///< [parts] sizes of the parts
+  std::vector<double> inner_prices_;     ///< [parts] price of the inner part of a pair; 0 for other parts
 };
 
 }  // namespace poesy

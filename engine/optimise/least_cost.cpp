@@ -17,7 +17,7 @@ AtBound bound_of(const Process& process, double tolerance) {
   return tolerance == process.hi ? AtBound::upper : AtBound::none;
 }
 
-/// Sets the members that follow from the tolerances.
+/// Sets the members of the result that follow from its tolerances.
 void complete(const AllocationProblem& problem, LeastCost& found) {
   for (std::size_t i = 0; i < problem.parts.size(); ++i) {
     found.bound.push_back(bound_of(problem.parts[i][found.best.process[i]], found.best.tolerance[i]));
@@ -32,8 +32,8 @@ std::optional<LeastCost> without_choice(const AllocationProblem& problem, const 
   return LeastCost{found->allocation, found->lower_bound, {}, found->multiplier, found->multiplier, {0, 0.0}, {}};
 }
 
-/// Why no sizes of a problem with pairs keep all limits, although some keep each limit alone. Without pairs the lowest
-/// bounds would keep all.
+/// The reason why a problem with pairs is infeasible although each limit alone can be kept. Without pairs this cannot
+/// happen, because the lowest bounds would keep all limits.
 Infeasible together(const AllocationProblem& problem) {
   POESY_EXPECTS(!problem.pairs.empty());
   std::vector<double> lowest;

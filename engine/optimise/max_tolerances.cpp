@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The tolerance of a part at a factor.
+/// The tolerance of a part at a common factor, clamped to its range.
 double tolerance_at(double factor, double proportion, const ToleranceRange& range) {
   if (proportion == kInfinity) return range.hi;
   return std::clamp(factor * proportion, range.lo, range.hi);
@@ -24,7 +24,8 @@ std::vector<double> tolerances_at(double factor, std::span<const double> proport
   return tolerance;
 }
 
-/// The use of a limit by these tolerances. A part without effect uses nothing, even if its tolerance is infinite.
+/// The use of a limit by these tolerances [parts]. A part without effect uses nothing, even if its tolerance is
+/// infinite.
 double need_of(const ToleranceLimits& limits, std::size_t l, std::span<const double> tolerance) {
   double sum = 0.0;
   for (std::size_t i = 0; i < tolerance.size(); ++i) {
@@ -33,7 +34,7 @@ double need_of(const ToleranceLimits& limits, std::size_t l, std::span<const dou
   return sum;
 }
 
-/// The limit that the tolerances break most; none if they keep all.
+/// The limit that the tolerances [parts] exceed most; none if they keep all limits.
 std::optional<Infeasible> find_infeasible(const ToleranceLimits& limits, std::span<const double> tolerance) {
   std::optional<Infeasible> worst;
   for (std::size_t l = 0; l < limits.count(); ++l) {
@@ -45,7 +46,7 @@ std::optional<Infeasible> find_infeasible(const ToleranceLimits& limits, std::sp
   return worst;
 }
 
-/// The factors at which a bound begins or ceases to hold, ascending.
+/// The factors at which the bound of some part begins or ceases to hold, ascending.
 std::vector<double> corners(std::span<const double> proportions, std::span<const ToleranceRange> ranges) {
   std::vector<double> factors{0.0};
   for (std::size_t i = 0; i < ranges.size(); ++i) {
@@ -57,11 +58,12 @@ std::vector<double> corners(std::span<const double> proportions, std::span<const
   return factors;
 }
 
-/// The factor at which a limit is used up, assuming the bounds that hold at `inside`.
+/// The common factor at which a limit is used up if the same parts are at a bound as at the factor `inside`.
 double factor_of(const ToleranceLimits& limits, std::size_t l, double inside, std::span<const double> proportions,
                  std::span<const ToleranceRange> ranges) {
-  double held = 0.0;   // use of parts at bounds
-  double grows = 0.0;  // use of other parts, over the size of the factor
+  double held = 0.0;  // sum over the parts at a bound of effect x size
+  // The sum over the other parts of effect x size at the factor 1. It is proportional to the size of the factor.
+  double grows = 0.0;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const double effect = limits.row(l)[i];
     if (effect == 0.0) continue;
@@ -109,7 +111,7 @@ std::variant<MaxTolerances, Infeasible> maximise_tolerances(const ToleranceLimit
     if (factor < found.factor || !found.limit) found = {{}, std::fmin(factor, to), l};
   }
   if (found.factor == kInfinity) found.limit.reset();
-  if (!keeps(found.factor)) found.factor = from;  // corners that differ only by rounding
+  if (!keeps(found.factor)) found.factor = from;  // rounding: two corners may be almost equal
   found.tolerance = tolerances_at(found.factor, proportions, ranges);
   return found;
 }

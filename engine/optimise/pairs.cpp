@@ -12,8 +12,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// The processes of both parts of a pair: each two that keep the inner part within the outer one, with bounds as tight
-/// as that allows, then each of the outer part without the inner one.
+/// The common processes of a pair. First come all combinations of an outer and an inner process in which the inner part
+/// fits in the outer one, with bounds as tight as this allows. Then comes each outer process with the inner part left
+/// out.
 std::vector<SizedProcess> processes_of_pair(const Within& pair, const std::vector<SizedProcess>& outer,
                                             const std::vector<SizedProcess>& inner) {
   std::vector<SizedProcess> both;
@@ -39,13 +40,13 @@ std::vector<SizedProcess> processes_of_pair(const Within& pair, const std::vecto
   return both;
 }
 
-/// How far limits let the outer part grow; infinite if no limit ends the growth.
+/// The largest growth of the outer part's size that the limits allow; infinite if no limit stops the growth.
 struct PairGrowth {
-  double alone = kInfinity;     ///< without the inner part
-  double together = kInfinity;  ///< with its share for the inner part
+  double alone = kInfinity;     ///< if only the outer part grows
+  double together = kInfinity;  ///< if the inner part grows with it in proportion to its share
 };
 
-/// The growth of a pair that may use limits [L] up to `most`.
+/// The growth of a pair that may use at most `most` of the room of each limit.
 PairGrowth pair_growth(const SizedProblem& problem, const Within& pair, std::span<const double> most) {
   PairGrowth growth;
   for (std::size_t l = 0; l < problem.limits; ++l) {
@@ -100,7 +101,7 @@ void fix_free_pairs(SizedProblem& problem, std::vector<std::size_t>& unbounded) 
 
 std::optional<std::size_t> tighten_pair(SizedProblem& problem, const Within& pair, std::span<const double> left) {
   auto& processes = problem.processes[pair.outer];
-  std::vector<double> most;  // the margins cover the rounding of both terms
+  std::vector<double> most;  // the margins below cover the rounding of both terms
   for (std::size_t l = 0; l < problem.limits; ++l) {
     most.push_back((least_use_of_pair(problem, pair, l) + left[l]) * (1.0 + 1e-9) + 4.0 * kEpsilon);
   }

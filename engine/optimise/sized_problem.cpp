@@ -37,14 +37,15 @@ std::vector<double> lowest_tolerances(const SizedProblem& problem) {
   return tolerance;
 }
 
-/// The least need of a limit as a problem with pairs has it.
+/// The least combined effect of all parts on limit l; also valid with pairs.
 double least_need(const ToleranceLimits& limits, const SizedProblem& problem, std::size_t l) {
   if (problem.pairs.empty()) return limits.need(l, lowest_tolerances(problem));
   const auto all = all_processes(problem);
   return limits.room[l] * least_use(problem, l, all, lowest(problem, all));
 }
 
-/// The limit that pairs with other parts at their lowest bounds break most; none if they keep each limit alone.
+/// The limit that is exceeded most if each pair uses it least and all other parts have their lowest bounds. None if
+/// each limit alone can be kept.
 std::optional<Infeasible> find_infeasible_with_pairs(const ToleranceLimits& limits, const SizedProblem& problem) {
   std::optional<Infeasible> worst;
   for (std::size_t l = 0; l < limits.count(); ++l) {
@@ -55,7 +56,7 @@ std::optional<Infeasible> find_infeasible_with_pairs(const ToleranceLimits& limi
   return worst;
 }
 
-/// The limit that the lowest bounds break most; none if they keep all.
+/// The limit that the lowest bounds exceed most; none if they keep all limits.
 std::optional<Infeasible> find_infeasible(const ToleranceLimits& limits, const SizedProblem& problem) {
   if (limits.count() == 0) return std::nullopt;
   if (!problem.pairs.empty()) return find_infeasible_with_pairs(limits, problem);
@@ -96,8 +97,8 @@ std::vector<std::size_t> fix_free_parts(SizedProblem& problem) {
   return unbounded;
 }
 
-/// Bounds each size by what the limits leave when all other parts are at their lowest sizes, plus a margin for
-/// rounding, so that no bound is too tight. Returns a limit that no process of a pair keeps; none otherwise.
+/// Bounds each size by the largest one that the limits allow if all other parts are at their lowest sizes. A margin for
+/// rounding is added, so that no bound is too tight. Returns a limit that every process of a pair breaks, or none.
 std::optional<std::size_t> tighten_bounds(SizedProblem& problem) {
   const auto all = all_processes(problem);
   const std::vector<double> lo = lowest(problem, all);
@@ -114,8 +115,8 @@ std::optional<std::size_t> tighten_bounds(SizedProblem& problem) {
   for (std::size_t i = 0; i < largest.size(); ++i) {
     if (is_in_pair(problem, i)) continue;
     auto& processes = problem.processes[i];
-    const double most =
-        largest[i] * (1.0 + 4.0 * kEpsilon);  // the margin covers the rounding of lo and of the difference
+    // The margin covers the rounding of lo and of the difference.
+    const double most = largest[i] * (1.0 + 4.0 * kEpsilon);
     if (most == kInfinity) continue;
     std::erase_if(processes, [&](const SizedProcess& process) { return process.lo > most; });
     for (SizedProcess& process : processes) process.hi = std::fmin(process.hi, most);
@@ -126,8 +127,8 @@ std::optional<std::size_t> tighten_bounds(SizedProblem& problem) {
   return std::nullopt;
 }
 
-/// Fixes the parts of limits that the lowest bounds use up to rounding. Returns the first limit for which that has an
-/// infinite cost; none otherwise.
+/// Fixes the parts of tight limits, whose room the lowest bounds use up to rounding. Returns the first limit whose
+/// fixed parts would have an infinite cost, or none.
 std::optional<std::size_t> fix_tight_limits(SizedProblem& problem) {
   auto all = all_processes(problem);
   const std::vector<double> lo = lowest(problem, all);

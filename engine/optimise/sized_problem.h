@@ -8,8 +8,8 @@
 
 #include "engine/optimise/least_cost.h"
 
-/// The problem of least cost in terms of sizes (T^2, or T in the worst case), in which limits are linear. The unit of
-/// each limit is its room.
+/// The least-cost problem in terms of sizes (T^2, or T in the worst case), in which limits are linear. Each limit is
+/// divided by its room, so its room is 1.
 namespace poesy {
 
 /// The process of the inner part of a pair (Within), in terms of sizes.
@@ -19,60 +19,63 @@ struct InnerProcess {
   double hi;          ///< largest size
   std::size_t index;  ///< position in AllocationProblem::parts
   std::size_t part;   ///< position of the inner part
-  double share;       ///< its size is at most share x size of the outer part
-  bool left_out;      ///< it costs nothing and has exactly that size
+  double share;       ///< the size of the inner part is at most share x size of the outer part
+  bool left_out;  ///< true if the inner part is left out: it costs nothing and its size is exactly share x size of the
+                  ///< outer part
 };
 
-/// The effects of the parts of a process on a limit.
+/// The effects on one limit of a part and of the inner part of its pair.
 struct Effects {
-  double own;    ///< >= 0
-  double inner;  ///< of the inner part of a pair; may be negative, but own + share x inner is not
+  double own;    ///< effect of the part, >= 0
+  double inner;  ///< effect of a pair's inner part; may be negative, but own + share x inner is >= 0
 };
 
-/// A process in terms of sizes. Both parts of a pair have a common process, which is that of the outer part.
+/// A process in terms of sizes. A pair has common processes for both parts, stored with the outer part.
 struct SizedProcess {
-  CostLaw cost;       ///< cost as a function of the tolerance
-  double lo;          ///< least size
-  double hi;          ///< largest size, finite: at most what the limits leave when all other parts are at their lowest
-  std::size_t index;  ///< position in AllocationProblem::parts
+  CostLaw cost;  ///< cost as a function of the tolerance
+  double lo;     ///< least size
+  double hi;  ///< largest size, finite after presolve: at most the size that the limits allow if all other parts are at
+              ///< their lowest sizes
+  std::size_t index;                       ///< position in AllocationProblem::parts
   std::optional<InnerProcess> inner = {};  ///< the inner part of a pair
 
-  /// Whether it has only one size.
+  /// Whether the process allows only one size.
   bool single() const { return lo == hi && (!inner || inner->left_out || inner->lo == inner->hi); }
   double fixed_cost() const;  ///< The part of the cost that does not depend on sizes.
-  /// The least use of a limit by the sizes that it allows.
+  /// The least use of a limit over the sizes that the process allows. effects: of its parts on this limit.
   double least_use(const Effects& effects) const;
 };
 
-/// The effects divided by the rooms, [L x N]. They do not depend on the choice of processes.
+/// [limits x parts] The effects divided by the rooms of the limits. They do not depend on the choice of processes.
 std::vector<double> effects_by_room(const AllocationProblem& problem);
 
-/// The share of a room that is left unused by sums over N parts, so that no order of additions breaks a limit.
+/// The share of a room that sums over N parts leave unused, so that no order of additions breaks a limit.
 double rounding_margin(std::size_t parts);
 
-/// sum of a_k b_k, accumulated in eight sums.
+/// The sum of a_k b_k, accumulated in eight partial sums.
 double dot(std::span<const double> a, std::span<const double> b);
 
 /// The whole problem in terms of sizes.
 struct SizedProblem {
-  Stacking stacking;                                 ///< how effects add up, which defines sizes
-  std::size_t limits;                                ///< L
-  std::span<const double> effects;                   ///< [L x N], effects_by_room()
-  std::vector<double> largest_effect;                ///< [N] largest magnitude of its effects on limits
-  std::vector<std::vector<SizedProcess>> processes;  ///< [N] processes of each part, ascending by lo
-  /// [L] 1 for limits that the lowest bounds use up to rounding; their parts are fixed at these bounds.
+  Stacking stacking;                   ///< how effects add up, which defines the size of a tolerance
+  std::size_t limits;                  ///< L, the number of limits
+  std::span<const double> effects;     ///< [limits x parts] effects divided by rooms, from effects_by_room()
+  std::vector<double> largest_effect;  ///< [parts] largest magnitude of the effects of each part on the limits
+  std::vector<std::vector<SizedProcess>> processes;  ///< [parts] processes of each part, ascending by lo
+  /// [limits] 1 for a tight limit: the lowest sizes of the parts use up its room, except for rounding. So the parts
+  /// that affect this limit are fixed at these sizes.
   std::vector<char> tight;
-  /// Pairs of parts. `processes` of the outer part are those of both; the inner part has one of size 0 without cost.
+  /// Pairs of parts. The outer part has the processes of both; the inner part has one process of size 0 without cost.
   std::span<const Within> pairs = {};
 
-  std::size_t parts() const { return processes.size(); }  ///< N
-  /// [N] effects on one limit.
+  std::size_t parts() const { return processes.size(); }  ///< N, the number of parts.
+  /// [parts] The effects of all parts on limit l.
   std::span<const double> row(std::size_t l) const { return effects.subspan(l * parts(), parts()); }
   /// The effects of a part, and of the inner part of its pair, on one limit.
   Effects effects_on(std::size_t l, std::size_t part) const;
 };
 
-/// The allowed processes of a part: [first, last) of its list, at least one.
+/// The allowed processes of a part: positions [first, last) in its list, at least one.
 struct ProcessRange {
   std::size_t first;  ///< position in SizedProblem::processes
   std::size_t last;   ///< one past the last position
@@ -80,21 +83,22 @@ struct ProcessRange {
   std::size_t size() const { return last - first; }  ///< The number of processes.
 };
 
-/// [N] all processes of each part.
+/// [parts] The range of all processes for each part.
 std::vector<ProcessRange> all_processes(const SizedProblem& problem);
 
-/// [N] the lowest size of each part among allowed processes; 0 for the parts of pairs, where each limit has its own.
+/// [parts] The lowest size of each part among its allowed processes. It is 0 for the parts of pairs, because the sizes
+/// with the least use differ from limit to limit.
 std::vector<double> lowest(const SizedProblem& problem, std::span<const ProcessRange> allowed);
 
-/// The least use of a limit by allowed processes. lo: lowest().
+/// The least use of limit l by the allowed processes. lo: from lowest().
 double least_use(const SizedProblem& problem, std::size_t l, std::span<const ProcessRange> allowed,
                  std::span<const double> lo);
 
-/// The problem with bounds as tight as limits and costs allow (presolve). Refers to effects.
+/// The problem with bounds as tight as limits and costs allow (presolve). The result keeps a reference to `effects`.
 std::variant<SizedProblem, Infeasible, Unbounded> sized_problem(const AllocationProblem& problem,
                                                                 std::span<const double> effects);
 
-/// The problem with one process of each part, chosen by position; none if their lowest bounds break a limit.
+/// The problem with one process for each part, chosen by position; none if the lowest bounds then break a limit.
 std::optional<SizedProblem> with_processes(const SizedProblem& problem, std::span<const std::size_t> choice);
 
 }  // namespace poesy

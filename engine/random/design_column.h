@@ -4,10 +4,10 @@
 
 namespace poesy {
 
-/// One column of uniforms of a sampling design: a coordinate of its points, in one of its randomisations.
+/// Selects a column of a sampling design: one coordinate of its points, in one randomisation.
 struct DesignColumn {
   std::size_t dimension = 0;  ///< coordinate of the points
-  std::size_t replicate = 0;  ///< number of the design's independent randomisation
+  std::size_t replicate = 0;  ///< number of the independent randomisation of the design
 };
 
 }  // namespace poesy

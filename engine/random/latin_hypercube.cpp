@@ -14,15 +14,15 @@ namespace {
 
 constexpr std::size_t kRounds = 8;
 
-/// With fewer bits, a network does not reach all permutations equally.
+/// The least number of bits of the Feistel network. With fewer bits, the permutations are not equally likely.
 constexpr unsigned kFewestBits = 10;
 
-/// A permutation of the strata 0 .. n - 1 that can be computed for each sample alone.
+/// A random permutation of the strata 0 .. n - 1. Each of its values can be computed alone, without storing the others.
 class Permutation {
  public:
   Permutation(const StreamAddress& address, std::uint64_t strata)
       : strata_(strata), high_bits_(bits_for(strata) / 2), low_bits_(bits_for(strata) - high_bits_) {
-    // The blocks after those of the samples.
+    // The keys come from the blocks of random bits after those that samples use.
     constexpr std::uint64_t kKeyBlock = LatinHypercube::kMostSamples / 4;
     for (std::size_t k = 0; k < kRounds; k += 4) {
       std::ranges::copy(random_block(address, kKeyBlock + k / 4), keys_.begin() + k);
@@ -41,7 +41,8 @@ class Permutation {
     return std::max(static_cast<unsigned>(std::bit_width(strata - 1)), kFewestBits);
   }
 
-  /// A random function: the finaliser of MurmurHash3 of a key and a half (Appleby 2011).
+  /// The round function of the network, the finaliser of MurmurHash3 (Appleby 2011). half: one half of the bits of a
+  /// number.
   static std::uint64_t hash(std::uint64_t key, std::uint64_t half) {
     std::uint64_t x = key + half * 0x9e3779b97f4a7c15;
     x = (x ^ x >> 33) * 0xff51afd7ed558ccd;
@@ -49,7 +50,7 @@ class Permutation {
     return x ^ x >> 33;
   }
 
-  /// A permutation of all numbers of high_bits_ + low_bits_ bits, for any hash function.
+  /// The Feistel network, which permutes all numbers of high_bits_ + low_bits_ bits.
   std::uint64_t shuffled(std::uint64_t number) const {
     const std::uint64_t high_mask = (std::uint64_t{1} << high_bits_) - 1;
     const std::uint64_t low_mask = (std::uint64_t{1} << low_bits_) - 1;

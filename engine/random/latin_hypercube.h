@@ -10,7 +10,7 @@ namespace poesy {
 
 /// A Latin hypercube of n samples (McKay, Beckman and Conover 1979). Each dimension has one sample in each of n equal
 /// strata, at a random position in it; strata of different dimensions are permuted independently. Each sample is
-/// uniform on the unit cube. The first samples alone are not a Latin hypercube, so n is part of the design.
+/// uniform on the unit cube. A part of the samples is not a Latin hypercube, so n must be known from the beginning.
 ///
 /// The permutation of a dimension is a Feistel network of eight rounds over the smallest power of two that is at least
 /// n and 2^10, applied until the result is below n (Black and Rogaway 2002). So any sample is a function of its
@@ -24,8 +24,8 @@ class LatinHypercube {
   /// Precondition: 0 < samples <= kMostSamples.
   LatinHypercube(std::uint64_t samples, std::uint64_t seed);
 
-  /// Fills uniforms[k] with the coordinate of sample first + k, strictly inside (0, 1). Precondition: these samples
-  /// exist.
+  /// Fills uniforms[k] with the coordinate of sample first + k, strictly inside (0, 1). Precondition: first + k is
+  /// below the number of samples.
   void fill(const DesignColumn& column, SampleIndex first, std::span<double> uniforms) const;
 
  private:

@@ -14,8 +14,8 @@ SobolSequence::SobolSequence(std::size_t dimensions)
 SobolSequence::~SobolSequence() = default;
 
 void SobolSequence::next(std::span<double> point) {
-  // Boost leaves out the origin. The coordinates of the points after it are k / 2^m with 2^m above the point's
-  // position: never 0 or 1, and exact in a double for the first 2^53 points.
+  // Boost leaves out the origin. The coordinates of point n are k / 2^m with 2^m > n. So they are never 0 or 1, and
+  // exact in a double for the first 2^53 points.
   for (double& coordinate : point) coordinate = static_cast<double>(generator_->sequence()) * 0x1p-64;
 }
 

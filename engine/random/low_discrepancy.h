@@ -15,7 +15,8 @@ class SobolSequence {
   SobolSequence(const SobolSequence&) = delete;
   SobolSequence& operator=(const SobolSequence&) = delete;
 
-  /// Writes the next point, [dimensions], or the next n points, row-major [n x dimensions]; strictly inside (0, 1).
+  /// Writes the next point [dimensions], or as many points [points x dimensions], row-major, as fit into the memory.
+  /// Coordinates are strictly inside (0, 1).
   void next(std::span<double> point);
 
  private:

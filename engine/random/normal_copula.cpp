@@ -53,11 +53,13 @@ NormalCopula::NormalCopula(std::span<const double> correlation)
 
 void NormalCopula::correlate(std::span<const std::span<double>> rows) const {
   POESY_EXPECTS(rows.size() == size_);
-  constexpr std::size_t kColumns = 128;  // number of columns of all rows, so that they fit the cache
+  // number of columns that are done together, so that a part of all rows fits the cache
+  constexpr std::size_t kColumns = 128;
   const std::size_t count = rows.front().size();
   for (std::size_t begin = 0; begin < count; begin += kColumns) {
     const std::size_t columns = std::min(kColumns, count - begin);
-    for (std::size_t i = size_; i-- > 0;) {  // from the last row on, because a row needs the unchanged rows before it
+    // from the last row to the first, because a row needs the unchanged rows before it
+    for (std::size_t i = size_; i-- > 0;) {
       scale(triangle_[i * size_ + i], rows[i].data() + begin, columns);
       for (std::size_t j = 0; j < i; ++j) {
         add_scaled(triangle_[i * size_ + j], rows[j].data() + begin, rows[i].data() + begin, columns);
@@ -81,7 +83,7 @@ ConditionalScores::ConditionalScores(const NormalCopula& copula, std::span<const
   const std::size_t s = shared.size();
   for (std::size_t d = 0; d < drawn.size(); ++d) {
     const double* const row = all.data() + (s + d) * size;
-    for (std::size_t j = s; j-- > 0;) {  // solves x L_ss = L_ds, from the last column on
+    for (std::size_t j = s; j-- > 0;) {  // solves x L_ss = L_ds, from the last column to the first
       double rest = row[j];
       for (std::size_t k = j + 1; k < s; ++k) rest -= slopes_[d * s + k] * all[k * size + j];
       slopes_[d * s + j] = rest / all[j * size + j];

@@ -11,7 +11,7 @@
 namespace poesy {
 namespace {
 
-/// c[0] + c[1] x + ... + c[n-1] x^(n-1)
+/// c[0] + c[1] x + ... + c[n-1] x^(n-1).
 template <std::size_t n>
 [[gnu::always_inline]] inline double power_series(const double (&c)[n], double x) {
   double sum = c[n - 1];
@@ -19,9 +19,9 @@ template <std::size_t n>
   return sum;
 }
 
-/// e^x for -700 < x <= 0, to its last digit but one: 2^n e^r with |r| <= log(2) / 2 and the Taylor series of e^r.
+/// e^x for -700 < x <= 0, almost to the last digit: 2^n e^r with |r| <= log(2) / 2 and the Taylor series of e^r.
 [[gnu::always_inline]] inline double exponential(double x) {
-  constexpr double kRound = 0x1.8p52;  // a sum with it has no fraction
+  constexpr double kRound = 0x1.8p52;  // adding it rounds to a whole number
   constexpr double kLog2High = 6.93147180369123816490e-01;
   constexpr double kLog2Low = 1.90821492927058770002e-10;
   constexpr double kInverse[] = {
@@ -30,12 +30,12 @@ template <std::size_t n>
   const double shifted = x * 1.44269504088896338700 + kRound;
   const double n = shifted - kRound;
   const double r = (x - n * kLog2High) - n * kLog2Low;
-  const std::uint64_t power = (std::bit_cast<std::uint64_t>(shifted) + 1023) << 52;  // the low bits of shifted are n
+  const std::uint64_t power = (std::bit_cast<std::uint64_t>(shifted) + 1023) << 52;  // the low bits of `shifted` are n
   return power_series(kInverse, r) * std::bit_cast<double>(power);
 }
 
-/// The share of a standard normal that is further than this from zero, on one side, 0 <= a <= 8.3. Mills' ratio times a
-/// + 4 is a polynomial in (a - 4) / (a + 4) to 5e-17 of its value: interpolation with 50 digits at Chebyshev's nodes.
+/// The share of a standard normal above a, for 0 <= a <= 8.3. It comes from Mills' ratio times (a + 4), which is a
+/// polynomial in (a - 4) / (a + 4) with a relative error of 5e-17, interpolated with 50 digits at Chebyshev nodes.
 [[gnu::always_inline]] inline double share_beyond(double a) {
   constexpr double kSeries[] = {0.75528513041575152,     -0.60789664197189219,    0.38713740074222225,
                                 -0.18652185795966197,    0.060396574890266341,    -0.0075401889661925407,

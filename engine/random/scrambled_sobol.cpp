@@ -11,17 +11,20 @@ namespace poesy {
 
 namespace {
 
-constexpr std::size_t kDigits = 32;     // digits of a point before it is scrambled; further ones are zero
+constexpr std::size_t kDigits = 32;     // binary digits of a point before it is scrambled; further digits are zero
 constexpr std::size_t kTreeDigits = 8;  // a tree of this many digits has 255 nodes, and a block of Philox 256 bits
 
 using TreeBits = std::array<std::uint64_t, 4>;
 
-/// The random bits of the nodes below these digits. A leading 1 distinguishes 0 from 00.
+/// The random bits of the tree for the eight digits that follow the first `count` digits of a coordinate. digits: these
+/// first digits. The leading 1 in the number of the random block distinguishes the digits 0 from 00.
 TreeBits tree_below(const StreamAddress& address, std::uint64_t digits, std::size_t count) {
   return random_block(address, std::uint64_t{1} << count | digits);
 }
 
-/// The flips of eight digits. Node 1 is the root; the children of node n are 2 n and 2 n + 1.
+/// The bits that say which of eight digits of a coordinate are flipped. Whether a digit is flipped depends on all
+/// digits before it: they lead from the root of a binary tree to a node, whose random bit is taken. Node 1 is the root;
+/// the children of node n are 2 n (after the digit 0) and 2 n + 1 (after the digit 1).
 std::uint32_t flips_along(const TreeBits& tree, std::uint32_t digits) {
   const std::uint32_t path = std::uint32_t{1} << kTreeDigits | digits;
   std::uint32_t flips = 0;
@@ -32,7 +35,7 @@ std::uint32_t flips_along(const TreeBits& tree, std::uint32_t digits) {
   return flips;
 }
 
-/// The 32 scrambled digits, and 32 random ones below them. root: the tree of the first digits.
+/// The 32 scrambled digits of a coordinate, followed by 32 random digits. root: the tree of the first eight digits.
 std::uint64_t scrambled(const StreamAddress& address, const TreeBits& root, std::uint32_t digits) {
   constexpr std::uint32_t kTreeMask = (std::uint32_t{1} << kTreeDigits) - 1;
   std::uint32_t flips = flips_along(root, digits >> (kDigits - kTreeDigits));
@@ -50,8 +53,9 @@ ScrambledSobol::ScrambledSobol(std::size_t dimensions, std::uint64_t seed)
     : seed_(seed), directions_(dimensions * kDigits) {
   boost::random::sobol sequence(dimensions);
   for (std::size_t digit = 0; digit < kDigits; ++digit) {
-    // Point n is the sum of the direction numbers at the ones of its Gray code, n ^ n / 2. Boost leaves out the origin,
-    // so the point after n - 1 others is n.
+    // Point n is the exclusive or of the direction numbers at the ones in its Gray code, n ^ n / 2. This n has a Gray
+    // code with a single one, so the point is a direction number. Boost leaves out the origin, so point n is the
+    // one after n - 1 others.
     const std::uint64_t point = (std::uint64_t{2} << digit) - 1;
     sequence.seed(point - 1);
     for (std::size_t d = 0; d < dimensions; ++d) {

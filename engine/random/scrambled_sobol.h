@@ -12,11 +12,11 @@ namespace poesy {
 
 /// Sobol' points, including the origin, with Owen's nested uniform scrambling (Owen 1995, in: Monte Carlo and
 /// Quasi-Monte Carlo Methods, 299-317). Each point is uniform on the unit cube; the first 2^m points of a replicate are
-/// a digital net, as the points of SobolSequence are. Replicates are independent, so their estimates show the
-/// uncertainty; the points of one replicate depend on each other.
+/// a digital net, as the points of SobolSequence are. The points of one replicate depend on each other, but replicates
+/// are independent, so the scatter of their estimates shows the uncertainty.
 ///
 /// Digit k of a coordinate is flipped by a random bit that depends on the k digits before it. A block of Philox4x64-10,
-/// with purpose scrambled_sobol, factor = dimension and pose = replicate, has the bits of all nodes of a tree of eight
+/// with purpose scrambled_sobol, factor = dimension and pose = replicate, has these bits for a binary tree of eight
 /// digits. The digits after the 32nd are random. So any coordinate of any point is a function of its address, and a
 /// larger set of points begins with the smaller one.
 class ScrambledSobol {
@@ -28,13 +28,13 @@ class ScrambledSobol {
   ScrambledSobol(std::size_t dimensions, std::uint64_t seed);
 
   /// Fills uniforms[k] with the coordinate of point first + k, strictly inside (0, 1), exact to 2^-53. Preconditions:
-  /// column.dimension < dimensions; these points exist.
+  /// column.dimension < dimensions; the numbers of the points are below kMostPoints.
   void fill(const DesignColumn& column, SampleIndex first, std::span<double> uniforms) const;
 
  private:
   std::uint64_t seed_;
-  std::vector<std::uint32_t>
-      directions_;  ///< [dimensions x 32] direction numbers, whose first digit is the highest bit
+  /// [dimensions x 32] direction numbers, whose first digit is the highest bit.
+  std::vector<std::uint32_t> directions_;
 };
 
 }  // namespace poesy

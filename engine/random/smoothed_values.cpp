@@ -14,7 +14,7 @@ namespace {
 /// The distance of each value from its k-th nearest other value. sorted: ascending.
 std::vector<double> distances(std::span<const double> sorted, std::size_t k) {
   std::vector<double> found;
-  std::size_t low = 0;  // sorted[low .. low + k] are the value and its k nearest
+  std::size_t low = 0;  // sorted[low .. low + k] are the value and the k values nearest to it
   for (const double value : sorted) {
     while (low + k + 1 < sorted.size() && sorted[low + k + 1] - value < value - sorted[low]) ++low;
     found.push_back(std::max(value - sorted[low], sorted[low + k] - value));
@@ -22,7 +22,7 @@ std::vector<double> distances(std::span<const double> sorted, std::size_t k) {
   return found;
 }
 
-/// The same for k = ceil(sqrt(n)), or for the smallest larger k with which not all distances are 0.
+/// distances() for k = ceil(sqrt(n)) of n values, or for the next larger k for which not all distances are 0.
 std::vector<double> neighbour_distances(std::span<const double> sorted) {
   auto k = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(sorted.size()))));
   for (k = std::min(k, sorted.size() - 1);; ++k) {
@@ -31,7 +31,7 @@ std::vector<double> neighbour_distances(std::span<const double> sorted) {
   }
 }
 
-/// The sum of the squares of values - c.
+/// The sum of (value - c)^2 over the values.
 double squares_about(std::span<const double> values, double c) {
   double sum = 0.0;
   for (const double value : values) sum += (value - c) * (value - c);
@@ -60,10 +60,11 @@ SmoothedValues::SmoothedValues(std::vector<double> values) : values_(std::move(v
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return values_[k]; });
   std::vector<double> sorted;
   for (const std::size_t k : order) sorted.push_back(values_[k]);
-  mean_ = mean_about(sorted, mean_about(sorted, 0.0));  // twice, for accuracy with values far from zero
+  // Computed twice, so that the mean of values far from zero is exact enough.
+  mean_ = mean_about(sorted, mean_about(sorted, 0.0));
   const double variance = squares_about(sorted, mean_) / static_cast<double>(n - 1);
   const std::vector<double> distance = neighbour_distances(sorted);
-  // The mean of (scale distance)^2 / 3 is variance / n.
+  // The scale for which the mean of (scale distance)^2 / 3 is variance / n.
   const double scale = std::numbers::sqrt3 * std::sqrt(variance / squares_about(distance, 0.0));
   for (std::size_t k = 0; k < n; ++k) half_widths_[order[k]] = scale * distance[k];
   add_pieces();
@@ -79,7 +80,7 @@ void SmoothedValues::add_pieces() {
   std::ranges::sort(spreads, {}, [](const Spread& spread) { return std::pair(spread.low, spread.high); });
   std::ranges::sort(ends);
   ends.erase(std::ranges::unique(ends).begin(), ends.end());
-  double below = 0.0;  // number of values, each counted by the part of its range
+  double below = 0.0;  // number of values below the knot; a value counts by the part of its range that is below
   const auto add_knot = [&](double x) {
     knots_.push_back(x);
     shares_.push_back(below);

@@ -6,14 +6,16 @@
 
 namespace poesy {
 
-/// The distribution of a further part after n parts were measured. Each value is equally likely, and is smoothed evenly
-/// over v +- w, with a half-width w of its own. Mean and standard deviation (with n - 1) are those of the parts: the
-/// values alone have the variance (n - 1)/n s^2, and smoothing adds the missing s^2/n.
+/// The distribution of the error of a further part after n parts were measured. It is a mixture with one component for
+/// each measured value v: a uniform on v +- w, with a half-width w of its own. Mean and standard deviation s (with n -
+/// 1) are those of the measured values: the values alone have the variance (n - 1)/n s^2, and smoothing adds the
+/// missing s^2/n.
 ///
 /// w is in proportion to the distance of the value from its k-th nearest other value, k = ceil(sqrt(n)) (Breiman,
-/// Meisel and Purcell 1977, Technometrics 19, 135-144). So values close together hardly spread, equal ones not at all,
-/// and one far from all others spreads most. With 40 normal parts, draws reach 0.7 s beyond the smallest and largest;
-/// 0.8/n of them are there on either side (for a further part the probability is 1/(n + 1), whatever its distribution).
+/// Meisel and Purcell 1977, Technometrics 19, 135-144). So w is small where values are close together, 0 where they are
+/// equal, and largest for a value far from all others. With 40 values from a normal, draws reach 0.7 s beyond the
+/// smallest and the largest value. On either side, a share of 0.8/n of all draws is beyond; for a real further part the
+/// probability is 1/(n + 1), for any distribution.
 class SmoothedValues {
  public:
   /// values: [n], in any order. Precondition: n > 1, all are finite, not all are equal.
@@ -21,22 +23,21 @@ class SmoothedValues {
 
   std::span<const double> values() const { return values_; }            ///< [n] The values in their original order.
   std::span<const double> half_widths() const { return half_widths_; }  ///< [n] The half-width w of each value.
-  double mean() const { return mean_; }                                 ///< The mean of values and draws.
-  double standard_deviation() const {
-    return deviation_;
-  }  ///< The standard deviation of draws; to rounding, that of the values.
-  double least() const { return knots_.front(); }    ///< The lower bound of the draws.
-  double greatest() const { return knots_.back(); }  ///< The upper bound of the draws.
+  double mean() const { return mean_; }                                 ///< The mean of the values, and also of draws.
+  /// The standard deviation of draws; to rounding, that of the values.
+  double standard_deviation() const { return deviation_; }
+  double least() const { return knots_.front(); }    ///< The smallest possible draw.
+  double greatest() const { return knots_.back(); }  ///< The largest possible draw.
 
-  /// The ends of the pieces of constant density, ascending. Two are equal if a share of all draws has exactly that
-  /// value.
+  /// The ends of the pieces of constant density, ascending. Two knots are equal if a share of all draws has exactly
+  /// this value.
   std::span<const double> knots() const { return knots_; }
   /// The share of all draws below each knot, ascending from 0 to 1.
   std::span<const double> shares() const { return shares_; }
 
   /// The value below which a share u of all draws lies; increasing. Precondition: 0 < u < 1.
   double quantile(double u) const;
-  /// The share of all draws below x, plus half of those equal to x.
+  /// The share of all draws below x, plus half of the share equal to x.
   double share(double x) const;
 
   /// Whether the values are the same, in the same order.

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t kBlockWords = 4;
 
-/// Counters (c0, c1, block, 0) and key of Philox4x64-10; the block varies.
+/// The counter (c0, c1, block, 0) and the key of Philox4x64-10, for a run of consecutive blocks.
 struct PhiloxRun {
   std::uint64_t c0;                  ///< first word of the counter
   std::uint64_t c1;                  ///< second word of the counter
@@ -27,12 +27,12 @@ struct PhiloxRun {
 
 #if defined(__x86_64__) && defined(__GNUC__)
 
-// Only AVX-512 has enough lanes to beat one multiplication of 64 bits a cycle, because a product of 64 bits by 64 takes
-// four of 32 bits. Compilers do not find this form in plain loops.
+// Philox multiplies 64 bits by 64 bits. Vectors multiply only 32 bits by 32 bits, four times for one such product, so
+// only AVX-512 has enough lanes to be faster than scalar code. Compilers do not vectorise this by themselves.
 #define POESY_AVX512 __attribute__((target("avx512f")))
 
 constexpr std::size_t kLanes = 8;
-constexpr std::size_t kVectors = 2;  ///< independent of each other, so that one works while the other waits
+constexpr std::size_t kVectors = 2;  ///< independent vectors, so that the processor works on one while the other waits
 constexpr std::size_t kGroup = kLanes * kVectors;
 constexpr int kRounds = 10;
 constexpr std::array<std::uint64_t, 2> kMultipliers{0xD2E7470EE14C6C93, 0xCA5A826395121157};
@@ -48,7 +48,8 @@ struct Blocks {
 
 POESY_AVX512 inline __m512i everywhere(std::uint64_t value) { return _mm512_set1_epi64(static_cast<long long>(value)); }
 
-/// Multiplies by halves of 32 bits. No sum exceeds 64 bits: (2^32 - 1)^2 + 2 (2^32 - 1) = 2^64 - 1.
+/// The product of 64 by 64 bits in each lane, from products of 32-bit halves. No sum overflows 64 bits, because (2^32 -
+/// 1)^2 + 2 (2^32 - 1) = 2^64 - 1.
 POESY_AVX512 inline Product multiply(__m512i a, std::uint64_t multiplier) {
   const __m512i b_low = everywhere(multiplier & 0xffffffff);
   const __m512i b_high = everywhere(multiplier >> 32);
@@ -72,13 +73,14 @@ POESY_AVX512 inline Blocks next_round(const Blocks& blocks, const std::array<std
           exclusive_or(first.high, blocks.c3, everywhere(key[1])), first.low};
 }
 
-/// Lane n of the four vectors becomes words 4 n to 4 n + 3.
+/// Writes lane n of the four vectors to words 4 n to 4 n + 3.
 POESY_AVX512 inline void store(const Blocks& blocks, std::uint64_t* words) {
-  const __m512i even_01 = _mm512_unpacklo_epi64(blocks.c0, blocks.c1);  // of lanes 0, 2, 4, 6
+  const __m512i even_01 = _mm512_unpacklo_epi64(blocks.c0, blocks.c1);  // words of lanes 0, 2, 4, 6
   const __m512i odd_01 = _mm512_unpackhi_epi64(blocks.c0, blocks.c1);
   const __m512i even_23 = _mm512_unpacklo_epi64(blocks.c2, blocks.c3);
   const __m512i odd_23 = _mm512_unpackhi_epi64(blocks.c2, blocks.c3);
-  // Pairs of words, of two lanes each: 0x44 takes lanes 0 and 2 of the evens or 1 and 3 of the odds, 0xee those after.
+  // Each result has the words of two lanes: 0x44 takes lanes 0 and 2 of the even ones or 1 and 3 of the odd ones, 0xee
+  // takes lanes 4 and 6 or 5 and 7.
   const __m512i even_low = _mm512_shuffle_i64x2(even_01, even_23, 0x44);
   const __m512i odd_low = _mm512_shuffle_i64x2(odd_01, odd_23, 0x44);
   const __m512i even_high = _mm512_shuffle_i64x2(even_01, even_23, 0xee);
@@ -104,8 +106,8 @@ POESY_AVX512 void write_group(const PhiloxRun& run, std::uint64_t first, std::ui
   for (std::size_t v = 0; v < kVectors; ++v) store(blocks[v], words + 4 * v * kLanes);
 }
 
-/// Writes the words of blocks first, first + 1, ..., four each, for as many of `count` blocks as fill whole groups of
-/// vectors. Writes none on a machine without fast vectors. Returns the number of blocks written.
+/// Writes the four words of each block from `first` on. Of `count` blocks it writes as many as fill whole groups of
+/// vectors, and none on a computer without AVX-512. Returns the number of blocks written.
 std::size_t philox_by_vectors(const PhiloxRun& run, std::uint64_t first, std::size_t count, std::uint64_t* words) {
   static const bool available = __builtin_cpu_supports("avx512f") != 0;
   if (!available) return 0;
@@ -128,10 +130,11 @@ r123::Philox4x64::ctr_type block_at(const StreamAddress& address, std::uint64_t 
   return r123::Philox4x64{}(counter, key);
 }
 
-/// The definition of uniform_from_bits().
+/// The value of uniform_from_bits(), in a form that is inlined into loops.
 [[gnu::always_inline]] inline double middle_of_cell(std::uint64_t bits) {
-  // The cell, an integer below 2^53, in two parts of 32 and 21 bits. Each becomes the low bits of a power of two that
-  // has room for it. Unlike a conversion, this is vectorised on every instruction set, and it is also exact.
+  // Converts the cell, an integer below 2^53, to a double in two parts of 32 and 21 bits. Each part becomes the low
+  // bits of a double with a large power of two, which is then subtracted. Unlike a conversion instruction, this is
+  // vectorised on every instruction set; it is also exact.
   const std::uint64_t cell = bits >> 11;
   const std::uint64_t low = cell & 0xffffffff;
   const std::uint64_t high = cell >> 32;
@@ -158,7 +161,8 @@ std::array<std::uint64_t, 4> random_block(const StreamAddress& address, std::uin
 }
 
 void fill_uniforms(const StreamAddress& address, SampleIndex first, std::span<double> uniforms) {
-  // Whole blocks; the first may begin before the first sample, and the last may end after the last one.
+  // Computes whole blocks. The first block may begin before the first sample, and the last may end after the last
+  // sample.
   constexpr std::size_t kWords = 512;
   const PhiloxRun run{
       address.factor.value, address.pose.value, {address.seed, static_cast<std::uint64_t>(address.purpose)}};

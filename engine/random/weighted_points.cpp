@@ -9,8 +9,8 @@ namespace {
 using Gauss = boost::math::quadrature::gauss<double, 10>;
 static_assert(kExactDegree == 2 * 10 - 1);
 
-/// Adds a piece [low, high] with this share of all errors. slope: of the density, in units of its mean for half a
-/// piece; the density stays positive.
+/// Adds to `found` the weighted points of a piece [low, high] of the error's range that has this share of all errors.
+/// slope: how much the density grows over half of the piece, relative to its mean; between -1 and 1.
 void add_piece(double low, double high, double share, double slope, WeightedPoints& found) {
   const double middle = 0.5 * (low + high);
   const double half = 0.5 * (high - low);
@@ -18,7 +18,7 @@ void add_piece(double low, double high, double share, double slope, WeightedPoin
     found.points.push_back(middle + half * place);
     found.weights.push_back(0.5 * weight * share * (1.0 + slope * place));
   };
-  for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {  // Boost lists the positive ones
+  for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {  // Boost lists only the positive abscissas
     add(-Gauss::abscissa()[k], Gauss::weights()[k]);
     add(Gauss::abscissa()[k], Gauss::weights()[k]);
   }

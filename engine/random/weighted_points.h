@@ -12,13 +12,13 @@ inline constexpr std::size_t kExactDegree = 19;
 
 /// Points that represent a distribution: sum of weights[k] f(points[k]) is the mean of f.
 struct WeightedPoints {
-  std::vector<double> points;   ///< [n] in the unit of the error
-  std::vector<double> weights;  ///< [n] positive; sum to 1
+  std::vector<double> points;   ///< [points] points, in the unit of the error
+  std::vector<double> weights;  ///< [points] weights, positive, with the sum 1
 };
 
 /// Gauss-Legendre points, ten in each piece of the range with constant or linear density: one piece for the uniform,
-/// two for the triangular, and those of SmoothedValues, which may have zero length. Exact for polynomials up to
-/// kExactDegree. Throws std::logic_error for another shape.
+/// two for the triangular, and those of SmoothedValues, which may have zero length. Means of polynomials up to
+/// kExactDegree are exact. Throws std::logic_error for other shapes.
 WeightedPoints weighted_points(const Distribution& distribution);
 
 }  // namespace poesy

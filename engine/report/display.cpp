@@ -17,7 +17,7 @@ Cell cell(std::string text, double value) {
   return {std::move(text), std::isfinite(value) ? std::optional(value) : std::nullopt};
 }
 
-/// A number with its unit: "4.25 mm"; the number alone if there is no unit.
+/// A number with its unit: "4.25 mm"; the number alone if the quantity has no unit.
 std::string with_unit_text(const std::string& number, const NamedUnit& named) {
   const std::string unit = unit_text(named);
   return unit.empty() ? number : number + " " + unit;
@@ -113,8 +113,8 @@ std::string response_text(const NamedUnit& response, double si) {
 }
 
 std::string coordinates_text(const StoredResult& result, std::size_t pose) {
-  constexpr double kRounding = 1e-12;          // mm or deg; the rounding of a curve that returns to zero
-  if (pose >= result.poses.size()) return {};  // a file may name a pose that does not exist
+  constexpr double kRounding = 1e-12;  // mm or deg; a curve that returns to zero may miss it by this rounding error
+  if (pose >= result.poses.size()) return {};  // because a result file may name a pose that does not exist
   std::string text = result.time.empty() ? std::string() : fmt::format("t {} s", number_text(result.time[pose], 4));
   for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
     const NamedUnit& named = result.pose_coordinates[c];

@@ -12,87 +12,92 @@
 #include "engine/result/result_file.h"
 #include "engine/schema/settings.h"
 
-/// How values are shown. All tables make their columns and cells with these functions, and settings of a study are
-/// converted to text for people.
+/// Functions that show values to people. All tables make their columns and cells with them. They also convert the
+/// settings of a study to readable text.
 namespace poesy {
 
-/// The position of a response in the result. Precondition: the result has it.
+/// The index of a response in the result. Precondition: the result has the response.
 std::size_t response_named(const StoredResult& result, std::string_view name);
 
-std::string count_text(std::uint64_t count);  ///< "17 380 000".
-std::string counted(std::uint64_t count, std::string_view one,
-                    std::string_view many);             ///< A number with a noun: "1 pose", "3 poses".
+std::string count_text(std::uint64_t count);  ///< A count with its digits in groups of three: "17 380 000".
+/// A number with a noun: "1 pose", "3 poses".
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 std::string number_text(double value, int digits = 4);  ///< A number to this many significant digits; "-" for NaN.
-/// A share in percent, to three digits; above 90 %, to three digits of its difference from 100 %: "1.25", "99.73"; "-"
-/// for NaN.
+/// A share in percent, without the sign: "1.25", "99.73"; "-" for NaN. Three digits are shown: of the share, or, above
+/// 90 %, of its difference from 100 %.
 std::string percent_number(double share);
-std::string percent_text(double share);         ///< The same with a percent sign, "99.73 %".
-std::string unit_text(const NamedUnit& named);  ///< The unit that people read, "mm"; empty for a pure number.
+/// A share in percent, as percent_number(), with the sign: "99.73 %"; "-" for NaN.
+std::string percent_text(double share);
+/// The unit in which results show this quantity, "mm"; empty for a number without unit.
+std::string unit_text(const NamedUnit& named);
 
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things);  ///< The names of the things, in order.
 
-/// A list of names that is cut after `most`: "a, b, c and 3 more".
+/// A list of names that is cut after `most` names: "a, b, c and 3 more".
 std::string some_names(const std::vector<std::string>& names, std::size_t most = 5);
 
-/// Pairs of positions of names that two lists have in common, in the order of the first.
+/// Pairs of indices: for each name that two lists have in common, its index in the first list and its index in the
+/// second list. The pairs are in the order of the first list.
 using Common = std::vector<std::pair<std::size_t, std::size_t>>;
 
-/// The names that both lists have in common.
+/// Finds the names that both lists have.
 Common common(const std::vector<std::string>& a, const std::vector<std::string>& b);
 
 /// The names in `these` that are not in `others`.
 std::vector<std::string> only_in(const std::vector<std::string>& these, const std::vector<std::string>& others);
 
-/// The metric that weighs angles against lengths: "platform, by displacement of 3 points". Empty if there is none.
+/// The metric that weighs angles against lengths, in words: "platform, by displacement of 3 points". Empty if the
+/// result has none.
 std::string metric_text(const StoredResult& result);
 
-/// A value of a response, SI, as text in the unit that people read: "0.05 mm".
+/// A value of a response (SI) as text in the unit that results show: "0.05 mm".
 std::string response_text(const NamedUnit& response, double si);
 
-/// The coordinates of a pose in the units shown, to three digits: "z -190 mm, beta 20 deg, gamma -30 deg"; on a
-/// trajectory the time comes first, "t 1.18 s, ...". Empty for a pose that the result does not have.
+/// The coordinates of a pose in the units that results show, to three digits: "z -190 mm, beta 20 deg, gamma -30 deg".
+/// On a trajectory the time comes first: "t 1.18 s, ...". Empty for a pose that the result does not have.
 std::string coordinates_text(const StoredResult& result, std::size_t pose);
-std::string place_text(const StoredResult& result,
-                       std::size_t pose);  ///< A pose with its coordinates: "pose 14 (z -190 mm)".
+/// A pose with its coordinates: "pose 14 (z -190 mm)".
+std::string place_text(const StoredResult& result, std::size_t pose);
 
-/// A column of words. dispensable, here and below: see Column::dispensable.
+/// A column of words. dispensable: see Column::dispensable, also in the functions below.
 Column text_column(std::string name, std::string heading, int dispensable = 0);
-/// A column of numbers with one unit, or without.
+/// A column of numbers that have one unit, or none.
 Column number_column(std::string name, std::string heading, std::string_view unit = "", int dispensable = 0);
 Column percent_column(std::string name, std::string heading, int dispensable = 0);  ///< A column of shares, in percent.
 
-/// A column with its cells, which are computed from the position of a thing.
+/// A column and a function that makes its cells.
 struct FilledColumn {
-  Column column;                          ///< the column
-  std::function<Cell(std::size_t)> cell;  ///< the cell of the thing at this position
+  Column column;                          ///< heading, unit and kind of the column
+  std::function<Cell(std::size_t)> cell;  ///< makes the cell of the thing with this index
 };
 
-/// Adds these columns to a table, and a row for each of these positions.
+/// Adds these columns to a table, and a row for each of these indices.
 void fill(Table& table, const std::vector<std::size_t>& positions, const std::vector<FilledColumn>& columns);
 
-/// A column of the names of things. word: its heading. Refers to the things, as unit_column() does.
+/// A column with the names of things. word: heading of the column. Keeps a reference to the things.
 FilledColumn name_column(const std::vector<NamedUnit>& things, const std::string& word);
-FilledColumn unit_column(const std::vector<NamedUnit>& things);  ///< A column of the units that people read.
+/// A column with the units in which results show things. Keeps a reference to the things.
+FilledColumn unit_column(const std::vector<NamedUnit>& things);
 
-std::vector<std::size_t> positions(std::size_t count);  ///< The positions 0, 1, ..., count - 1.
+std::vector<std::size_t> positions(std::size_t count);  ///< The indices 0, 1, ..., count - 1.
 
-Cell text_cell(std::string_view text);           ///< A word; "-" for an empty text.
-Cell number_cell(double value, int digits = 4);  ///< A number to this many significant digits.
-/// A value, SI, in the unit that people read for the named thing.
+Cell text_cell(std::string_view text);           ///< A cell with a word; "-" for an empty text.
+Cell number_cell(double value, int digits = 4);  ///< A cell with a number to this many significant digits.
+/// A cell with a value (SI) of the named quantity, in the unit that results show.
 Cell value_cell(double si, const NamedUnit& named, int digits = 4);
-Cell count_cell(std::uint64_t count);  ///< A whole number with all its digits.
-Cell percent_cell(double share);       ///< A share for a percent_column().
-/// An index, or an end of its interval, shown as index * scale. Below `rounding` (stats/indices.h) it is shown as 0, or
-/// as kTooSmall without a number if the error is too small to tell.
+Cell count_cell(std::uint64_t count);  ///< A cell with a whole number, with all its digits.
+Cell percent_cell(double share);       ///< A cell with a share, for a percent_column().
+/// A cell with a sensitivity index or an end of its interval, which is shown as index * scale. A value below `rounding`
+/// (stats/indices.h) is shown as 0, or as kTooSmall without a number if the error is too small to tell.
 Cell index_cell(double index, double scale, double rounding);
 
-inline constexpr std::string_view kTooSmall =
-    "rounding";  ///< The text for an index that cannot be distinguished from rounding.
+/// The text for an index that cannot be distinguished from rounding.
+inline constexpr std::string_view kTooSmall = "rounding";
 
-/// A value of a study_setting() for people: without quotes and braces, quantities in mm and deg.
+/// The value of a study_setting() for people: without quotes and braces, quantities in mm and deg.
 std::string readable_setting(std::string_view value);
 
-/// The value of a key of a section, for people.
+/// The value of a key of a section in a resolved study, for people.
 std::string readable_setting(std::string_view study_text, std::string_view section, std::string_view key);
 
 }  // namespace poesy

@@ -11,9 +11,9 @@
 namespace poesy {
 namespace {
 
-constexpr double kMillimetres = 1e3;  // in a metre
+constexpr double kMillimetres = 1e3;  // millimetres in a metre
 constexpr int kDigits = 6;
-constexpr double kNothing = 5e-7;  // smaller numbers (mm) are shown as 0
+constexpr double kNothing = 5e-7;  // mm; smaller numbers are shown as 0
 
 Cell number(double value) { return {number_text(std::abs(value) < kNothing ? 0.0 : value, kDigits), value}; }
 
@@ -30,7 +30,7 @@ std::string frame_name(const Sketch& sketch, std::size_t limb, std::size_t frame
   return joint_words(sketch, limb, joint);
 }
 
-/// The first cells of a row, before the numbers.
+/// The cells of a row that precede its numbers.
 std::vector<Cell> begin_row(std::size_t pose, std::size_t limb, const char* what, std::size_t number,
                             const std::string& name) {
   return {count_cell(pose), count_cell(limb + 1), text_cell(what), count_cell(number), text_cell(name)};

@@ -13,17 +13,17 @@
 namespace poesy {
 namespace {
 
-constexpr double kHead = 26.0;  // pixels for a title of one line
+constexpr double kHead = 26.0;  // pixels above the views, for a title of one line
 constexpr double kTitleLine = 18.0;
-constexpr std::size_t kTitleWidth = 100;  // characters in a line
-constexpr double kLegend = 44.0;          // pixels below the views
+constexpr std::size_t kTitleWidth = 100;  // characters in a line of the title
+constexpr double kLegend = 44.0;          // pixels below the views, for the legend
 constexpr std::string_view kInk = "color=\"#1d222b\"";
 
-/// A direction of view.
+/// A direction from which the mechanism is seen; see SketchView.
 struct Direction {
   std::string name;
-  double yaw;    ///< deg
-  double pitch;  ///< deg
+  double yaw;    ///< angle about the base's z axis, deg
+  double pitch;  ///< angle at which the reader looks down, deg
 };
 
 std::array<Direction, 4> directions(bool z_is_down) {
@@ -34,7 +34,7 @@ std::array<Direction, 4> directions(bool z_is_down) {
            {"in space", kSketchYaw, kSketchPitch}}};
 }
 
-/// The legend with a scale bar. scale: pixels per metre.
+/// The legend of the picture, with a scale bar. scale: pixels per metre.
 std::string legend(Pixel at, double scale, bool has_features) {
   const double length = rounded_down(kSketchWidth / 5 / scale);
   std::string text = svg_line({at.x, at.y}, {at.x + scale * length, at.y}, "stroke=\"#1d222b\" stroke-width=\"2\"");

@@ -23,7 +23,7 @@ std::string curve_text(const NamedCurve& curve, const ModelDescription& model) {
                      curve.name, curve.description, curve.start, curve.end, chart.name, origin);
 }
 
-/// The responses, with the metric if there is one, and whether it is the default.
+/// The list of a model's responses, with the metric if there is one. usual: true if this metric is the default.
 std::string responses_text(const ModelDescription& model, bool usual) {
   std::string text = "\nresponses";
   if (!model.metric.empty()) text += fmt::format(" by [solver] metric = \"{}\"", model.metric);
@@ -34,7 +34,7 @@ std::string responses_text(const ModelDescription& model, bool usual) {
   return text;
 }
 
-/// The joints and the mobility of a mechanism from a file.
+/// The joints and the mobility of a mechanism from a file; empty for other mechanisms.
 std::string mechanism_text(const CatalogEntry& entry) {
   const ModelDescription& model = entry.description;
   if (model.structure.empty()) return {};

@@ -19,12 +19,12 @@ void add_line(std::string& text, std::string_view line) {
   text.append(line.substr(0, last == std::string_view::npos ? 0 : last + 1)).append("\n");
 }
 
-/// A column as it is printed.
+/// A column as text for a terminal.
 struct TextColumn {
   const Column& column;
-  std::string unit;                       ///< "[mm]"
-  std::vector<std::string> heading = {};  ///< lines
-  std::vector<std::string> cells = {};    ///< numbers have trailing blanks, so that decimal points are aligned
+  std::string unit;                       ///< unit in brackets: "[mm]"
+  std::vector<std::string> heading = {};  ///< lines of the heading
+  std::vector<std::string> cells = {};  ///< texts of the cells; numbers have trailing blanks that align decimal points
   std::size_t width = 0;
 
   std::string aligned(const std::string& text) const {
@@ -44,8 +44,8 @@ TextColumn column_text(const Table& table, std::size_t c) {
     made.cells.push_back(printable_line(row[c].text) + std::string(blanks, ' '));
     made.width = std::max(made.width, text_width(made.cells.back()));
   }
-  // Broken if it is wider than the cells, into at most as many lines as a heading may have; the column grows if
-  // necessary.
+  // A heading that is wider than the cells is wrapped, into at most kHeadingLines lines. If that is not enough, the
+  // column becomes wider.
   const std::string heading = printable_line(column.heading);
   made.heading = wrapped(heading, made.width);
   while (made.heading.size() > kHeadingLines) made.heading = wrapped(heading, ++made.width);
@@ -59,7 +59,8 @@ std::size_t total_width(const std::vector<const TextColumn*>& columns) {
   return width;
 }
 
-/// Removes columns until the others fit. Returns the headings of the removed groups, from left to right.
+/// Removes dispensable columns until the remaining ones fit into `width`. Returns the headings of the removed groups of
+/// columns, from left to right.
 std::vector<std::string> make_room(std::vector<const TextColumn*>& columns, std::size_t width) {
   const auto dispensable = [](const TextColumn* one) { return one->column.dispensable; };
   std::vector<std::string> left_out;

@@ -9,9 +9,9 @@
 
 namespace poesy {
 
-/// The identity of a run of this program, of the whole study or of one shard. It leaves out what a later run may change
-/// in the study: title, seed, samples (except for a kind that decides by them), max_not_converged and, unless errors
-/// are drawn per machine, limits.
+/// The identity of a run of the whole study, or of one shard, by this program. It leaves out what a later run may
+/// change in the study: title, seed, max_not_converged, samples (except for a kind that decides by them) and, if errors
+/// are drawn per pose, limits on magnitudes.
 CheckpointIdentity identity_of(const Study& study, const PoseSet& poses,
                                const std::optional<Shard>& shard = std::nullopt);
 

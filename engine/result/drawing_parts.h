@@ -9,11 +9,12 @@
 
 namespace poesy {
 
-/// Adds /drawing. Precondition: the axes of responses and poses were added.
+/// Adds to the result file the group /drawing. Precondition: the axes of responses and poses were added.
 void write_drawing(ResultBuilder& result, const DrawingResult& found);
-/// Reads /drawing. Precondition: it exists.
+/// Reads the group /drawing. Precondition: the file has it.
 DrawingResult read_drawing(const h5::File& file);
-/// Adds features.csv, with a line for each feature and response. Refers to both arguments.
+/// Adds to `tables` the table features.csv, with a line for each feature and response. Refers to `responses` and
+/// `found`.
 void append_drawing_tables(CsvTables& tables, const std::vector<std::string>& responses, const DrawingResult& found);
 
 }  // namespace poesy

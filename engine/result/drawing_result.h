@@ -10,42 +10,49 @@
 namespace poesy {
 
 namespace axis {
-using Feature = Axis<"feature">;  ///< Features of a drawing, of all limbs.
+using Feature = Axis<"feature">;  ///< The features of a drawing, over all limbs.
 }  // namespace axis
 
-/// What the features of a drawing do in their zones, to first order; SI. Only features whose errors vary, and nothing
-/// of other errors. NaN for a response that is neither signed nor the norm of signed ones, and where a pose is not
-/// solved.
+/// The effect on the responses if the features of a drawing scatter in their tolerance zones, to first order; SI. A
+/// feature counts if the study varies its errors; errors that belong to no feature do not count. Values are NaN for a
+/// response that is neither signed nor the norm of signed responses, and if a pose is not solved.
 struct DrawingResult {
   /// A text for each feature.
   using Texts = Array<std::string, axis::Feature>;
   /// A number for each feature.
   using Sizes = Array<double, axis::Feature>;
-  /// A number for each response and feature, over the poses.
+  /// A number for each response and feature, taken over all poses.
   using OfFeatures = Array<double, axis::Response, axis::Feature>;
   /// A number for each response and pose.
   using AtPoses = Array<double, axis::Response, axis::Pose>;
 
-  std::vector<std::string> names;            ///< "rail_1"
-  Texts label;                               ///< "rail"
-  Array<std::uint64_t, axis::Feature> limb;  ///< from 1
-  Texts kind;                                ///< "axis", "rectangle", "round", "point" or "distance"
-  Sizes length;                              ///< length of an axis, first side or diameter of a plane; else 0
-  Texts location;                            ///< key of the zone of location, "tolerance" or "clearance"; "-": none
-  Sizes location_zone;                       ///< as written
-  Texts location_datums;                     ///< "A|B"; "-": none
-  Texts orientation;                         ///< key of the zone of orientation; "-": none
-  Sizes orientation_zone;                    ///< as written
-  Texts orientation_datums;                  ///< "A"; "-": none
-  Sizes sigmas;                              ///< half a zone in standard deviations
-  OfFeatures effect;                         ///< root mean square over the poses
-  OfFeatures share;                          ///< of the mean square of all features together
-  AtPoses rms;                               ///< root mean square of all features, locations divided evenly
-  AtPoses rms_worst_division;                ///< the same with each location divided at worst
-  AtPoses worst_case;                        ///< largest value with all features in their zones
-  OfFeatures worst_share;                    ///< each feature's part of it at the pose where it is largest
+  std::vector<std::string> names;            ///< names of the features with their limbs: "rail_1"
+  Texts label;                               ///< names of the features in the drawing: "rail"
+  Array<std::uint64_t, axis::Feature> limb;  ///< number of the limb, from 1
+  Texts kind;                                ///< kind of feature: "axis", "rectangle", "round", "point" or "distance"
+  Sizes length;                              ///< m, length of an axis, first side or diameter of a plane; else 0
+  Texts location;            ///< zone of location: its key, "tolerance" for a distance, or "clearance"; "-": none
+  Sizes location_zone;       ///< m, width or diameter of the zone of location in the drawing; the +- tolerance of a
+                             ///< distance; the largest clearance
+  Texts location_datums;     ///< datums of the zone of location: "A|B"; "-": none
+  Texts orientation;         ///< key of the zone of orientation; "-": none
+  Sizes orientation_zone;    ///< m, width or diameter of the zone of orientation in the drawing
+  Texts orientation_datums;  ///< datums of the zone of orientation: "A"; "-": none
+  /// Half of a zone divided by the standard deviation of a coordinate of an extreme point of the feature; 0 if the
+  /// scatter has no such standard deviation.
+  Sizes sigmas;
+  OfFeatures effect;  ///< root mean square of the response over the poses, from this feature alone
+  OfFeatures share;   ///< share of this feature in the mean square of all features together
+  /// Root mean square of the response from all features, if each zone of location is divided evenly between the errors
+  /// that move the feature (middle) and those that turn it (tilt).
+  AtPoses rms;
+  /// Root mean square like `rms`, but each zone of location without a zone of orientation belongs to middle or tilt
+  /// alone, whichever is worse.
+  AtPoses rms_worst_division;
+  AtPoses worst_case;      ///< largest magnitude of the response with all features in their zones
+  OfFeatures worst_share;  ///< share of each feature in worst_case, at the pose where worst_case is largest
 
-  std::size_t features() const { return names.size(); }  ///< Their number.
+  std::size_t features() const { return names.size(); }  ///< The number of features.
 };
 
 }  // namespace poesy

@@ -17,21 +17,22 @@
 #include "engine/base/number.h"
 #include "engine/storage/h5.h"
 
-/// A row describes one dataset of a result file. It serves to write the dataset with its unit, description and axes, to
-/// read it with a check of its shape, and to make columns of CSV tables (csv_table.h).
+/// A row (FieldRow) describes one dataset of a result file. From the row, the program writes the dataset with its unit,
+/// description and axes, reads it with a check of its shape, and makes columns of CSV tables from it (csv_table.h).
 namespace poesy {
 
-/// The names of the axes of a dataset, slowest first.
+/// The names of the axes of a dataset, the slowest first.
 using Axes = std::vector<std::string>;
 
-/// The axes of many datasets.
+/// Axes that many datasets have.
 /// @{
 inline const Axes kByResponse{"response"};
 inline const Axes kByFactor{"factor"};
 inline const Axes kByPose{"pose"};
 /// @}
 
-/// The units of datasets whose numbers have the unit of a response, of an error, or of both.
+/// Texts for the units of datasets whose numbers have the unit of a response, of an error, or of a response over an
+/// error.
 /// @{
 inline constexpr const char* kResponseUnit = "SI: response unit, see /responses/unit";
 inline constexpr const char* kFactorUnit = "SI: factor unit, see /factors/unit";
@@ -39,20 +40,20 @@ inline constexpr const char* kIndexUnit = "SI: response unit / factor unit";
 inline constexpr const char* kLengthPerFactorUnit = "SI: m / factor unit";
 /// @}
 
-/// The attributes that describe a dataset.
+/// The attributes that describe a dataset to people.
 struct Label {
-  std::string unit;         ///< "m", "rad,rad,rad,m,m,m" where components differ, or "1"
-  std::string description;  ///< a sentence for people
+  std::string unit;         ///< unit: "m", "rad,rad,rad,m,m,m" where components differ, or "1"
+  std::string description;  ///< meaning, as a sentence
 };
 
-/// Composes an HDF5 file in which every dataset has a unit, a description and named axes.
+/// Writes an HDF5 file in which every dataset has a unit, a description and named axes.
 class ResultBuilder {
  public:
   explicit ResultBuilder(h5::File file) : file_(std::move(file)) {}  ///< file: an empty file.
 
   h5::File& file() { return file_; }  ///< The file, for groups and attributes.
 
-  /// Adds the axis `name`: the dimension scale /name, with a value for each position.
+  /// Adds an axis: the dimension scale /name, with a value for each of its positions.
   template <h5::Element T>
   void add_axis(const std::string& name, const std::vector<T>& values, const Label& label) {
     axis_length_[name] = values.size();
@@ -65,13 +66,14 @@ class ResultBuilder {
     for (const std::string& axis : axes) shape.push_back(axis_length_.at(axis));
     return shape;
   }
-  /// Adds the dataset at `path` along these axes; without axes, a scalar. Precondition: the axes were added.
+  /// Adds a dataset along these axes, or a scalar if there are none. Precondition: the axes were added.
   template <h5::Element T>
   void add(const std::string& path, const Axes& axes, std::span<const T> values, const Label& label) {
     write(path, shape(axes), values, label);
     attach(path, axes);
   }
-  /// The same for numbers that are computed. element(at): the number at this position, row-major.
+  /// Adds a dataset of numbers that are computed while they are written. element(at): the number at this position,
+  /// row-major.
   template <h5::Number T, class ElementAt>
   void add_computed(const std::string& path, const Axes& axes, const ElementAt& element, const Label& label) {
     file_.write_slices<T>(path, shape(axes), [&](std::size_t first, std::span<T> to) {
@@ -80,17 +82,18 @@ class ResultBuilder {
     describe(path, label);
     attach(path, axes);
   }
-  /// The same for a list.
+  /// Adds a dataset from a list.
   template <h5::Element T>
   void add(const std::string& path, const Axes& axes, const std::vector<T>& values, const Label& label) {
     add(path, axes, std::span<const T>(values), label);
   }
-  /// The same for an array, along its axes.
+  /// Adds a dataset from an array, along the array's axes.
   template <class T, class... A>
   void add(const std::string& path, const Array<T, A...>& array, const Label& label) {
     add(path, array.axis_names(), array.all(), label);
   }
-  /// The same for numbers that are computed. element(positions...): the number at these positions.
+  /// Adds a dataset along the axes of a layout, of numbers that are computed while they are written.
+  /// element(positions...): the number at these positions.
   template <h5::Number T, class... A, class ElementAt>
   void add_computed(const std::string& path, const AxisLayout<A...>& layout, const ElementAt& element,
                     const Label& label) {
@@ -98,12 +101,12 @@ class ResultBuilder {
         path, layout.axis_names(), [&](std::size_t place) { return std::apply(element, layout.positions(place)); },
         label);
   }
-  /// Adds a scalar.
+  /// Adds a dataset that is a scalar.
   template <h5::Element T>
   void add_scalar(const std::string& path, const T& value, const Label& label) {
     write(path, {}, std::span<const T>(&value, 1), label);
   }
-  /// Links these axes into the group, because xarray opens one group at a time.
+  /// Links these axes into a group, because xarray opens one group at a time.
   void show_axes(const std::string& group, const Axes& axes) {
     for (const std::string& axis : axes) {
       const std::string shown = group + "/" + axis;
@@ -129,24 +132,24 @@ class ResultBuilder {
   std::map<std::string, std::size_t> axis_length_;
 };
 
-/// The number of positions on an axis at the root.
+/// The length of an axis of a file.
 inline std::size_t axis_length(const h5::File& file, const std::string& name) {
   return h5::size(file.shape("/" + name));
 }
 
-/// Throws h5::Error if a dataset has another shape.
+/// Throws h5::Error unless a dataset has this shape.
 inline void check_shape(const h5::File& file, const std::string& path, const h5::Shape& shape) {
   if (file.shape(path) != shape) throw h5::Error(path + " does not have the shape it should have");
 }
 
-/// Reads all elements of a dataset. Throws h5::Error if it has another shape.
+/// Reads all elements of a dataset. Throws h5::Error unless it has this shape.
 template <h5::Element T>
 std::vector<T> read_shaped(const h5::File& file, const std::string& path, const h5::Shape& shape) {
   check_shape(file, path, shape);
   return file.read<T>(path);
 }
 
-/// Reads all elements of a dataset. Throws h5::Error if its shape is not that of these axes.
+/// Reads all elements of a dataset. Throws h5::Error unless its shape is that of these axes.
 template <h5::Element T>
 std::vector<T> read_along(const h5::File& file, const std::string& path, const Axes& axes) {
   h5::Shape shape;
@@ -154,7 +157,7 @@ std::vector<T> read_along(const h5::File& file, const std::string& path, const A
   return read_shaped<T>(file, path, shape);
 }
 
-/// The lengths of an array's axes in a file. axes: their names in the file.
+/// The lengths of an array's axes in a file. axes: names of these axes in the file.
 template <class AnArray>
 typename AnArray::Lengths lengths_in(const h5::File& file, const Axes& axes = AnArray::axis_names()) {
   typename AnArray::Lengths lengths;
@@ -162,19 +165,20 @@ typename AnArray::Lengths lengths_in(const h5::File& file, const Axes& axes = An
   return lengths;
 }
 
-/// Reads a dataset along the axes of this array. Throws h5::Error if it has another shape.
+/// Reads a dataset as an array of this type. axes: names of the array's axes in the file. Throws h5::Error if the
+/// dataset has another shape.
 template <class AnArray>
 AnArray read_array(const h5::File& file, const std::string& path, const Axes& axes = AnArray::axis_names()) {
   return {lengths_in<AnArray>(file, axes), read_along<typename AnArray::Element>(file, path, axes)};
 }
 
-/// Whether every file of a kind has a dataset.
+/// Whether all result files of a kind of study have a dataset.
 enum class Presence {
-  always,
-  where_computed,  ///< an array may be empty and then is not written: the study did not compute it
+  always,          ///< every file has it
+  where_computed,  ///< an empty array is not written, because the study did not compute it
 };
 
-/// The lengths of axes, by name.
+/// The lengths of axes by their names.
 using AxisLengths = std::map<std::string, std::size_t, std::less<>>;
 
 namespace detail {
@@ -188,7 +192,7 @@ inline constexpr bool kIsArray = false;
 template <class T, class... A>
 inline constexpr bool kIsArray<Array<T, A...>> = true;
 
-/// The names of the axes of a member, from its type.
+/// The names of the axes of a member, which its type determines.
 template <class Value>
 Axes axes_of() {
   static_assert(!kIsList<Value>, "the type of a list does not say its axes");
@@ -199,7 +203,8 @@ Axes axes_of() {
   }
 }
 
-/// An element as HDF5 stores it: a flag as a byte, a missing position as -1, others unchanged.
+/// Converts an element to the type that HDF5 stores: a flag to a byte, and an index that may be missing to an integer,
+/// with -1 for a missing index. Other types stay as they are.
 template <class Value>
 auto stored(const Value& value) {
   if constexpr (std::is_same_v<Value, bool>) {
@@ -225,7 +230,7 @@ void restore(StoredAs<Value> from, Value& to) {
   }
 }
 
-/// An element as a number. Precondition: it is not a text.
+/// Converts an element to a number. Precondition: the element is not a text.
 template <class Value>
 Number number(const Value& value) {
   if constexpr (std::is_same_v<Value, std::string>) {
@@ -236,36 +241,36 @@ Number number(const Value& value) {
   }
 }
 
-/// The place of a dataset and its attributes.
+/// Where a dataset is in a file, and the attributes that describe it.
 struct Place {
-  const std::string& path;  ///< absolute
-  const Axes& axes;         ///< at the root
-  const Label& label;       ///< unit and meaning
-  Presence presence;        ///< whether it may be missing
+  const std::string& path;  ///< absolute path of the dataset
+  const Axes& axes;         ///< names of its axes, which are at the root of the file
+  const Label& label;       ///< unit and description of the dataset
+  Presence presence;        ///< whether a file may lack the dataset
 };
 
-/// A member of `Found`, of any type.
+/// Access to one member of objects of type `Found`. The class hides the type of the member.
 template <class Found>
 class Member {
  public:
   virtual ~Member() = default;
-  /// Adds the dataset: from one thing, or with one element for each of several things. Returns whether there are
-  /// elements.
+  /// Adds to the result file a dataset with the elements of the member of one object, or with one element for each of
+  /// several objects (things). Returns false if an array is empty and therefore not written.
   virtual bool write(ResultBuilder& result, const Place& place, std::span<const Found> things) const = 0;
-  /// Reads the member. Throws h5::Error if the dataset is missing or has another shape.
+  /// Reads the member of each thing. Throws h5::Error if the dataset is missing or has another shape.
   virtual void read(const h5::File& file, const std::string& path, const Axes& axes, std::span<Found> things) const = 0;
   virtual void clear(Found& found) const = 0;                           ///< Frees the memory of the member's elements.
-  virtual Number number(const Found& found, std::size_t at) const = 0;  ///< The element at this position.
-  /// The element at position `within` of a row, where `row` is the position on the first axis.
+  virtual Number number(const Found& found, std::size_t at) const = 0;  ///< The element at this index, row-major.
+  /// The element at index `within` of one row of the member's elements. row: index of the row on the first axis.
   virtual Number number_in_row(const Found& found, std::size_t row, std::size_t within) const = 0;
-  virtual std::size_t element_bytes() const = 0;  ///< Bytes of one element, in memory and in a file alike.
+  virtual std::size_t element_bytes() const = 0;  ///< Size of one element in bytes, in memory and in a file alike.
 };
 
-/// A member of this type.
+/// Access to a member of the type `Value`.
 template <class Found, class Value>
 class MemberOf final : public Member<Found> {
  public:
-  explicit MemberOf(Value Found::*member) : member_(member) {}  ///< member: the member.
+  explicit MemberOf(Value Found::*member) : member_(member) {}  ///< member: pointer to the member of `Found`.
 
   bool write(ResultBuilder& result, const Place& place, std::span<const Found> things) const override {
     if constexpr (kIsList<Value> || kIsArray<Value>) {
@@ -282,7 +287,8 @@ class MemberOf final : public Member<Found> {
   }
   void read(const h5::File& file, const std::string& path, const Axes& axes, std::span<Found> things) const override {
     if constexpr (kIsArray<Value>) {
-      things.front().*member_ = read_array<Value>(file, path, axes);  // a row may rename the axes of the type
+      // The description of a dataset may name the axes differently from the type.
+      things.front().*member_ = read_array<Value>(file, path, axes);
     } else if constexpr (kIsList<Value>) {
       things.front().*member_ = read_along<typename Value::value_type>(file, path, axes);
     } else {
@@ -324,25 +330,25 @@ class MemberOf final : public Member<Found> {
 
 }  // namespace detail
 
-/// A number of a result that is an attribute of a group or of a dataset.
+/// A number of a result that is stored as an attribute of a group or a dataset.
 template <class Found>
 struct Attribute {
-  std::string name;       ///< as the file has it
-  double Found::*member;  ///< the number
+  std::string name;       ///< name of the attribute in the file
+  double Found::*member;  ///< member with the number
 };
 
-/// A dataset in a group of a result file. Its axes are those of its member, an Array. A member that is a single value
-/// makes a scalar, or one element for each of a list of things; the axis of these is named.
+/// A dataset in a group of a result file. If the member is an Array, its axes are those of the dataset. If the member
+/// is a single value, the dataset is a scalar, or has one element for each thing of a list along a named axis.
 template <class Found>
 struct FieldRow {
-  /// A dataset from an array or a single value.
+  /// Describes a dataset from an Array or a single value.
   template <class Value>
   FieldRow(std::string dataset, Value Found::*elements, std::string in, std::string meaning,
            Presence when = Presence::always, std::vector<Attribute<Found>> beside = {})
       : FieldRow(std::move(dataset), elements, detail::axes_of<Value>(), std::move(in), std::move(meaning), when) {
     attributes = std::move(beside);
   }
-  /// A dataset from a member whose type does not determine its axes.
+  /// Describes a dataset along these axes. It is for members whose type does not determine the axes.
   template <class Value>
   FieldRow(std::string dataset, Value Found::*elements, Axes along, std::string in, std::string meaning,
            Presence when = Presence::always)
@@ -352,7 +358,7 @@ struct FieldRow {
         unit(std::move(in)),
         description(std::move(meaning)),
         presence(when) {}
-  /// A dataset with attributes.
+  /// Describes a dataset with these axes and attributes.
   template <class Value>
   FieldRow(std::string dataset, Value Found::*elements, Axes along, std::string in, std::string meaning,
            std::vector<Attribute<Found>> beside)
@@ -360,31 +366,32 @@ struct FieldRow {
     attributes = std::move(beside);
   }
 
-  std::string name;                                     ///< name in its group
-  std::shared_ptr<const detail::Member<Found>> member;  ///< the member with its elements
-  Axes axes;                                            ///< axes at the root; none for a scalar
-  std::string unit;                                     ///< "m", "1", or one of the constants above
-  std::string description;                              ///< a sentence for people
-  std::vector<Attribute<Found>> attributes;             ///< attributes that are written but not read
-  Presence presence = Presence::always;                 ///< whether every file has it
+  std::string name;                                     ///< name of the dataset in its group
+  std::shared_ptr<const detail::Member<Found>> member;  ///< access to the member
+  Axes axes;                ///< names of the axes, which are at the root of the file; none for a scalar
+  std::string unit;         ///< unit: "m", "1", or one of the constants above
+  std::string description;  ///< meaning, as a sentence
+  std::vector<Attribute<Found>> attributes;  ///< attributes, which are written but not read
+  Presence presence = Presence::always;      ///< whether every file has the dataset
 };
 
-/// The rows of a group, in the order in which they are written.
+/// The descriptions of the datasets of a group, in the order in which they are written.
 template <class Found>
 using Fields = std::vector<FieldRow<Found>>;
 
-/// A group of a result file.
+/// A group of a result file with its datasets.
 template <class Found>
 struct Group {
-  std::string path;                                                        ///< "/sensitivity"
-  std::string description;                                                 ///< a sentence for people
-  std::vector<Attribute<Found>> attributes = {};                           ///< numbers of the group as a whole
-  std::vector<std::pair<std::string, std::size_t Found::*>> lengths = {};  ///< members that are lengths of axes
-  Fields<Found> fields;                                                    ///< its datasets
+  std::string path;                                                        ///< path of the group: "/sensitivity"
+  std::string description;                                                 ///< meaning, as a sentence
+  std::vector<Attribute<Found>> attributes = {};                           ///< numbers that are attributes of the group
+  std::vector<std::pair<std::string, std::size_t Found::*>> lengths = {};  ///< axes whose lengths are stored in members
+  Fields<Found> fields;                                                    ///< datasets of the group
 };
 
-/// Adds the dataset of a row to a group, from one thing or with one element for each of several things. Returns whether
-/// there are elements. Precondition: only a single thing has members that are lists.
+/// Adds one dataset to a group, with the elements of one object, or with one element for each of several objects
+/// (things). Returns false if an array is empty and therefore not written. Precondition: members that are lists occur
+/// only with a single object.
 template <class Found>
 bool write_field(ResultBuilder& result, const std::string& group, const FieldRow<Found>& field,
                  std::span<const Found> things) {
@@ -397,20 +404,21 @@ bool write_field(ResultBuilder& result, const std::string& group, const FieldRow
   return true;
 }
 
-/// Adds the datasets of several rows of a single thing.
+/// Writes to the result file the datasets of these fields, with the elements of a single object.
 template <class Found>
 void write_fields(ResultBuilder& result, const std::string& group, const Fields<Found>& fields, const Found& found) {
   for (const FieldRow<Found>& field : fields) write_field(result, group, field, std::span(&found, 1));
 }
 
-/// Adds the datasets of several rows of a list of things.
+/// Writes to the result file the datasets of these fields, with one element for each object of a list.
 template <class Thing>
 void write_columns(ResultBuilder& result, const std::string& group, const Fields<Thing>& fields,
                    const std::vector<Thing>& things) {
   for (const FieldRow<Thing>& field : fields) write_field(result, group, field, std::span(things));
 }
 
-/// Adds a group with all its rows and links their axes into it. after_field(field) is called after each row.
+/// Adds to the result file a group with all its datasets, and links their axes into the group. Calls after_field(field)
+/// after each dataset.
 template <class Found, class AfterField>
 void write_group(ResultBuilder& result, const Group<Found>& group, const Found& found, const AfterField& after_field) {
   h5::File& file = result.file();
@@ -425,21 +433,21 @@ void write_group(ResultBuilder& result, const Group<Found>& group, const Found& 
   }
 }
 
-/// Adds a group and keeps the members.
+/// Adds to the result file a group with all its datasets, and keeps the members of `found`.
 template <class Found>
 void write_group(ResultBuilder& result, const Group<Found>& group, const Found& found) {
   write_group(result, group, found, [](const FieldRow<Found>&) {});
 }
 
-/// Adds a group and empties each list after writing it, because HDF5 needs memory for data that are not yet on disk.
-/// Members that are not rows are kept.
+/// Adds to the result file a group, and empties each list of `found` after writing it, because HDF5 needs memory for
+/// data that are not yet on disk. Members without a dataset are kept.
 template <class Found>
 void write_group(ResultBuilder& result, const Group<Found>& group, Found&& found) {
   write_group(result, group, std::as_const(found), [&](const FieldRow<Found>& field) { field.member->clear(found); });
 }
 
-/// Reads the members of these rows in as many things as were written. Throws h5::Error if a dataset is missing or has a
-/// wrong shape.
+/// Reads the members with these datasets for several objects, as many as were written. Throws h5::Error if a dataset is
+/// missing or has another shape.
 template <class Found>
 void read_fields(const h5::File& file, const std::string& group, const Fields<Found>& fields, std::span<Found> things) {
   for (const FieldRow<Found>& field : fields) {
@@ -449,13 +457,14 @@ void read_fields(const h5::File& file, const std::string& group, const Fields<Fo
   }
 }
 
-/// Reads the members of these rows in a single thing.
+/// Reads the members with these datasets for a single object.
 template <class Found>
 void read_fields(const h5::File& file, const std::string& group, const Fields<Found>& fields, Found& found) {
   read_fields(file, group, fields, std::span(&found, 1));
 }
 
-/// Reads a list with as many things as the rows' axis has positions.
+/// Reads a list of objects from datasets with one element for each object. The number of objects is the length of the
+/// first dataset's axis.
 template <class Thing>
 std::vector<Thing> read_columns(const h5::File& file, const std::string& group, const Fields<Thing>& fields) {
   const std::size_t length = axis_length(file, fields.front().axes.front());
@@ -465,7 +474,7 @@ std::vector<Thing> read_columns(const h5::File& file, const std::string& group, 
   return things;
 }
 
-/// Reads the lengths, attributes and rows of a group.
+/// Reads the lengths, attributes and datasets of a group into `found`.
 template <class Found>
 void read_group(const h5::File& file, const Group<Found>& group, Found& found) {
   for (const auto& [axis, length] : group.lengths) found.*length = axis_length(file, axis);
@@ -475,7 +484,8 @@ void read_group(const h5::File& file, const Group<Found>& group, Found& found) {
   read_fields(file, group.path, group.fields, found);
 }
 
-/// Bytes of the elements of these rows, in memory and in a file alike. lengths: those of all their axes.
+/// The number of bytes of all elements of these datasets, in memory and in a file alike. lengths: the lengths of all
+/// axes that they have.
 template <class Found>
 std::size_t bytes_of(const Fields<Found>& fields, const AxisLengths& lengths) {
   std::size_t bytes = 0;
@@ -487,7 +497,7 @@ std::size_t bytes_of(const Fields<Found>& fields, const AxisLengths& lengths) {
   return bytes;
 }
 
-/// The element of a row at this position, as the file has it. Precondition: it exists and is a number.
+/// The element of a dataset at this index, as the file stores it. Precondition: the element exists and is a number.
 template <class Found>
 Number number_at(const FieldRow<Found>& field, const Found& found, std::size_t at) {
   return field.member->number(found, at);

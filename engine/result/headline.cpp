@@ -12,7 +12,7 @@ double missed_share(const LimitVerdict& one) {
   return one.tried == 0 ? 0.0 : 1.0 - static_cast<double>(one.within) / static_cast<double>(one.tried);
 }
 
-/// The responses with limits, the one whose limit is missed most often first.
+/// The responses with limits. Those whose limits are missed most often come first.
 std::vector<std::size_t> limited_responses(const StoredResult& result) {
   std::vector<std::size_t> list;
   if (!result.verdicts) return list;

@@ -4,9 +4,9 @@
 
 namespace poesy {
 
-/// Orders the headline by what a study is about, and adds the responses with limits that it does not have: first the
-/// responses with limits, the one whose limit is missed most often before the others; then the displacement of the
-/// tool, that of the platform, and the rest. Equal ones keep their order. Precondition: the limits are read.
+/// Orders the responses of the headline, and adds those responses with limits that it lacks. Responses with limits come
+/// first, the ones most often missed before the others. Then follow the displacement of the tool, that of the platform,
+/// and the remaining responses. Otherwise the order stays. Precondition: the limits have been read.
 void order_headline(StoredResult& result);
 
 }  // namespace poesy

@@ -13,17 +13,18 @@
 #include "engine/result/result_file.h"
 #include "engine/run/evaluation.h"
 
-/// The parts that all or several kinds of result files have: how each is written, read, and shown as CSV.
+/// Functions for the data that all or several kinds of result files have. They write these data, read them, and show
+/// them as CSV.
 namespace poesy {
 
-/// 0 .. count - 1, the values of an axis that has no names.
+/// The numbers 0 to count - 1, as values of an axis that has no names.
 inline std::vector<std::int64_t> axis_numbers(std::size_t count) {
   std::vector<std::int64_t> list(count);
   std::iota(list.begin(), list.end(), 0);
   return list;
 }
 
-/// One text of each thing, such as its name.
+/// For each thing, the text that `member` selects, such as its name.
 template <class Things, class Member>
 std::vector<std::string> texts(const Things& things, const Member& member) {
   std::vector<std::string> list;
@@ -31,7 +32,8 @@ std::vector<std::string> texts(const Things& things, const Member& member) {
   return list;
 }
 
-/// The position of a name in a list of names or of named things. Throws h5::Error if it is not there.
+/// The index of a name in a list of names or of named things. Throws h5::Error with `problem` if the list lacks the
+/// name.
 template <class Things, class Member = std::identity>
 std::size_t position_in(const Things& things, const std::string& name, const std::string& problem,
                         const Member& member = {}) {
@@ -40,118 +42,129 @@ std::size_t position_in(const Things& things, const std::string& name, const std
   return static_cast<std::size_t>(found - things.begin());
 }
 
-/// The SI unit of a thing with a dimension.
+/// The SI unit of a thing that has a dimension.
 template <class Thing>
 std::string unit_of(const Thing& thing) {
   return std::string(si_unit(thing.dimension));
 }
 
-/// Throws h5::Error for a name that cannot be part of a file name or a cell of a table. path: of the dataset.
+/// Throws h5::Error for a name that cannot be part of a file name or a cell of a table. path: path of the dataset with
+/// the names.
 void check_names(std::span<const std::string> names, const std::string& path);
 
-/// Writes a file with what all files have (attributes of the root, /study, /poses, and /run with facts about the run);
-/// compose(result) adds the rest. filetype, kind: attributes of the root. Throws FileError.
+/// Writes a file with the data that all files have: attributes of the root, /study, /poses, and /run with facts of the
+/// run. compose(result): adds all other data. filetype, kind: attributes of the root. Throws FileError.
 void compose_file(const std::string& path, std::string_view filetype, std::string_view kind, const Study& study,
                   const SelectedPoses& poses, const RunFacts& facts,
                   const std::function<void(ResultBuilder&)>& compose);
-/// Adds what every result has: /factors, /responses, and /metric if the mechanism weighs angles against lengths.
+/// Adds to the result file the names that every result has: /factors, /responses, and /metric if the mechanism weighs
+/// angles against lengths.
 void add_names(ResultBuilder& result, const Study& study, std::span<const FactorIndex> factors);
-void read_header(const h5::File& file, StoredResult& result);  ///< Reads what every result has.
-SelectedPoses read_poses(const h5::File& file);                ///< Reads the poses, with the data stored beside them.
+void read_header(const h5::File& file, StoredResult& result);  ///< Reads the data that every result has.
+SelectedPoses read_poses(const h5::File& file);                ///< Reads /poses, with the data stored beside the poses.
 RunFacts read_facts(const h5::File& file);                     ///< Reads /run.
-std::string stored_hash(const h5::File& file);                 ///< The hash that the file states; empty if it has none.
-CsvTable pose_table(const StoredResult& result);               ///< The table of poses.csv.
+std::string stored_hash(const h5::File& file);    ///< The content hash that the file states; empty if it states none.
+CsvTable pose_table(const StoredResult& result);  ///< The table of poses.csv.
 
-/// The measured errors among those that a study varies.
+/// The errors that a study varies and draws from measured parts.
 MeasuredErrors measured_errors(const Study& study);
 /// [P] The means that a study states for the errors that it varies, SI; empty if all are zero.
 std::vector<double> stated_means(const Study& study);
-/// Adds the standard deviations of the errors that the study varies, /factors/sigma, the names of their distributions,
-/// /factors/distribution, /factors/mean and /factors/draws if the study states some, and /measured_errors if some are
-/// measured.
+/// Adds to the result file the distributions of the errors that the study varies: /factors/sigma with standard
+/// deviations and /factors/distribution with names. Adds /factors/mean if the study states means, /factors/draws if
+/// machines draw errors anew at each pose, and /measured_errors if some errors are drawn from measured parts.
 void add_sigma(ResultBuilder& result, const Study& study);
-/// Reads the fields of these.
+/// Reads what add_sigma() wrote.
 void read_sigma(const h5::File& file, StoredResult& result);
-/// Adds factors.csv with the standard deviation of each error, and measured_errors.csv if some are measured.
+/// Adds to `tables` the table factors.csv with the standard deviation of each error. Adds measured_errors.csv if some
+/// errors are drawn from measured parts.
 void append_sigma_tables(CsvTables& tables, const StoredResult& result);
 
-/// Positions of the responses that do not vary. varies: [R] 0 or 1, or empty if all do.
+/// The indices of the responses that do not vary. varies: [R] 0 or 1 for each response, or empty if all vary.
 std::vector<std::size_t> constant_responses(std::span<const std::uint8_t> varies);
 
-/// The statuses of solves that a result lists: kStatusNames, the last of which, not_assembled, only if a solve ended
-/// so. Results without such solves thus keep their bits.
+/// The statuses of solves that a result lists. They are kStatusNames, except that the last status, not_assembled, is
+/// listed only if a solve ended with it. So results without such solves have the same bits as before this status
+/// existed. not_assembled: number of such solves.
 std::vector<std::string> listed_statuses(std::uint64_t not_assembled);
-/// The number of statuses at the axis /status. Throws h5::Error if they are others than those of kStatusNames.
+/// The number of statuses on the axis /status. Throws h5::Error if their names differ from kStatusNames.
 std::size_t listed_statuses(const h5::File& file);
 
-/// Adds /solver: how the solves ended, with the counts of each cell along these axes.
+/// Adds to the result file the group /solver, which counts how the solves of each cell ended. axes: axes of the cells.
 void add_solver(ResultBuilder& result, const Axes& axes, std::span<const SolveCounts> solves);
-/// The same for an array.
+/// Adds to the result file the group /solver for an array of cells.
 template <class... A>
 void add_solver(ResultBuilder& result, const Array<SolveCounts, A...>& solves) {
   add_solver(result, solves.axis_names(), solves.all());
 }
-/// Reads /solver: how the solves of each cell ended.
+/// Reads /solver as a list of cells. axes: axes of the cells.
 std::vector<SolveCounts> read_solver(const h5::File& file, const Axes& axes);
-/// Reads /solver as an array.
+/// Reads /solver as an array of cells.
 template <class Solves>
 Solves read_solver(const h5::File& file) {
   return {lengths_in<Solves>(file), read_solver(file, Solves::axis_names())};
 }
-/// A number that CSV states about how solves ended.
+/// A number about how the solves of a cell ended, as a column of CSV.
 struct SolveNumber {
-  std::string name;                               ///< "not_converged", "iterations_mean", ..., "solves_STATUS"
-  std::function<Number(const SolveCounts&)> get;  ///< the number for a cell
+  std::string name;                               ///< heading: "not_converged", "iterations_mean", ..., "solves_STATUS"
+  std::function<Number(const SolveCounts&)> get;  ///< number of a cell
 };
-/// All such numbers; solves_not_assembled only if a solve ended so.
+/// All numbers of this sort. solves_not_assembled is among them only if a solve ended with this status.
 std::vector<SolveNumber> solve_numbers(std::span<const SolveCounts> solves);
-/// Adds a column for each of these numbers; line n is for the n-th cell. Refers to the solves.
+/// Adds to the table a column for each number of solve_numbers(); line n shows the n-th cell. Refers to the solves.
 void append_solve_columns(CsvTable& table, std::span<const SolveCounts> solves);
 
-/// Adds the addresses of the first failures, of `total`. slots: the name of each slot. Precondition: add_solver() ran.
+/// Adds to the result file the addresses of the first failures. slots: name of each slot. total: number of all
+/// failures. Precondition: add_solver() was called.
 void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, const std::vector<std::string>& slots,
                   std::uint64_t total);
-/// Reads the list of failures. Uses `varied` and `poses` of the result.
+/// Reads the list of failures. result: must have `varied` and `poses` already.
 std::vector<Failure> read_failures(const h5::File& file, const StoredResult& result);
-CsvTable failure_table(const StoredResult& result);  ///< The table of failures.csv, for a sampled result.
+CsvTable failure_table(const StoredResult& result);  ///< The table failures.csv of a result with samples.
 
-/// Adds /limits, the verdicts on the study's limits; nothing if it states none.
+/// Adds to the result file the group /limits with the verdicts on the study's limits; nothing if the study states none.
 void add_limits(ResultBuilder& result, const ModelDescription& model, const std::optional<LimitVerdicts>& verdicts);
-/// Reads /limits; none if the study states no limits. Uses `responses` of the result.
+/// Reads /limits; none if the study states no limits. result: must have `responses` already.
 std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResult& result);
-/// Adds limits.csv; nothing if the study states no limits.
+/// Adds to `tables` the table limits.csv; nothing if the study states no limits.
 void append_limit_table(CsvTables& tables, const StoredResult& result);
 
-/// The level of the intervals of a course, an attribute of its group or of a dataset.
+/// The confidence level of the intervals of a course, as an attribute of its group or of a dataset.
 inline const std::vector<Attribute<EstimateCourse>> kCourseLevel{{"conf_level", &EstimateCourse::conf_level}};
 
-/// The names and descriptions of a course of estimates.
+/// The names and descriptions of a course: estimates after ascending numbers of samples.
 struct CourseWords {
-  Group<EstimateCourse> group;           ///< its datasets, along the axes of the quantity and of the numbers of samples
-  std::string samples_axis;              ///< name of the axis of the numbers of samples
+  /// Datasets of the course; their axes are that of the quantities and that of the numbers of samples.
+  Group<EstimateCourse> group;
+  std::string samples_axis;              ///< name of the axis of numbers of samples
   std::string samples_description;       ///< description of that axis
-  std::string csv;                       ///< beginning of the names of CSV files
-  std::string csv_slot;                  ///< heading of the column of slots
+  std::string csv;                       ///< beginning of the names of the course's CSV files
+  std::string csv_slot;                  ///< heading of the column that names what varies
   std::vector<std::string> csv_columns;  ///< headings of the columns of the datasets
 };
 
-/// The words of /convergence. axes: of the quantities, beginning with the responses. name: of their dataset.
+/// The names and descriptions of /convergence. axes: axes of the estimated quantities, beginning with the responses.
+/// name, unit, quantity: name, unit and meaning of the dataset of these quantities. rule: the rule by which samples
+/// end, in words.
 CourseWords convergence_words(Axes axes, const std::string& name, const std::string& unit, const std::string& quantity,
                               const std::string& rule, const std::string& csv_slot);
 
-/// Adds the group of a course.
+/// Adds to the result file the group of a course of estimates (EstimateCourse): the estimates after some numbers of
+/// samples.
 void add_course(ResultBuilder& result, const CourseWords& words, const EstimateCourse& found);
-EstimateCourse read_course(const h5::File& file, const CourseWords& words);  ///< Reads what add_course() wrote.
-/// Adds a table for each response, with a line for each slot and number of samples. ends: [slots] the final number of
-/// samples at each pose; empty if all slots reached the end of the course. Refers to all arguments.
+/// Reads the course that add_course() wrote.
+EstimateCourse read_course(const h5::File& file, const CourseWords& words);
+/// Adds to `tables` a table for each response, with a line for each slot and number of samples. ends: [slots] the final
+/// number of samples at each pose; empty if all slots reached the end of the course. Refers to all arguments.
 void append_course_tables(CsvTables& tables, const StoredResult& result, const CourseWords& words,
                           const EstimateCourse& found, std::span<const std::uint64_t> ends);
 
-/// Adds /convergence, how adaptive samples converged; nothing if the number of samples was fixed.
+/// Adds to the result file the group /convergence, which tells how adaptive samples converged; nothing if the number of
+/// samples was fixed.
 void add_convergence(ResultBuilder& result, const CourseWords& words, const std::optional<ConvergenceResult>& found);
 /// Reads /convergence; none if the number of samples was fixed.
 std::optional<ConvergenceResult> read_convergence(const h5::File& file, const CourseWords& words);
-/// Adds convergence.csv and convergence_RESPONSE.csv.
+/// Adds to `tables` the tables convergence.csv and convergence_RESPONSE.csv.
 void append_convergence_tables(CsvTables& tables, const StoredResult& result, const CourseWords& words);
 
 }  // namespace poesy

@@ -48,7 +48,7 @@ StoredShard read_checked(const std::string& path, const h5::File& file) {
 
 std::size_t number(const StoredShard& shard) { return shard.shard.index; }
 
-/// "shard 2 of 5"
+/// The name of a shard in messages: "shard 2 of 5".
 std::string name_of(const Shard& shard) { return fmt::format("shard {} of {}", shard.index + 1, shard.count); }
 
 [[noreturn]] void refuse(const StoredShard& shard, const std::string& problem, const std::string& remedy) {
@@ -87,8 +87,8 @@ void check_same_study(const StoredShard& shard, const StoredShard& first) {
   }
 }
 
-/// The numbers of missing shards: "2, 5 and 7 more". Only the first ones are searched, because a file may state any
-/// number of shards. Precondition: shards are in order, none is there twice, and one is missing.
+/// The numbers of missing shards: "2, 5 and 7 more". Lists only the first ones, because a file may state any number of
+/// shards. Precondition: the shards are in order, none appears twice, and at least one is missing.
 std::string missing_text(std::span<const StoredShard> shards) {
   constexpr std::size_t kMostListed = 20;
   const std::size_t count = shards.front().shard.count;
@@ -107,7 +107,7 @@ std::string missing_text(std::span<const StoredShard> shards) {
   return left == 0 ? text : fmt::format("{} and {} more", text, left);
 }
 
-/// Throws if a shard is missing. Precondition: shards are in order, none is there twice.
+/// Throws InputError if a shard is missing. Precondition: the shards are in order, and none appears twice.
 void check_all_there(std::span<const StoredShard> shards) {
   const std::size_t count = shards.front().shard.count;
   if (shards.size() == count) return;
@@ -115,7 +115,8 @@ void check_all_there(std::span<const StoredShard> shards) {
                    "run them with --shard and merge all of them");
 }
 
-/// The states of one run in all shards, one after the other. Moves them out of the shards.
+/// The states of one stage (a call of `fold`) from all shards, joined in the order of the shards. The function removes
+/// them from the shards.
 Bytes take_state(std::span<StoredShard> shards, std::size_t stage) {
   std::size_t bytes = 0;
   for (const StoredShard& shard : shards) bytes += shard.stages[stage].size();

@@ -11,29 +11,29 @@
 
 namespace poesy {
 
-/// A shard file: an HDF5 file with /study, /poses and /run as in a result, and in /shard the states of the shard's
-/// runs, which only the program that wrote them can read.
+/// The content of a shard file. It is an HDF5 file with /study, /poses and /run as in a result. The group /shard has
+/// the states of the shard's stages (calls of `fold`), which only the program that wrote them can read.
 struct StoredShard {
   std::string path;            ///< path of the file
-  std::string poesy_version;   ///< exact version, because states are for the program that wrote them
-  std::string git_commit;      ///< commit of that program
+  std::string poesy_version;   ///< exact version of the program, because only this version can read the states
+  std::string git_commit;      ///< commit from which that program was built
   std::string study_text;      ///< the study with every default filled in
   std::string mechanism_text;  ///< the mechanism file; empty if the mechanism has none
   SelectedPoses poses;         ///< poses of the whole study
-  Shard shard;                 ///< which part of the study
-  std::vector<Bytes> stages;   ///< states of the study's runs (engine/run/checkpoints.h)
-  RunFacts facts;              ///< facts of the run that solved it
+  Shard shard;                 ///< number of the shard and of all shards
+  std::vector<Bytes> stages;   ///< states of the stages (engine/run/checkpoints.h)
+  RunFacts facts;              ///< facts of the run that solved the shard
 };
 
-/// Writes a shard, which appears complete or not at all. Throws FileError.
+/// Writes a shard file, which appears complete or not at all. Throws FileError.
 void write_shard(const std::string& path, const Study& study, const SelectedPoses& poses, const Shard& shard,
                  std::span<const Bytes> stages, const RunFacts& facts);
 
-/// Reads a shard. Throws FileError if it is not one, or if it was changed after it was written.
+/// Reads a shard file. Throws FileError if the file is not a shard, or was changed after it was written.
 StoredShard read_shard(const std::string& path);
 
-/// Merges the shards of a study into the states of its runs. Throws InputError, which names the files, if they are not
-/// the shards of one study, each once, written by this version of the program.
+/// Joins the shards of a study into the states of its stages. Throws InputError with the names of the files unless they
+/// are all the shards of one study, each once, written by this version of the program.
 std::vector<Bytes> merge_shards(std::vector<StoredShard>& shards);
 
 }  // namespace poesy

@@ -29,12 +29,12 @@ void Checkpoints::end(bool complete, const SolveCounts& solves) {
 void Checkpoints::keep(const ByteSource& state) {
   if (!save_) return;
   Bytes& bytes = stages_[begun_ - 1].bytes;
-  bytes = Bytes();  // frees the older state first, because there may not be room for two
+  bytes = Bytes();  // frees the older state first, because memory may not hold two states
   if (is_large(size_of(state))) {
     try {
       return save(state);
     } catch (const FileError&) {
-      // The only copy of the state is now in memory.
+      // Continues, because a copy of the state is made in memory below.
     }
   }
   bytes = bytes_of(state);
@@ -74,7 +74,7 @@ ByteSource Checkpoints::source_of(std::size_t stage) const {
   return [&kept](ByteWriter& to) { to.raw(kept.bytes); };
 }
 
-/// state: of the stage that began last; null: the states that were kept.
+/// Saves the states of all stages. state: the present state of the stage that began last; null if keep() has it.
 void Checkpoints::save_all(const ByteSource* state) {
   if (!save_) return;
   std::vector<ByteSource> all;

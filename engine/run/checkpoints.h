@@ -11,47 +11,49 @@
 
 namespace poesy {
 
-/// The largest state, in bytes, of a finished stage that stays in memory if saved states can be read again.
+/// The largest size, in bytes, of a finished stage's state that is kept in memory. Larger states are read again from
+/// the checkpoint file, if that is possible (Fetch).
 inline constexpr std::size_t kMostStateInMemory = std::size_t{64} << 20U;
 
 /// Saves the state of a run from time to time, so that another run can continue it. A run merges finished work in a
-/// fixed order, so between two merges its accumulators are its whole state. A study may have several runs in sequence,
-/// its stages: each call of a run function (engine/run/fold.h) is one. A continued study goes through the same stages;
-/// finished ones have nothing left to solve. States are written directly from the accumulators; only small states of
-/// finished stages are also kept in memory.
+/// fixed order, so between two merges its accumulators are its whole state. A study may have several stages, one for
+/// each call of fold() (engine/run/fold.h). A continued study goes through the same stages; in a finished stage nothing
+/// is left to solve. A state is written directly from the accumulators. Memory keeps only small states of finished
+/// stages.
 class Checkpoints {
  public:
-  /// Whether it is time for another checkpoint.
+  /// A function that says whether it is time for another checkpoint.
   using Due = std::function<bool()>;
-  /// Saves the states of all stages, in order. Never called from two threads at once. Throws FileError and then leaves
-  /// the states that were saved before.
+  /// A function that saves the states of all stages, in order. It is never called from two threads at once. Throws
+  /// FileError; the states that were saved earlier are then still there.
   using Save = std::function<void(std::span<const ByteSource> stages)>;
-  /// Writes the last saved state of a stage. Throws FileError.
+  /// A function that writes the last saved state of a stage to `to`. Throws FileError.
   using Fetch = std::function<void(std::size_t stage, ByteWriter& to)>;
 
-  /// Saves nothing: for a run that will not be continued.
+  /// Checkpoints that are never saved, for a run that will not be continued.
   Checkpoints() = default;
-  /// stages: the states of an earlier run; empty for a new run. fetch: if given, it returns these states before the
-  /// first save, and states above most_in_memory are not kept in memory.
+  /// stages: the states of an earlier run; empty for a new run. fetch: if given, it returns these states until the
+  /// first save, and states of more than most_in_memory bytes are not kept in memory.
   Checkpoints(Due due, Save save, std::vector<Bytes> stages = {}, Fetch fetch = {},
               std::size_t most_in_memory = kMostStateInMemory);
 
   /// Begins the next stage. Returns the state to restore; empty for a stage that starts afresh.
   Bytes begin();
-  /// Called after a merge: writes a checkpoint if one is due. state: of the stage that began last, as in all functions
-  /// below.
+  /// Called after a merge: writes a checkpoint if one is due. state: the state of the stage that began last, here and
+  /// in the functions below.
   void merged(const ByteSource& state) {
     if (due_ && due_()) save(state);
   }
-  /// Ends the stage or a round of it, complete or stopped. solves: of all parts of the run.
+  /// Ends the stage or one of its rounds, complete or stopped. solves: all solves of the run, including those of the
+  /// earlier run that it continues.
   void end(bool complete, const SolveCounts& solves);
   /// Keeps the final state of the stage: a small one in memory, a large one in a checkpoint that is written now. If the
-  /// checkpoint finds no room, the state stays in memory, because the result may be smaller.
+  /// disk has no room for the checkpoint, the state stays in memory, because the result may be smaller.
   void keep(const ByteSource& state);
-  /// The run was stopped in work that follows its stages and has no state; writes a checkpoint.
+  /// Writes a checkpoint after the run was stopped in work that follows its stages and has no state.
   void stopped_after_stages();
 
-  /// Whether all stages that began are complete, and nothing after them was stopped.
+  /// Returns true if all stages that began are complete, and the work after them was not stopped.
   bool complete() const;
   /// The solves of the stages that have ended.
   SolveCounts solves() const;
@@ -60,7 +62,7 @@ class Checkpoints {
 
   /// Writes a checkpoint with this state now.
   void save(const ByteSource& state);
-  /// Writes a checkpoint of the states that were kept, unless the last one has them all and can be read.
+  /// Writes a checkpoint of the states that were kept, unless the last checkpoint has all of them and can be read.
   void save();
 
  private:
@@ -68,10 +70,10 @@ class Checkpoints {
     bool complete = false;
     SolveCounts solves;
   };
-  /// The state of a stage: these bytes, or the result of fetch_ if there are none.
+  /// The state of a stage: the bytes in this object, or, if there are none, what fetch_ returns.
   struct Kept {
     Bytes bytes;
-    bool is_saved = false;  ///< whether fetch_ returns this state or an earlier one
+    bool is_saved = false;  ///< true if fetch_ returns this state or an earlier state of the stage
   };
 
   bool is_large(std::size_t bytes) const { return fetch_ && bytes > most_in_memory_; }
@@ -82,20 +84,20 @@ class Checkpoints {
   Save save_;
   Fetch fetch_;
   std::size_t most_in_memory_ = kMostStateInMemory;
-  std::vector<Kept> stages_;  ///< stages that began, followed by those of the earlier run
+  std::vector<Kept> stages_;  ///< stages that began, followed by stages of the earlier run that have not begun yet
   std::size_t begun_ = 0;
   std::vector<End> ends_;  ///< ends of the finished stages
   bool stopped_ = false;
-  bool is_saved_ = false;  ///< whether fetch_ returns every present state
+  bool is_saved_ = false;  ///< true if fetch_ returns the present state of every stage
 };
 
-/// Connects one stage with the checkpoints and the other ranks, if there are any.
+/// Connects one stage of a study with the checkpoints and with the other ranks, if there are any.
 class Stage {
  public:
-  /// Either argument may be null.
+  /// checkpoints, team: may be null.
   Stage(Checkpoints* checkpoints, Team* team) : checkpoints_(checkpoints), team_(team) {}
 
-  /// Calls restore(state) if there is a state to restore, which comes from the checkpoint of rank 0.
+  /// Calls restore(state) if the checkpoint of rank 0 has a state for this stage.
   template <class Restore>
   void begin(const Restore& restore) {
     Bytes state;
@@ -109,8 +111,9 @@ class Stage {
     if (checkpoints_ != nullptr) checkpoints_->merged(state);
   }
 
-  /// Ends the stage or a round of it. If it was stopped, a checkpoint is written. solves(): the solves of all parts of
-  /// the run. If it is complete, the ranks after rank 0 take its state: restore(state) is called on them.
+  /// Ends the stage or one of its rounds. If it was stopped, a checkpoint is written. If it is complete, all other
+  /// ranks take the state of rank 0 by restore(state). solves(): all solves of the run, including those of the earlier
+  /// run that it continues.
   template <class Solves, class Restore>
   void end(bool complete, const Solves& solves, const ByteSource& state, const Restore& restore) {
     const bool follows = team_ != nullptr && !team_->leads();
@@ -118,12 +121,12 @@ class Stage {
     if (checkpoints_ != nullptr) checkpoints_->end(complete, solves());
     if (follows) return;
     if (checkpoints_ != nullptr && complete) checkpoints_->keep(state);
-    // Before the other ranks are told, because a stopped process may have little time left.
+    // Saved before the other ranks are told, because a stopped process may have little time left.
     if (checkpoints_ != nullptr && !complete) checkpoints_->save(state);
     if (team_ != nullptr) team_->end(complete, complete ? bytes_of(state) : Bytes());
   }
 
-  /// Begins another round of the stage, from the final state of the one before.
+  /// Begins another round of the stage, from the final state of the previous round.
   void next_round() {
     if (team_ != nullptr) static_cast<void>(team_->begin({}));
   }

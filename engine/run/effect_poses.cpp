@@ -7,14 +7,15 @@
 namespace poesy {
 namespace {
 
-/// The approximate largest size of all sums of main effects.
+/// The approximate upper limit on the size of all sums of main effects, in bytes.
 constexpr std::size_t kMostBytes = std::size_t{2} << 20U;
 
 }  // namespace
 
 std::vector<PoseIndex> effect_poses(std::size_t poses, std::size_t responses, std::size_t errors) {
   const std::size_t bytes = 2 * sizeof(double) * kEffectBins * std::max<std::size_t>(1, responses * errors);
-  const std::size_t fit = std::max<std::size_t>(kMostBytes / bytes, 3) - 2;  // machines have two more sums
+  // Minus 2, because a study of machines has two further sums.
+  const std::size_t fit = std::max<std::size_t>(kMostBytes / bytes, 3) - 2;
   const std::size_t count = std::min({poses, kMostEffectPoses, fit});
   std::vector<PoseIndex> list;
   for (std::size_t n = 0; n < count; ++n) list.emplace_back(n * poses / count);

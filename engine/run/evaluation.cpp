@@ -13,10 +13,10 @@
 namespace poesy {
 namespace {
 
-/// The number of rows that are solved together at one pose.
+/// The number of rows of the error table that are solved together at one pose.
 constexpr std::size_t kBlockRows = 256;
 
-/// How the solves in [first, end) ended, where solves are numbered pose by pose.
+/// How the solves with numbers in [first, end) ended. Solves are numbered pose by pose.
 SolveCounts solves_of(const EvaluationResult& result, std::size_t first, std::size_t end) {
   SolveCounts solves;
   for (std::size_t n = first; n < end; ++n) solves.add(result.status.all()[n], result.iterations.all()[n]);
@@ -40,8 +40,9 @@ EvaluationResult empty_evaluation(const Model& model, const PoseSet& poses, std:
   return result;
 }
 
-/// Divides the outcomes of a result into consecutive blocks, pose by pose: a block has a number of samples at one pose,
-/// or those that remain there. Threads write outcomes in place, so nothing is merged.
+/// Divides the outcomes of a result into consecutive blocks, pose by pose: a block has kBlockRows samples at one pose,
+/// or the remaining samples at this pose if there are fewer. Threads write outcomes into the result directly, so there
+/// is nothing to merge.
 struct OutcomeBlocks {
   EvaluationResult* result = nullptr;
 
@@ -67,7 +68,7 @@ struct OutcomeBlocks {
   }
 };
 
-/// The job of UnitFold, whose units are blocks of rows of an error table, pose by pose.
+/// A job for UnitFold that solves an error table. Its units are blocks of rows of the table, pose by pose.
 struct TableJob {
   const Model& model;
   const SolverOptions& solver;
@@ -101,7 +102,7 @@ struct TableJob {
   }
   OutcomeBlocks sums() const { return {&result}; }
 
-  // Used by a worker.
+  // Called by the worker of one thread.
 
   OutcomeBlocks solve(Scratch& scratch, std::size_t n) const {
     const std::size_t pose = n / sums().per_pose();
@@ -117,7 +118,7 @@ struct TableJob {
     scatter(scratch, pose, first, count);
     return sums();
   }
-  /// Copies rows of the table, error by error.
+  /// Copies rows of the error table, error by error.
   void take_rows(std::size_t first, std::size_t count, std::vector<double>& values) const {
     const std::size_t varied = errors.factors.size();
     values.resize(varied * count);
@@ -141,11 +142,12 @@ struct TableJob {
   }
 };
 
-/// One row as a limit judges it.
+/// How one row of errors compares with one limit.
 struct JudgedRow {
   bool within = false;
-  double value = kNaN;                             ///< number that is judged, of the poses that count; NaN without any
-  std::optional<std::size_t> pose = std::nullopt;  ///< its pose, if it belongs to one
+  /// Number that is compared with the limit, from the poses whose solves count (counts()); NaN without such a pose.
+  double value = kNaN;
+  std::optional<std::size_t> pose = std::nullopt;  ///< pose of this number, if the number belongs to one pose
 };
 
 JudgedRow judge_row(const ResponseLimit& limit, const EvaluationResult& found, Pairing pairing, NotConverged policy,

@@ -18,39 +18,41 @@ namespace poesy {
 /// How poses and rows of errors are paired.
 enum class Pairing {
   every_pose_with_every_row,
-  row_by_row  ///< pose m with row m; there must be as many poses as rows
+  row_by_row  ///< pose m is paired with row m; there must be as many poses as rows
 };
 
 /// Which outputs of the model are kept.
 enum class Outcomes {
   with_details,  ///< all outputs
-  responses      ///< all except details, which take most of the memory
+  responses      ///< all outputs except the additional ones (Detail), which take most of the memory
 };
 
-/// The outcomes of a table of errors at each pose, SI. If rows are paired with poses, a pose has one sample.
+/// The outcomes of a table of errors at each pose, SI. A sample is a row of the table. With Pairing::row_by_row, each
+/// pose has one sample.
 struct EvaluationResult {
   Array<double, axis::Response, axis::Pose, axis::Sample> response;  ///< responses of the model
-  Array<double, axis::Pose, axis::Sample, axis::Component> detail;   ///< components of all details
-  Array<SolveStatus, axis::Pose, axis::Sample> status;               ///< how each solve ended
-  Array<std::uint32_t, axis::Pose, axis::Sample> iterations;         ///< iterations of each solve
-  Array<double, axis::Pose, axis::Joint> joint_displacement;  ///< displacements of the joints of the perfect mechanism
+  /// Components of the model's additional outputs (Detail in model/model.h).
+  Array<double, axis::Pose, axis::Sample, axis::Component> detail;
+  Array<SolveStatus, axis::Pose, axis::Sample> status;        ///< how each solve ended
+  Array<std::uint32_t, axis::Pose, axis::Sample> iterations;  ///< iterations of each solve
+  Array<double, axis::Pose, axis::Joint> joint_displacement;  ///< nominal displacements of the joints
   std::optional<LimitVerdicts> verdicts;                      ///< set if the study states limits
 
   std::size_t poses() const { return status.length<axis::Pose>(); }            ///< The number of poses.
   std::size_t samples() const { return status.length<axis::Sample>(); }        ///< The number of samples at each pose.
   std::size_t responses() const { return response.length<axis::Response>(); }  ///< The number of responses.
-  /// The solves at all poses.
+  /// How the solves at all poses ended.
   SolveCounts total() const;
 };
 
-/// Solves every pair of a pose and a row that is wanted. Empty when stopped.
+/// Solves every pair of a pose and a row of errors that `pairing` asks for. Empty when stopped.
 std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverOptions& solver, const PoseSet& poses,
                                                const ErrorTable& errors, Pairing pairing, const RunOptions& options,
                                                Outcomes outcomes = Outcomes::with_details);
 
-/// Judges limits by an evaluation, row by row. A row (a case) is a machine: it is within a limit if the number by which
-/// it is judged is (ValueLimit::deciding), and if each of its solves counts (see counts()). A limit is kept if every
-/// row is within it. Precondition: no limit is over poses if rows are paired with them.
+/// Judges limits by an evaluation, row by row. A row of errors (a case) is a machine. It is within a limit if its
+/// deciding number (ValueLimit::deciding) is, and if each of its solves counts (see counts()). A limit is kept if every
+/// row is within it. Precondition: if rows are paired with poses, no limit is on several poses together.
 LimitVerdicts judge_rows(std::span<const ResponseLimit> limits, const EvaluationResult& found, Pairing pairing,
                          NotConverged policy);
 

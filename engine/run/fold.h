@@ -18,10 +18,10 @@
 
 namespace poesy {
 
-/// Calls work(worker, n) for n = 0 .. count - 1 on a pool of threads, each with its own worker, and finish(n, output)
-/// in the order of n. At any time a few outputs per thread are in progress. Returns false when stopped. With a team,
-/// work is done on all ranks, and finish is called only on rank 0 (run_over_ranks); state(archive, n, output) writes an
-/// output, and reads it into an empty one on rank 0.
+/// Calls work(worker, n) for n = 0 .. count - 1 on a pool of threads, where each thread has its own worker. Calls
+/// finish(n, output) in the order of n. At any time a few outputs per thread are in progress. Returns false when
+/// stopped. With a team, work is done on all ranks, and finish is called only on rank 0 (run_over_ranks);
+/// state(archive, n, output) writes an output on another rank, and reads it into an empty output on rank 0.
 template <class MakeWorker, class Work, class Finish, class State>
 bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_worker, Work work, Finish finish,
                   State state) {
@@ -38,7 +38,8 @@ bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_
   return alone ? run_alone(count, options, in_slots) : run_over_ranks(count, options, in_slots);
 }
 
-/// Reads or writes the beginning of a state: the name of its job, and sizes. Throws BytesError if others are read.
+/// Reads or writes the beginning of a state: the name of the job to which it belongs, and sizes. Throws BytesError if
+/// the state that is read has another name or another size.
 inline void head_state(Archive& archive, std::string_view name, std::span<const std::uint64_t> sizes) {
   constexpr const char* kOther = "is the state of another kind or size of study";
   std::string read(name);
@@ -47,10 +48,11 @@ inline void head_state(Archive& archive, std::string_view name, std::span<const 
   for (const std::uint64_t size : sizes) archive.known(size, kOther);
 }
 
-/// Does the work of one stage of a study and merges its pieces in order, on all threads and ranks. It starts from the
-/// checkpoint's state, and makes as many rounds as the stage wants. The accumulator has the same bits for any number of
-/// threads and ranks, also on the ranks after rank 0, and whether or not the stage was continued from a checkpoint.
-/// Returns false when stopped. Work is the stage's accumulator, and has:
+/// Does the work of one stage of a study, on all threads and ranks. The stage is divided into pieces, which are merged
+/// in order into `work`, the accumulator of the stage. It begins with the state of the checkpoint, if there is one, and
+/// makes as many rounds as `work` asks for. The accumulator has the same bits on all ranks, for any number of threads
+/// and ranks, and whether or not the stage was continued from a checkpoint. Returns false when stopped. The type Work
+/// has these functions:
 ///
 ///     std::size_t begin_round()              numbers the round's pieces of work 0 .. count - 1, and gives count
 ///     Worker worker() const                  solves pieces, and owns the scratch of one thread
@@ -59,10 +61,11 @@ inline void head_state(Archive& archive, std::string_view name, std::span<const 
 ///     SolveCounts merge(std::size_t n, Piece&&)   adds the n-th piece, in order; returns how its solves ended
 ///     SolveCounts solved() const             solves of all merged pieces, including those of earlier runs
 ///     std::uint64_t left() const             solves that are still expected in this round
-///     void state(Archive&)                   writes everything merged so far, or reads it in place of the present
-///     state bool next_round()                      ends the round; returns whether another one follows
+///     void state(Archive&)                   writes everything merged so far, or replaces it by what it reads
+///     bool next_round()                      ends the round; returns whether another one follows
 ///
-/// UnitFold and PoseFold implement all of it except what a kind of study solves and sums.
+/// UnitFold and PoseFold implement this for all kinds of studies. A kind only adds what a piece solves, and how its
+/// results are summed.
 template <class Work>
 bool fold(Work& work, const RunOptions& options) {
   const auto restore = [&](std::span<const std::byte> bytes) {

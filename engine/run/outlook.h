@@ -17,35 +17,41 @@
 
 namespace poesy {
 
-/// The peak memory of a run while it writes its result, without the program itself; bytes.
+/// The contributions, in bytes, to the memory that a run takes at its peak, while it writes its result. The program
+/// itself is not included.
 struct MemoryOutlook {
-  std::size_t accumulators = 0;  ///< accumulators that still exist when the result is computed
-  std::size_t state = 0;         ///< the state in a checkpoint; at the end a large one is only on disk
-  std::size_t result = 0;        ///< the numbers of the result
-  std::size_t file = 0;          ///< the result file, which is composed on disk
+  std::size_t accumulators = 0;  ///< the accumulators, which still exist when the result is computed
+  /// The state in a checkpoint; at the end of a run, a state above kMostStateInMemory is only on disk.
+  std::size_t state = 0;
+  std::size_t result = 0;  ///< the numbers of the result
+  std::size_t file = 0;    ///< the result file, which is composed on disk
 
-  std::size_t peak() const {  ///< The sum of all parts.
+  std::size_t peak() const {  ///< The peak: the sum of the parts that are in memory.
     return accumulators + (state <= kMostStateInMemory ? state : 0) + result;
   }
 };
 
-/// Work of a study that can be done in pieces, to measure how fast a machine does it.
+/// Work of a study in pieces. A few pieces are done to measure how long the whole work takes.
 struct WorkOutlook {
-  /// Does the piece that begins at this share of the work, 0 <= at < 1, on this thread. Returns its share of the work.
+  /// Does the piece that begins at the share `at` of the work, 0 <= at < 1, on the calling thread. Returns the piece's
+  /// share of the work.
   std::function<double(double at)> do_piece;
-  double times = 1.0;  ///< how often the study does this work
+  double times = 1.0;  ///< number of times that the study does this work
   /// Called once before the first piece; its time does not count. May be empty.
   std::function<void()> prepare = {};
 };
 
-/// The expected cost of a study. Refers to the study, the model and the poses.
+/// The expected cost of a study: solves, memory and kinds of work. Refers to the study, the model and the poses.
 struct Outlook {
-  std::string solves;               ///< their number, and the product from which it results
-  MemoryOutlook memory;             ///< memory in addition to that of the program
-  std::vector<WorkOutlook> shared;  ///< work of all threads: the solves
-  std::vector<WorkOutlook> by_one;  ///< work of only one thread: separating errors
-  double least = 1.0;               ///< share of the solves that are made in any case
-  /// Work that one thread at a time does while the others solve: merging the outcomes.
+  std::string solves;               ///< text: the number of solves, and the product from which it results
+  MemoryOutlook memory;             ///< memory in addition to that of the program itself
+  std::vector<WorkOutlook> shared;  ///< work that all threads share: the solves
+  /// Work that only one thread does, such as separating errors or reading saved states.
+  std::vector<WorkOutlook> by_one;
+  /// With adaptive samples: the least number of solves, as a share of the largest number. 1 if the number of samples is
+  /// fixed.
+  double least = 1.0;
+  /// Work that one thread at a time does while the other threads solve: merging the outcomes.
   std::vector<WorkOutlook> merging = {};
 };
 
@@ -55,11 +61,13 @@ struct WorkSeconds {
   double merging = 0.0;  ///< work of one thread at a time
   double by_one = 0.0;   ///< work of one thread, afterwards
 
-  /// Seconds with this many threads, each of which merges in turn. share: the share of the solves that are made.
+  /// Seconds of the whole study with this many threads, which merge one at a time. share: the share of the solves that
+  /// are made.
   double on(std::size_t threads, double share = 1.0) const;
 };
 
-/// Bytes of a number in a state (base/bytes.h): whole numbers up to two million take at most three.
+/// Bytes in a state (base/bytes.h) of a whole number, of moments, and of counts of solves. Whole numbers up to two
+/// million take at most three bytes.
 /// @{
 inline constexpr std::size_t kWholeNumber = 3;
 inline constexpr std::size_t kStoredMoments = kWholeNumber + 4 * sizeof(double);
@@ -68,24 +76,24 @@ inline constexpr std::size_t kStoredSolves = (kStatusNames.size() + 2) * kWholeN
 /// Bytes of a cell in /solver: failures, mean and largest number of iterations, samples by status.
 inline constexpr std::size_t kSolverColumns = (2 + kStatusNames.size()) * sizeof(double) + sizeof(std::uint32_t);
 
-/// The memory of `count` such items.
+/// The memory of `count` items, each of which takes `each`.
 MemoryOutlook times(std::size_t count, const MemoryOutlook& each);
 /// Bytes of the outcomes of one row of errors at one pose.
 std::size_t outcome_bytes(const ModelDescription& model, Outcomes outcomes);
 
-/// A factor in the text of a product: "3 errors x ".
+/// A number of things as text, to be a factor of a product: "3 errors x ".
 std::string counted_things(std::size_t count, std::string_view things);
-/// The number of samples at each pose; for adaptive ones its range, "1000 to 100000".
+/// The number of samples at each pose as text; for adaptive samples a range, such as "1000 to 100000".
 std::string samples_text(const Plan& plan);
-/// The number of solves: "at least 3000 and at most 300000 solves".
+/// The number of solves as text, such as "at least 3000 and at most 300000 solves".
 std::string solves_text(const Plan& plan, std::size_t fidelities);
-/// The least share of the plan's solves that adaptive samples make.
+/// The least number of solves with adaptive samples, as a share of the largest number.
 double least_share(const Plan& plan);
 
-/// A pointer to a model with another owner.
+/// A shared pointer to a model that it does not own.
 inline std::shared_ptr<const Model> borrowed(const Model& model) { return {std::shared_ptr<const Model>(), &model}; }
 
-/// The work of all draws of the plan; a piece is a few samples of one unit.
+/// The work of solving all draws of the plan. A piece of it is a few samples of one unit.
 template <class SolveUnit>
 WorkOutlook sampling(const std::shared_ptr<const Plan>& plan, const std::shared_ptr<const Model>& model, double times) {
   struct Sampler {
@@ -103,7 +111,8 @@ WorkOutlook sampling(const std::shared_ptr<const Plan>& plan, const std::shared_
           times};
 }
 
-/// The work of a study that solves tables of errors. run_poses(poses) does it for some of its poses.
+/// The work of a study that solves a table of errors at each pose. run_poses(poses) does this work for some of the
+/// study's poses.
 template <class RunPoses>
 WorkOutlook table_work(const PoseSet& poses, RunPoses run_poses) {
   return {[&poses, run_poses](double at) {
@@ -119,7 +128,7 @@ WorkOutlook table_work(const PoseSet& poses, RunPoses run_poses) {
   }};
 }
 
-/// The same for every pose with every row of errors.
+/// The work of solving every row of an error table at every pose.
 WorkOutlook table_work(const Study& study, const Model& model, const PoseSet& poses, ErrorTable table,
                        Outcomes outcomes);
 

@@ -9,22 +9,23 @@
 
 namespace poesy {
 
-/// One sample, solved again.
+/// One sample that was solved again, with its errors and responses.
 struct ReplayedSample {
-  std::vector<FactorIndex> varied;  ///< errors that the study varies together; the others have the background's value
-  std::vector<double> values;       ///< [varied], SI
-  std::vector<double> errors;       ///< [F] all errors of the sample, SI
-  std::vector<double> responses;    ///< [R], SI; the last iterate where not converged
-  SolveStatus status = SolveStatus::converged;  ///< status in the run's own solver
-  std::uint32_t iterations = 0;                 ///< iterations of the run's own solver
+  /// Errors that the study varies together; other errors have the value of the background.
+  std::vector<FactorIndex> varied;
+  std::vector<double> values;                   ///< [varied] values of these errors, SI
+  std::vector<double> errors;                   ///< [F] all errors of the sample, SI
+  std::vector<double> responses;                ///< [R] SI; those of the last iterate if the solve did not converge
+  SolveStatus status = SolveStatus::converged;  ///< status of the solver that the run used
+  std::uint32_t iterations = 0;                 ///< iterations of the solver that the run used
 };
 
-/// Draws and solves the sample of this address, with the same bits as in a run of the study. slot: see Failure.
-/// Precondition: a sensitivity or Monte Carlo study, and a model that reaches the pose.
+/// Draws and solves the sample with this address again. The result has the same bits as in a run of the study. slot:
+/// see Failure. Precondition: a sensitivity or Monte Carlo study, and a model that reaches the pose.
 ReplayedSample replay_sample(const Study& study, const Model& model, const PoseSet& poses, std::size_t slot,
                              PoseIndex pose, SampleIndex sample);
 
-/// Solves one row of an error table at a pose of a list, with the same bits as run_evaluation().
+/// Solves one row of an error table at one of the poses, with the same bits as run_evaluation().
 ReplayedSample replay_row(const SolverOptions& solver, const Model& model, const PoseSet& poses, PoseIndex pose,
                           const ErrorTable& row);
 

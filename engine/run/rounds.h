@@ -19,53 +19,55 @@ namespace poesy {
 /// The numbers 0 .. count - 1.
 std::vector<std::size_t> all_positions(std::size_t count);
 
-/// The least number of samples at each pose of every slot.
+/// The least number of samples of every slot at each pose.
 std::size_t least_samples(const Plan& plan);
 
 /// The rounds of a sampled study. A fixed number of samples takes a single round. Adaptive samples take a round for
-/// each milestone (engine/study/plan.h), in which every slot that goes on gets the milestone's samples at all poses,
-/// and perhaps a last one up to Plan::samples(). A slot ends at the first milestone at which each deciding response is
-/// reached: half-width <= relative_error x |quantity|, see ConvergenceResult. Decisions depend only on the samples up
-/// to the milestone, so they are the same on any machine.
+/// each milestone (engine/study/plan.h), and one more if Plan::samples() is above the last milestone. In a round, every
+/// slot that has not ended gets the milestone's samples at all poses. A slot ends at the first milestone at which the
+/// quantity of each deciding response is known well enough: half-width <= relative_error x |quantity|, see
+/// ConvergenceResult. Decisions depend only on the samples up to the milestone, so they are the same on any machine.
 class Rounds {
  public:
-  /// The rule that decides whether a slot goes on.
+  /// The rule that decides whether a slot continues.
   struct Rule {
-    std::size_t responses;              ///< R
-    std::vector<std::size_t> deciding;  ///< positions among the responses
-    double conf_level;                  ///< level of the intervals
-    std::vector<double> rounding;       ///< [R x P] a quantity of a smaller magnitude counts as reached
+    std::size_t responses;              ///< number of responses, R
+    std::vector<std::size_t> deciding;  ///< positions of the responses that decide
+    double conf_level;                  ///< level of the intervals of estimates
+    /// [R x P] Magnitude of rounding; a quantity below it counts as known well enough.
+    std::vector<double> rounding;
   };
 
-  /// Refers to the plan. Begins with the first round.
+  /// Begins the first round. Refers to the plan.
   Rounds(const Plan& plan, Rule rule);
 
-  /// The samples at each pose of the slot at the end of this round.
+  /// The number of samples of the slot at each pose at the end of this round.
   std::size_t samples(std::size_t slot) const { return samples_[slot]; }
-  /// The units of each cell of the slot in this round.
+  /// The number of units of each cell of the slot at the end of this round.
   std::size_t units(std::size_t slot) const;
-  /// Whether a cell of this slot may have this many units in this round.
+  /// Returns true if a cell of this slot may have this many units in this round.
   bool may_hold(std::size_t slot, std::size_t units) const;
-  /// The solves of the whole study that are expected from the half-widths so far, which fall with the root of the
-  /// number of samples. At least those of this round; before the first decision the largest possible number.
+  /// The expected number of solves of the whole study. It is computed from the half-widths so far, which decrease with
+  /// the square root of the number of samples. It is at least the number of solves of this round. Before the first
+  /// decision it is the largest possible number.
   std::uint64_t expected_solves() const;
-  /// The solves that are expected after those that were done; for a fixed number of samples the pending ones.
+  /// The expected number of further solves; with a fixed number of samples it is `pending`.
   std::uint64_t expected_left(const SolveCounts& done, std::uint64_t pending) const {
     return adaptive_ ? expected_solves() - done.total() : pending;
   }
 
-  /// Ends the round. Returns whether another one follows, which then begins. estimates(slot): [R] quantities of the
-  /// slot.
+  /// Ends the round, and begins the next one if there is a slot that has not ended. Returns true if a round began.
+  /// estimates(slot): [R] quantities of the slot.
   bool go_on(const std::function<std::vector<Estimate>(std::size_t slot)>& estimates);
-  /// The convergence; empty for a fixed number of samples. Precondition: no round follows.
+  /// Tells how the sampling ended; empty for a fixed number of samples. Precondition: no round follows.
   std::optional<ConvergenceResult> result() const;
 
-  /// Reads or writes the decisions so far; nothing for a fixed number of samples. What is read may be of a plan that
-  /// differs only by fewer samples. Precondition of reading: this is the first round.
+  /// Reads or writes the decisions so far; nothing for a fixed number of samples. The state that is read may come from
+  /// the same plan with fewer samples. Precondition of reading: this is the first round.
   void state(Archive& archive);
 
  private:
-  /// Quantities and half-widths at a milestone, [R x P].
+  /// Quantities and half-widths at one milestone, [R x P].
   struct Row {
     std::vector<double> quantity;
     std::vector<double> half_width;
@@ -73,11 +75,11 @@ class Rounds {
 
   bool last_round() const { return rows_.size() == milestones_.size(); }
   std::size_t cell(std::size_t response, std::size_t slot) const { return response * samples_.size() + slot; }
-  /// The half-width over its limit.
+  /// The half-width of an estimate's interval divided by the largest half-width that ends the sampling.
   double excess(const Row& row, std::size_t cell) const;
   double largest_excess(const Row& row, std::size_t slot) const;
-  /// Ends the slots whose deciding responses are all reached, and begins the next round. Returns whether a slot goes
-  /// on.
+  /// Ends the slots whose deciding responses are all known well enough, and begins the next round. Returns true if a
+  /// slot has not ended.
   bool decide(Row row);
   std::size_t expected_samples(std::size_t slot) const;
   const Row& row_at_end(std::size_t slot) const;
@@ -89,14 +91,15 @@ class Rounds {
   std::vector<std::size_t> milestones_;  ///< milestones with a decision
   std::vector<Row> rows_;                ///< estimates of the rounds that have ended
   std::vector<std::size_t> samples_;     ///< [P] samples of each slot in this round
-  std::vector<bool> ended_;              ///< [P]
+  std::vector<bool> ended_;              ///< [P] true for each slot that has ended
 };
 
-/// The pending units of a plan, in its order: in each cell those after the units that are done, up to the wanted
-/// number.
+/// The pending units of a plan, in the order of the plan. The pending units of a cell are those after the units that
+/// are done, up to the wanted number.
 class PendingUnits {
  public:
-  /// done(cell), wanted(cell): numbers of units of the cell, at most units_per_cell(). Refers to the plan.
+  /// done(cell), wanted(cell): numbers of units of the cell that are done and wanted, at most units_per_cell(). Refers
+  /// to the plan.
   template <class Done, class Wanted>
   PendingUnits(const Plan& plan, const Done& done, const Wanted& wanted) : plan_(&plan) {
     std::size_t end = 0;
@@ -126,14 +129,15 @@ class PendingUnits {
   }
 
  private:
-  /// The end of a cell's pending units: their number in all cells up to this one, and the unit within the cell.
+  /// The end of a cell's pending units: the number of pending units in all cells up to this one, and the number of the
+  /// unit within the cell.
   struct End {
     std::size_t pending;
     std::size_t unit;
   };
 
   const Plan* plan_;
-  std::vector<End> ends_;  ///< [cells]
+  std::vector<End> ends_;  ///< [cells] end of each cell
   std::uint64_t samples_ = 0;
 };
 

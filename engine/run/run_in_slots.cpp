@@ -26,8 +26,9 @@ namespace tbb = oneapi::tbb;
 
 namespace handover {
 
-/// Tells ThreadSanitizer what oneTBB guarantees inside its library, which the sanitizer cannot see: everything before a
-/// publish happens before everything after a later receive. Does nothing in other builds.
+/// Tells ThreadSanitizer about an order of events that oneTBB guarantees and the sanitizer cannot see inside the
+/// library: everything before a publish() happens before everything after a later receive(). Does nothing in other
+/// builds.
 #ifdef POESY_THREAD_SANITIZER
 inline char place;
 inline void publish() { __tsan_release(&place); }
@@ -37,8 +38,8 @@ inline void publish() {}
 inline void receive() {}
 #endif
 
-/// The effects of one block are visible to each block that begins after its end. Used around objects of oneTBB, because
-/// their memory moves from thread to thread inside its allocator.
+/// The writes in one Block are visible to each Block that begins after its end. Used around objects of oneTBB, because
+/// their memory moves from thread to thread inside the allocator of oneTBB.
 class Block {
  public:
   Block() { receive(); }
@@ -47,7 +48,7 @@ class Block {
   Block& operator=(const Block&) = delete;
 };
 
-/// Its end comes after the end of every earlier block, by return or by exception.
+/// Its destructor, which runs on return or on an exception, comes after the end of every earlier Block.
 class Waiting {
  public:
   Waiting() = default;
@@ -63,12 +64,12 @@ class Task {
  public:
   /// The function is copied with the task.
   explicit Task(Function function) : function_(std::move(function)) {}
-  /// Copies run on other threads, where the writes of this thread must be visible.
+  /// A copy may run on another thread, where the writes of this thread must be visible.
   Task(const Task& other) : function_(other.function_) { publish(); }
   Task& operator=(const Task&) = delete;
   ~Task() = default;
 
-  /// Calls the function inside a block.
+  /// Calls the function while a Block exists.
   template <class... Arguments>
   decltype(auto) operator()(Arguments&&... arguments) const {
     const Block block;
@@ -81,7 +82,7 @@ class Task {
 
 }  // namespace handover
 
-/// oneTBB with this many threads.
+/// An arena of oneTBB with this many threads.
 struct Pool {
   explicit Pool(std::size_t threads)
       : limit(tbb::global_control::max_allowed_parallelism, threads),
@@ -93,7 +94,8 @@ struct Pool {
   tbb::task_arena arena;
 };
 
-/// Lets oneTBB start its threads now, while there is memory for them. It waits a short time until all have met.
+/// Makes oneTBB start its threads now, while there is memory for them. Waits until all threads have started, for at
+/// most 20 ms.
 #ifdef POESY_THREAD_SANITIZER
 // The sanitizer does not see the order of the tasks of parallel_for, whose nodes are on this thread's stack.
 void start_workers(std::size_t /*threads*/) {}
@@ -155,7 +157,8 @@ void run_in_slots(const TicketSource& source, const RunOptions& options, const s
 }
 
 bool run_alone(std::size_t count, const RunOptions& options, const SlotWork& work) {
-  // The pipeline finishes in order, with at most this many numbers in progress, so no two of them share a slot.
+  // The pipeline finishes in order, and at most `slots` units are in progress. So no two units in progress share a
+  // slot.
   const std::size_t slots = pool_slots(options);
   std::size_t next = 0;
   std::size_t finished = 0;

@@ -10,22 +10,22 @@ struct NumberRange {
   std::size_t first;  ///< first number
   std::size_t end;    ///< one past the last number
 
-  /// Whether this number is in the range.
+  /// Returns true if this number is in the range.
   bool holds(std::size_t number) const { return number >= first && number < end; }
 };
 
-/// One of several shards into which a study is divided. In every run of the study, each shard takes consecutive cells,
-/// or blocks if there are no cells, in order and as evenly as possible.
+/// One of several shards into which a study is divided. A shard takes consecutive cells of the plan. If the study has
+/// no cells, it takes consecutive blocks of machines or of rows. All shards are as equal in size as possible.
 struct Shard {
   std::size_t index = 0;  ///< number of the shard, from 0
   std::size_t count = 1;  ///< number of all shards
 
-  /// The shard's part of 0 .. all - 1. The parts of all shards follow each other without gap.
+  /// The numbers among 0 .. all - 1 that belong to this shard. The ranges of all shards follow each other without gap.
   NumberRange of(std::size_t all) const { return {begin(index, all), begin(index + 1, all)}; }
 
  private:
   std::size_t begin(std::size_t shard, std::size_t all) const {
-    // Equal to all * shard / count, which could overflow.
+    // Equal to all * shard / count, but without overflow.
     return all / count * shard + all % count * shard / count;
   }
 };

@@ -14,7 +14,7 @@
 namespace poesy {
 namespace {
 
-/// Threads that wait until this object is destroyed.
+/// A number of threads that do nothing until this object is destroyed.
 class WaitingThreads {
  public:
   explicit WaitingThreads(std::size_t count) {
@@ -37,7 +37,7 @@ class WaitingThreads {
     for (const pthread_t thread : threads_) ::pthread_join(thread, nullptr);
   }
 
-  /// 0, or the errno that explains why there are fewer.
+  /// 0 if all threads were created; otherwise the errno that says why not.
   int reason() const { return reason_; }
 
  private:
@@ -55,7 +55,7 @@ class WaitingThreads {
   std::atomic<bool> over_{false};
 };
 
-/// 0, or the errno that explains why this many threads cannot exist at once.
+/// 0 if this many threads can exist at once; otherwise the errno that says why not.
 int problem_of(std::size_t threads) {
   constexpr std::size_t kRoom = std::size_t{2} << 20U;
   constexpr std::size_t kRoomOfThread = std::size_t{1} << 18U;

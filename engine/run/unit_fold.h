@@ -14,14 +14,15 @@
 
 namespace poesy {
 
-/// Jobs whose units are samples, so that rounds may add units, and a longer study can continue a shorter one.
+/// Jobs whose units are blocks of samples. In such jobs rounds may add units, and a longer study can continue a shorter
+/// one.
 template <class Job>
 concept SampledUnits = requires(const Job& job) {
   job.rounds();
 };
 
 /// The work of fold() for a sequence of units, which are solved on any thread and merged in order. UnitFold manages the
-/// pending units, shards, and states. A job provides the rest:
+/// pending units, shards, and states. A job is a type with everything else:
 ///
 ///     static constexpr std::string_view kName       name of its states, unique among all jobs
 ///     std::vector<std::uint64_t> sizes() const      sizes that a state must have to be read
@@ -33,8 +34,8 @@ concept SampledUnits = requires(const Job& job) {
 ///     Sums sums() const                             empty sums
 ///
 /// The sums have add(std::size_t n, Unit&&), which adds the next unit, and state(Archive&, const NumberRange& units),
-/// which writes the sums of these units, or reads and adds them. Units may be Sums themselves: then a state is read
-/// like a unit, and added. A job of samples also has:
+/// which writes the sums of these units, or reads and adds them. A unit may have the type Sums: then a state is read
+/// like a unit, and added. A job whose units are samples also has:
 ///
 ///     Rounds rounds() const                         the rounds at their beginning
 ///     std::size_t samples() const                   samples of the whole study
@@ -42,15 +43,15 @@ concept SampledUnits = requires(const Job& job) {
 ///     bool is_whole(std::size_t n) const            whether unit n is as large as in any longer study
 ///     std::vector<Estimate> estimates(const Sums&, const Unit* last) const   estimates that decide after a round
 ///
-/// A last unit that is not whole is kept apart until the end, so that a longer study can continue without it.
+/// If the last unit is not whole, its sums are separate until the end. A longer study continues without that unit.
 template <class Job>
 class UnitFold {
  public:
-  using Sums = decltype(std::declval<const Job&>().sums());      ///< The sums to which units are added.
-  using Worker = decltype(std::declval<const Job&>().worker());  ///< The worker of one thread.
-  using Unit = std::invoke_result_t<Worker&, std::size_t>;       ///< The output of a unit.
+  using Sums = decltype(std::declval<const Job&>().sums());      ///< The type of the sums to which units are added.
+  using Worker = decltype(std::declval<const Job&>().worker());  ///< The type of the worker of one thread.
+  using Unit = std::invoke_result_t<Worker&, std::size_t>;       ///< The type of the output of a unit.
 
-  /// Folds the shard of the options, if they have one. Refers to the job.
+  /// Works on the shard of the options, if they have one. Refers to the job.
   UnitFold(const Job& job, const RunOptions& options)
       : job_(job), units_(job.units(options.shard.value_or(Shard()))), sums_(job.sums()) {
     clear();
@@ -111,7 +112,7 @@ class UnitFold {
     if (last_) sums_.add(next_ - 1, *std::exchange(last_, std::nullopt));
     return std::move(sums_);
   }
-  /// When the samples of the study ended; empty if their number was fixed. Precondition: no round follows.
+  /// Tells how the adaptive sampling ended; empty if the number of samples was fixed. Precondition: no round follows.
   std::optional<ConvergenceResult> convergence() const { return rounds_ ? rounds_->result() : std::nullopt; }
 
  private:
@@ -142,7 +143,8 @@ class UnitFold {
     }
   }
 
-  /// Reads or writes all units that were merged; in the states of several shards, those of one.
+  /// Reads or writes the sums of all units that were merged. When merged shards are read, each call reads the sums of
+  /// one shard.
   void part_state(Archive& archive) {
     head_state(archive, Job::kName, job_.sizes());
     NumberRange units{archive.reads() ? next_ : units_.first, last_ ? next_ - 1 : next_};
@@ -168,7 +170,8 @@ class UnitFold {
     }
     sums_.state(archive, units);
   }
-  /// Reads or writes a last unit that is not whole, because a longer study has another unit in its place.
+  /// Reads or writes the sums of a last unit that is not whole. They are separate, because in a longer study another
+  /// unit takes its place.
   void last_state(Archive& archive) {
     std::size_t samples = job_.samples();
     archive.number(samples, job_.samples());
@@ -195,7 +198,7 @@ class UnitFold {
   std::optional<Rounds> rounds_;
 };
 
-/// The sums of all units of a job. Empty when stopped, and for a shard.
+/// Solves all units of a job and returns their sums. Empty if the run was stopped, and for a shard.
 template <class Job>
 std::optional<typename UnitFold<Job>::Sums> fold_units(const Job& job, const RunOptions& options) {
   UnitFold work(job, options);

@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// The name without its number: "groups" for "groups[0]".
+/// The name of a list without an element's number: "groups" for "groups[0]".
 std::string_view without_number(std::string_view name) { return name.substr(0, name.find('[')); }
 
 bool stands_for_names(std::string_view name) {
@@ -21,7 +21,7 @@ bool stands_for_names(std::string_view name) {
 
 bool is_name_of_model(const StudyKey& key) { return stands_for_names(key.name); }
 
-/// Whether a path fits that of a described table, name by name.
+/// Returns true if a path matches the path of a described table, name by name. Placeholders match every name.
 bool fits(std::string_view described, std::string_view path) {
   const auto first_name = [](std::string_view rest) { return rest.substr(0, rest.find('.')); };
   const std::string_view pattern = first_name(described);
@@ -49,7 +49,7 @@ std::string as_sentence(std::string_view clause) {
 
 constexpr std::size_t kColumns = 120;
 
-/// A paragraph as comment lines; lines after the first are indented by two more columns.
+/// A paragraph as comment lines of TOML. Lines after the first are indented by two more columns.
 std::string paragraph(std::string_view text, std::size_t indent) {
   const std::size_t margin = indent + 2;
   std::string out;
@@ -59,7 +59,7 @@ std::string paragraph(std::string_view text, std::size_t indent) {
   return out;
 }
 
-/// The key, followed by its words with more indentation.
+/// The explanation of a key as comment lines, followed by the words that the key accepts, indented further.
 std::string key_lines(const StudyTable& table, const StudyKey& key, std::size_t depth) {
   std::string text = paragraph(fmt::format("{}: {}", key.name, explanation(table, key)), 2 * depth);
   for (const StudyWord& word : key.words) {
@@ -68,13 +68,14 @@ std::string key_lines(const StudyTable& table, const StudyKey& key, std::size_t 
   return text;
 }
 
-/// The default, in backquotes if it is a value; otherwise the example.
+/// The value that a template shows for a key. It is the default if that is a value (in backquotes), otherwise the
+/// example.
 std::string shown_value(const StudyKey& key) {
   if (!key.usual.starts_with('`')) return key.example;
   return key.usual.substr(1, key.usual.find('`', 1) - 1);
 }
 
-/// A text for a cell of a Markdown table, with its bars escaped.
+/// A text for a cell of a Markdown table, with vertical bars escaped.
 std::string cell(std::string_view text) {
   std::string out;
   for (const char character : text) out += character == '|' ? std::string("\\|") : std::string(1, character);
@@ -89,7 +90,7 @@ std::string heading(const StudyTable& table) {
   return fmt::format("`[{}]`", fmt::join(table.paths, "]`, `["));
 }
 
-/// The words of the chooser for which the key applies.
+/// Says, as Markdown, for which words of the table's chooser the key applies.
 std::string holds_text(const StudyKey& key) {
   if (key.only_for.empty()) return "all";
   return fmt::format("`{}`{}", fmt::join(key.only_for, "`, `"), key.may_stay ? "; else ignored" : "");
@@ -101,7 +102,7 @@ std::string row(const StudyKey& key, bool chosen) {
                      chosen ? fmt::format(" {} |", holds_text(key)) : "", cell(key.meaning));
 }
 
-/// The words of each key that has some.
+/// The words that each key accepts, as Markdown.
 std::string words_of(const StudyTable& table) {
   std::string text;
   for (const StudyKey& key : table.keys) {

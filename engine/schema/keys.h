@@ -11,91 +11,94 @@
 #include "engine/base/text.h"
 #include "engine/schema/keys_section.h"
 
-/// A key of a study file is one typed row: its name, the member that it sets, its bounds and its meaning. Reading, the
-/// resolved text, templates and the reference are made from the rows. A default is the value in a default-constructed
-/// object.
+/// A key of a file is described by one typed object (Key, a row of its table): its name, the member that it sets, its
+/// bounds and its meaning. Reading, the resolved text, templates and the reference all use these descriptions. A key's
+/// default is the value in a default-constructed object.
 
 namespace poesy {
 
 /// One of the words that a key accepts.
 struct StudyWord {
   std::string_view name;     ///< the word in a study file
-  std::string_view meaning;  ///< a clause
+  std::string_view meaning;  ///< what the word means, as a clause
 };
 
-/// The description of a key.
+/// The description of a key for messages, templates and the reference.
 struct StudyKey {
-  std::string_view name;                        ///< name; a placeholder for names of the model is in capitals: "FACTOR"
-  std::string type;                             ///< "integer", "length", "list of numbers", ...
-  std::string bounds = {};                      ///< "at least 1"; empty if the type has no further bounds
-  std::vector<StudyWord> words = {};            ///< the words that it accepts; empty if it accepts other values
-  bool required = false;                        ///< whether it is required where it applies
-  std::string missing = {};                     ///< advice if it is missing; empty: it is optional
-  std::string usual = {};                       ///< the default: a value in backquotes, or a clause that describes it
-  std::string example = {};                     ///< a TOML value that is not the default
-  std::vector<std::string_view> only_for = {};  ///< words of the table's chooser for which it applies; empty: all
-  bool may_stay = false;                        ///< whether it is ignored, instead of refused, where it does not apply
-  std::string_view meaning;                     ///< a sentence
+  std::string_view name;    ///< name of the key; a placeholder in capitals for names that the model gives: "FACTOR"
+  std::string type;         ///< type of its value: "integer", "length", "list of numbers", ...
+  std::string bounds = {};  ///< bounds of its value: "at least 1"; empty if the type has no further bounds
+  std::vector<StudyWord> words = {};  ///< words that the key accepts; empty if it accepts other values
+  bool required = false;              ///< true if the key is required where it applies
+  /// Advice to a user who leaves the key out; empty if its description does not require it.
+  std::string missing = {};
+  std::string usual = {};                       ///< default: a value in backquotes, or a clause that describes it
+  std::string example = {};                     ///< example of a value in TOML that is not the default
+  std::vector<std::string_view> only_for = {};  ///< words of the table's chooser for which the key applies; empty: all
+  bool may_stay = false;     ///< true if the key is ignored where it does not apply, false if it is refused there
+  std::string_view meaning;  ///< what the key means, as a sentence
 };
 
-/// The description of a table of a study file, or of several with the same keys.
+/// The description of a table of a study file, or of several tables with the same keys.
 struct StudyTable {
-  /// "analysis.cases", with '.' between names and without the numbers of lists; empty for the file itself.
-  /// "analysis.groups[]" is only an element of a list, because there may also be a table "analysis.groups".
+  /// Paths of the tables: "analysis.cases", with '.' between names and without the numbers of lists. The path of the
+  /// file itself is empty. "analysis.groups[]" means only the elements of a list, because there may also be a table
+  /// "analysis.groups".
   std::vector<std::string_view> paths;
-  std::string_view meaning;  ///< a sentence
-  std::string_view chooser =
-      {};  ///< the key whose word determines which other keys of this table apply; empty: all apply
+  std::string_view meaning;  ///< what the table is for, as a sentence
+  /// The key whose word determines which other keys of the table apply; empty: all apply.
+  std::string_view chooser = {};
   std::string_view owner = {};  ///< text for the chooser in messages: "select ="
   std::vector<StudyKey> keys;   ///< the keys, in the order in which they are listed
 
-  /// The key of this name; null if there is none. If several apply for different words of the chooser, the one for this
-  /// word, or the first.
+  /// The key of this name; null if there is none. Several keys may have the name, each for other words of the chooser.
+  /// Then the key for `word` is returned, or the first one if none is for `word`.
   const StudyKey* find(std::string_view key, std::string_view word = {}) const;
   std::vector<std::string_view> names() const;  ///< The names of the keys, in order.
-  bool has_names_of_model() const;              ///< Whether it has a placeholder for names of the model.
-  /// The text in messages for a key that does not apply for this word: `select = "grid"`.
+  bool has_names_of_model() const;  ///< Returns true if the table has a placeholder for names that the model gives.
+  /// The setting to which a key belongs, for messages that the key does not apply for this word: `select = "grid"`.
   std::string owner_of(std::string_view word) const;
-  /// The advice if the key is missing. Names from the model have the advice of their placeholder.
+  /// The advice for a user who leaves the key out. Names that the model gives have the advice of their placeholder.
   std::string remedy(std::string_view key) const;
 };
 
-/// The table at this path, in which names of the model may replace placeholders, and elements of lists have numbers:
-/// "errors.override.delta_1", "analysis.groups[0]". Null if there is none.
+/// The table at this path; null if there is none. In the path, names of the model may replace placeholders, and
+/// elements of lists have numbers: "errors.override.delta_1", "analysis.groups[0]".
 const StudyTable* find_table(const StudyTables& tables, std::string_view path);
 
-/// Whether the key applies for this word of the table's chooser.
+/// Returns true if the key applies for this word of the table's chooser.
 bool holds_for(std::span<const std::string_view> only_for, std::string_view word);
 
 /// The explanation of a key as plain text: its meaning and bounds, when it applies or is required, and its default.
 std::string explanation(const StudyTable& table, const StudyKey& key);
 
-/// The tables as Markdown, each with its keys and their words.
+/// The tables as Markdown, each with its keys and the words that they accept.
 std::string tables_reference(const StudyTables& tables);
 
 std::string comment(std::string_view text);  ///< Text of any number of lines as comment lines of TOML.
 
-/// Makes lines of a template. Every text is whole lines of TOML. Precondition: the tables and keys exist.
+/// Makes lines of a template. Each text that it returns consists of whole lines of TOML. Precondition: the tables and
+/// keys exist.
 class TemplateLines {
  public:
-  /// The tables must outlive it. word: selects among keys of one name that apply for different words of the chooser.
+  /// tables: must outlive this object. word: a word of the chooser, which selects among keys of the same name.
   explicit TemplateLines(const StudyTables& tables, std::string_view word = {}) : tables_(&tables), word_(word) {}
 
-  /// A line with this key and its explanation: after it if there is room, else in comment lines before it, with the
-  /// words that it accepts.
+  /// A line that sets this key, with the key's explanation. The explanation follows the line if there is room.
+  /// Otherwise it precedes the line as comment lines, with the words that the key accepts.
   std::string explained(std::string_view table, std::string_view key, std::string_view line) const;
-  /// The same for "KEY = VALUE" with the key's default, or its example if the default is not a value. sign: put before
-  /// it.
+  /// A line "KEY = VALUE" with the explanation, as explained() makes it. The value is the key's default, or its example
+  /// if the default is described by a clause. sign: text in front of the line.
   std::string usual(std::string_view table, std::string_view key, std::string_view sign = "") const;
   /// "KEY: explanation" as comment lines, followed by the words that the key accepts.
   std::string explanation_lines(std::string_view table, std::string_view key) const;
-  /// The same for every key of an inline table, `depth` steps further indented.
+  /// The explanation_lines() of every key of an inline table, indented `depth` steps further.
   std::string keys_lines(std::string_view table, std::size_t depth = 1) const;
-  /// An inline table of the keys whose default or example is a value: "{ min = 1000, max = 1000000 }".
+  /// An inline table of the keys whose default or example is a value, in TOML: "{ min = 1000, max = 1000000 }".
   std::string inline_table(std::string_view table) const;
-  /// The key's example.
+  /// The example of a key.
   std::string_view example(std::string_view table, std::string_view key) const;
-  std::string_view meaning(std::string_view table) const;  ///< The meaning of a table.
+  std::string_view meaning(std::string_view table) const;  ///< What a table is for.
 
  private:
   const StudyTable& table(std::string_view path) const;
@@ -105,19 +108,22 @@ class TemplateLines {
   std::string word_;
 };
 
-std::string in_quotes(std::string_view text);  ///< A TOML string: in quotes, and escaped.
+std::string in_quotes(std::string_view text);  ///< A text as a TOML string, in quotes and escaped.
 
-/// A value of this dimension for a study file, which reads back exactly: "0.001 m" in quotes, or a bare number.
+/// A value (SI) of this dimension as TOML text that reads back to exactly the same number: "0.001 m" in quotes, or a
+/// bare number.
 std::string exact_value(double si, Dimension dimension);
 
-/// The same in the unit that people read, if that is equally exact and shorter: "60 mm" instead of "0.06 m".
+/// A value (SI) as TOML text in the unit that results show, if this text is as exact and shorter: "60 mm" instead of
+/// "0.06 m". Otherwise exact_value().
 std::string readable_value(double si, Dimension dimension);
 
-using ValueText = std::string (*)(double si, Dimension dimension);  ///< One of the two functions above.
+/// A function like exact_value() or readable_value().
+using ValueText = std::string (*)(double si, Dimension dimension);
 
 std::string list_text(std::span<const std::string> values);  ///< Values as a TOML list: "[a, b]".
 
-/// Named things as a TOML inline table, "{ a = 1, b = 2 }"; value(k) is the text of the k-th.
+/// Named things as a TOML inline table, "{ a = 1, b = 2 }". value(k): the text of the k-th thing.
 template <class Named, class Value>
 std::string inline_table(const std::vector<Named>& things, Value value) {
   std::string text;
@@ -127,8 +133,8 @@ std::string inline_table(const std::vector<Named>& things, Value value) {
   return text + " }";
 }
 
-/// Calls read(k, value) for each thing for which the section has a key, in the order of the things. Throws InputError
-/// for other keys. what: a noun for the keys.
+/// Calls read(k, value) for the k-th thing if the section has a key of its name, in the order of the things. Throws
+/// InputError for other keys. what: what the keys name, for messages.
 template <class Named, class Read>
 void read_named(const StudySection& section, const std::vector<Named>& things, std::string_view what, Read read) {
   section.allow(names(things), what);
@@ -141,61 +147,69 @@ void read_named(const StudySection& section, const std::vector<Named>& things, s
 struct NumberBounds {
   double least;            ///< lower end
   double most;             ///< upper end
-  bool ends_included;      ///< whether the ends are allowed
-  std::string_view words;  ///< text: "between 0 and 1"
-  std::string remedy;      ///< advice for a number outside: "it must lie between 0 and 1, e.g. 0.95"
-  bool percent = false;    ///< whether a text such as "95 %" is allowed too
+  bool ends_included;      ///< true if the ends are allowed
+  std::string_view words;  ///< the bounds in words: "between 0 and 1"
+  std::string remedy;      ///< advice for a number outside the bounds: "it must lie between 0 and 1, e.g. 0.95"
+  bool percent = false;    ///< true if a text such as "95 %" is allowed too
 };
 
-NumberBounds above_zero(std::string_view example);       ///< Greater than zero.
-NumberBounds above_one(std::string_view example);        ///< Greater than one.
-NumberBounds between_0_and_1(std::string_view example);  ///< Between 0 and 1, both excluded, or in percent.
+NumberBounds above_zero(std::string_view example);  ///< Bounds of a number greater than zero.
+NumberBounds above_one(std::string_view example);   ///< Bounds of a number greater than one.
+/// Bounds of a number between 0 and 1, both excluded; a percentage is allowed.
+NumberBounds between_0_and_1(std::string_view example);
 
-/// Reads a number within the bounds. Throws InputError at the value's place.
+/// Reads a number within the bounds. Throws InputError at the value's place for a number outside.
 double read_number(const StudyValue& value, const NumberBounds& bounds);
 
-/// How a key's value is stored in an object, and which values a study file may have.
+/// How a key's value is read into an object and written from it, and which values a file may have.
 template <class Object>
 struct KeyValue {
-  std::string type;                                           ///< see StudyKey
-  std::string bounds = {};                                    ///< see StudyKey
-  std::vector<StudyWord> words = {};                          ///< see StudyKey
-  std::function<void(const StudyValue&, Object&)> read = {};  ///< none if the row has a reader
-  std::function<std::string(const Object&)> text = {};        ///< TOML; none if the row has its own lines, or none
+  std::string type;                   ///< type for readers: "integer", "length", "list of numbers", ...
+  std::string bounds = {};            ///< bounds for readers: "at least 1"; empty if the type has no further bounds
+  std::vector<StudyWord> words = {};  ///< words that the key accepts; empty if it accepts other values
+  /// Stores the value; none if the key has a reader (Key::reader).
+  std::function<void(const StudyValue&, Object&)> read = {};
+  /// Value as TOML; none if the key writes its own lines (Key::lines), or no line.
+  std::function<std::string(const Object&)> text = {};
 };
 
-/// A row: one key of a table, with its value in an object.
+/// One key of a table (a row of Keys): its description, and its value in an object of a study.
 template <class Object, class Scope>
 struct Key {
-  std::string_view name;     ///< see StudyKey
-  KeyValue<Object> value;    ///< type, bounds, words, and how it is read and written
-  std::string missing = {};  ///< see StudyKey, with "{}" for the example; not empty: the key is required
-  bool required = false;     ///< whether other rules than this row require the key
-  /// The default, if it is not the value of a default-constructed object; empty: there is none.
+  std::string_view name;   ///< name of the key; capitals for names that the model gives: "FACTOR"
+  KeyValue<Object> value;  ///< type, bounds, words, and how it is read and written
+  /// Advice to a user who leaves the key out, with "{}" in place of the example; if the advice is not empty, the key is
+  /// required.
+  std::string missing = {};
+  bool required = false;  ///< true if a rule elsewhere requires the key
+  /// The default in words, if it is not the value of a default-constructed object. An empty text means that there is no
+  /// default.
   std::optional<std::string> usual = {};
-  std::string besides = {};                     ///< remark after the default, or after "required"
-  std::string example = {};                     ///< see StudyKey
-  std::vector<std::string_view> only_for = {};  ///< see StudyKey
-  bool may_stay = false;                        ///< see StudyKey
-  std::string_view meaning;                     ///< see StudyKey
-  /// Reads a value that depends on more than itself: the model, files, other keys.
+  std::string besides = {};                     ///< remark behind the default, or behind "required"
+  std::string example = {};                     ///< example of a value in TOML that is not the default
+  std::vector<std::string_view> only_for = {};  ///< words of the table's chooser for which the key applies; empty: all
+  bool may_stay = false;     ///< true if the key is ignored where it does not apply, false if it is refused there
+  std::string_view meaning;  ///< what the key means, as a sentence
+  /// Reads a value whose meaning depends on the model, on files or on other keys.
   void (*reader)(const StudyValue& value, Object& object, const Scope& scope) = nullptr;
-  /// The key's lines of the resolved text, if they are not "KEY = VALUE"; may be empty.
+  /// The key's lines of the resolved text, if they are not just "KEY = VALUE". The text may be empty.
   std::string (*lines)(const Object& object) = nullptr;
-  int late = 0;  ///< order in the resolved text: a key comes after those with a smaller number
-  /// The key's lines of a template for this object, if they are not its default; may be empty.
+  int late = 0;  ///< order in the resolved text: keys with a larger number come later
+  /// The key's lines of a template for this object, if they do not just show the default. The text may be empty.
   std::string (*shown)(const TemplateLines& lines, const Object& object) = nullptr;
-  bool commented = false;  ///< whether a template has the default as a comment
+  bool commented = false;  ///< true if a template shows the default as a comment
 };
 
-/// A table of typed rows.
+/// A table of keys with their values. Its members become those of StudyTable.
 template <class Object, class Scope>
 struct Keys {
-  std::vector<std::string_view> paths = {};  ///< see StudyTable
-  std::string_view meaning = {};             ///< see StudyTable
-  std::string_view chooser = {};             ///< see StudyTable; the key of the first row
-  std::string_view owner = {};               ///< see StudyTable
-  std::vector<Key<Object, Scope>> rows;      ///< rows, in the order in which they are listed and read
+  /// Paths of the table in a file: "analysis.cases"; empty for the file itself.
+  std::vector<std::string_view> paths = {};
+  std::string_view meaning = {};  ///< what the table is for, as a sentence
+  /// Key whose word determines which other keys apply; must be the first key; empty: all apply.
+  std::string_view chooser = {};
+  std::string_view owner = {};           ///< text for the chooser in messages: "select ="
+  std::vector<Key<Object, Scope>> rows;  ///< keys, in the order in which they are listed and read
 };
 
 namespace detail {
@@ -213,9 +227,10 @@ auto& at(Object& object, Member member, Rest... rest) {
 template <class Class, class Type, class... Rest>
 Class owner_of(Type Class::*, Rest...);
 
-std::string without_plus(std::string text);  ///< Removes the plus of exponents: "1e-15", and "1e8" for 1e+08.
+/// Removes the plus of exponents and their leading zeros: "1e-15", and "1e8" for 1e+08.
+std::string without_plus(std::string text);
 
-/// The value of a default-constructed object, as text for readers.
+/// The value of a default-constructed object in backquotes, as the reference shows it.
 template <class Object>
 std::string usual_text(const KeyValue<Object>& value) {
   return value.text ? "`" + without_plus(value.text(Object{})) + "`" : std::string();
@@ -223,11 +238,12 @@ std::string usual_text(const KeyValue<Object>& value) {
 
 }  // namespace detail
 
-/// The type to which the first of these pointers to members belongs.
+/// The type of object to which the first of these pointers to members belongs.
 template <class... Path>
 using OwnerOf = decltype(detail::owner_of(Path()...));
 
-/// The member at this path of members. read: converts a StudyValue; text: writes TOML.
+/// How a key's value is read into a member of an object, and written from it. path: pointers to members that lead from
+/// the object to this member. read: converts a StudyValue to the value. text: writes the value as TOML.
 template <class Read, class Text, class... Path>
 KeyValue<OwnerOf<Path...>> value_at(std::string type, std::string_view bounds, Read read, Text text, Path... path) {
   using Object = OwnerOf<Path...>;
@@ -241,14 +257,14 @@ KeyValue<OwnerOf<Path...>> value_at(std::string type, std::string_view bounds, R
           .text = [=](const Object& object) { return text(detail::at(object, path...)); }};
 }
 
-/// A text in the member at this path.
+/// How a key stores a text. path: pointers to members, as for value_at().
 template <class... Path>
 auto text_at(Path... path) {
   return value_at(
       "text", "", [](const StudyValue& value) { return value.text(); }, in_quotes, path...);
 }
 
-/// A whole number between `least` and `most`, both included.
+/// How a key stores a whole number from `least` to `most`. path: pointers to members, as for value_at().
 template <class... Path>
 auto whole_at(std::int64_t least, std::int64_t most, Path... path) {
   const auto read = [=](const StudyValue& value) { return value.whole_number(least, most); };
@@ -256,14 +272,14 @@ auto whole_at(std::int64_t least, std::int64_t most, Path... path) {
   return value_at("integer", "at least " + std::to_string(least), read, text, path...);
 }
 
-/// A number without a unit, within bounds.
+/// How a key stores a number without a unit, within bounds. path: pointers to members, as for value_at().
 template <class... Path>
 auto number_at(const NumberBounds& bounds, Path... path) {
   const auto read = [=](const StudyValue& value) { return read_number(value, bounds); };
   return value_at("number", bounds.words, read, shortest, path...);
 }
 
-/// A quantity of this dimension.
+/// How a key stores a quantity of this dimension, SI. path: pointers to members, as for value_at().
 template <class... Path>
 auto quantity_at(Dimension dimension, Path... path) {
   const auto read = [=](const StudyValue& value) { return value.quantity(dimension); };
@@ -271,7 +287,7 @@ auto quantity_at(Dimension dimension, Path... path) {
   return value_at(std::string(name(dimension)), "", read, text, path...);
 }
 
-/// A quantity of this dimension above zero.
+/// How a key stores a quantity of this dimension above zero, SI. path: pointers to members, as for value_at().
 template <class... Path>
 auto positive_at(Dimension dimension, Path... path) {
   const auto read = [=](const StudyValue& value) { return value.positive_quantity(dimension); };
@@ -279,14 +295,15 @@ auto positive_at(Dimension dimension, Path... path) {
   return value_at(std::string(name(dimension)), "greater than 0", read, text, path...);
 }
 
-/// A value of an enumeration with its meaning; its word is name(value).
+/// A value of an enumeration with its meaning. Its word in a file is name(value).
 template <class Enum>
 struct WordFor {
-  Enum value;                ///< the value
-  std::string_view meaning;  ///< a clause
+  Enum value;                ///< value of the enumeration
+  std::string_view meaning;  ///< what the value means, as a clause
 };
 
-/// One word of an enumeration.
+/// How a key stores a value of an enumeration, which a file states as one of these words. path: pointers to members, as
+/// for value_at().
 template <class Enum, class... Path>
 auto word_at(std::vector<WordFor<Enum>> words, Path... path) {
   std::vector<std::string_view> known;
@@ -298,7 +315,7 @@ auto word_at(std::vector<WordFor<Enum>> words, Path... path) {
   return made;
 }
 
-/// The description of a table's keys.
+/// The description of a table's keys, without their values.
 template <class Object, class Scope>
 StudyTable described(const Keys<Object, Scope>& keys) {
   StudyTable table{keys.paths, keys.meaning, keys.chooser, keys.owner, {}};
@@ -311,7 +328,7 @@ StudyTable described(const Keys<Object, Scope>& keys) {
   return table;
 }
 
-/// The word of the table's chooser in an object; empty without a chooser.
+/// The word of the table's chooser in an object; empty if the table has no chooser.
 template <class Object, class Scope>
 std::string chosen_word(const Keys<Object, Scope>& keys, const Object& object) {
   if (keys.chooser.empty()) return {};
@@ -319,13 +336,13 @@ std::string chosen_word(const Keys<Object, Scope>& keys, const Object& object) {
   return quoted.substr(1, quoted.size() - 2);
 }
 
-/// The row of this name. Precondition: it exists.
+/// The key of this name. Precondition: the key exists.
 template <class Object, class Scope>
 const Key<Object, Scope>& row_of(const Keys<Object, Scope>& keys, std::string_view name) {
   return *std::ranges::find(keys.rows, name, &Key<Object, Scope>::name);
 }
 
-/// Reads one key.
+/// Reads the value of one key into an object.
 template <class Object, class Scope>
 void read_key(const Key<Object, Scope>& row, const StudyValue& value, Object& object, const Scope& scope) {
   if (row.reader != nullptr) {
@@ -335,11 +352,11 @@ void read_key(const Key<Object, Scope>& row, const StudyValue& value, Object& ob
   }
 }
 
-/// Which keys a table must have, and may have.
+/// Which keys must be present when a table is read, and which may be.
 enum class Extent {
-  complete,  ///< all required keys, and none that does not apply for the chooser's word
-  partial,   ///< required keys may be missing
-  any        ///< required keys may be missing, and keys that do not apply are read
+  complete,  ///< all required keys must be present, and keys that do not apply are refused
+  partial,   ///< required keys may be missing; keys that do not apply are refused
+  any        ///< required keys may be missing, and keys that do not apply are read as well
 };
 
 /// Reads a table key by key, in the order of its rows. Throws InputError for unknown keys, values out of bounds, and
@@ -361,7 +378,7 @@ void read_keys(const Keys<Object, Scope>& keys, const StudySection& section, Obj
   }
 }
 
-/// The key's lines of a template for this object.
+/// The key's lines of a template that shows this object.
 template <class Object, class Scope>
 std::string template_lines(const TemplateLines& lines, std::string_view table, const Key<Object, Scope>& row,
                            const Object& object) {
@@ -369,7 +386,7 @@ std::string template_lines(const TemplateLines& lines, std::string_view table, c
   return lines.usual(table, row.name, row.commented ? "# " : "");
 }
 
-/// The lines of all keys of a table.
+/// The lines of all keys of a table, in a template that shows this object.
 template <class Object, class Scope>
 std::string template_lines(const TemplateLines& lines, const Keys<Object, Scope>& keys, const Object& object) {
   std::string text;

@@ -17,7 +17,7 @@ Place place_in(const Place& section, const toml::source_region& region) {
   return {section.file, region.begin.line, region.begin.column};
 }
 
-/// What a value is, with the value where it is short: "the number 0.5".
+/// A clause that says what a TOML value is, with the value itself if it is short: "the number 0.5".
 std::string described(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::string:
@@ -39,15 +39,16 @@ std::string described(const toml::node& node) {
 
 std::string example(Dimension dimension) { return "\"1 " + std::string(display_unit(dimension).name) + "\""; }
 
-/// In small letters and without blanks: "n m" and "Nm" are alike.
+/// The unit in lower case without blanks, so that "n m" equals "Nm".
 std::string plain_unit(std::string_view written) {
   std::string plain = lower_case(written);
   std::erase(plain, ' ');
   return plain;
 }
 
-/// The unit of which this is the name in other capitals, with other blanks or in full: "degrees". No other likeness
-/// counts, because a letter more or less before a unit makes another one: dm, nm, mdeg, grad.
+/// The unit that the user probably meant; null if none is probable. A unit is probable if its name differs from the
+/// text only in capitals and blanks, or if the text begins with its name, as "degrees" begins with "deg". Other similar
+/// names are not probable, because one letter more or less at the beginning gives another unit: dm, nm, mdeg, grad.
 const Unit* meant_unit(std::string_view written, Dimension dimension) {
   constexpr std::size_t kTelling = 3;
   const std::string plain = plain_unit(written);
@@ -85,7 +86,7 @@ bool StudyValue::yes_or_no() const {
 std::string StudyValue::text() const {
   const auto* text = node_->as_string();
   if (text == nullptr) wrong_type("write a text in quotes");
-  // The system takes the name of a file up to its first NUL, and would open another one.
+  // The operating system would end a file name at the first NUL and so open another file.
   if (text->get().find('\0') != std::string::npos) fail("holds a NUL character", "remove it");
   return text->get();
 }
@@ -108,7 +109,8 @@ double StudyValue::number() const {
 
 double StudyValue::percent() const {
   const std::string written(trimmed(printable(text())));
-  // The exponent keeps the digits: 99.73 % is the double next to 0.9973.
+  // The percentage is read with the exponent e-2, because a division would round: 99.73 % is the double nearest to
+  // 0.9973.
   const auto share = written.ends_with('%')
                          ? parse_number(std::string(trimmed(written.substr(0, written.size() - 1))) + "e-2")
                          : std::nullopt;

@@ -20,40 +20,43 @@ class StudySection;
 struct StudyTable;
 using StudyTables = std::vector<StudyTable>;  ///< The tables of a study file, with every key.
 
-/// One value of a study file. Every function throws InputError at the value's place when the value is not what is
-/// asked for. Refers to the parsed file, which must outlive it.
+/// One value of a study file. Each function that reads it throws InputError at the value's place if the value has
+/// another type or is not allowed. Refers to the parsed file, which must outlive it.
 class StudyValue {
  public:
-  /// `name` is the value's full name for messages: "errors.linear.sigma".
+  /// name: the value's full name for messages, "errors.linear.sigma". section: the place of its table, used if the
+  /// value has none.
   StudyValue(const toml::node& node, std::string name, const Place& section, const StudyTables& tables);
 
-  const std::string& full_name() const { return name_; }  ///< For messages.
-  const Place& place() const { return place_; }           ///< Where it stands.
-  bool is_text() const { return node_->is_string(); }     ///< Whether it is a text in quotes.
-  bool is_section() const { return node_->is_table(); }   ///< Whether it is a table.
-  bool is_list() const { return node_->is_array(); }      ///< Whether it is a list.
-  /// Whether it is true or false; empty for any other value.
+  const std::string& full_name() const { return name_; }  ///< The full name, for messages.
+  const Place& place() const { return place_; }           ///< The place of the value in the file.
+  bool is_text() const { return node_->is_string(); }     ///< Returns true if the value is a text in quotes.
+  bool is_section() const { return node_->is_table(); }   ///< Returns true if the value is a table.
+  bool is_list() const { return node_->is_array(); }      ///< Returns true if the value is a list.
+  /// The value if it is true or false; none for any other value.
   std::optional<bool> boolean() const { return node_->value_exact<bool>(); }
 
-  bool yes_or_no() const;    ///< True or false.
-  std::string text() const;  ///< A text in quotes.
-  /// An integer within these bounds, both included.
+  bool yes_or_no() const;    ///< Reads true or false.
+  std::string text() const;  ///< Reads a text in quotes.
+  /// Reads an integer within these bounds, both included.
   std::int64_t whole_number(std::int64_t least, std::int64_t most = std::numeric_limits<std::int64_t>::max()) const;
-  double number() const;                       ///< A finite number without a unit.
-  double quantity(Dimension dimension) const;  ///< SI.
-  /// Whether it is the number 0, which needs no unit.
+  double number() const;                       ///< Reads a finite number without a unit.
+  double quantity(Dimension dimension) const;  ///< Reads a quantity of this dimension, SI.
+  /// Returns true if the value is the number 0, which needs no unit.
   bool is_zero() const;
-  double positive_quantity(Dimension dimension) const;              ///< SI, above zero.
-  double half_width(Dimension dimension) const;                     ///< The same, perhaps as on a drawing: "+-0.02 mm".
-  double percent() const;                                           ///< A share, from a text such as "99.73 %".
-  std::size_t word(std::span<const std::string_view> words) const;  ///< The position among these words.
-  StudySection section() const;                                     ///< A table.
-  /// The elements of a list, named with their positions.
+  double positive_quantity(Dimension dimension) const;  ///< Reads a quantity above zero, SI.
+  /// Reads a quantity above zero, SI; a text may begin with a sign as on a drawing: "+-0.02 mm".
+  double half_width(Dimension dimension) const;
+  double percent() const;  ///< Reads a share from a text in percent, such as "99.73 %".
+  /// Reads one of these words, and returns its index.
+  std::size_t word(std::span<const std::string_view> words) const;
+  StudySection section() const;  ///< Reads a table.
+  /// Reads a list. The names of its elements have their positions: "pairs[0]".
   std::vector<StudyValue> list() const;
-  /// The same; throws with this remedy when there are not so many.
+  /// Reads a list of this many elements. Throws InputError with this remedy if the number differs.
   std::vector<StudyValue> list(std::size_t size, std::string_view remedy) const;
 
-  /// "NAME PROBLEM; REMEDY" at the value's place.
+  /// Throws InputError "NAME PROBLEM; REMEDY" at the value's place.
   [[noreturn]] void fail(std::string_view problem, std::string_view remedy) const;
 
  private:
@@ -67,29 +70,32 @@ class StudyValue {
   const StudyTables* tables_;
 };
 
-/// A table of a study file, in the same way. A key must be described where it stands, or asking for it is a bug.
+/// A table of a study file; see StudyValue. A caller may only ask for keys that are in the table's description; asking
+/// for another key is a bug.
 class StudySection {
  public:
-  /// `name` is empty for the file as a whole. The tables must outlive it.
+  /// name: full name of the table; empty for the file as a whole. tables: must outlive this object.
   StudySection(const toml::table& table, std::string name, Place place, const StudyTables& tables);
 
-  const Place& place() const { return place_; }   ///< Where it begins.
-  bool empty() const { return table_->empty(); }  ///< Whether it has no key.
-  std::vector<std::string> keys() const;          ///< The keys that the file gives, in the order of their bytes.
+  const Place& place() const { return place_; }   ///< The place where the table begins.
+  bool empty() const { return table_->empty(); }  ///< Returns true if the table has no key.
+  std::vector<std::string> keys() const;          ///< The keys that the file gives, sorted by their bytes.
 
-  /// Throws for a key that is not described (engine/schema/keys.h). For sections whose keys are all fixed.
+  /// Throws InputError for a key that the table's description lacks (engine/schema/keys.h). For tables whose keys are
+  /// all fixed.
   void allow() const;
-  /// Throws for a key that is not one of these; `what` says what the keys of this section are.
+  /// Throws InputError for a key that is not in `known`. what: what the keys of this table name, for messages.
   void allow(std::span<const std::string_view> known, std::string_view what) const;
-  /// Throws for a key that does not hold where the section's chooser is this word.
+  /// Throws InputError for a key that does not apply for this word of the table's chooser.
   void refuse_all_but_those_for(std::string_view word) const;
-  /// Throws when the key is there: it "does not belong to OWNER".
+  /// Throws InputError if the table has this key. The message says that the key "does not belong to OWNER".
   void refuse(std::string_view key, std::string_view owner) const;
 
-  std::optional<StudyValue> find(std::string_view key) const;  ///< Empty when it is missing.
-  /// Throws when it is missing; the remedy is that of its description, unless another is given.
+  std::optional<StudyValue> find(std::string_view key) const;  ///< The value of a key; none if it is missing.
+  /// The value of a key. Throws InputError if the key is missing. The message has this remedy, or, if it is empty, the
+  /// remedy of the key's description.
   StudyValue require(std::string_view key, std::string_view remedy = {}) const;
-  StudySection section(std::string_view key) const;  ///< Empty when it is missing.
+  StudySection section(std::string_view key) const;  ///< The table at a key; an empty one if the key is missing.
 
  private:
   Place place_of_key(std::string_view key) const;

@@ -6,23 +6,24 @@
 #include "engine/model/own_responses.h"
 #include "engine/schema/keys.h"
 
-/// The tables [[response]] of studies and mechanism files.
+/// The tables [[response]] of studies and mechanism files, in which users define responses.
 namespace poesy {
 
-/// Whether a response may be relative to the pose before it.
+/// Whether a table [[response]] may define responses that are relative to the previous pose.
 enum class PoseBefore {
-  known,   ///< the file has a list of poses
-  unknown  ///< it has none
+  known,   ///< yes: the file has a list of poses
+  unknown  ///< no: the file has no list of poses
 };
 
-/// The tables with every key, for the reference.
+/// The tables with every key that a definition of a response may have, for the reference.
 StudyTables own_response_tables();
 
-/// Reads a list of such tables for a model with this description. A norm that is relative to a pose also gives the
-/// differences of its members, as NAME_MEMBER. Throws InputError.
+/// Reads a list of tables [[response]] for a model with this description. If a norm is relative to a pose, the function
+/// also adds a response NAME_MEMBER for the difference of each member of the norm. Throws InputError.
 std::vector<OwnResponse> read_own_responses(const StudyValue& value, ModelDescription model, PoseBefore before);
 
-/// The responses as tables, which read back exactly; their positions are those of a model with them.
+/// The responses as tables [[response]]. Reading these tables gives exactly the same responses. model: a model that has
+/// these responses.
 std::string own_responses_text(const std::vector<OwnResponse>& own, const ModelDescription& model);
 
 }  // namespace poesy

@@ -12,16 +12,16 @@
 namespace poesy {
 namespace {
 
-/// The largest depth of tables in tables. Studies have four; other texts may have thousands.
+/// The largest depth of nested tables that is shown. Studies have four levels; other texts may have thousands.
 constexpr int kDeepest = 16;
 
-/// A key of a table and its value.
+/// A key of a table, and its value.
 struct Entry {
   std::string_view key;
   const toml::node* value;
 };
 
-/// The entries of a table in the order of the text.
+/// The keys and values of a table in the order of the text.
 std::vector<Entry> entries_of(const toml::table& table) {
   std::vector<Entry> entries;
   for (const auto& [key, value] : table) entries.push_back({key.str(), &value});
@@ -33,7 +33,7 @@ std::vector<Entry> entries_of(const toml::table& table) {
   return entries;
 }
 
-/// A value on one line, with "..." instead of what is too deep.
+/// A value as TOML on one line, with "..." in place of tables that are nested too deeply.
 std::string value_text(const toml::node& value, int depth) {
   if (depth == kDeepest) return "...";
   std::string text;
@@ -55,13 +55,13 @@ std::string value_text(const toml::node& value, int depth) {
   return "...";  // a date, which studies do not have
 }
 
-/// Whether a value is a list of sections: [[name]].
+/// Returns true if a value is a list of sections, [[name]].
 bool is_sections(const toml::node& value) {
   const toml::array* list = value.as_array();
   return list != nullptr && list->is_array_of_tables() && !list->front().as_table()->is_inline();
 }
 
-/// Adds the settings of a section and of the sections in it. path: its name.
+/// Adds to `settings` those of a section and of its inner sections. path: full name of the section.
 void add_settings(const toml::table& section, const std::string& path, int depth, std::vector<StudySetting>& settings) {
   if (depth == kDeepest) return;
   for (const Entry& entry : entries_of(section)) {

@@ -6,17 +6,18 @@
 
 namespace poesy {
 
-/// A setting of a resolved study.
+/// One key of a resolved study and its value, for display.
 struct StudySetting {
-  std::string section;  ///< "errors"; repeated sections have a number, "analysis.cases 2"; empty at the top
-  std::string key;      ///< "linear"
+  std::string section;  ///< section of the key: "errors"; repeated sections have a number, "analysis.cases 2"; empty at
+                        ///< the top of the file
+  std::string key;      ///< name of the key: "linear"
   std::string value;    ///< TOML on one line: "\"newton\"", "1000", "[\"1 m\", \"2 m\"]"
 };
 
-/// All settings of a resolved study, in order. Empty if the text is not TOML, as in a damaged result.
+/// All settings of a resolved study, in the order of its text. Empty if the text is not TOML, as in a damaged result.
 std::vector<StudySetting> study_settings(std::string_view study_text);
 
-/// The value of a key of a section, as TOML. Empty if the study does not set it.
+/// The value of a key of a section, as TOML. Empty if the study does not set the key.
 std::string study_setting(std::string_view study_text, std::string_view section, std::string_view key);
 
 }  // namespace poesy

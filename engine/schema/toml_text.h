@@ -7,9 +7,9 @@
 
 namespace poesy {
 
-/// Parses a TOML file. Throws InputError, with the place in the file at `path`, for text that is not TOML, a line
-/// longer than 16384 bytes, and a nonzero number that is too small to be distinguished from 0. remedy: advice for text
-/// that is not TOML.
+/// Parses a TOML file. path: name of the file in messages. remedy: advice for text that is not TOML. Throws InputError
+/// at the place in the file for text that is not TOML, a line longer than 16384 bytes, and a nonzero number that is too
+/// small to be distinguished from 0.
 toml::table parse_toml(const std::string& text, const std::string& path, std::string_view remedy);
 
 }  // namespace poesy

@@ -57,11 +57,12 @@ void BucketCounts::add(std::span<const double> values) {
   for (std::size_t first = 0; first < values.size(); first += kPiece) {
     const std::span piece = std::span(keys).first(std::min(kPiece, values.size() - first));
     scale_.keys(values.subspan(first, piece.size()), piece);
-    // First the places of the counts, then the counts: they are seldom in the cache, so several are fetched at a time.
+    // Finds the places of many counts before it changes them. Counts are seldom in the cache; this way several are
+    // fetched at a time.
     std::size_t counted = 0;
     for (const std::uint64_t key : piece) {
       const std::uint64_t bucket = key & ~BucketScale::kSign;
-      // Avoids a branch on the sign, which is as good as random.
+      // The sign is as good as random, so a branch on it would be slow. The bucket is found without one.
       const bool zero = bucket < BucketScale::kFirstNormal;
       zeros_ += zero ? 1 : 0;
       if (zero) continue;
@@ -146,7 +147,7 @@ std::vector<BucketCounts::Filled> BucketCounts::below() const {
 }
 
 void BucketCounts::write_page(std::size_t begin, ByteWriter& to) const {
-  constexpr std::uint64_t kOneByte = 0x7f;  // a number up to this takes one byte
+  constexpr std::uint64_t kOneByte = 0x7f;  // numbers up to this take one byte in the state
   std::array<std::byte, kPageBuckets> bytes;
   std::uint64_t bits = 0;
   for (std::size_t b = 0; b < kPageBuckets; ++b) {

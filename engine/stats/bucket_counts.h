@@ -11,20 +11,21 @@
 
 namespace poesy {
 
-/// The number of values in each bucket of a scale, for both signs, and the number of zeros. It takes 16 kB for
-/// kMostPages, 128 bytes for each further page with values, two bytes for each page that is spanned, and 512 more for
-/// each page once a bucket has 65 536 values.
+/// The number of values in each bucket of a scale, for both signs, and the number of zeros. A page is a block of
+/// kPageBuckets consecutive buckets of one sign; it is stored only if it has values. Memory: 16 kB for kMostPages
+/// pages, 128 bytes for each further page, and two bytes for each page, stored or not, between the first and the last.
+/// Once a bucket has 65 536 values, each stored page takes 512 bytes more.
 class BucketCounts {
  public:
-  /// A bucket with values.
+  /// A bucket that contains values.
   struct Filled {
-    std::uint64_t bucket;  ///< bucket of the magnitudes
-    std::uint64_t count;   ///< values in it
+    std::uint64_t bucket;  ///< number of the bucket in the scale of magnitudes
+    std::uint64_t count;   ///< number of values in the bucket
   };
 
   BucketCounts() = default;
-  /// Empty counts with room for kMostPages. Equal sizes leave no gaps in memory between the thousands that a study may
-  /// have.
+  /// Empty counts with room for kMostPages pages. A study may have thousands of these objects; because their sizes are
+  /// equal, they leave no gaps in memory.
   explicit BucketCounts(const BucketScale& scale) : scale_(scale) { counts_.reserve(kMostPages * kPageBuckets); }
 
   /// The number of pages for which there is room from the beginning.
@@ -34,16 +35,17 @@ class BucketCounts {
   std::size_t pages() const { return counts_.size() / kPageBuckets; }  ///< The number of pages with values.
   std::uint64_t zeros() const { return zeros_; }                       ///< The number of values that count as zero.
 
-  /// Makes room for values between these extremes. Precondition: they include the values that are already counted.
+  /// Makes room for values between these extremes. Precondition: all counted values are between them.
   void reach(const Extremes& extremes);
   /// Counts these values. Precondition: reach() made room for them.
   void add(std::span<const double> values);
   /// Adds the counts of another object, exactly. Preconditions: the same scale; reach() made room.
   void merge(const BucketCounts& other);
-  /// Changes to the next coarser scale, with the counts that it would have had from the beginning. Precondition: there
-  /// is one.
+  /// Changes to the next coarser scale, and to the counts that this scale would have given from the beginning.
+  /// Precondition: there is a coarser scale.
   void coarsen();
-  /// The counts of the magnitudes. extremes: those of the magnitudes; memory is taken for each page that they span.
+  /// The counts of the magnitudes, with values of both signs together. extremes: the extremes of the magnitudes. Takes
+  /// memory for each page between them.
   BucketCounts folded(const Extremes& extremes) const;
 
   std::vector<Filled> below() const;  ///< Buckets below zero, from the largest magnitude to the smallest.
@@ -51,24 +53,24 @@ class BucketCounts {
 
   /// Writes every count.
   void write(ByteWriter& to) const;
-  /// Reads counts. Throws BytesError if values with these extremes cannot have them.
+  /// Reads counts. Throws BytesError for counts that values with these extremes cannot give.
   static BucketCounts read(ByteReader& from, const Extremes& extremes);
 
  private:
-  /// The places of the pages of one sign.
+  /// The places in counts_ at which the counts of the values of one sign are stored.
   struct Side {
-    std::uint64_t first = 0;  ///< first page
-    std::vector<std::uint16_t>
-        places{};  ///< places of the pages first, first + 1, ... in counts_; kNowhere for pages without counts
+    std::uint64_t first = 0;  ///< number of the first page
+    /// Places of the pages first, first + 1, ... in counts_; kNowhere for pages without counts.
+    std::vector<std::uint16_t> places{};
   };
   static constexpr std::uint16_t kNowhere = 0xffff;
 
   std::uint64_t count_at(std::size_t at) const { return counts_[at] + (wraps_.empty() ? 0 : wraps_[at] << 16U); }
-  /// The place of a page's counts, which are made if it has none.
+  /// The position in counts_ of the counts of this page. Makes an empty page if none is stored yet.
   std::size_t place(Side& side, std::uint64_t page);
-  std::uint16_t new_page();  ///< Makes an empty page and returns its place.
+  std::uint16_t new_page();  ///< Makes an empty page and returns its number among the stored pages.
   void add_at(std::size_t at, std::uint64_t count);
-  /// Records that a count of 16 bits has overflowed this many times.
+  /// Records that the count at this position, of 16 bits, has overflowed this many times.
   void wrap(std::size_t at, std::uint64_t times);
   void merge_side(Side& side, const BucketCounts& other, const Side& others);
   std::vector<Filled> filled(std::size_t sign) const;
@@ -76,7 +78,7 @@ class BucketCounts {
 
   BucketScale scale_;
   std::array<Side, 2> sides_;          ///< sides above and below zero
-  std::vector<std::uint16_t> counts_;  ///< [pages x kPageBuckets] modulo 2^16, to save memory
+  std::vector<std::uint16_t> counts_;  ///< [pages x kPageBuckets] counts modulo 2^16, to save memory
   std::vector<std::uint64_t> wraps_;   ///< overflows of each count; empty if there were none
   std::uint64_t zeros_ = 0;
 };

@@ -14,13 +14,14 @@ namespace {
 static_assert(std::numeric_limits<double>::is_iec559);
 
 constexpr int kFractionBits = 52;
-/// The bits of the fraction that distinguish buckets below the octave, and in the octave itself.
+/// The number of leading bits of the fraction that tell buckets apart: kCoarseBits below the octave of the scale,
+/// kEvenBits in this octave.
 constexpr int kCoarseBits = 7;
 constexpr int kEvenBits = kCoarseBits + 1;
 constexpr std::uint64_t kHidden = std::uint64_t{1} << kFractionBits;
 constexpr std::uint64_t kInfinite = std::bit_cast<std::uint64_t>(std::numeric_limits<double>::infinity());
 
-/// A whole number that increases with the value; -0.0 is below 0.0.
+/// A whole number that has the order of the doubles: it increases with the value, and -0.0 is below 0.0.
 [[gnu::always_inline]] inline std::int64_t ordinal(double value) {
   const auto bits = std::bit_cast<std::int64_t>(value);
   return bits ^ ((bits >> 63) & std::numeric_limits<std::int64_t>::max());
@@ -31,7 +32,7 @@ double with_ordinal(std::int64_t ordinal_number) {
   return std::bit_cast<double>(ordinal(std::bit_cast<double>(ordinal_number)));
 }
 
-/// Precondition: there is at least one value.
+/// Computes Extremes::of(). Precondition: there is at least one value.
 POESY_EACH_INSTRUCTION_SET void find_extremes(std::span<const double> values, Extremes& found) {
   std::int64_t min = std::numeric_limits<std::int64_t>::max();
   std::int64_t max = std::numeric_limits<std::int64_t>::min();
@@ -70,12 +71,12 @@ POESY_EACH_INSTRUCTION_SET void fill_keys(std::span<const double> values, std::u
   for (std::size_t k = 0; k < values.size(); ++k) keys[k] = key_of(values[k], octave);
 }
 
-/// The biased exponent.
+/// The biased exponent of a double.
 unsigned exponent_of(double magnitude) {
   return static_cast<unsigned>(std::bit_cast<std::uint64_t>(magnitude) >> kFractionBits);
 }
 
-/// The octave of the scale that distinguishes all doubles, up to the largest of these magnitudes.
+/// The least octave for which keys() accepts the largest of these magnitudes. There a bucket contains a single double.
 unsigned least_octave(const Extremes& extremes) {
   constexpr unsigned kMostBelow = kFractionBits - kEvenBits;
   unsigned exponent = 0;

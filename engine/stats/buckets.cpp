@@ -12,12 +12,12 @@ namespace poesy {
 namespace {
 
 namespace policies = boost::math::policies;
-/// The binomial distribution; its quantile p is the smallest k with P(B <= k) >= p.
+/// The binomial distribution of a number B. Its quantile p is the smallest k with P(B <= k) >= p.
 using Binomial =
     boost::math::binomial_distribution<double,
                                        policies::policy<policies::discrete_quantile<policies::integer_round_up>>>;
 
-/// The bucket of this rank. Precondition: 1 <= rank <= number of values.
+/// The bucket that contains the value of this rank. Precondition: 1 <= rank <= number of values.
 const Bucket& bucket_of(std::span<const Bucket> buckets, std::uint64_t rank) {
   return *std::ranges::lower_bound(buckets, rank, {}, &Bucket::up_to);
 }
@@ -29,7 +29,7 @@ const Bucket& bucket_at(std::span<const Bucket> buckets, double share) {
   return bucket_of(buckets, quantile_rank(share, buckets.back().up_to));
 }
 
-/// Inner edges at equal distances, which are then moved to edges of buckets.
+/// Inner edges of bins at equal distances. histogram() moves them to edges of buckets.
 std::vector<double> even_edges(std::span<const Bucket> buckets, std::size_t count) {
   const double first = bucket_at(buckets, kTail).lower;
   const double last = bucket_at(buckets, 1.0 - kTail).upper;
@@ -63,7 +63,7 @@ RankInterval quantile_ranks(std::uint64_t n, double q, double conf_level) {
   if (n == 0) return {0, 1};
   const Binomial below(static_cast<double>(n), q);
   const double beyond = 0.5 * (1.0 - conf_level);
-  // P(B < low) < beyond and P(B >= high) <= beyond.
+  // With B draws below the quantile: P(B < low) < beyond and P(B >= high) <= beyond.
   const double low = quantile(below, beyond);
   const double high = quantile(complement(below, beyond)) + 1.0;
   return {static_cast<std::uint64_t>(low), static_cast<std::uint64_t>(high)};
@@ -99,7 +99,7 @@ Histogram histogram(std::span<const Bucket> buckets, std::size_t bins) {
   end_at(last);
   filled.edges.resize(bins + 1, last);
   filled.counts.resize(bins, 0);
-  filled.counts.back() += open;  // if all values are the same
+  filled.counts.back() += open;  // happens if all values are the same
   return filled;
 }
 

@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// Means over weighted points.
+/// Computes means of functions over weighted points.
 class Mean {
  public:
   explicit Mean(std::span<const double> weights) : weights_(weights) {}
@@ -69,21 +69,24 @@ PolynomialScore::PolynomialScore(std::span<const double> points, std::span<const
   growth_moments_ = moments([&](double point) { return growth(point); });
 }
 
-// Stieltjes' procedure (Gautschi 2004, Orthogonal Polynomials, ch. 2.2.3.1), which is stable for so low a degree.
+// Stieltjes' procedure (Gautschi 2004, Orthogonal Polynomials, ch. 2.2.3.1), which is stable for low degrees.
 void PolynomialScore::find_polynomials(std::span<const double> x, std::span<const double> weights, double centre,
                                        std::size_t degree) {
-  constexpr double kNone = 1e-12;  // relative to the norm before; below it, the points are no more than the degree
+  // Smallest norm of a polynomial, relative to the norm of the one before. A smaller norm means that there are no more
+  // points than the degree.
+  constexpr double kNone = 1e-12;
   const std::size_t count = x.size();
   const Mean mean(weights);
   AtPoints before{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
   AtPoints now{std::vector<double>(count, 1.0), std::vector<double>(count, 0.0)};
-  std::vector<double> grown_before(count, 0.0);  // the same polynomials at c + g (e - c)
+  // the same polynomials at c + g (e - c), the error e grown by g about its mean c
+  std::vector<double> grown_before(count, 0.0);
   std::vector<double> grown(count, 1.0);
   double norm = 1.0;
   double ratio = 0.0;
   for (std::size_t k = 0; k < degree; ++k) {
     const double shift = mean([&](std::size_t n) { return x[n] * now.value[n] * now.value[n]; }) / norm;
-    for (std::size_t n = 0; n < count; ++n) {  // the next polynomial replaces the one before the present
+    for (std::size_t n = 0; n < count; ++n) {  // the next polynomial takes the place of `before`
       before.slope[n] = now.value[n] + (x[n] - shift) * now.slope[n] - ratio * before.slope[n];
       before.value[n] = (x[n] - shift) * now.value[n] - ratio * before.value[n];
     }

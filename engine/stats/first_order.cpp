@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kGridInBin = 128;
 constexpr std::size_t kFewestBins = 4;
-constexpr double kSamplesForBin = 16.0;  ///< average number; with fewer samples bins are merged
-constexpr double kFewestInBin = 4.0;     ///< least number in each bin
+constexpr double kSamplesForBin = 16.0;  ///< least average number of samples in a bin; with fewer, bins are merged
+constexpr double kFewestInBin = 4.0;     ///< least number of samples in each bin
 static_assert(kFewestBins * kSamplesForBin == kFewestIndexSamples);
 
 constexpr int kMostBins = static_cast<int>(kEffectBins);
@@ -26,20 +26,21 @@ using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostBin
 double square(double x) { return x * x; }
 double cube(double x) { return x * x * x; }
 
-/// Maps [0, 1] to [0, 1] with zero slope at both ends: the grid is finest where the quantile function may be infinite.
+/// Maps [0, 1] to [0, 1] with zero slope at both ends. So a grid of mapped points is finest at the ends, where the
+/// quantile function may be infinite.
 double graded(double t) { return square(t) * (3.0 - 2.0 * t); }
 
-/// Samples in bins of equal probability, and the distribution of an error in these bins.
+/// Statistics of the samples in bins of equal probability of an error, and the distribution of the error in these bins.
 struct Strata {
-  Vector count;      ///< [bins] samples
+  Vector count;      ///< [bins] number of samples; the lists below also have one entry for each bin
   Vector mean;       ///< mean of the response
   Vector variance;   ///< sample variance of the response
-  Vector of_mean;    ///< variance of `mean`
-  Vector steps;      ///< 1 / difference of the error between the neighbouring bins; 0 where there is none
-  Vector spread;     ///< variance of the error
-  Vector asymmetry;  ///< third central moment of the error
-  /// Bits of the bins after which the error decreases, where the halves of a shifted distribution meet. These bins and
-  /// the next ones are not neighbours.
+  Vector of_mean;    ///< sampling variance of `mean`
+  Vector steps;      ///< 1 / difference of the mean error between the two neighbouring bins; 0 without neighbours
+  Vector spread;     ///< variance of the error within the bin
+  Vector asymmetry;  ///< third central moment of the error within the bin
+  /// One bit for each bin: 1 if the error decreases from this bin to the next, which are then not neighbours. This
+  /// happens where the two halves of a shifted distribution meet.
   std::uint32_t ends = 0;
 
   Eigen::Index bins() const { return count.size(); }
@@ -50,7 +51,7 @@ struct Strata {
   double slope(Eigen::Index b) const { return (mean[above(b)] - mean[below(b)]) * steps[b]; }
 };
 
-/// Joins each two neighbouring bins.
+/// Halves the number of bins: each pair of neighbours becomes one bin.
 void halve(std::span<BinSums> bins) {
   for (std::size_t b = 0; b < bins.size() / 2; ++b) {
     const BinSums& first = bins[2 * b];
@@ -106,7 +107,7 @@ Matrix form_of_steps(Eigen::Index bins) {
   return form;
 }
 
-/// The same plus the variance of a straight line over the error within each bin.
+/// The matrix of form_of_steps(), plus the variance of a straight line over the error within each bin.
 Matrix form_of_lines(const Strata& strata) {
   Matrix form = form_of_steps(strata.bins());
   for (Eigen::Index b = 0; b < strata.bins(); ++b) {
@@ -121,10 +122,11 @@ Matrix form_of_lines(const Strata& strata) {
   return form;
 }
 
-/// sum of a_ij b_ij v_i v_j.
+/// The sum of a_ij b_ij v_i v_j over i and j.
 double product(const Matrix& a, const Matrix& b, const Vector& v) { return v.dot(a.cwiseProduct(b) * v); }
 
-/// Sets signal and noise of a variance, from the matrices of `between` and `total`.
+/// Sets `signal` and `noise`. lines, steps: the matrices of the quadratic forms `between` and `total` in the means of
+/// the bins.
 void set_normal_parts(const Strata& strata, const Matrix& lines, const Matrix& steps, BinnedVariance& found) {
   const Vector& of_mean = strata.of_mean;
   const Vector a = lines * strata.mean;
@@ -138,7 +140,7 @@ void set_normal_parts(const Strata& strata, const Matrix& lines, const Matrix& s
     found.noise[k] = 2.0 * forms[k];
   }
   for (Eigen::Index b = 0; b < strata.bins(); ++b) {
-    // variance of the sample variance for a normal
+    // variance of the sample variance, for normal samples
     const double of_variance = 2.0 * square(strata.variance[b]) / (strata.count[b] + 1.0);
     const double in_between = lines(b, b) / strata.count[b];
     const double in_total = 1.0 / static_cast<double>(strata.bins()) - steps(b, b) / strata.count[b];
@@ -149,8 +151,9 @@ void set_normal_parts(const Strata& strata, const Matrix& lines, const Matrix& s
 }
 
 /// Sets the tails of a variance. The fourth moment of all samples is known, and hence the sum of E[k4(u)] and 4 E[d
-/// k3(u)], where d is the effect and k3, k4 are the cumulants within bins. The second term is estimated from the lines,
-/// and otherwise as if the skewness were the same in all bins.
+/// k3(u)], where d is the effect and k3, k4 are the third and fourth cumulants within the bin of u. The second term has
+/// two parts. One is that of the straight lines; the other, that of the deviations from the lines, is estimated as if
+/// their skewness were the same in all bins.
 void set_tails(const Strata& strata, const Moments& all, BinnedVariance& found) {
   const auto n = static_cast<double>(all.count());
   const double deviation = std::sqrt(all.variance() * (n - 1.0) / n);
@@ -159,8 +162,8 @@ void set_tails(const Strata& strata, const Moments& all, BinnedVariance& found) 
   const double centre = share.dot(strata.mean);
   double fourth = all.kurtosis() * square(square(deviation));
   double third = all.skewness() * cube(deviation);
-  double of_lines = 0.0;  // E[d k3(u)]
-  double of_rest = 0.0;   // the same for skewness 1 of the deviations from the lines
+  double of_lines = 0.0;  // estimate of E[d k3(u)] from the straight lines
+  double of_rest = 0.0;   // the same for the deviations from the lines, if their skewness were 1
   double rest = 0.0;
   for (Eigen::Index b = 0; b < strata.bins(); ++b) {
     const double d = strata.mean[b] - centre;
@@ -185,7 +188,7 @@ double at(const std::array<double, 3>& polynomial, double x) {
   return polynomial[0] + x * (polynomial[1] + x * polynomial[2]);
 }
 
-/// The variance of a sum, from the variances of its terms.
+/// The variance of a sum, from the variances of its terms and their dependence.
 class VarianceOfSum {
  public:
   explicit VarianceOfSum(Dependence dependence) : dependence_(dependence) {}
@@ -280,7 +283,8 @@ Estimate first_order_index(std::span<const BinnedVariance> parts, Dependence dep
     growth.add(4.0 * square(part.total) / static_cast<double>(part.samples));
   }
   // The variance of an estimate grows with the true index S by about 4 (1 - S) (1 - 3 S) / n. So an index S is
-  // compatible if (estimate - S)^2 <= z^2 (variance + growth (S - estimate)), or if noise alone suffices.
+  // compatible with the estimate if (estimate - S)^2 <= z^2 (variance + growth (S - estimate)), or if noise alone
+  // explains the difference.
   const double z = two_sided_normal_quantile(conf_level);
   const double inside = std::clamp(index, 0.0, 1.0);
   const double shift = 0.5 * square(z / total) * (1.0 - inside) * (1.0 - 3.0 * inside) * growth.value();

@@ -9,44 +9,47 @@
 #include "engine/stats/moments.h"
 
 /// First-order indices of an error, estimated while all other errors vary too. The samples are divided into bins of the
-/// uniform from which the error was drawn. Formulas and coverage of the intervals: theory.md, D58.
+/// uniform number from which the error was drawn. Formulas and coverage of the intervals: theory.md, D58.
 namespace poesy {
 
-/// The number of bins of equal probability.
+/// The number of bins of equal probability into which samples are divided.
 inline constexpr std::size_t kEffectBins = 32;
 
-/// The least number of samples for an index, because each of at least four bins has sixteen on average.
+/// The least number of samples for an index: at least four bins with sixteen samples on average.
 inline constexpr std::uint64_t kFewestIndexSamples = 64;
 
 /// Sums over the samples of a response in one bin.
 struct BinSums {
   double count = 0.0;   ///< number of samples
-  double sum = 0.0;     ///< sum of y - c, with one c for all bins
-  double square = 0.0;  ///< sum of (y - c)^2
+  double sum = 0.0;     ///< sum of y - c over the responses y in the bin, with the same constant c for all bins
+  double square = 0.0;  ///< sum of (y - c)^2 over these responses
 };
 
-/// The distribution of an error within its bins, in any unit. It determines how much of a main effect happens within
-/// bins. If all are zero (default), effects are taken as steps from bin to bin.
+/// The distribution of an error within the bins, in any unit. It is needed to estimate the part of a main effect within
+/// bins. If all numbers are zero (default), effects are taken as steps from bin to bin.
 struct BinSpread {
   std::array<double, kEffectBins> mean{};      ///< mean of the error in each bin
-  std::array<double, kEffectBins> variance{};  ///< its variance within each bin
-  std::array<double, kEffectBins> third{};     ///< its third central moment within each bin
+  std::array<double, kEffectBins> variance{};  ///< variance of the error within each bin
+  std::array<double, kEffectBins> third{};     ///< third central moment of the error within each bin
 };
 
-/// A fine, ascending grid of uniforms at which bin_spread() needs the quantile function of an error.
+/// A fine, ascending grid of shares in (0, 1), at which bin_spread() needs the quantile function of an error.
 std::vector<double> bin_spread_grid();
-/// The spread of an error. quantiles: its quantile function on bin_spread_grid(), finite.
+/// The distribution of an error within bins. quantiles: values of the error's quantile function on bin_spread_grid(),
+/// finite.
 BinSpread bin_spread(std::span<const double> quantiles);
 
-/// The part of a response's variance that one error makes alone, and what the interval of an index needs. The three
-/// polynomials, by powers of S, are parts of the variance of (between - S total).
+/// The part of a response's variance that one error makes alone, with the data for the interval of its first-order
+/// index S. The sampling variance of between - S total is a sum of three polynomials in S: `signal`, `noise` and
+/// `tails`, each given by its coefficients of 1, S and S^2.
 struct BinnedVariance {
-  std::uint64_t samples = 0;  ///< number of samples that count
-  double between = 0.0;       ///< estimate of Var(E[y | u]), without the bias from noise within bins; may be negative
-  double total = 0.0;         ///< estimate of Var(y)
-  std::array<double, 3> signal{};  ///< from the product of the bins' noise and the effect
-  std::array<double, 3> noise{};   ///< from the noise of the bins' means and variances, as if normal
-  std::array<double, 3> tails{};   ///< added by kurtosis and skewness within bins; used if positive
+  std::uint64_t samples = 0;  ///< number of samples that the estimate uses
+  double between = 0.0;  ///< estimate of Var(E[y | u]), the variance of the mean response y given the error's uniform
+                         ///< number u, without the bias from noise within bins; may be negative
+  double total = 0.0;    ///< estimate of Var(y)
+  std::array<double, 3> signal{};  ///< part from the product of the noise of the bins and the effect
+  std::array<double, 3> noise{};  ///< part from the noise of the means and variances of the bins, as for normal samples
+  std::array<double, 3> tails{};  ///< part added by kurtosis and skewness within bins; used only if positive
 };
 
 /// Computes the variance from the sums of a response in the bins of an error. all: the moments of the same samples.
@@ -55,17 +58,21 @@ struct BinnedVariance {
 /// (spread) in each bin, with the slope between the neighbouring bins. Bins between which the error decreases, as in
 /// the middle of a shifted distribution, are not neighbours. Without a spread this part is left out.
 ///
-/// Relative bias of `between` with 32 bins, without and with a spread: a straight line over a normal error -0.92 %, 0;
-/// over a uniform error -0.10 %, 0; |z| -2.5 %, -0.007 %; the Ishigami function's first two errors -0.32 %, -1.28 % and
-/// -0.006 %, -0.06 %; z^2 -10 %, -3.2 %; exp(z / 2) -3.7 %, -1.3 %; exp(z) -18 %, -11 %. Most of it comes from the
-/// outermost bins of a normal error.
+/// `between` is too small. The relative bias with 32 bins, without a spread and with one (z is a standard normal
+/// error):
+/// - a straight line over a normal error -0.92 %, 0; over a uniform error -0.10 %, 0
+/// - |z| -2.5 %, -0.007 %; z^2 -10 %, -3.2 %; exp(z / 2) -3.7 %, -1.3 %; exp(z) -18 %, -11 %
+/// - the Ishigami function's first error -0.32 %, -0.006 %; its second error -1.28 %, -0.06 %
+///
+/// Most of the bias comes from the outermost bins of a normal error.
 BinnedVariance binned_variance(const std::array<BinSums, kEffectBins>& sums, const Moments& all,
                                const BinSpread& spread);
 
 /// Whether estimates depend on each other.
 enum class Dependence {
-  independent,  ///< from separate draws: poses of a study that draws per pose
-  unknown       ///< from the same draws: poses with the same machines, components of a vector
+  independent,  ///< the estimates come from separate draws, as at the poses of a study that draws per pose
+  unknown       ///< the estimates come from the same draws, as at poses with the same machines, or for components of a
+                ///< vector
 };
 
 /// The first-order index S1 = Var(E[y | u]) / Var(y) of an error, at one pose or aggregated. Numerators and
@@ -74,9 +81,9 @@ enum class Dependence {
 /// Electron. J. Stat. 8, 575-603). NaN if nothing varies, or a part is not known.
 ///
 /// An index is not clipped to [0, 1]: that of an error without effect is as often negative as positive, so that sums
-/// and means of indices are unbiased. The interval has the indices that are compatible with the estimate.
-/// Dependence::unknown adds standard errors instead of variances, which is exact if all parts vary together, and wide
-/// otherwise.
+/// and means of indices are unbiased. The interval contains the indices that are compatible with the estimate.
+/// Dependence::unknown adds standard errors instead of variances. This is exact if all parts vary together; otherwise
+/// the interval is too wide.
 ///
 /// Of 95 % intervals, 95 to 98 % contained the true index from 256 to 16 384 samples, for linear and folded responses
 /// of normal errors and the Ishigami function, and up to 99.7 % for heavy tails or pure interaction. If the standard

@@ -13,7 +13,8 @@ namespace {
 
 constexpr Interval kUnknown{kNaN, kNaN};
 
-/// Fewer samples say too little about a kurtosis (Bonett's own trimmed mean needs more than four).
+/// The fewest samples for an interval. Fewer say too little about a kurtosis (Bonett's trimmed mean needs more than
+/// four).
 constexpr std::uint64_t kFewestSamples = 5;
 
 double square(double x) { return x * x; }
@@ -40,9 +41,9 @@ struct PoseStatistics {
   double mean;
   double mean_variance;
   double seen2;            ///< sample variance of the x_i
-  double noise2;           ///< the average part of it that is sampling noise
+  double noise2;           ///< average part of seen2 that is sampling noise
   double noise_variance;   ///< variance of seen2 if the true spread is zero
-  double signal_variance;  ///< growth of that variance per unit of true spread^2
+  double signal_variance;  ///< growth of the variance of seen2 per unit of true spread^2
   double covariance;       ///< covariance of the mean and seen2
 
   /// Unbiased estimate of the true spread^2; negative if by chance seen2 is below the noise.
@@ -51,14 +52,15 @@ struct PoseStatistics {
   double spread2_variance() const { return noise_variance + signal_variance * std::max(spread2(), 0.0); }
 };
 
-/// Corrects the bias of a sample standard deviation, which is too small by half of v / x on average (second order of
-/// the square root).
+/// Corrects an index x with the sampling variance v for the bias of a sample standard deviation, which is too small by
+/// v / (2 x) on average (second order of the square root).
 double unbiased(const LocalIndex& pose) {
   return pose.value == 0.0 ? 0.0 : pose.value + 0.5 * square(pose.standard_error) / pose.value;
 }
 
-/// For independent x_i ~ (mu_i, v_i), x' A x / (M - 1) with A = I - 1/M has the variance
-/// (4 mu' A V A mu + 2 tr(A V A V)) / (M - 1)^2 and the covariance 2 1' V A mu / (M (M - 1)) with the mean.
+/// The sample variance is x' A x / (M - 1), where A subtracts the mean. For independent x_i with means mu_i and
+/// variances v_i, and V = diag(v), its variance is (4 mu' A V A mu + 2 tr(A V A V)) / (M - 1)^2. Its covariance with
+/// the mean is 2 1' V A mu / (M (M - 1)).
 PoseStatistics statistics_over(std::span<const LocalIndex> poses) {
   const auto m = static_cast<double>(poses.size());
   const double freedom = std::max(m - 1.0, 1.0);
@@ -83,8 +85,9 @@ PoseStatistics statistics_over(std::span<const LocalIndex> poses) {
     vd2_sum += v * square(d);
   }
   const double trace = v2_sum * (1.0 - 2.0 / m) + square(v_sum) / square(m);
-  // mu' A V A mu = (sum of v d^2 over sum of d^2) (M - 1) spread^2. The quotient weights the v_i by each pose's part of
-  // the spread. Unlike its noisy numerator it always lies between the smallest and the largest v_i.
+  // mu' A V A mu = (sum of v d^2 over sum of d^2) (M - 1) spread^2, with the deviations d_i of the x_i from their mean.
+  // The quotient is a weighted mean of the v_i, so unlike its noisy numerator it is always between the smallest and the
+  // largest v_i.
   const double v_of_spread = d2_sum > 0.0 ? vd2_sum / d2_sum : 0.0;
   return {.mean = mean,
           .mean_variance = v_sum / square(m),
@@ -100,12 +103,12 @@ PoseStatistics statistics_over(std::span<const LocalIndex> poses) {
 bool may_be_noise(const PoseStatistics& s, double level) {
   if (s.seen2 == 0.0) return true;
   const double noise4 = square(s.noise2);
-  if (noise4 == 0.0 || s.noise_variance == 0.0) return false;  // one of them may underflow before the other
+  if (noise4 == 0.0 || s.noise_variance == 0.0) return false;  // either may underflow before the other
   return boost::math::gamma_q(noise4 / s.noise_variance, s.seen2 * s.noise2 / s.noise_variance) > level;
 }
 
 /// The true spreads x that the data do not contradict: |spread2() - x^2| <= z sqrt(variance if x were true). Unlike an
-/// interval with the variance at the estimate, it is valid near zero spread.
+/// interval from the variance at the estimate, this one is valid near zero spread.
 Interval spread_interval(const PoseStatistics& s, double z) {
   const double middle = s.spread2() + 0.5 * square(z) * s.signal_variance;
   const double under_root =
@@ -114,8 +117,8 @@ Interval spread_interval(const PoseStatistics& s, double z) {
   return {std::sqrt(std::max(middle - half, 0.0)), std::sqrt(std::max(middle + half, 0.0))};
 }
 
-/// The distance from mean + spread to one end of its interval, from the distances of both (Zou and Donner 2008, with a
-/// correlation).
+/// The distance from mean + spread to one end of its interval. of_mean, of_spread: the same distances for the mean and
+/// for the spread alone (Zou and Donner 2008, with a correlation).
 double recovered(double of_mean, double of_spread, double correlation) {
   const double sum = square(of_mean) + square(of_spread) + 2.0 * correlation * of_mean * of_spread;
   return std::sqrt(std::max(sum, 0.0));
@@ -131,7 +134,8 @@ Estimate without_noise(std::span<const LocalIndex> poses, double conf_level) {
   const double centre = s.mean + s.spread();
   const Interval spread = spread_interval(s, z);
   const double up = recovered(of_mean, std::max(spread.high - s.spread(), 0.0), correlation);
-  // At zero spread the recovered lower limit would leave no room for the error of the mean.
+  // If the interval of the spread begins at 0, the formula of recovered() almost leaves out the error of the mean. Then
+  // the lower limit is that of the mean alone.
   const double low = may_be_noise(s, 0.5 * (1.0 - conf_level)) || spread.low == 0.0
                          ? s.mean - of_mean
                          : centre - recovered(of_mean, s.spread() - spread.low, correlation);

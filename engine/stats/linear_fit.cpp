@@ -71,7 +71,7 @@ void LinearFitSums::add_machine(std::span<const double> x, std::span<const doubl
   }
 }
 
-/// Rewrites the sums of one number for another shift.
+/// Changes the sums of one fitted number to those for another shift.
 void LinearFitSums::move_shift(std::size_t row, double shift) {
   const auto count = static_cast<double>(machines_);
   const double by = shift_[row] - shift;

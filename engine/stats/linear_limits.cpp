@@ -35,7 +35,8 @@ double ErrorRange::below(double e) const {
 }
 
 LinearLimit with_fewest_rows(const LinearLimit& limit) {
-  constexpr double kLeast = 1e-12;  // relative to the largest, as a square
+  constexpr double kLeast = 1e-12;  // smallest squared length of a row of offset and slopes, relative to the largest;
+                                    // shorter rows are dropped
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const auto rows = static_cast<Eigen::Index>(limit.rows);
   if (rows == 1) return limit;
@@ -74,7 +75,7 @@ LinearLimits::Machines LinearLimits::machines(std::span<const double> errors, st
       add_ends(limit, errors, reach, found);
     }
   }
-  // At this point the range is in terms of the error's change.
+  // So far a range contains changes of the error. Adding the error to both ends makes it a range of the error itself.
   for (std::size_t k = 0; k < errors.size(); ++k) {
     found.low[k] += errors[k];
     found.high[k] += errors[k];
@@ -97,7 +98,8 @@ std::vector<double> LinearLimits::values_of(const LinearLimit& limit, std::span<
   return y;
 }
 
-// from <= y + a d <= to holds for d between (from - y) / a and (to - y) / a.
+// y is the value, d the change of one error, a the slope: from <= y + a d <= to holds for d between (from - y) / a and
+// (to - y) / a.
 void LinearLimits::add_ends(const LinearLimit& limit, std::span<const double> errors, std::span<const double> reach,
                             Machines& found) const {
   POESY_EXPECTS(limit.rows == 1);
@@ -125,7 +127,8 @@ void LinearLimits::add_ends(const LinearLimit& limit, std::span<const double> er
   }
 }
 
-// |y + a d|^2 <= L^2 holds for d between the roots of a^2 d^2 + 2 (y a) d + y^2 - L^2.
+// y is the vector, d the change of one error, a the slope, L the limit: |y + a d|^2 <= L^2 holds for d between the
+// roots of a^2 d^2 + 2 (y a) d + y^2 - L^2.
 void LinearLimits::add_limit(const LinearLimit& limit, std::span<const double> errors, std::span<const double> reach,
                              Machines& found) const {
   const std::size_t block = found.rejected.size();

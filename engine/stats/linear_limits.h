@@ -9,64 +9,65 @@
 
 namespace poesy {
 
-/// The distribution of an error of any shape, from its quantile function.
+/// The cumulative distribution of an error, from its quantile function.
 class ErrorRange {
  public:
   /// The number of cells of equal probability into which the quantiles divide the distribution.
   static constexpr std::size_t kCells = 1024;
 
-  /// [kCells + 1] The uniforms, ascending, at which the constructor needs the error's quantile function.
+  /// [kCells + 1] The shares in (0, 1), ascending, at which the constructor needs the error's quantile function.
   static std::vector<double> grid();
 
   /// quantiles: [kCells + 1] ascending. centre: the mean, about which the error grows.
   ErrorRange(std::vector<double> quantiles, double centre);
 
-  /// The share of the errors below e. Linear within a cell.
+  /// The share of the errors that are below the value e, interpolated linearly within a cell.
   double below(double e) const;
-  /// The same for an error that is `growth` times as large about its centre.
+  /// The share of the errors that are below the value e, if the error is `growth` times as large about its centre.
   double below(double e, double growth) const { return below(centre_ + (e - centre_) / growth); }
-  double length() const {
-    return quantiles_.back() - quantiles_.front();
-  }  ///< The difference of the largest and the smallest value.
+  /// The difference of the largest and the smallest value.
+  double length() const { return quantiles_.back() - quantiles_.front(); }
 
  private:
   std::vector<double> quantiles_;
   double centre_;
 };
 
-/// A limit on the norm of a vector at one pose, |offset + slope e|, or on the value of a vector with one component.
+/// A limit at one pose on a vector that is linear in the errors e, offset + slope e: on its norm, or on its value if it
+/// has only one component.
 struct LinearLimit {
-  std::size_t rows;            ///< components of the vector
-  ValueLimit limit;            ///< of the norm; if it is not on the magnitude, of the one component
-  std::vector<double> offset;  ///< [rows]
-  std::vector<double> slope;   ///< [rows x P] derivatives by the errors, SI
+  std::size_t rows;  ///< components of the vector
+  ValueLimit limit;  ///< limit on the norm; if not a limit on magnitudes, limit on the value of the only component
+  std::vector<double> offset;  ///< [rows] the vector for zero errors, SI
+  std::vector<double> slope;   ///< [rows x errors] derivatives by the errors, SI
 };
 
-/// The same limit with as few rows as give the same norm, to a millionth of the largest.
+/// An equivalent limit on a vector with as few components as possible: the vector is rotated, and components below a
+/// millionth of the largest are dropped.
 LinearLimit with_fewest_rows(const LinearLimit& limit);
 
-/// Judges machines by limits that are linear in the errors. For each error it also finds the range in which the machine
-/// is good while its other errors stay as they are. The range is an interval, because each limit is a convex set of
-/// errors.
+/// Predicts which machines are good, for limits on vectors that are linear in the errors. For each error of a machine
+/// it also finds the range in which the machine is good if its other errors do not change. The range is an interval,
+/// because the errors that keep a limit form a convex set.
 class LinearLimits {
  public:
-  /// For P errors; `limits` has the limits at all poses.
+  /// errors: the number of errors. limits: the limits at all poses.
   LinearLimits(std::size_t errors, std::vector<LinearLimit> limits);
 
-  /// The results of B machines.
+  /// The results of several machines.
   struct Machines {
-    std::vector<std::uint8_t> rejected;  ///< [B] 1 if a limit is broken
-    std::vector<double>
-        low;  ///< [P x B] lower end of the range in which the machine is good; above `high` if there is none
-    std::vector<double> high;  ///< [P x B] upper end of the range
+    std::vector<std::uint8_t> rejected;  ///< [machines] 1 if a limit is broken
+    /// [errors x machines] lower end of the range in which the machine is good; above `high` if there is none.
+    std::vector<double> low;
+    std::vector<double> high;  ///< [errors x machines] upper end of the range in which the machine is good
   };
 
-  /// errors: [P x B] SI, row-major. reach: [P] the largest change of an error: its range is computed only within this
-  /// distance of the error's value, and not at all if it is 0.
+  /// errors: [errors x machines] SI, row-major. reach: [errors] the largest change of each error. The range of an error
+  /// is needed only within this distance of its value, and is not computed if the distance is 0.
   Machines machines(std::span<const double> errors, std::span<const double> reach) const;
 
  private:
-  /// [rows x B] The vector of each machine.
+  /// [rows x machines] The vector of each machine.
   std::vector<double> values_of(const LinearLimit& limit, std::span<const double> errors) const;
   void add_limit(const LinearLimit& limit, std::span<const double> errors, std::span<const double> reach,
                  Machines& found) const;

@@ -14,7 +14,7 @@ void add(Rejects& to, const Rejects& rejects) {
   to.lenient += rejects.lenient;
 }
 
-/// Adds counts. An empty array first takes the lengths of the other.
+/// Adds `rejects` to `to`, element by element. If `to` is empty, it first takes the lengths of `rejects`.
 template <NamedAxis... Axes>
 void add(Array<Rejects, Axes...>& to, const Array<Rejects, Axes...>& rejects) {
   if (to.empty()) make_room(rejects.lengths(), to);
@@ -22,16 +22,18 @@ void add(Array<Rejects, Axes...>& to, const Array<Rejects, Axes...>& rejects) {
   for (std::size_t k = 0; k < to.size(); ++k) add(to.all()[k], rejects.all()[k]);
 }
 
-/// Reads or writes rejects, checked against those of all machines. A machine that is rejected only strictly has a
-/// sample that does not count.
+/// Reads or writes rejects. Numbers that are read are checked against the rejects under any limit, `among`, and against
+/// the number of machines with an unsolved sample, because only such a machine can be rejected in the strict count
+/// alone.
 void rejects_state(Archive& archive, Rejects& rejects, const Rejects& among, std::uint64_t unsolved) {
   archive.number(rejects.strict, among.strict);
   archive.number(rejects.lenient, std::min(among.lenient, rejects.strict));
   archive.expect(rejects.strict - rejects.lenient <= unsolved, "has rejects without a reason");
 }
 
-/// Adds one response at a pose to the results of some machines: whether they are within the limit, their largest
-/// magnitudes and sums of squares. Machines whose sample does not count are left unchanged.
+/// A function that updates the results of some machines by the values of one response at one pose: whether they are
+/// within the limit, their largest magnitudes, and their sums of squares. Machines whose sample does not count are not
+/// changed.
 struct ResponseAtPose {
   std::span<const double> values;
   std::span<const std::uint8_t> counts;

@@ -13,61 +13,62 @@
 /// pose. The machines of a block are its samples.
 namespace poesy {
 
-/// Numbers of rejected machines, or of rejected samples at one pose.
+/// Numbers of rejected machines, or of rejected samples at one pose. A sample is unsolved here if it does not count in
+/// statistics (counts() in run/result.h).
 struct Rejects {
-  std::uint64_t strict = 0;   ///< samples that do not count (not solved) are rejects
-  std::uint64_t lenient = 0;  ///< samples that do not count are not rejects; at most `strict`
+  std::uint64_t strict = 0;   ///< number of rejects if unsolved samples are rejects
+  std::uint64_t lenient = 0;  ///< number of rejects if unsolved samples are no rejects; at most `strict`
 
   friend bool operator==(const Rejects&, const Rejects&) = default;  ///< Whether both are equal.
 };
 
-/// The numbers of rejected machines. A response without a limit has an infinite one, so it rejects only machines with a
-/// sample that does not count, and these only strictly.
+/// The numbers of rejected machines. A response without a limit has an infinite limit. So it rejects only machines with
+/// an unsolved sample, and only in Rejects::strict.
 struct MachineCounts {
   std::uint64_t machines = 0;               ///< machines that were tried
-  std::uint64_t unsolved = 0;               ///< machines with a sample that does not count, at one pose or more
+  std::uint64_t unsolved = 0;               ///< machines with an unsolved sample at one pose or more
   Rejects all;                              ///< machines that break any limit
-  Array<Rejects, axis::Response> by_limit;  ///< machines that break this limit
-  /// Machines that break this limit and are beyond it at this pose; for a limit on the spread only those that are not
-  /// solved there.
+  Array<Rejects, axis::Response> by_limit;  ///< machines that break the limit of each response
+  /// Machines that break the limit of a response and are beyond it at this pose. For a limit on the spread over poses:
+  /// only machines that are not solved at this pose.
   Array<Rejects, axis::Response, axis::Pose> at_pose;
 
-  /// Adds the counts of other machines, in any order. An empty object takes the lengths of the other.
+  /// Adds the counts of other machines, in any order. If this object is empty, it takes the lengths of `other`.
   void merge(const MachineCounts& other);
 
   /// Counts of zero machines, with room for these responses and poses.
   static MachineCounts of_none(std::size_t responses, std::size_t poses);
-  void state(Archive& archive);  ///< Reads or writes every count. Precondition: the lists have their lengths.
+  void state(Archive& archive);  ///< Reads or writes every count. Precondition: the arrays have their lengths.
 
   friend bool operator==(const MachineCounts&, const MachineCounts&) = default;  ///< Whether all counts are equal.
 };
 
-/// Collects the outcomes of a block of machines, pose after pose. It takes 17 bytes for each response of a machine,
-/// whatever the number of poses; for a response whose limit is not plain also 8 bytes for each pose. A machine with a
-/// sample that does not count at some pose is rejected (strict). Its largest magnitude and root mean square are NaN,
-/// because those over the other poses would flatter it. Leave these machines, which solved() names, out of
-/// distributions and state their number (MachineCounts::unsolved).
+/// Collects the outcomes of a block of machines, pose after pose. Memory: 17 bytes for each response of a machine, for
+/// any number of poses. A response whose limit is not plain (ValueLimit::is_plain) takes 8 bytes more for each pose. A
+/// machine with a sample that does not count at some pose is rejected (strict). Its largest magnitude and root mean
+/// square are NaN, because the values over the other poses would be too good. Leave these machines, for which solved()
+/// is 0, out of distributions, and state their number (MachineCounts::unsolved).
 class MachineBlock {
  public:
-  /// limits: [R] one for each response, infinite for none. machines: their number.
+  /// limits: [responses] one for each response, infinite for none. machines: their number.
   MachineBlock(std::span<const ValueLimit> limits, std::size_t machines);
 
-  /// Adds the outcomes at the next pose. responses: [R x B], row-major as in OutcomeBlock. counts: [B] 1 if the sample
-  /// counts; 0 if not, and its responses are ignored.
+  /// Adds the outcomes at the next pose. responses: [responses x machines], row-major as in OutcomeBlock. counts:
+  /// [machines] 1 if the sample counts; 0 if not, and its responses are ignored.
   void add_pose(std::span<const double> responses, std::span<const std::uint8_t> counts);
 
   std::size_t machines() const { return solved_.size(); }  ///< The number of machines.
   std::size_t poses() const { return at_pose_.size(); }    ///< The number of poses that were added.
   MachineCounts counts() const;                            ///< The counts over these poses.
 
-  /// [B] 1 if the machine is rejected (strict), else 0; input of ScoreSums.
+  /// [machines] 1 if the machine is rejected (strict), else 0. ScoreSums takes this.
   std::vector<std::uint8_t> rejected() const;
-  /// [B] 1 if all samples of the machine count, else 0; input of MainEffectSums for numbers of whole machines.
+  /// [machines] 1 if all samples of the machine count, else 0. MainEffectSums takes this for numbers of whole machines.
   std::span<const std::uint8_t> solved() const { return solved_; }
   /// Largest magnitudes over the poses; NaN if the machine is not solved at each of them.
   Array<double, axis::Response, axis::Sample> largest() const;
-  /// [B] The numbers by which the machines are judged (ValueLimit::deciding); NaN if a machine is not solved at each
-  /// pose. Precondition: the limit of the response is not plain.
+  /// [machines] The numbers by which the machines are judged (ValueLimit::deciding); NaN if a machine is not solved at
+  /// each pose. Precondition: the limit of the response is not plain.
   std::vector<double> deciding(std::size_t response) const;
   /// Root mean squares over the poses; NaN if the machine is not solved at each of them. Precondition: poses() > 0.
   Array<double, axis::Response, axis::Sample> root_mean_square() const;
@@ -75,19 +76,21 @@ class MachineBlock {
  private:
   /// The values of a machine at the poses where its sample counts.
   std::vector<double> values_of(std::size_t response, std::size_t machine) const;
-  /// [B] 1 if the limit is broken at the poses where the machine's sample counts, else 0.
+  /// [machines] 1 if the limit is broken at the poses where the machine's sample counts, else 0.
   std::vector<std::uint8_t> beyond(std::size_t response) const;
-  /// The rejects at a pose for a limit over poses. beyond: of the response.
+  /// The rejects of a response at a pose, for a limit over poses. beyond: see beyond().
   Rejects rejects_over_poses(std::size_t response, std::size_t pose, std::span<const std::uint8_t> beyond) const;
 
-  std::vector<ValueLimit> limits_;                       ///< [R]
-  std::vector<std::uint8_t> solved_;                     ///< [B] 1 if all samples of the machine count
-  Array<double, axis::Response, axis::Sample> largest_;  ///< over the poses where the machine is solved
+  std::vector<ValueLimit> limits_;    ///< [responses] limit of each response
+  std::vector<std::uint8_t> solved_;  ///< [machines] 1 if all samples of the machine count
+  /// Largest magnitudes over the poses where the machine is solved.
+  Array<double, axis::Response, axis::Sample> largest_;
   Array<double, axis::Response, axis::Sample> squares_;  ///< sums of squares over the poses where the machine is solved
   Array<std::uint8_t, axis::Response, axis::Sample> beyond_;  ///< 1 if the machine is beyond the limit at some pose
-  std::vector<std::vector<Rejects>> at_pose_;                 ///< [poses][R]
-  std::vector<std::vector<double>> values_;                   ///< [R] values [poses x B], if the limit is not plain
-  std::vector<std::uint8_t> counts_;  ///< [poses x B] 1 if the sample counts; empty if all limits are plain
+  std::vector<std::vector<Rejects>> at_pose_;                 ///< [poses][responses] rejects at each pose
+  /// For each response, its values [poses x machines] if the limit is not plain.
+  std::vector<std::vector<double>> values_;
+  std::vector<std::uint8_t> counts_;  ///< [poses x machines] 1 if the sample counts; empty if all limits are plain
 };
 
 }  // namespace poesy

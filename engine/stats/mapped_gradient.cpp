@@ -7,13 +7,13 @@
 namespace poesy {
 namespace {
 
-/// The relative step for the derivative by ln t, a central difference.
+/// The relative step of a central difference for the derivative by ln t, the logarithm of the size t of an error.
 constexpr double kStep = 1e-3;
 
-/// The change of the probability to be in a range with the size of the error.
+/// How the probability that an error is in a range changes with the size t of the error.
 struct RangeChange {
-  double slope;   ///< derivative by ln t
-  double growth;  ///< change for the factor kErrorGrowth
+  double slope;   ///< derivative of the probability by ln t
+  double growth;  ///< change of the probability if t grows by the factor kErrorGrowth
 };
 
 RangeChange change_in(const ErrorRange& error, double low, double high) {

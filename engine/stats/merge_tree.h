@@ -13,20 +13,21 @@ namespace poesy {
 
 /// Merges numbered leaves in an order that depends only on their numbers: leaves 8k, 8k + 1, ... 8k + 7 one after the
 /// other, then eight such branches, and so on. So a sum of floating-point numbers has the same bits however the leaves
-/// were divided into ranges, if the ranges are merged in order. It has one sum for each octal digit of the number of
-/// leaves, and up to seven more for each digit if it does not begin at leaf 0. Sum is a value with merge(const Sum&),
-/// whose argument has later leaves.
+/// were divided into ranges, if the ranges are merged in order. The tree keeps one sum for each octal digit of the
+/// number of leaves. If its first leaf is not leaf 0, it keeps up to seven more for each digit. Sum is a value type
+/// with merge(const Sum&), whose argument is the sum of later leaves.
 template <class Sum>
 class MergeTree {
  public:
-  /// Merged leaves: a whole branch, or the first branches of a larger one.
+  /// The merged sum of several leaves: of a whole branch, or of the first branches of a larger branch.
   struct Node {
-    std::size_t first;   ///< the first leaf; a multiple of the leaves of the branch, or of the larger one
-    std::size_t leaves;  ///< a power of eight, times 2 to 7 if the node has several branches
+    std::size_t
+        first;  ///< number of the first leaf; a multiple of the number of leaves of the branch, or of the larger branch
+    std::size_t leaves;  ///< number of leaves: a power of eight, times 2 to 7 if the node has several branches
     Sum sum;             ///< sum of these leaves
   };
 
-  /// The largest number of sums for this many leaves from leaf 0 on.
+  /// The largest number of nodes of a tree with this many leaves from leaf 0 on.
   static constexpr std::size_t most_nodes(std::size_t leaves) {
     std::size_t digits = 0;
     for (; leaves > 0; leaves /= kBranches) ++digits;
@@ -62,7 +63,7 @@ class MergeTree {
     return std::move(nodes_.front().sum);
   }
 
-  /// The same for a copy.
+  /// The sum of all leaves; the tree stays as it is. Precondition: there is a leaf.
   Sum total() const& {
     MergeTree copy = *this;
     return std::move(copy).total();
@@ -71,8 +72,8 @@ class MergeTree {
   /// The nodes, in the order of their leaves.
   std::span<const Node> nodes() const { return nodes_; }
 
-  /// Reads or writes every node. What is read is added as the next leaves, up to leaf `end_of_all`. none: an empty sum,
-  /// a pattern for what is read.
+  /// Reads or writes every node. When reading, the nodes are added as the next leaves, which must be below
+  /// `end_of_all`. none: an empty sum, from which each sum that is read begins.
   void state(Archive& archive, std::size_t end_of_all, const Sum& none) {
     std::uint64_t count = nodes_.size();
     archive.number(count);

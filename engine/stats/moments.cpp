@@ -15,8 +15,8 @@
 namespace poesy {
 namespace {
 
-/// The number of partial sums. With eight, an addition need not wait for the previous one, and they fill whole vectors.
-/// Value k is added to sum k mod 8 on every instruction set.
+/// The number of partial sums. With eight sums, an addition need not wait for the previous one, and the sums fill whole
+/// vector registers. Value k is added to sum k mod 8 on every instruction set.
 constexpr std::size_t kSums = 8;
 using Sums = std::array<double, kSums>;
 
@@ -177,8 +177,8 @@ Interval MeanIntervals::of(const Moments& moments) {
 Estimate stratified_mean(const Groups& groups, double conf_level) {
   double total = 0.0;
   double sum = 0.0;
-  double squares = 0.0;   // sum of n s^2
-  double quartics = 0.0;  // sum of (n s^2)^2 / (n - 1)
+  double squares = 0.0;   // sum of n s^2 over the groups, with n samples of standard deviation s
+  double quartics = 0.0;  // sum of (n s^2)^2 / (n - 1) over the groups, n and s as above
   for (std::size_t m = 0; m < groups.count.size(); ++m) {
     if (groups.count[m] == 0) continue;
     const auto n = static_cast<double>(groups.count[m]);

@@ -16,11 +16,11 @@ struct Interval {
 /// An estimate with its interval.
 struct Estimate {
   double value;       ///< the estimate
-  Interval interval;  ///< the interval of the value, at the wanted level
+  Interval interval;  ///< confidence interval of the value
 };
 
-/// Count, mean and central moments to fourth order of a stream of numbers, in one pass and mergeable
-/// (Welford; Chan et al. 1983; Pebay 2008, Sandia report SAND2008-6212, Eqs. 1.1-1.7, 2.1-2.4).
+/// Count, mean and central moments up to the fourth of a stream of numbers, computed in one pass. Moments of several
+/// streams can be merged (Welford; Chan et al. 1983; Pebay 2008, Sandia report SAND2008-6212, Eqs. 1.1-1.7, 2.1-2.4).
 class Moments {
  public:
   void add(double value);  ///< Adds a value. The order changes only rounding.
@@ -33,9 +33,11 @@ class Moments {
   double mean() const { return mean_; }           ///< The mean; 0 when empty.
   double variance() const;                        ///< The sample variance, divided by count - 1; NaN below two values.
   double standard_deviation() const;              ///< The square root of the sample variance; NaN below two values.
-  /// The skewness m3 / m2^(3/2) of the sample (0 for a symmetric one); NaN if the variance is zero or undefined.
+  /// The skewness m3 / m2^(3/2) with the central moments m2 and m3 of the sample; 0 for a symmetric sample. NaN if the
+  /// variance is zero or undefined.
   double skewness() const;
-  /// The kurtosis m4 / m2^2 of the sample (3 for a normal); NaN if the variance is zero or undefined.
+  /// The kurtosis m4 / m2^2 with the central moments m2 and m4 of the sample; 3 for a normal. NaN if the variance is
+  /// zero or undefined.
   double kurtosis() const;
 
   void state(Archive& archive);  ///< Reads or writes every bit.
@@ -56,14 +58,15 @@ double root_mean_square(double mean, double standard_deviation, std::uint64_t co
 /// The root mean square of these values; NaN without values.
 double root_mean_square(std::span<const double> values);
 
-/// The half-width of a two-sided interval over the standard error, for this many degrees of freedom (Student's t).
+/// The t for which Student's distribution with these degrees of freedom is within +-t with the probability conf_level.
 /// Preconditions: freedom > 0, 0 < conf_level < 1.
 double student_quantile(double freedom, double conf_level);
 
-/// The z for which a standard normal is within +-z with this probability: 1.96 for 0.95. Precondition: 0 < conf_level <
-/// 1.
+/// The z for which a standard normal is within +-z with the probability conf_level: 1.96 for 0.95. Precondition: 0 <
+/// conf_level < 1.
 double two_sided_normal_quantile(double conf_level);
-/// The same for Student's distribution. freedom: degrees of freedom, > 0.
+/// The t for which Student's distribution is within +-t with the probability conf_level. freedom: degrees of freedom, >
+/// 0.
 double two_sided_student_quantile(double freedom, double conf_level);
 
 /// Student's interval for a mean: mean +- t(n - 1) s / sqrt(n). NaN at both ends below two samples.
@@ -75,7 +78,7 @@ Interval mean_interval(const Moments& moments, double conf_level);
 class MeanIntervals {
  public:
   explicit MeanIntervals(double conf_level) : conf_level_(conf_level) {}  ///< Precondition: 0 < conf_level < 1.
-  Interval of(const Moments& moments);  ///< The interval, with the same bits as mean_interval().
+  Interval of(const Moments& moments);  ///< The interval, bit for bit that of mean_interval().
 
  private:
   double conf_level_;
@@ -83,18 +86,18 @@ class MeanIntervals {
   double quantile_ = 0.0;
 };
 
-/// Samples of M groups, by their numbers, means and sample standard deviations.
+/// Statistics of the samples in M groups.
 struct Groups {
-  std::span<const std::uint64_t> count;  ///< [M] samples
-  std::span<const double> mean;          ///< [M] their mean
-  std::span<const double> std;           ///< [M] their sample standard deviation
+  std::span<const std::uint64_t> count;  ///< [M] number of samples in each group
+  std::span<const double> mean;          ///< [M] mean of the samples
+  std::span<const double> std;           ///< [M] sample standard deviation
 };
 
-/// The mean of all samples of all groups together. Its interval takes the groups as fixed and only the samples in them
-/// as drawn (stratified sampling; Cochran 1977, Sampling Techniques, Eqs. 5.7 and 5.16): with the variance sum of n_m
-/// s_m^2 / N^2 and Student's quantile with Satterthwaite's degrees of freedom. For one group it is mean_interval().
-/// Groups without a sample do not count; a group of a single sample gives NaN at both ends. Precondition: 0 <
-/// conf_level < 1.
+/// The mean of all samples of all groups together. The interval is that of stratified sampling, where the groups are
+/// fixed and only the samples in them are random (Cochran 1977, Sampling Techniques, Eqs. 5.7 and 5.16). The variance
+/// is the sum of n_m s_m^2 / N^2 over the groups, with n_m samples of standard deviation s_m in group m, and N in all.
+/// Student's quantile has Satterthwaite's degrees of freedom. For one group it is mean_interval(). Groups without a
+/// sample do not count; a group of a single sample gives NaN at both ends. Precondition: 0 < conf_level < 1.
 Estimate stratified_mean(const Groups& groups, double conf_level);
 
 }  // namespace poesy

@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// The buckets of a sign between the smallest and the largest magnitude.
+/// The buckets that numbers of one sign need: from the bucket of the smallest magnitude to the bucket of the largest.
 struct BucketRange {
   std::uint64_t first = 0;
   std::uint64_t count = 0;  ///< number of buckets; 0 without numbers of this sign
@@ -40,7 +40,7 @@ struct Codes {
     const std::uint64_t at = key == bucket ? bucket - above.first : above.count + bucket - below.first;
     return static_cast<std::uint32_t>(1 + at);
   }
-  /// The number of the smallest magnitude in the bucket.
+  /// The number with this code: the smallest magnitude in its bucket, with its sign.
   double number(std::uint32_t code) const {
     if (code == 0) return 0.0;
     const std::uint64_t at = code - 1;

@@ -11,7 +11,7 @@
 namespace poesy {
 namespace {
 
-/// The pages of a scale that have numbers.
+/// The pages (blocks of kPageBuckets buckets) of a scale that contain at least one number.
 class MarkedPages {
  public:
   /// Finds the pages on the finest scale that fits.
@@ -53,7 +53,7 @@ class MarkedPages {
 
  private:
   struct Side {
-    std::uint64_t first = 0;  ///< first page
+    std::uint64_t first = 0;  ///< number of the first page
     std::vector<std::uint8_t> marks{};
   };
 
@@ -82,7 +82,7 @@ Extremes of_magnitudes(const Extremes& extremes, bool zeros) {
 std::uint64_t quantile_rank(double q, std::uint64_t n) {
   const auto whole = static_cast<double>(n);
   double k = std::clamp(std::ceil(q * whole), 1.0, whole);
-  // Corrects k if q n was rounded up past a whole number.
+  // Corrects the rank k if rounding moved the product of q and n past a whole number.
   if (k > 1.0 && (k - 1.0) / whole >= q) k -= 1.0;
   if (k < whole && k / whole < q) k += 1.0;
   return static_cast<std::uint64_t>(k);

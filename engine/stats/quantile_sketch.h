@@ -21,28 +21,28 @@ std::uint64_t quantile_rank(double q, std::uint64_t n);
 struct Bucket {
   double lower;         ///< smallest possible value
   double upper;         ///< largest possible value
-  std::uint64_t count;  ///< values in it
-  std::uint64_t up_to;  ///< values in it and in all buckets before it
+  std::uint64_t count;  ///< number of values in the bucket
+  std::uint64_t up_to;  ///< number of values in the bucket and all buckets before it
 };
 
-/// Estimates quantiles of a stream of numbers without storing them. Up to kMostExact numbers are kept. More are counted
-/// in buckets (BucketScale), on the finest scale on which they are in at most kMostPages pages and span at most
-/// kMostPagesSpanned. So buckets are narrow if the numbers are close to each other, wherever they are, and a number far
-/// from all others costs one page. More numbers never make the scale finer, and counts are whole numbers, so merging is
-/// exact: the result has the same bits for any order of merging and any division of the stream. Memory: 16 kB for the
-/// pages and 2 kB for the pages spanned; on the coarsest scale 128 bytes for each page with numbers, and two pages for
-/// each factor of two and sign.
+/// Estimates quantiles of a stream of numbers without storing them. Up to kMostExact numbers are kept. More numbers are
+/// counted in buckets (BucketScale) instead. Buckets are stored in pages of kPageBuckets buckets. The scale of the
+/// buckets is the finest one on which the numbers are in at most kMostPages pages, and at most kMostPagesSpanned pages
+/// are between the smallest and the largest number. So buckets are narrow if the numbers are close to each other,
+/// whatever their mean, and a number far from all others costs one page. Merging is exact, because more numbers never
+/// make the scale finer, and counts are whole numbers: the result has the same bits for any order of merging and any
+/// division of the stream. Memory: 16 kB for the pages and 2 kB for the pages spanned; on the coarsest scale 128 bytes
+/// for each page with numbers, and two pages for each factor of two and sign.
 class QuantileSketch {
  public:
   /// The largest number of pages of buckets, unless the coarsest scale has more.
   static constexpr std::size_t kMostPages = BucketCounts::kMostPages;
-  /// The largest relative error of quantile() as an order statistic; it is also at most half of the bucket
-  /// (quantile_error). Numbers below 2^-1022 in magnitude (subnormal) count as zero.
+  /// The largest relative error of quantile() as an order statistic; the error is also at most half of the bucket's
+  /// width (order_statistic_error()). Numbers below 2^-1022 in magnitude (subnormal) count as zero.
   static constexpr double kRelativeError = BucketScale::kRelativeError;
 
-  void add(std::span<const double> values) {
-    add(NumberBlock(values));
-  }  ///< Adds values. Precondition: all values are finite.
+  /// Adds values. Precondition: all values are finite.
+  void add(std::span<const double> values) { add(NumberBlock(values)); }
   void add(const NumberBlock& block) { add(block.values, block.extremes); }  ///< Adds a prepared block.
   void merge(const QuantileSketch& other);  ///< Adds the numbers of another sketch, exactly and in any order.
 
@@ -51,15 +51,15 @@ class QuantileSketch {
   double min() const { return count() == 0 ? std::numeric_limits<double>::quiet_NaN() : extremes_.min; }
   /// The largest value, exact; NaN when empty.
   double max() const { return count() == 0 ? std::numeric_limits<double>::quiet_NaN() : extremes_.max; }
-  /// The order statistic of the smallest rank k >= 1 with k / n >= q, to within its bucket: the inverse of the
-  /// empirical distribution function. NaN when empty. Precondition: 0 <= q <= 1.
+  /// The quantile q: the inverse of the empirical distribution function, to within a bucket. It is the order statistic
+  /// of rank quantile_rank(q, count()). NaN when empty. Precondition: 0 <= q <= 1.
   double quantile(double q) const;
   /// The k-th smallest value, to within its bucket. Precondition: 1 <= k <= count().
   double order_statistic(std::uint64_t k) const;
   /// The filled buckets, ascending, cut off at min() and max(). Values that are kept, and those that count as zero,
   /// have buckets of zero width.
   std::vector<Bucket> buckets() const;
-  /// A sketch of the values' magnitudes, on a scale that is not finer.
+  /// A sketch of the magnitudes of the values, on the same scale or a coarser one.
   QuantileSketch magnitudes() const;
 
   /// Reads or writes every count: up to two bytes for each bucket.
@@ -76,8 +76,8 @@ class QuantileSketch {
   std::vector<double> sorted() const;
 
   Extremes extremes_;
-  std::vector<double> values_;  ///< used while all values are kept
-  BucketCounts counts_;         ///< used afterwards
+  std::vector<double> values_;  ///< values, while there are at most kMostExact
+  BucketCounts counts_;         ///< counts of the values, once there are more
 };
 
 }  // namespace poesy

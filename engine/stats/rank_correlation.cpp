@@ -27,7 +27,7 @@ std::vector<double> mean_ranks(const std::vector<double>& values) {
   return ranks;
 }
 
-/// Pearson's correlation of two lists of ranks, whose means are both (N + 1) / 2; NaN if one of them does not vary.
+/// Pearson's correlation of two lists of N ranks, whose means are both (N + 1) / 2; NaN if one of them does not vary.
 double correlation(const std::vector<double>& x, const std::vector<double>& y) {
   const double mean = 0.5 * static_cast<double>(x.size() + 1);
   double xx = 0.0;

@@ -14,20 +14,21 @@
 ///     E[(y_A - y_C)^2] = 2 V ST               they differ in the group alone (Jansen 1999, Eq. 9)
 ///     E[(y_B - y_C)^2] = 2 V (1 - S1)         they have the group alone in common (Jansen 1999, Eq. 6)
 ///
-/// so an index is a ratio of two means of the same samples. The mean of y does not enter, so nothing cancels and no
+/// So an index is a ratio of two means of the same samples. The mean of y does not enter, so no digits cancel and no
 /// shift is needed. Sums over the components of a vector, or over poses with the same machines, give the generalised
 /// and the aggregated index without another formula. For an error without effect y_C and y_A have the same bits, so
 /// both of its indices are exactly 0.
 namespace poesy {
 
-/// The ratio E[x] / E[w] of pairs (x, w) with w >= 0: sums for the value and its interval, in one pass and mergeable.
+/// Estimates the ratio E[x] / E[w] from pairs (x, w) with w >= 0, with an interval. It needs one pass over the pairs,
+/// and the sums of several objects can be merged.
 class RatioSums {
  public:
-  /// Adds pairs, [B] each. counts: [B] pairs with 0 are left out and ignored.
+  /// Adds the pairs (x[k], w[k]). counts: 1, or 0 for a pair that is left out.
   void add(std::span<const double> x, std::span<const double> w, std::span<const std::uint8_t> counts);
   void add(double x, double w);  ///< Adds one pair.
-  void merge(
-      const RatioSums& other);  ///< Adds the pairs of a later stream. Merging in the same order gives the same bits.
+  /// Adds the pairs of a later stream. Merging in the same order gives the same bits.
+  void merge(const RatioSums& other);
 
   std::uint64_t count() const { return count_; }  ///< The number of pairs.
   double mean_x() const;                          ///< The mean of x; NaN when empty.

@@ -23,7 +23,7 @@ double mean_of_squares(std::span<const double> values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// 1 / mu_p; infinite for an error without effect.
+/// 1 / mu_p for each index mu_p; infinite for an error without effect.
 std::vector<double> inverse(std::span<const double> index) {
   std::vector<double> values;
   for (const double mu : index) values.push_back(std::isnan(mu) ? kNaN : has_effect(mu) ? 1.0 / mu : kInfinity);

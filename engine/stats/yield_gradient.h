@@ -14,15 +14,15 @@ namespace poesy {
 /// Sums of the powers of a number over machines; for most machines the number is 0.
 struct PowerSums {
   double sum = 0.0;     ///< sum of the number
-  double square = 0.0;  ///< sum of its square
-  double cube = 0.0;    ///< sum of its cube
+  double square = 0.0;  ///< sum of the square of the number
+  double cube = 0.0;    ///< sum of the cube of the number
 
   void add(double value) {  ///< Adds the number of one machine.
     sum += value;
     square += value * value;
     cube += value * value * value;
   }
-  /// Adds other sums.
+  /// Adds the sums over other machines.
   PowerSums& operator+=(const PowerSums& other) {
     sum += other.sum;
     square += other.square;
@@ -31,18 +31,18 @@ struct PowerSums {
   }
 };
 
-/// The number of rejects, with any error, that are added when the spread of a score is estimated, because a few rejects
-/// may not include its largest values (Agresti and Coull 1998, Am. Stat. 52, 119-126, add two of each kind for a
-/// share).
+/// The number of further rejects, with errors of any size, that are assumed when the spread of a score is estimated. A
+/// few rejects may not include the largest values of the score (Agresti and Coull 1998, Am. Stat. 52, 119-126, add two
+/// of each kind for a share).
 inline constexpr double kAddedRejects = 4.0;
 
 /// With fewer rejects, the coverage of an interval of the gradient is below its level (theory.md).
 inline constexpr std::uint64_t kFewRejects = 20;
 
 /// The mean of a number over n machines, from the sums `powers`, with an interval at this level by the central limit
-/// theorem. The mean of a skewed number is skewed, so the variance is that at the end in question (variance + skewness
-/// (end - mean), as in Wilson's interval for a share), with Student's quantile for `freedom` degrees. added: terms
-/// added to the mean powers. NaN at both ends if freedom < 1.
+/// theorem. The mean of a skewed number is skewed, so each end of the interval has its own variance (variance +
+/// skewness (end - mean), as in Wilson's interval for a share), with Student's quantile for `freedom` degrees. added:
+/// terms added to the means of the number's square and cube. NaN at both ends if freedom < 1.
 Estimate skewed_mean(const PowerSums& powers, std::uint64_t machines, const ScoreMoments& added, double freedom,
                      double conf_level);
 
@@ -51,15 +51,16 @@ Estimate skewed_mean(const PowerSums& powers, std::uint64_t machines, const Scor
 ///
 ///     dY/dt = -E[1_reject S] / t
 ///
-/// which is exact for normal errors, also truncated or correlated ones, and for others if the yield, given the error,
-/// is a polynomial of degree PolynomialScore::kDegree. NaN if the score is not known. The growth score gives the change
-/// of the yield if t grows by the factor kErrorGrowth. Stores twelve sums for each error and uses only the rejects.
+/// This is exact for normal errors, also truncated or correlated ones. For other errors it is exact if the yield as a
+/// function of the error is a polynomial of degree PolynomialScore::kDegree. NaN if the score is not known. The growth
+/// score gives the change of the yield if t grows by the factor kErrorGrowth. Stores twelve sums for each error and
+/// uses only the rejects.
 class ScoreSums {
  public:
-  explicit ScoreSums(ErrorScores scores);  ///< Empty sums for [P] errors.
+  explicit ScoreSums(ErrorScores scores);  ///< Empty sums for [errors] errors.
 
-  /// Adds B machines. errors: [P x B], SI, row-major as SampleBlock::values, finite. rejected: [B] 1 or 0, see
-  /// MachineBlock::rejected().
+  /// Adds machines. errors: [errors x machines], SI, row-major as SampleBlock::values, finite. rejected: [machines] 1
+  /// or 0, see MachineBlock::rejected().
   void add(std::span<const double> errors, std::span<const std::uint8_t> rejected);
   /// Adds the sums of later machines. Merging in the same order gives the same bits. Precondition: the same errors.
   void merge(const ScoreSums& other);
@@ -67,42 +68,46 @@ class ScoreSums {
   std::uint64_t machines() const { return machines_; }  ///< The number of machines that were added.
   std::uint64_t rejects() const { return rejects_; }    ///< The number of rejects among them.
 
-  /// [P] dY/dt, per unit of the error (1/m, 1/rad). The interval is skewed_mean() over all machines, where good ones
-  /// have the score 0, with Student's quantile for the number of rejects. Of 95 % intervals, 93 to 95 % contained the
-  /// gradient of a sum of normal errors with nine or more rejects, and 90 % with five (theory.md). Scores of errors of
-  /// other shapes and of correlated ones spread more, so their second and third moments include four more rejects with
-  /// any error. The interval does not include what a PolynomialScore leaves out. That is much if one error alone makes
-  /// the rejects; the gradient by that error is then NaN. The criterion is that its score up to degree 2 has less than
-  /// half of the mean of S, or more than twice that, by Student's test at 99 %. NaN for errors without a score; NaN at
-  /// both ends below two rejects. Precondition: 0 < conf_level < 1.
+  /// [errors] dY/dt, per unit of the error (1/m, 1/rad). The interval is skewed_mean() over all machines, where good
+  /// ones have the score 0, with Student's quantile for the number of rejects. Of 95 % intervals, 93 to 95 % contained
+  /// the gradient of a sum of normal errors with nine or more rejects, and 90 % with five (theory.md). Scores of
+  /// correlated errors and of other distributions spread more, so their second and third moments include four more
+  /// rejects (kAddedRejects). The interval does not include what a PolynomialScore leaves out. That part is large if
+  /// one error alone makes the rejects; the gradient by that error is then NaN. The criterion, by Student's test at 99
+  /// %, is that the mean of the score up to degree 2 is less than half or more than twice the mean of S. NaN for errors
+  /// without a score; NaN at both ends below two rejects. Precondition: 0 < conf_level < 1.
   std::vector<Estimate> gradient(double conf_level) const;
 
-  /// [P] The change of Y, between -Y and 1 - Y, if the size of the error grows by the factor kErrorGrowth and the
-  /// others stay as they are. Otherwise as gradient().
+  /// [errors] The change of Y, between -Y and 1 - Y, if the size of the error grows by the factor kErrorGrowth and the
+  /// others stay as they are. The intervals and the cases with NaN are those of gradient().
   std::vector<Estimate> change(double conf_level) const;
 
-  void state(Archive& archive);  ///< Reads or writes every bit.
+  void state(Archive& archive);  ///< Reads or writes the sums, bit for bit.
 
  private:
-  /// The mean score of one error over all machines; good ones have 0.
+  /// The mean score of one error over all machines; good machines have the score 0.
   Estimate mean_score(std::size_t error, double conf_level) const;
   Estimate mean_growth(std::size_t error, double conf_level) const;
-  /// Whether the error alone makes the rejects, so that its PolynomialScore leaves out much.
+  /// Whether this error alone makes the rejects, so that its PolynomialScore leaves out a large part.
   bool dominates(std::size_t error, const Estimate& score) const;
-  /// Adds the errors of a block.
+  /// Adds to the sums the scores of a block of correlated errors for the rejected machines. errors: as in add(). count:
+  /// number of machines. rejects: positions of the rejected machines.
   void add_block(const NormalBlock& block, std::span<const double> errors, std::size_t count,
                  std::span<const std::size_t> rejects);
 
   ErrorScores scores_;
   std::uint64_t machines_ = 0;
   std::uint64_t rejects_ = 0;
-  std::vector<PowerSums> slope_;   ///< [P] S over the rejects, without the ends of a normal
-  std::vector<PowerSums> growth_;  ///< [P] growth score; 0 for errors of a block, for which it follows from S
-  std::vector<PowerSums> less_;    ///< [P] part of a PolynomialScore up to degree 2, less half of S
-  std::vector<PowerSums> more_;    ///< [P] 2 S less that part
+  /// [errors] Sums of the score S over the rejects. For a NormalScore they are sums of z^2 - 1; mean_score() adds the
+  /// constant term NormalScore::ends() of a truncated normal.
+  std::vector<PowerSums> slope_;
+  std::vector<PowerSums> growth_;  ///< [errors] sums of the growth score over the rejects; 0 for errors of a block,
+                                   ///< because growth scores in a block are computed from slope_ (growth_moments())
+  std::vector<PowerSums> less_;    ///< [errors] sums of parabola() - S / 2 of a PolynomialScore S over the rejects
+  std::vector<PowerSums> more_;    ///< [errors] sums of 2 S - parabola() of a PolynomialScore S over the rejects
 };
 
-/// The estimate and the ends of its interval, moved within these bounds.
+/// The estimate and the ends of its interval, each moved to the nearest number between these bounds.
 Estimate within(const Estimate& estimate, double least, double most);
 
 }  // namespace poesy

@@ -38,7 +38,7 @@ bool begins_with_magic(std::span<const std::byte> bytes) {
   return bytes.size() >= magic.size() && std::ranges::equal(bytes.first(magic.size()), magic);
 }
 
-/// Calls member() for the members in the order of the file.
+/// Calls member() for each member of the identity, in the order in which the file has them.
 template <class Identity, class Member>
 void for_each_member(Identity& identity, const Member& member) {
   member(identity.poesy_version);
@@ -56,7 +56,7 @@ void put(ByteWriter& to, std::uint64_t value) { to.number(value); }
 void take(ByteReader& from, std::string& value) { value = from.text(); }
 void take(ByteReader& from, std::uint64_t& value) { value = from.number(); }
 
-/// Writes the source as blocks. Returns the SHA-256 of its bytes.
+/// Writes the bytes of a source as a sequence of blocks. Returns the SHA-256 of these bytes.
 Sha256::Digest put_blocks(ByteWriter& to, const ByteSource& source) {
   Sha256 sha;
   ByteWriter pieces([&](std::span<const std::byte> piece) {
@@ -82,13 +82,12 @@ Bytes take_blocks(ByteReader& from) {
   }
 }
 
-/// Fills `to` with the bytes from position `at` on. Throws BytesError.
+/// Fills `to` with the bytes of the file from position `at` on. Throws BytesError if the file is shorter.
 void read_all(const PlainFile& file, std::uintmax_t at, std::span<std::byte> to) {
   if (!file.is_open() || file.read(at, to) != to.size()) throw BytesError("ends too early");
 }
 
-/// Reads the next block, which is empty at the end of a state. `at` moves from its beginning to its end. Throws
-/// BytesError.
+/// Reads the block at position `at`, and moves `at` to its end. The last block of a state is empty. Throws BytesError.
 void read_block(const PlainFile& file, std::uintmax_t& at, Bytes& block) {
   constexpr std::size_t kMostDigits = 10;
   constexpr std::byte kMore{0x80};
@@ -286,9 +285,9 @@ void CheckpointFiles::write_state(std::size_t stage, ByteWriter& to) {
 }
 
 void CheckpointFiles::remove() {
-  held_.reset();  // an open file would still use disk space
+  held_.reset();  // closes the file, which would otherwise still use disk space
   states_.clear();
-  // The newest is removed last, so that it remains if the removal is interrupted.
+  // The newer file is removed last, so that it remains if the removal is interrupted.
   for (const std::string* path : {&older_, &newer_}) {
     std::error_code error;
     fs::remove(*path, error);
@@ -309,7 +308,8 @@ bool RunLock::take(const std::string& result_path) {
   descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (descriptor_ < 0) {
     const int reason = errno;
-    if (!stands(path_)) return true;  // writing the result will meet the same problem, and report it
+    // No lock file can be made; writing the result will have the same problem and report it.
+    if (!stands(path_)) return true;
     throw FileError(path_, "cannot be opened (" + std::generic_category().message(reason) + ")",
                     "remove it if no run is computing this result, or give another -o");
   }
@@ -326,7 +326,7 @@ bool RunLock::take(const std::string& result_path) {
     throw InputError({.file = result_path}, "another run is computing this result",
                      "wait for it, or give each run its own -o");
   }
-  // A run that ended meanwhile has removed the file; a lock on the removed file excludes nobody.
+  // Another run may have removed the file when it ended. A lock on a removed file excludes nobody.
   if (::fstat(descriptor_, &file) == 0 && file.st_nlink > 0) return true;
   close();
   return false;

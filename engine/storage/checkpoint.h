@@ -13,33 +13,33 @@
 
 namespace poesy {
 
-/// What a run must have in common with the checkpoint that it continues (result/checkpoint_identity.h).
+/// The facts in which a run and the checkpoint that it continues must agree (result/checkpoint_identity.h).
 struct CheckpointIdentity {
-  std::string poesy_version;  ///< exact version, because states are for the program that wrote them
+  std::string poesy_version;  ///< exact version, because only the program that wrote a state can read it
   std::string git_commit;     ///< commit of that program
   std::string model;          ///< name of the mechanism
   std::uint64_t seed = 0;     ///< seed of the draws
   std::uint64_t samples = 0;  ///< samples in the study; a run may have more than its checkpoint
-  std::string study;          ///< resolved study without what may differ, and the mechanism file
-  std::string poses;          ///< SHA-256 of the poses, hexadecimal
-  std::string shard = {};     ///< "2/5"; empty for the whole study
+  std::string study;       ///< text of the resolved study, without the keys that may differ, and of the mechanism file
+  std::string poses;       ///< SHA-256 of the poses, hexadecimal
+  std::string shard = {};  ///< shard, such as "2/5"; empty for the whole study
 
-  bool operator==(const CheckpointIdentity&) const = default;  ///< Whether all members are equal.
+  bool operator==(const CheckpointIdentity&) const = default;  ///< Returns true if all members are equal.
 };
 
-/// The time of a run, s.
+/// The time that a run took, in seconds.
 struct RunTime {
-  double wall = 0.0;         ///< wall time of the whole run
-  double checkpoints = 0.0;  ///< the part of it that checkpoints took
+  double wall = 0.0;         ///< wall time of the run so far
+  double checkpoints = 0.0;  ///< part of the wall time that checkpoints took
 };
 
-/// The place of a state in its file.
+/// The place of a state in a checkpoint file.
 struct StoredState {
-  std::size_t offset = 0;                 ///< position of its first block
-  std::array<std::byte, 32> sha256 = {};  ///< hash of the state
+  std::size_t offset = 0;                 ///< position of its first block in the file, in bytes
+  std::array<std::byte, 32> sha256 = {};  ///< SHA-256 of the state
 };
 
-/// The checkpoint of an unfinished run.
+/// The content of a checkpoint of an unfinished run.
 struct Checkpoint {
   CheckpointIdentity identity;      ///< identity of the run
   RunTime time;                     ///< time that the run took so far
@@ -47,12 +47,13 @@ struct Checkpoint {
   std::vector<StoredState> stored;  ///< places of these states in the file
 };
 
-/// Throws InputError, which names the first difference, unless a run of this identity may continue the checkpoint of
-/// that file: nothing differs, or the run asks for more samples.
+/// Throws InputError, which names the first difference, unless a run with the identity `run` may continue the
+/// checkpoint in the file at `path`. The run may continue it if the identities are equal, or differ only because the
+/// run asks for more samples.
 void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& checkpoint, const std::string& path);
 
-/// Writes a checkpoint file to `sink`, piece by piece and in one pass. Returns the places of its states. In the
-/// notation of engine/base/bytes.h:
+/// Writes a checkpoint file to `sink`, piece by piece and in one pass. Returns the places of the states. The file has,
+/// encoded as in engine/base/bytes.h:
 ///
 ///     16 bytes "poesy-checkpoint"
 ///     number   version of the format, 3
@@ -60,47 +61,48 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
 ///     number   seed, samples
 ///     text     study, poses, shard
 ///     real     seconds that the run took, and of these for checkpoints
-///     number   stages, and each as blocks that follow each other, the last of which is empty
+///     number   count of the stages; then each stage as blocks that follow each other, the last of which is empty
 ///     32 bytes SHA-256 of everything before
 ///
 /// The content of a state is known only to the version of the program that wrote it, which is part of the identity.
 std::vector<StoredState> write_checkpoint(const CheckpointIdentity& identity, const RunTime& time,
                                           std::span<const ByteSource> stages, const ByteWriter::Sink& sink);
 
-/// Whether the file begins like a checkpoint. None if reading fails, with the reason in errno. Precondition:
-/// file.is_open().
+/// Returns true if the file begins like a checkpoint. None if it cannot be read, with the reason in errno.
+/// Precondition: file.is_open().
 std::optional<bool> begins_as_checkpoint(const PlainFile& file);
 
 /// Reads a whole checkpoint file. Throws BytesError for content that write_checkpoint() does not write.
 Checkpoint decode_checkpoint(std::span<const std::byte> file);
 
-/// A checkpoint that was found.
+/// A checkpoint that was found beside a result.
 struct FoundCheckpoint {
-  Checkpoint checkpoint;    ///< its content
-  std::string path;         ///< path of its file
-  std::string passed_over;  ///< why the newer checkpoint was not used; empty if this is the newer one
+  Checkpoint checkpoint;    ///< content of the file
+  std::string path;         ///< path of the checkpoint file
+  std::string passed_over;  ///< why the newer checkpoint was not used; empty if this is the newer checkpoint
 };
 
-/// The end of the older checkpoint's name, which follows that of the result. It is the longest end of a run's files.
+/// The end of the older checkpoint's name, which is RESULT.h5 followed by this. No file of a run has a longer end.
 inline constexpr std::string_view kOlderEnd = ".part.1";
 
-/// The checkpoints of an unfinished run beside its result: RESULT.h5.part, and the one before it as RESULT.h5.part.1.
-/// Each has its own digest. It is written under a temporary name (FileWriter) and synced; then the newer one also gets
-/// the older one's name, and the new one is renamed to replace it. So once RESULT.h5.part exists, it exists at any
-/// moment. Checkpoints have the permissions of an existing result.
+/// The two checkpoints of an unfinished run, beside its result: the newer one is RESULT.h5.part, the older one
+/// RESULT.h5.part.1. Each has its own digest. A new checkpoint is written under a temporary name (FileWriter) and
+/// synced. Then RESULT.h5.part is linked as RESULT.h5.part.1, and the new file is renamed to RESULT.h5.part. So once
+/// RESULT.h5.part exists, it exists at any moment. Checkpoints have the permissions of an existing result.
 class CheckpointFiles {
  public:
   explicit CheckpointFiles(const std::string& result_path);  ///< result_path: the path of the result.
 
-  const std::string& newer() const { return newer_; }  ///< The path of the newer one, RESULT.h5.part.
-  const std::string& older() const { return older_; }  ///< The path of the older one, RESULT.h5.part.1.
-  bool exist() const;                                  ///< Whether there is a file, intact or not.
+  const std::string& newer() const { return newer_; }  ///< The path of the newer checkpoint, RESULT.h5.part.
+  const std::string& older() const { return older_; }  ///< The path of the older checkpoint, RESULT.h5.part.1.
+  bool exist() const;                                  ///< Returns true if there is a checkpoint file, intact or not.
   /// The newest intact checkpoint; none if there is no file. Throws FileError if there are files but none is intact.
   std::optional<FoundCheckpoint> find();
-  /// Writes a checkpoint. Throws FileError and then keeps the earlier checkpoints.
+  /// Writes a checkpoint. If it throws FileError, the earlier checkpoints are kept.
   void write(const CheckpointIdentity& identity, const RunTime& time, std::span<const ByteSource> stages);
-  /// Writes the state of a stage from the checkpoint that was found or written last, with the same bits, even if its
-  /// file was removed meanwhile. Throws FileError if it cannot be read or was changed. Precondition: the stage exists.
+  /// Writes to `to` the state of a stage from the checkpoint that was found or written last. The bits are the same,
+  /// even if the checkpoint's file was removed meanwhile. Throws FileError if the file cannot be read or was changed.
+  /// Precondition: the stage exists.
   void write_state(std::size_t stage, ByteWriter& to);
   void remove();  ///< Removes all checkpoints. Throws FileError.
 
@@ -108,14 +110,14 @@ class CheckpointFiles {
   std::string result_;
   std::string newer_;
   std::string older_;
-  bool newer_is_sound_ = false;      ///< the newer one replaces the older one only if it is intact
-  std::optional<PlainFile> held_;    ///< the checkpoint that was found or written last
-  std::vector<StoredState> states_;  ///< places of the states in it
+  bool newer_is_sound_ = false;      ///< true if the newer checkpoint is intact; only then it replaces the older one
+  std::optional<PlainFile> held_;    ///< open file of the checkpoint that was found or written last
+  std::vector<StoredState> states_;  ///< places of the states in held_
 };
 
-/// Excludes other runs from the same result and its checkpoints while the object exists: an advisory lock on
-/// RESULT.h5.lock, which ends with the process in any case. If the file system does not support locks, there is none.
-/// The owner of the lock removes temporary files of killed runs.
+/// Keeps other runs away from the same result and its checkpoints while the object exists. It is an advisory lock on
+/// RESULT.h5.lock, which the system releases at the latest when the process ends. On a file system without locks it
+/// does nothing. The owner of the lock removes temporary files of killed runs.
 class RunLock {
  public:
   /// result_path: the target of symbolic links (check_output_path), so that a link and its target are one result.
@@ -127,7 +129,8 @@ class RunLock {
   ~RunLock();
 
  private:
-  /// Whether the lock was obtained, or is not supported; false if a run that ended has removed the file meanwhile.
+  /// Returns true if the lock was obtained, or if locks are not supported. Returns false if another run removed the
+  /// lock file meanwhile.
   bool take(const std::string& result_path);
   void close();
 

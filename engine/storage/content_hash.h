@@ -19,8 +19,8 @@ class Sha256 {
   using Digest = std::array<std::byte, 32>;  ///< A SHA-256 digest.
 
   Sha256();
-  void bytes(std::span<const std::byte> data);  ///< Adds bytes.
-  Digest digest();                              ///< The digest. Nothing may be added afterwards.
+  void bytes(std::span<const std::byte> data);  ///< Adds bytes to those that are hashed.
+  Digest digest();                              ///< The digest of all added bytes. No bytes may be added afterwards.
 
  private:
   struct Free {
@@ -49,9 +49,9 @@ std::string hex(std::span<const std::byte> bytes);  ///< The bytes in lower-case
 ///     number(n)     = 64 bits, unsigned, little-endian
 ///
 /// beginning with object("/"). Links and attributes are in the order of the bytes of their names; an object with
-/// several links is hashed at each. Left out are the link `/run`, the root's attribute `content_sha256`, and the
-/// attributes of dimension scales in any object: CLASS, NAME, DIMENSION_LIST, REFERENCE_LIST and those that begin with
-/// _Netcdf4 or _nc3.
+/// several links is hashed at each. The hash leaves out the link `/run`, the root's attribute `content_sha256`, and in
+/// all objects the attributes of dimension scales: CLASS, NAME, DIMENSION_LIST, REFERENCE_LIST, and names that begin
+/// with _Netcdf4 or _nc3.
 ///
 /// Throws h5::Error for content that a result file never has (neither numbers nor text).
 std::string content_sha256(const h5::File& file);

@@ -23,7 +23,7 @@ namespace {
 
 static_assert(std::is_same_v<hid_t, std::int64_t>, "File stores HDF5's ids as 64-bit integers");
 
-// The innermost entry of HDF5's error stack is the reason; the outer ones only name the callers.
+// The innermost entry of HDF5's error stack states the reason; the outer entries only name the callers.
 herr_t take_reason(unsigned depth, const H5E_error2_t* entry, void* reason) {
   if (depth == 0 && entry->desc != nullptr) *static_cast<std::string*>(reason) = entry->desc;
   return 0;
@@ -41,7 +41,7 @@ Result checked(Result result, const char* action, const std::string& object) {
   return result;
 }
 
-/// Owns an id of any kind.
+/// Owns an id of HDF5, and closes it.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -101,7 +101,7 @@ Handle space_of(const Shape& shape) {
   return {H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), nullptr), H5Sclose, "make", "a space"};
 }
 
-// 16 GiB of doubles. The product of two such numbers does not overflow.
+// The largest number of elements: 2^31, or 16 GiB of doubles. The product of two such numbers does not overflow.
 constexpr hsize_t kMostElements = hsize_t{1} << 31U;
 constexpr std::size_t kWidestNumber = 16;
 
@@ -117,10 +117,10 @@ Shape shape_of(hid_t space, const std::string& object) {
   return {lengths.begin(), lengths.end()};
 }
 
-/// The bytes of a slice: large enough for fast disk access, small compared with a result.
+/// The size of a slice in bytes: large enough for fast disk access, small compared with a result.
 constexpr std::size_t kSlice = std::size_t{1} << 22U;
 
-/// A part of a dataset, called a hyperslab in HDF5.
+/// A rectangular range of a dataset, called a hyperslab in HDF5.
 struct Box {
   std::vector<hsize_t> start;
   std::vector<hsize_t> count;
@@ -132,7 +132,8 @@ struct Box {
 /// Precondition: most > 0, and there are more elements than that.
 template <class Use>
 void for_each_box(const Shape& shape, std::size_t most, const Use& use) {
-  // Axes after the one that is cut are whole; those before it have one position.
+  // A box has a range of positions on the axis `cut`, one position on each axis before it, and all positions on each
+  // axis after it.
   std::size_t cut = shape.size() - 1;
   std::size_t inner = 1;
   while (inner * shape[cut] <= most) inner *= shape[cut--];
@@ -154,7 +155,7 @@ void select(hid_t space, const Box& box, const std::string& name) {
           "take a part of", name);
 }
 
-/// The memory from which HDF5 takes elements: the values themselves, or a list of pointers to texts.
+/// The values in the form in which HDF5 takes them: numbers as they are, texts as a list of pointers.
 template <class T>
 auto elements(std::span<const T> values) {
   if constexpr (std::is_same_v<T, std::string>) {
@@ -181,7 +182,7 @@ struct Source {
                          : H5Dread(object.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to),
             "read", name);
   }
-  /// A part of a dataset.
+  /// Reads a part of a dataset.
   void read(const Box& box, hid_t memory_type, void* to) const {
     select(space.get(), box, name);
     const Handle memory = space_of({box.size()});
@@ -189,7 +190,7 @@ struct Source {
   }
 };
 
-/// Whether all bytes of a dataset are contiguous in the file.
+/// Returns true if all bytes of a dataset are contiguous in the file.
 bool is_in_one_piece(const Source& dataset, std::size_t bytes) {
   const Handle storage(H5Dget_create_plist(dataset.object.get()), H5Pclose, "read the storage of", dataset.name);
   return H5Pget_layout(storage.get()) == H5D_CONTIGUOUS && H5Dget_storage_size(dataset.object.get()) == bytes;
@@ -256,7 +257,7 @@ Value head_of(const Source& source) {
   return value;
 }
 
-/// The type of the stored numbers, as little-endian.
+/// The type of the stored numbers, changed to little-endian.
 Handle plain_type(const Source& source) {
   Handle type(H5Tcopy(source.type.get()), H5Tclose, "copy the type of", source.name);
   checked(H5Tset_order(type.get(), H5T_ORDER_LE), "set the byte order of", source.name);
@@ -286,7 +287,7 @@ void create_attribute(hid_t file, const std::string& path, const std::string& na
   checked(H5Awrite(attribute.get(), type.get(), elements(values).data()), "write", object);
 }
 
-/// Adds the name of a link or an attribute.
+/// Adds the name of a link or an attribute to the list `names`. HDF5 calls it for each of them.
 template <class Info>
 herr_t add_name(hid_t, const char* name, const Info*, void* names) {
   static_cast<std::vector<std::string>*>(names)->emplace_back(name);
@@ -315,7 +316,7 @@ void expect_hard(const Link& link, const std::string& path) {
   if (link.type == H5L_TYPE_SOFT) throw StrangeFile(path + " is a soft link");
   if (link.type == H5L_TYPE_EXTERNAL) throw StrangeFile(path + " is a link to another file");
   if (link.type != H5L_TYPE_HARD) throw StrangeFile(path + " is a link of another program's own kind");
-  // HDF5 would resolve such a name in parts, through links that have not been checked.
+  // HDF5 would split such a name at its slashes, and follow links that have not been checked.
   if (link.name.find('/') != std::string::npos || link.name == ".") throw StrangeFile(path + " has no name of its own");
 }
 
@@ -333,12 +334,13 @@ void expect_own_storage(hid_t dataset, const std::string& path) {
     const H5Z_filter_t filter = checked(
         H5Pget_filter2(storage.get(), static_cast<unsigned>(k), nullptr, &no_values, nullptr, 0, nullptr, nullptr),
         "read the filters of", path);
-    // HDF5 would search the plugins of this machine for it, and execute what it finds.
+    // HDF5 would search this computer for a plugin with this filter, and execute it.
     if (filter > H5Z_FILTER_SCALEOFFSET) throw StrangeFile(fmt::format("{} needs the filter {}", path, filter));
   }
 }
 
-/// get: H5Oget_info2, whose struct has another name since HDF5 1.12.
+/// The address of an object in the file. get: H5Oget_info2, a parameter because the name of its struct changed in HDF5
+/// 1.12.
 template <class Info>
 haddr_t address_of(hid_t object, const std::string& path, herr_t (*get)(hid_t, Info*, unsigned)) {
   Info info{};
@@ -352,7 +354,7 @@ constexpr unsigned kCreationOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXE
 // many: HDF5 1.10 frees memory that it never allocated when it reads a damaged heap.
 constexpr unsigned kMostInHeader = 1000;
 
-/// Without times, so that the same content has the same bytes.
+/// The properties of a new object: it has no times, so that the same content gives the same bytes.
 Handle object_properties(hid_t kind) {
   Handle properties = property_list(kind);
   checked(H5Pset_obj_track_times(properties.get(), false), "drop the times of", "a new object");
@@ -513,8 +515,8 @@ void File::link(const std::string& existing, const std::string& second) {
 }
 
 void File::expect_plain_tree() const {
-  constexpr int kDeepest = 16;    // results have three levels
-  constexpr int kMostNames = 16;  // names of a dataset, which is read for each; results have seven
+  constexpr int kDeepest = 16;    // depth of groups; results have three levels
+  constexpr int kMostNames = 16;  // names of one dataset, which is read once for each name; results have seven
   struct Group {
     std::string path;
     int depth;
@@ -543,7 +545,7 @@ void File::expect_plain_tree() const {
 }
 
 bool File::exists(const std::string& path) const {
-  // HDF5 answers only for the last part of a path, so each part is checked from the root on.
+  // HDF5 checks only the last name of a path, so each name is checked here, from the root on.
   for (std::size_t slash = path.find('/', 1);; slash = path.find('/', slash + 1)) {
     const std::string part = path.substr(0, slash);
     if (checked(H5Lexists(id_, part.c_str(), H5P_DEFAULT), "look for", part) == 0) return false;

@@ -14,20 +14,21 @@ namespace poesy {
 class FileWriter;
 }
 
-/// The part of HDF5 that result files use. Objects are named by their absolute path, every call is checked, every id is
-/// closed. Only this header, h5.cpp and h5_disk.cpp use HDF5. Opening a File turns off HDF5's own error messages.
+/// Functions of HDF5 that result files need, with every call checked and every id closed. Objects are named by their
+/// absolute path. Only this header, h5.cpp and h5_disk.cpp use HDF5. Opening a File turns off HDF5's own error
+/// messages.
 namespace poesy::h5 {
 
 class Disk;
 
-/// A call into HDF5 failed. what() is a clause with the operation, the object, and HDF5's reason.
+/// The exception for a failed call of HDF5. what() is a clause with the operation, the object, and HDF5's reason.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A file has a structure that poesy never writes: references to bytes outside the file, or links that do not form a
-/// tree. what() is a clause that names the object; its name comes from the file.
+/// The exception for a file whose structure poesy never writes: references to bytes outside the file, or links that do
+/// not form a tree. what() is a clause that names the object; the name comes from the file, so it is not trusted.
 class StrangeFile : public Error {
  public:
   using Error::Error;
@@ -37,7 +38,7 @@ template <class T>
 concept Element = std::same_as<T, double> || std::same_as<T, std::int64_t> || std::same_as<T, std::uint64_t> ||
     std::same_as<T, std::uint32_t> || std::same_as<T, std::uint8_t> || std::same_as<T, std::string>;
 
-/// Types of numbers.
+/// The types of numbers that a dataset may have.
 template <class T>
 concept Number = Element<T> && !std::same_as<T, std::string>;
 
@@ -48,14 +49,14 @@ std::size_t size(const Shape& shape);  ///< The number of elements.
 
 /// The value of a dataset or attribute of any type, as it is stored.
 struct Value {
-  /// Kinds of numbers, and text; content_hash.cpp names them in this order.
+  /// The type of the elements. content_hash.cpp has a list of names in this order.
   enum class Type { floating, signed_integer, unsigned_integer, text };
 
-  Type type = Type::text;            ///< determines which of the members below has the elements
-  std::size_t width = 0;             ///< bytes per number; 0 for text
-  Shape shape;                       ///< row-major
-  std::vector<std::byte> numbers;    ///< [size(shape) * width], little-endian
-  std::vector<std::string> strings;  ///< [size(shape)], for text
+  Type type = Type::text;            ///< type of the elements; they are in `strings` for text, otherwise in `numbers`
+  std::size_t width = 0;             ///< bytes of each number; 0 for text
+  Shape shape;                       ///< length of each axis; elements are row-major
+  std::vector<std::byte> numbers;    ///< [size(shape) * width] bytes of the numbers, little-endian
+  std::vector<std::string> strings;  ///< [size(shape)] the texts
 };
 
 /// An HDF5 file. Numbers are stored little-endian in the width of T, strings with variable length in UTF-8, objects
@@ -63,31 +64,32 @@ struct Value {
 class File {
  public:
   static File in_memory();  ///< An empty file in memory.
-  /// An empty file whose bytes `disk` writes. `disk` must outlive the file and be committed after close(). Errors of
-  /// the disk are kept in FileWriter (FileWriter::check); HDF5 sees one only if it reads back what was not written.
+  /// An empty file whose bytes `disk` writes. `disk` must outlive the file and be committed after close(). FileWriter
+  /// keeps errors of the disk (FileWriter::check). HDF5 itself sees an error only if it reads back bytes that were not
+  /// written.
   static File on_disk(FileWriter& disk);
   /// An existing plain file, read-only. Throws Error at once for a folder, a FIFO, a device or a socket.
   static File open(const std::string& path);
 
-  File(File&& other) noexcept;  ///< Leaves a file that may only be destroyed.
+  File(File&& other) noexcept;  ///< Afterwards `other` may only be destroyed.
   File& operator=(File&&) = delete;
   ~File();
 
-  void close();  ///< Writes what HDF5 still holds to the disk. The file may only be destroyed afterwards.
+  void close();  ///< Writes all remaining data to the disk. Afterwards the file may only be destroyed.
 
-  void make_group(const std::string& path);  ///< The groups above it must exist.
+  void make_group(const std::string& path);  ///< Creates a group. Its parent groups must exist.
   /// Creates a dataset. Precondition: values.size() == size(shape).
   template <Element T>
   void write(const std::string& path, const Shape& shape, std::span<const T> values);
-  /// Creates a dataset in slices, so that the numbers need not be in memory together. fill(first, to) sets `to` to the
-  /// elements from position `first` on, row-major; it is called in their order.
+  /// Creates a dataset in slices, so that its numbers need not be in memory all at once. fill(first, to) sets `to` to
+  /// the elements from position `first` on, row-major. It is called for one slice after the other.
   template <Number T>
   void write_slices(const std::string& path, const Shape& shape,
                     const std::function<void(std::size_t first, std::span<T> to)>& fill);
-  /// Creates an attribute of the object at `path`: a scalar.
+  /// Creates a scalar attribute of the object at `path`.
   template <Element T>
   void set_attribute(const std::string& path, const std::string& name, const T& value);
-  /// Creates an attribute that is a list.
+  /// Creates an attribute of the object at `path` that is a list.
   template <Element T>
   void set_attribute(const std::string& path, const std::string& name, std::span<const T> values);
   void make_scale(const std::string& path);  ///< Makes a one-dimensional dataset a dimension scale.
@@ -95,30 +97,30 @@ class File {
   void attach_scale(const std::string& dataset, std::size_t axis, const std::string& scale);
   void link(const std::string& existing, const std::string& second);  ///< Gives an object a second name (hard link).
 
-  /// Throws StrangeFile unless everything that can be reached from the root is in this file. Links must be hard links;
-  /// values must not be in other files or be views of other datasets, and must need only HDF5's own filters. Groups
-  /// must form a tree of limited depth, so that following links ends. No value is read. Call it before reading anything
-  /// but the root's attributes of a file from an unknown source.
+  /// Throws StrangeFile unless everything that can be reached from the root is in this file. The links must be hard
+  /// links. Values must not be in other files or be views of other datasets, and must need only HDF5's own filters.
+  /// Groups must form a tree of limited depth, so that a program that follows links comes to an end. The function reads
+  /// no value. For a file from an unknown source, call it before reading anything except attributes of the root.
   void expect_plain_tree() const;
 
-  bool exists(const std::string& path) const;    ///< Whether the object exists.
-  bool is_group(const std::string& path) const;  ///< Whether this object is a group.
+  bool exists(const std::string& path) const;    ///< Returns true if there is an object at this path.
+  bool is_group(const std::string& path) const;  ///< Returns true if the object at this path is a group.
   /// Names of the links in a group, sorted by bytes.
   std::vector<std::string> children(const std::string& path) const;
   /// Names of the attributes of an object, sorted by bytes.
   std::vector<std::string> attributes(const std::string& path) const;
-  bool has_attribute(const std::string& path,
-                     const std::string& name) const;  ///< Whether the object has this attribute.
+  /// Returns true if the object has this attribute.
+  bool has_attribute(const std::string& path, const std::string& name) const;
 
   Shape shape(const std::string& path) const;  ///< The shape of a dataset; empty for a scalar.
   /// All elements of a dataset, row-major; numbers are converted to T.
   template <Element T>
   std::vector<T> read(const std::string& path) const;
-  /// All elements of an attribute.
+  /// All elements of an attribute, row-major; numbers are converted to T.
   template <Element T>
   std::vector<T> attribute(const std::string& path, const std::string& name) const;
   Value value(const std::string& path) const;  ///< A dataset as it is stored.
-  Value head(const std::string& path) const;   ///< The same without its elements.
+  Value head(const std::string& path) const;   ///< A dataset as value(), but without its elements.
   /// Passes the `numbers` of value() to take() slice by slice. Slices are small if the dataset is contiguous in the
   /// file; otherwise there is one slice. Precondition: a dataset of numbers.
   void read_slices(const std::string& path, const std::function<void(std::span<std::byte>)>& take) const;
@@ -127,7 +129,7 @@ class File {
  private:
   explicit File(std::int64_t id);
 
-  std::unique_ptr<Disk> disk_;  // set for a new file on a disk
+  std::unique_ptr<Disk> disk_;  // null unless the file is a new one on a disk
   std::int64_t id_;
 };
 

@@ -16,14 +16,14 @@
 namespace poesy::h5 {
 namespace {
 
-/// A file that HDF5 has open.
+/// The driver's data of a file that HDF5 has open.
 struct OpenFile : H5FD_t {
   std::shared_ptr<FileWriter*> writer;
-  haddr_t allocated = 0;  ///< "end of allocation": the final end of HDF5's file
-  haddr_t end = 0;        ///< end of what is written
+  haddr_t allocated = 0;  ///< HDF5's "end of allocation": where the file will end
+  haddr_t end = 0;        ///< end of the bytes that are written
 };
 
-/// What HDF5 passes from the properties to open_file().
+/// The access properties that HDF5 passes to open_file(), as far as this driver defines them.
 struct Properties {
   const std::shared_ptr<FileWriter*>* writer;
 };
@@ -44,7 +44,8 @@ herr_t close_file(H5FD_t* file) {
   return 0;
 }
 
-/// The features of HDF5's drivers for files in memory and on disk, so that all write the same bytes.
+/// The features of this driver. They are those of HDF5's own drivers for memory and disk, so that all drivers write the
+/// same bytes.
 herr_t features(const H5FD_t*, unsigned long* flags) {
   *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
            H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;

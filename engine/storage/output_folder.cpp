@@ -25,7 +25,7 @@ constexpr std::string_view kUnfinished = "# unfinished";
 constexpr std::string_view kUnknown = "unknown";
 constexpr const char* kRemedy = "name another folder with -d, or move it away";
 
-/// The inode of this file; 0 if there is none. A file that replaces another has a different inode.
+/// The inode of this file; 0 if there is no file. If a file is replaced, its inode changes.
 ino_t file_at(const std::string& path) {
   struct stat found {};
   return ::lstat(path.c_str(), &found) == 0 ? found.st_ino : 0;
@@ -129,7 +129,7 @@ void OutputFolder::remove(const std::set<std::string>& names) const {
   }
 }
 
-/// The message after a failure: how many of the claimed files are new.
+/// The end of the message after a failure: how many of the claimed files are new.
 std::string OutputFolder::what_is_there() const {
   const auto is_new = [&](const auto& claimed) { return file_at(file(claimed.first)) != claimed.second; };
   const auto written = static_cast<std::size_t>(std::ranges::count_if(claimed_, is_new));

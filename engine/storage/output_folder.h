@@ -15,28 +15,29 @@ void make_folder(const std::string& folder);  ///< Makes a folder if it is missi
 /// A folder into which a command writes several files of one result. Users may keep their own files in it.
 ///
 /// FOLDER/poesy_manifest.txt has the content_sha256 of the result and lists what poesy wrote there, one name a line.
-/// poesy replaces and removes only files that are listed and were not changed after the manifest. All listed files are
-/// of one result: those of an earlier one are removed when the new ones are written. Use it in this order:
+/// poesy replaces and removes only files that are listed and were not changed after the manifest. All listed files
+/// belong to one result: when the files of a new result are written, those of the earlier result are removed. Use it in
+/// this order:
 ///
 ///     OutputFolder folder("tables", result.content_sha256);
 ///     folder.claim("poses.csv"); ...          // every file, before the first is written
 ///     folder.fill([&] { ... });               // writes the files that were claimed
 ///
-/// If a command is killed, old and new files remain, which the next one replaces or removes.
+/// If a command is killed, old and new files remain. The next command replaces or removes them.
 class OutputFolder {
  public:
-  /// The folder need not exist. result: its content_sha256; empty if not known, and its files are then not kept beside
-  /// others. Throws InputError if the folder's poesy_manifest.txt was not written by poesy.
+  /// path: the folder, which need not exist. result: content_sha256 of the result. It may be empty if not known; then
+  /// no earlier files are kept. Throws InputError if the folder's poesy_manifest.txt was not written by poesy.
   OutputFolder(std::string path, const std::string& result);
 
-  /// Throws InputError if the command must not replace this file: poesy did not write it, it was changed since, or it
-  /// is not a plain file (a folder, a symbolic link).
+  /// Throws InputError if the command must not replace this file: poesy did not write it, it was changed since poesy
+  /// wrote it, or it is not a plain file (a folder, a symbolic link).
   void claim(const std::string& name);
 
   /// Makes the folder if it is missing, and records that the claimed files are being written. Then calls write(), which
-  /// writes each file completely or not at all, removes the files of other results, and lists the claimed ones. Throws
-  /// InputError, before anything is written, for a file of another result that claim() would refuse. Throws FileError,
-  /// which says how many files are new if write() threw it.
+  /// must write each file completely or not at all. Finally removes the files of other results and lists the claimed
+  /// files. Throws InputError, before anything is written, if a file that it would remove is one that claim() would
+  /// refuse. A FileError of write() is thrown again, with the number of new files.
   void fill(const std::function<void()>& write);
 
   std::string file(const std::string& name) const;  ///< The path of a file in the folder.
@@ -50,11 +51,12 @@ class OutputFolder {
 
   std::string path_;
   std::string result_;
-  std::string listed_result_;             ///< the result in the manifest
-  bool unfinished_ = false;               ///< whether an earlier command did not finish
-  std::set<std::string> listed_;          ///< names in the manifest
-  std::set<std::string> changed_;         ///< listed files that are newer than the manifest
-  std::map<std::string, ino_t> claimed_;  ///< by name: the inode that the file had before; 0: none
+  std::string listed_result_;      ///< content_sha256 of the result in the manifest
+  bool unfinished_ = false;        ///< true if an earlier command did not finish
+  std::set<std::string> listed_;   ///< names in the manifest
+  std::set<std::string> changed_;  ///< listed files that are newer than the manifest
+  /// For each name, the inode of the file before it was written; 0: there was no file.
+  std::map<std::string, ino_t> claimed_;
 };
 
 /// The file that lists what poesy wrote into a folder.

@@ -25,8 +25,8 @@ namespace poesy {
 namespace {
 
 constexpr const char* kOther = "give a result file written by poesy";
-/// The number of bytes for which a child gets another second of processor time and of wall time. It allows for a slow
-/// disk, and is a tenth of what a processor hashes.
+/// A child process gets one more second of processor time for each kBytesASecond bytes of a file, and one more second
+/// of wall time for each kBytesAWaitedSecond bytes. This is enough for a slow disk, and ten times what hashing takes.
 /// @{
 constexpr std::uintmax_t kBytesASecond = std::uintmax_t{16} << 20U;
 constexpr std::uintmax_t kBytesAWaitedSecond = std::uintmax_t{4} << 20U;
@@ -70,7 +70,7 @@ void check_version(const std::string& path, const h5::File& file) {
                               newer ? " or a newer one" : ", or run the study again"));
 }
 
-/// A file descriptor.
+/// A file descriptor that is closed with the object.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -92,7 +92,7 @@ rlim_t stored_bytes(const std::string& path) {
   return file.is_open() ? file.stored_bytes() : 0;
 }
 
-/// The message of a child that succeeded; any other message is that of a FileError.
+/// Messages of a child: that it succeeded, and that it had too little memory. Any other message is that of a FileError.
 constexpr std::string_view kEndedWell = "+";
 constexpr std::string_view kNoMemory = "-";
 
@@ -110,7 +110,7 @@ void limit(int resource, rlim_t most) {
   ::setrlimit(resource, &limits);
 }
 
-/// Isolates the child: it runs no signal handler of the parent, shows no output, and ends in any case.
+/// Isolates the child process: it runs no signal handler of the parent, shows no output, and ends after limited time.
 void confine(rlim_t file_bytes) {
   for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
   const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -129,7 +129,8 @@ void send(const Descriptor& to, std::string_view text) {
   }
 }
 
-/// Runs the child. It ends without destructors and exit handlers, which belong to the parent.
+/// Does the work of the child process. It ends without destructors and exit handlers, because these belong to the
+/// parent.
 [[noreturn]] void live_as_child(const Descriptor& to, rlim_t file_bytes, const std::function<void()>& read) {
   confine(file_bytes);
   try {
@@ -140,13 +141,13 @@ void send(const Descriptor& to, std::string_view text) {
   } catch (const std::bad_alloc&) {
     send(to, kNoMemory);
   } catch (...) {
-    // This counts as a crash.
+    // The parent gets no message and takes this as a crash.
   }
   ::_exit(0);
 }
 
-/// Reads a pipe until its other end is closed; none if that takes longer than this time, not counting time while this
-/// process is stopped.
+/// Reads a pipe until its other end is closed. None if that takes longer than `seconds`. Time while this process is
+/// stopped does not count.
 std::optional<std::string> receive(const Descriptor& from, std::uintmax_t seconds) {
   constexpr std::uintmax_t kInASecond = 10;
   constexpr int kMilliseconds = 1000 / static_cast<int>(kInASecond);
@@ -164,7 +165,7 @@ std::optional<std::string> receive(const Descriptor& from, std::uintmax_t second
   return std::nullopt;
 }
 
-/// The status of a child that ended; 0 if this process cannot find out.
+/// The exit status of a child; 0 if it cannot be determined.
 int status_of(pid_t child) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {
@@ -173,7 +174,8 @@ int status_of(pid_t child) {
   return status;
 }
 
-/// Throws if this process may use less memory than the child needs for an intact file. Without memory HDF5 may crash.
+/// Throws if the memory limit of this process is below the memory that a child may need for an intact file, because
+/// HDF5 may crash without memory.
 void refuse_for_little_memory(const std::string& path, rlim_t file_bytes) {
   constexpr rlim_t kMega = 1'000'000;
   const rlim_t most = address_space() + kTrialBytes + 16 * file_bytes;
@@ -226,7 +228,7 @@ std::string text_attribute(const h5::File& file, const std::string& name) {
 }
 
 bool is_out_of_memory(const std::exception& error) {
-  // H5E_NOSPACE, and the messages of H5MM_malloc and its users.
+  // The texts are those of H5E_NOSPACE, and the messages of H5MM_malloc and its callers.
   const std::string_view text = error.what();
   return text.find("memory allocation failed") != std::string_view::npos ||
          text.find("unable to allocate memory") != std::string_view::npos ||

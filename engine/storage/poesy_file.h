@@ -18,47 +18,48 @@ namespace poesy {
 inline constexpr std::string_view kResultFile = "poesy-result";
 inline constexpr std::string_view kShardFile = "poesy-shard";
 /// @}
-/// The version of the format. A reader refuses another major version.
+/// The major version of the format. A reader refuses files with another major version.
 inline constexpr std::int64_t kMajorVersion = 1;
-/// The minor version grows with additions that readers may ignore.
+/// The minor version of the format. It grows with additions that readers may ignore.
 inline constexpr std::int64_t kMinorVersion = 0;
 
-/// Opens a result or a shard. Throws FileError if it is neither, has another major version, or is not a plain tree
-/// (h5::File::expect_plain_tree), so that callers read nothing outside the file. Throws h5::Error if it is damaged in a
-/// way that HDF5 reports.
+/// Opens a result or a shard. Throws FileError if the file is of another type, has another major version, or is not a
+/// plain tree (h5::File::expect_plain_tree). So callers never read anything outside the file. Throws h5::Error if HDF5
+/// reports that the file is damaged.
 h5::File open_poesy_file(const std::string& path);
 
 /// The advice for a damaged file.
 inline constexpr const char* kDamagedRemedy = "take another copy, or run the study again";
 
-inline constexpr unsigned long kTrialSeconds = 5;         ///< processor time that a child may take to read a file
-inline constexpr unsigned long kTrialWaitSeconds = 9;     ///< wall time that a child may take
-inline constexpr unsigned long kTrialBytes = 1UL << 28U;  ///< memory that a child may take in addition to the program's
+inline constexpr unsigned long kTrialSeconds = 5;      ///< processor time that a child may take to read a file, s
+inline constexpr unsigned long kTrialWaitSeconds = 9;  ///< wall time that a child may take to read a file, s
+/// Memory that a child may take in addition to the program's, in bytes.
+inline constexpr unsigned long kTrialBytes = 1UL << 28U;
 
-/// Calls read() in a child process, so that a crash does not reach this one. Returns if the child succeeded.
+/// Calls read() in a child process, so that a crash does not end this process. Returns if the child succeeded.
 ///
 /// With a damaged file, HDF5 1.10 may crash, loop, ask for all memory, or corrupt its heap and crash later, before it
-/// reports an error. The child is a copy of this process, so what succeeds there succeeds here. Its limits:
-/// kTrialSeconds of processor time and one more second for each 16 MiB of the file, wait_seconds of wall time and one
-/// more for each 4 MiB, and kTrialBytes of memory and 16 more for each byte of the file (if /proc tells how much it has
-/// already). It prints nothing.
+/// reports an error. The child is a copy of this process, so if read() succeeds there, it succeeds here. The limits of
+/// the child are: processor time, kTrialSeconds plus one second for each 16 MiB of the file; wall time, wait_seconds
+/// plus one second for each 4 MiB; memory in addition to what it has at the start, kTrialBytes plus 16 bytes for each
+/// byte of the file (only if /proc tells what it has). The child prints nothing.
 ///
-/// Throws the FileError that read() threw. Throws FileError if read() ran out of memory (std::bad_alloc), because this
-/// process may not take as much or because the file asks for more, if the child did not finish, or if there can be no
-/// child. Precondition: no other thread holds a lock that read() takes (locks of the allocator are allowed).
+/// Throws the FileError that read() threw. Also throws FileError if the child ran out of memory (std::bad_alloc), did
+/// not finish, or could not be started. Memory runs out if this process may not take enough, or if a damaged file asks
+/// for too much. Precondition: no other thread holds a lock that read() takes (locks of the allocator are allowed).
 void trial_read(const std::string& path, const std::function<void()>& read,
                 unsigned long wait_seconds = kTrialWaitSeconds);
 
-/// An attribute of the root that is one text.
+/// The value of an attribute of the root that is a text.
 std::string text_attribute(const h5::File& file, const std::string& name);
 
-/// The mechanism file in a result or shard; empty if the mechanism has none.
+/// The text of the mechanism file in a result or shard; empty if the mechanism is not from a file.
 std::string mechanism_text(const h5::File& file);
 
-/// Throws FileError, which names the actual type, if the file has another type.
+/// Throws FileError, which names the actual type, if the file is not of the type `filetype`.
 void expect_filetype(const std::string& path, const h5::File& file, std::string_view filetype);
 
-/// Whether HDF5 failed because it ran out of memory.
+/// Returns true if HDF5 failed because it ran out of memory.
 bool is_out_of_memory(const std::exception& error);
 
 /// Throws FileError if this is not a readable plain file.
@@ -77,8 +78,8 @@ auto with_poesy_file(const std::string& path, const Use& use) {
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::exception& error) {
-      // Also other exceptions: an empty list where a value should be, a shape too large for any list. The message may
-      // quote the file.
+      // This also catches exceptions that do not come from HDF5, for instance if a list is empty or a shape is too
+      // large. The message may quote the file.
       if (is_out_of_memory(error)) throw std::bad_alloc();
       throw FileError(path, "is damaged: " + printable(error.what(), 300), kDamagedRemedy);
     }

@@ -6,7 +6,7 @@
 
 namespace poesy {
 
-std::string poesy_version();  ///< The version of the program, "0.2.0".
+std::string poesy_version();  ///< The version of the program, such as "0.2.0".
 
 /// The commit from which this program was built, 40 hexadecimal digits, followed by "-dirty" if files differed from it;
 /// "unknown" if it was not built in a git checkout.
@@ -14,8 +14,8 @@ std::string git_commit();
 
 /// A library that results depend on.
 struct LibraryVersion {
-  std::string_view name;     ///< "tbb"
-  std::string_view version;  ///< as the library states it
+  std::string_view name;     ///< name, such as "tbb"
+  std::string_view version;  ///< version as the library states it
 };
 
 std::span<const LibraryVersion> build_versions();  ///< The compiler and the libraries this program was built with.

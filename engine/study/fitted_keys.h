@@ -10,13 +10,14 @@
 
 namespace poesy {
 
-/// The values of a table in the order of the file.
+/// The keys of a table and their values, in the order of the file.
 std::vector<std::pair<std::string, StudyValue>> in_order(const StudySection& section);
 
-/// Reads the fitted errors of [analysis.calibration]: errors, patterns, sets, and combinations of its table. value: of
-/// the key `fit`. section: the whole table. Throws InputError at the place of a name that is unknown, of an error that
-/// changes from move to move, of a factor without the unit it needs, and of numbers that are dependent whatever is
-/// measured.
+/// Reads the fitted errors of [analysis.calibration]: errors, patterns, sets, and combinations that the table defines.
+/// value: the value of the key `fit`. section: the whole table.
+/// Throws InputError, with its place, for an unknown name, for an error that a machine draws anew at each pose, and for
+/// a weight that lacks a unit. Also throws if the fitted numbers are linearly dependent, because no measurement can
+/// separate them.
 std::vector<FittedErrors> read_fitted(const StudyValue& value, const StudySection& section, const Study& study);
 
 }  // namespace poesy

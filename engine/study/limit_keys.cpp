@@ -18,13 +18,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The ends of a limit as a file states them; an end that it leaves out is infinite.
+/// The two ends of a limit, SI; an end that the file does not state is infinite.
 struct Ends {
   double from = -kInfinity;
   double to = kInfinity;
 };
 
-/// The limit between two ends. A response without sign is limited by its magnitude.
+/// The limit between two ends. If the response has no sign, the limit bounds its magnitude.
 ValueLimit between(const StudyValue& value, const Ends& ends, const Response& response) {
   const auto text = [&](double end) { return readable_text({end, response.dimension}); };
   if (!(ends.from < ends.to)) {
@@ -47,7 +47,7 @@ ValueLimit between(const StudyValue& value, const Ends& ends, const Response& re
   return {ends.to};
 }
 
-/// An end, SI; zero needs no unit.
+/// Reads an end of a limit, SI; zero needs no unit.
 double read_end(const StudyValue& value, const Response& response) {
   return value.is_zero() ? 0.0 : value.quantity(response.dimension);
 }
@@ -93,7 +93,7 @@ ValueLimit read_limit(const StudyValue& value, const Response& response) {
   return between(value, {read_end(ends[0], response), read_end(ends[1], response)}, response);
 }
 
-/// A limit as TOML, which reads back exactly.
+/// A limit as TOML text that reads back to exactly the same limit.
 std::string exact_limit(const ValueLimit& limit, const Response& response) {
   const auto exact = [&](double value) { return exact_value(value, response.dimension); };
   if (limit.is_plain()) return exact(limit.to());

@@ -10,10 +10,10 @@
 
 namespace poesy {
 
-/// Reads the limits of a study, in the order of the model's responses.
+/// Reads the limits of a study into study.analysis.limits, sorted in the order of the model's responses.
 void read_response_limits(const StudyValue& value, Study& study);
 
-/// The lines of the resolved text, one for each limit.
+/// The limits as lines of the resolved text, one for each limit.
 std::string response_limits_lines(const Study& study);
 
 /// The tables of the keys of limits.
@@ -23,9 +23,9 @@ StudyTables limit_tables();
 StudyValue limit_value(const StudySection& analysis, const Study& study, const ResponseLimit& limit);
 
 /// A limit in words: "0.03 mm", "-0.02 mm to 0.1 mm", "at most 0.1 mm", "a spread of 0.08 mm", "0.02 deg at 99 % of the
-/// poses". value_text: a value of the response as text. Precondition: it is a limit.
+/// poses". value_text: converts a value of the response (SI) to text. Precondition: the limit bounds something.
 std::string limit_text(const ValueLimit& limit, const std::function<std::string(double)>& value_text);
-/// The same in the unit that people read.
+/// The limit in words, with values in the unit in which results show this dimension.
 std::string limit_text(const ValueLimit& limit, Dimension dimension);
 
 }  // namespace poesy

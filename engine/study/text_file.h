@@ -13,14 +13,14 @@ namespace poesy {
 /// has more than most_bytes, FileError if it cannot be read.
 std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes);
 
-/// A comma-separated part of a line, without surrounding blanks.
+/// A cell of a CSV line, without surrounding blanks.
 struct CsvCell {
-  std::string_view text;  ///< a view of the lines
-  Place place;            ///< place of its beginning
+  std::string_view text;  ///< text of the cell, a view of the lines
+  Place place;            ///< place where the text begins
 };
 
-/// Reads a CSV file line by line: commas between cells, no quotes, no blank lines except at the end. A byte order mark
-/// and line ends of Windows are ignored.
+/// Reads a CSV file line by line. Cells are separated by commas; there are no quotes, and blank lines only at the end.
+/// A byte order mark and line ends of Windows are ignored.
 class CsvLines {
  public:
   /// what: the kind of file for messages ("table of poses"). Throws InputError for an empty file or one that is not a
@@ -29,9 +29,9 @@ class CsvLines {
   CsvLines(const CsvLines&) = delete;
   CsvLines& operator=(const CsvLines&) = delete;
 
-  bool done() const { return rest_.empty(); }                 ///< Whether all lines were read.
+  bool done() const { return rest_.empty(); }                 ///< Returns true if all lines were read.
   Place next_place() const { return {path_, line_ + 1, 1}; }  ///< The place of the next line.
-  /// Reads a line. Throws InputError if its cells are separated by semicolons.
+  /// Reads a line. Throws InputError if semicolons separate its cells.
   std::vector<CsvCell> next();
 
  private:

@@ -10,115 +10,123 @@
 #include "models/chain/limb.h"
 #include "models/lie/se3.h"
 
-/// Limbs between bodies, with stiffness and forces. All twists [omega; v] and wrenches [moment; force] are in the base
-/// frame about its origin unless a frame is named; SI and rad.
+/// Mechanisms of limbs between bodies, with stiffness and loads. Twists [omega; v] and wrenches [moment; force] are in
+/// the base frame about its origin, unless another frame is named. Units are SI and rad.
 namespace poesy::assembly {
 
-using Vector3 = lie::Vector3<double>;      ///< A point or a direction.
-using Matrix6 = lie::Matrix6<double>;      ///< A compliance: twist from wrench; a metric.
+using Vector3 = lie::Vector3<double>;  ///< A point or a direction.
+/// A [6 x 6] matrix, such as a compliance (twist from wrench) or a metric.
+using Matrix6 = lie::Matrix6<double>;
 using Screw = lie::Screw<double>;          ///< A twist or a wrench.
-using Transform = lie::Transform<double>;  ///< A rigid motion.
+using Transform = lie::Transform<double>;  ///< A rigid motion, or the pose of a frame.
 
-/// Positions of the bodies that every assembly has.
+/// Positions of the two bodies that every assembly has.
 /// @{
-inline constexpr std::size_t kBase = 0;      ///< fixed
-inline constexpr std::size_t kPlatform = 1;  ///< what the coordinates of a pose place
+inline constexpr std::size_t kBase = 0;      ///< the fixed body
+inline constexpr std::size_t kPlatform = 1;  ///< the body whose place follows from the pose coordinates
 /// @}
 
 /// A rigid part.
 struct Body {
-  std::string name;                  ///< "base", "platform", or as the file has it
-  Transform home;                    ///< base_T_body at home
-  double mass = 0.0;                 ///< kg
-  Vector3 centre = Vector3::Zero();  ///< of mass, in the body's frame (m)
+  std::string name;                  ///< "base", "platform", or the name in the file
+  Transform home;                    ///< pose base_T_body at the home pose
+  double mass = 0.0;                 ///< mass, kg
+  Vector3 centre = Vector3::Zero();  ///< centre of mass, in the body's frame (m)
 };
 
-/// The compliance of a joint's bearing and drive, in the joint's frame before its motion.
+/// The compliance of a joint's bearing and drive, in the joint's frame before the joint moves.
 struct Bearing {
-  std::size_t joint;   ///< of the limb's elementary joints, the first that belongs to the joint
-  Matrix6 compliance;  ///< 0 in directions that are rigid, and along passive freedoms
+  std::size_t joint;   ///< position in the limb of the joint's first elementary joint
+  Matrix6 compliance;  ///< [6 x 6] twist from wrench (SI); 0 in rigid directions and along passive freedoms
 };
 
-/// Where a link ends: at the point of a joint before its motion, or at a body's origin.
+/// An end of a link: at the point of a joint before the joint moves, or at a body's origin.
 struct LinkEnd {
-  /// The body where the limb begins, a joint, the body where it ends.
+  /// The body at which the limb begins, a joint of the limb, or the body at which it ends.
   enum class At { from, joint, to };
-  At at;                  ///< which of them
-  std::size_t joint = 0;  ///< elementary joint of the limb
+  At at;                  ///< kind of end
+  std::size_t joint = 0;  ///< position in the limb of the elementary joint, if the end is at a joint
 };
 
-/// The cross-section of a straight beam.
+/// The cross-section of a straight beam along x.
 struct BeamSection {
-  double EA = 0.0;                             ///< N
-  double GJ = 0.0;                             ///< N m^2
-  double EIy = 0.0;                            ///< N m^2
-  double EIz = 0.0;                            ///< N m^2
-  std::optional<double> shear_stiffness = {};  ///< share of the area that carries shear times G A (N); none: no shear
+  double EA = 0.0;   ///< tension stiffness, N
+  double GJ = 0.0;   ///< torsion stiffness, N m^2
+  double EIy = 0.0;  ///< bending stiffness about y, N m^2
+  double EIz = 0.0;  ///< bending stiffness about z, N m^2
+  /// Shear modulus times the part of the cross-section's area that carries shear, N; none: shear is neglected.
+  std::optional<double> shear_stiffness = {};
 };
 
-/// A part between two joints, or a body and a joint.
+/// An elastic part of a limb between two joints, or between a body and a joint.
 struct Link {
-  LinkEnd from;  ///< where x begins
-  LinkEnd to;    ///< where it points
-  /// Its y axis in the frame of the joint at `to` before its motion, or of the body there; made perpendicular to the
-  /// line. None: any.
+  LinkEnd from;  ///< end at which the x axis begins
+  LinkEnd to;    ///< end to which the x axis points
+  /// The y axis of the link, in the frame before motion of the joint at `to`, or in the frame of the body at `to`. Its
+  /// component along the x axis is removed. Without a value, any direction is taken.
   std::optional<Vector3> y;
-  /// A beam, or the compliance of the part in a frame at the end at `to` with x along the line and this y.
+  /// Stiffness of the link as a beam; or the compliance matrix of the link in a frame at the end `to`, whose x axis is
+  /// along the link and whose y axis is the one above.
   std::variant<BeamSection, Matrix6> stiffness;
 };
 
 /// A limb from one body to another.
 struct Limb {
-  chain::Limb chain;                   ///< joints between fixed frames, from the frame of one body to that of the other
-  std::size_t from = kBase;            ///< position of the body where it begins
-  std::size_t to = kPlatform;          ///< and where it ends
-  std::string label = {};              ///< "2", "rod_1"
-  std::vector<Bearing> bearings = {};  ///< that give way
-  std::vector<Link> links = {};        ///< that give way
-  std::optional<Matrix6> end = {};     ///< compliance in the frame of the body `to`, added to bearings and links
+  /// Joints between fixed frames, from the frame of body `from` to that of body `to`.
+  chain::Limb chain;
+  std::size_t from = kBase;            ///< position of the body at which the limb begins
+  std::size_t to = kPlatform;          ///< position of the body at which the limb ends
+  std::string label = {};              ///< label in messages and names, such as "2" or "rod_1"
+  std::vector<Bearing> bearings = {};  ///< joint bearings with compliance
+  std::vector<Link> links = {};        ///< links with compliance
+  /// Compliance of the whole limb in the frame of the body `to`, added to that of bearings and links.
+  std::optional<Matrix6> end = {};
 
-  /// Whether anything of it gives way to a wrench.
+  /// Returns true if a bearing, a link or the limb as a whole has compliance.
   bool is_elastic() const { return !bearings.empty() || !links.empty() || end; }
 };
 
-/// Dead loads, at the nominal places of their points.
+/// Dead loads. They act at the nominal places of their points.
 struct Load {
-  Vector3 gravity = Vector3::Zero();  ///< m/s^2, on every mass
-  std::size_t body = kPlatform;       ///< that force and moment act on
-  Vector3 at = Vector3::Zero();       ///< where, in the body's frame (m)
-  Vector3 force = Vector3::Zero();    ///< N, base axes
-  Vector3 moment = Vector3::Zero();   ///< N m, base axes
+  Vector3 gravity = Vector3::Zero();  ///< gravity, m/s^2, which acts on every mass
+  std::size_t body = kPlatform;       ///< body on which force and moment act
+  Vector3 at = Vector3::Zero();       ///< point of application, in the body's frame (m)
+  Vector3 force = Vector3::Zero();    ///< force along the base's axes, N
+  Vector3 moment = Vector3::Zero();   ///< moment about the base's axes, N m
 
-  /// Whether it exerts anything on these bodies.
+  /// Returns true if the load exerts a force or a moment on any of these bodies.
   bool acts_on(const std::vector<Body>& bodies) const;
 };
 
-/// Where limbs get their compliance from.
+/// The source of the limbs' compliance C.
 enum class Metric {
-  platform,  ///< no stiffness is known: C = W^-1 of the platform's points, and no load acts
-  stiffness  ///< as bearings, links and limbs have it
+  platform,  ///< no stiffness is known: the compliance C of each limb is W^-1, with the metric W of the platform's
+             ///< points, and no load acts
+  stiffness  ///< the compliance of a limb follows from the stiffness of bearings, links and limbs
 };
 
-/// A mechanism of limbs between bodies.
+/// A mechanism of limbs that connect bodies.
 struct Assembly {
-  std::vector<Body> bodies;          ///< base, platform, and the others
-  std::vector<Limb> limbs;           ///< in the order of the file
-  std::vector<Vector3> points;       ///< of the metric, in the platform's frame (m); on no line
-  std::optional<Vector3> tool = {};  ///< in the platform's frame (m)
-  Load load = {};                    ///< from outside
-  Metric metric = Metric::platform;  ///< by which limbs give way
-  double reach = 1.0;                ///< m
+  std::vector<Body> bodies;  ///< base, platform, then the other bodies
+  std::vector<Limb> limbs;   ///< limbs, in the order of the file
+  /// Points of the platform that define its metric, in the platform's frame (m); not all on a line.
+  std::vector<Vector3> points;
+  std::optional<Vector3> tool = {};  ///< tool point, in the platform's frame (m)
+  Load load = {};                    ///< gravity and external loads
+  Metric metric = Metric::platform;  ///< source of the limbs' compliance
+  double reach = 1.0;                ///< unit of lengths in the solvers (m)
 
-  /// Independent loops.
+  /// The number of independent loops of limbs.
   std::size_t loops() const { return limbs.size() - (bodies.size() - 1); }
-  /// Joints of all limbs, fixed frames included.
+  /// The number of joints of all limbs, including those that are fixed.
   std::size_t joints() const;
-  /// Where a limb's joints begin among those of all limbs.
+  /// The position of a limb's first joint among the joints of all limbs.
   std::size_t first_joint(std::size_t limb) const;
 };
 
-/// Of limbs with members `from` and `to` those by which bodies can be placed one after the other: of each body but the
-/// base one that ends there, [bodies - 1], or fewer where no limb leads to some from the base.
+/// [bodies - 1] The limbs by which bodies can be placed one after the other: for each body except the base, a limb that
+/// ends there and begins at a body placed before. The list is shorter if no limbs lead from the base to some bodies.
+/// AnyLimb is a type with the members `from` and `to`.
 template <class AnyLimb>
 std::vector<std::size_t> placing_limbs(std::size_t bodies, const std::vector<AnyLimb>& limbs) {
   std::vector<bool> is_placed(bodies, false);

@@ -7,16 +7,13 @@
 
 namespace poesy::assembly {
 
-/// An evaluator like assembly_evaluator() whose bodies' displacements are what
-/// remains after the best correction of the drives: dq of least norm with the
-/// smallest root mean square displacement of the platform's points, to first
-/// order at the pose, as Model::calibrated_evaluator has it. The platform and
-/// all other bodies are moved back by dq; rotation vectors and displacements of
-/// origins are corrected, and the tool's displacement and the norms follow from
-/// them, with finite rotations if the fidelity is exact. Mismatch, energy and
-/// forces are unchanged, because drives that are as many as the freedoms put no
-/// force on limbs to first order. Where the equations have no unique solution
-/// every sample is singular. The model must outlive the evaluator.
+/// An evaluator like assembly_evaluator(), after the best correction of the drives (Model::calibrated_evaluator). The
+/// correction dq is found to first order at the pose: among the dq that minimise the root mean square displacement of
+/// the platform's points, it has the least norm. It moves the platform and all other bodies. Rotation vectors and
+/// displacements of origins are corrected. The displacement of the tool and the norms follow from the corrected values,
+/// with finite rotations if the fidelity is exact. Mismatch, energy and forces are unchanged, because to first order as
+/// many drives as freedoms put no force on limbs. If the equations have no unique solution, every sample is singular.
+/// The model must outlive the evaluator.
 std::unique_ptr<Evaluator> calibrated_evaluator(const AssemblyModel& model, const SolverOptions& options,
                                                 chain::Fidelity fidelity);
 

@@ -10,7 +10,7 @@ Matrix6 moved(const Transform& frame, const Matrix6& compliance) {
   return ad * compliance * ad.transpose();
 }
 
-/// Of a beam of this length, in the frame in its middle.
+/// The compliance of a beam of this length (m), in the frame at its middle.
 Matrix6 beam_compliance(const BeamSection& section, double length) {
   const double shear = section.shear_stiffness ? length / *section.shear_stiffness : 0.0;
   const double bending = length * length * length / 12.0;
@@ -20,7 +20,8 @@ Matrix6 beam_compliance(const BeamSection& section, double length) {
   return diagonal.asDiagonal();
 }
 
-/// At right angles to a direction of unit length: what is wanted of it, or anything.
+/// A unit vector perpendicular to the unit vector `direction`. It points along the perpendicular part of `wanted`; any
+/// perpendicular direction is returned if there is no such part.
 Vector3 across(const Vector3& direction, const std::optional<Vector3>& wanted) {
   if (wanted) return (*wanted - wanted->dot(direction) * direction).normalized();
   Eigen::Index smallest = 0;

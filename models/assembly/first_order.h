@@ -7,18 +7,19 @@
 
 namespace poesy::assembly {
 
-/// What entries of frames' errors do to first order at a pose, beside the load.
+/// The first-order effects of errors in fixed frames at a pose, and separately those of the load.
 class FirstOrder {
  public:
-  /// Equations at the pose. ranks: of each limb's passive columns, [limbs]. All must outlive it.
+  /// Sets up the equations at the pose. ranks: [limbs] rank of each limb's passive columns. All arguments must outlive
+  /// this object.
   FirstOrder(const Assembly& assembly, const Nominal& pose, std::span<const std::size_t> ranks);
 
-  /// Whether the equations have a unique solution.
+  /// Returns true if the equations have a unique solution.
   bool is_regular() const { return is_regular_; }
 
-  /// The bodies' twists and the limbs' wrenches by twists of limbs' ends, [6 limbs x k].
+  /// The twists of bodies and the wrenches of limbs if the limbs' ends are displaced by the twists xi [6 limbs x k].
   Balance effect(const Eigen::MatrixXd& xi) const;
-  /// The same of the load alone, and of the mismatch that rounded numbers leave, one column.
+  /// The twists and wrenches without errors, by the load and by the mismatch that rounded numbers cause; one column.
   const Balance& by_load() const { return by_load_; }
 
  private:

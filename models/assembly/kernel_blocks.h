@@ -1,6 +1,6 @@
 #pragma once
 
-// Included only by kernels.cpp, which is compiled once for each instruction set.
+// Only kernels.cpp includes this file. It is compiled once for each instruction set.
 
 #include <type_traits>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace poesy::assembly {
 
-/// Calls work(number of passive joints) with a constant.
+/// Calls work(number of passive joints), with the number as a compile-time constant.
 template <class Work>
 void with_passive(std::size_t passive, Work work) {
   switch (passive) {
@@ -30,14 +30,14 @@ void with_passive(std::size_t passive, Work work) {
   }
 }
 
-/// The matrix of bodies in blocks [6 x 6], of which only those are kept that limbs or the elimination fill: the
-/// platform goes last, because it touches most others.
+/// The matrix of the bodies' equations, in blocks [6 x 6] for two bodies each. Only the blocks that limbs or the
+/// elimination fill are stored. The platform is eliminated last, because most limbs connect other bodies with it.
 template <class T>
 class BodyMatrix {
  public:
   using Mask = typename T::MaskType;  ///< a truth value for each lane
 
-  /// With the pattern of this assembly. safe: a pivot below this share of the diagonal is not safe.
+  /// Sets the pattern of nonzero blocks. safe: a pivot below this share of its diagonal entry is not safe.
   BodyMatrix(const KernelProblem& problem, double safe)
       : count_(problem.bodies.size() - 1),
         safe_(safe),
@@ -59,17 +59,18 @@ class BodyMatrix {
     }
   }
 
-  void clear() {  ///< All entries are 0.
+  void clear() {  ///< Sets all entries to 0.
     for (T& entry : blocks_) entry = T(0.0);
   }
 
-  /// Adds sign * block [6 x 6] to the rows of one body and the columns of another.
+  /// Adds sign x block [6 x 6] to the rows of one body and the columns of another.
   void add(std::size_t row, std::size_t column, const T* block, double sign) {
     T* to = at(place(row), place(column));
     for (int k = 0; k < 36; ++k) to[k] = madd(T(sign), block[k], to[k]);
   }
 
-  /// L U without exchange of rows. Returns where pivots are safe.
+  /// Computes the triangular factors L and U of the matrix without row exchanges. Returns the lanes in which all pivots
+  /// are safe.
   Mask factor() {
     Mask safe = T(0.0) < T(1.0);
     T diagonal[6];
@@ -94,7 +95,7 @@ class BodyMatrix {
     return safe;
   }
 
-  /// twists: the right side [6 x (bodies with the base)], and then the solution.
+  /// Solves the equations. twists: [6 bodies], including the base; the right side on entry, the solution on return.
   void solve(std::vector<T>& twists) const {
     for (std::size_t k = 0; k < count_; ++k) {
       T* x = &twists[6 * body(k)];
@@ -130,7 +131,7 @@ class BodyMatrix {
     }
   }
 
-  /// b <- L^-1 b for columns of b.
+  /// Replaces b by L^-1 b, with the lower triangle L of the factors `a`.
   static void lower_solve(const T* a, T* b, int columns) {
     for (int row = 1; row < 6; ++row) {
       for (int m = 0; m < row; ++m) {
@@ -139,7 +140,7 @@ class BodyMatrix {
     }
   }
 
-  /// b <- b U^-1
+  /// Replaces b by b U^-1, with the upper triangle U of the factors `a`.
   static void upper_divide(const T* a, const T* pivots, T* b) {
     for (int row = 0; row < 6; ++row) {
       T* of = b + 6 * row;
@@ -150,7 +151,7 @@ class BodyMatrix {
     }
   }
 
-  /// c <- c - a b
+  /// Replaces c by c - a b.
   static void subtract_product(const T* a, const T* b, T* c) {
     for (int row = 0; row < 6; ++row) {
       for (int m = 0; m < 6; ++m) {
@@ -159,7 +160,7 @@ class BodyMatrix {
     }
   }
 
-  /// x <- x - block(row, column) times the twist of the column's body.
+  /// Subtracts from x the product of block(row, column) and the twist of the column's body.
   void subtract_times(std::size_t row, std::size_t column, const std::vector<T>& twists, T* x) const {
     if (!is_filled_[count_ * row + column]) return;
     const T* block = at(row, column);
@@ -169,11 +170,11 @@ class BodyMatrix {
     }
   }
 
-  std::size_t count_;            ///< bodies without the base
-  double safe_;                  ///< share of the diagonal
-  std::vector<bool> is_filled_;  ///< [count x count]
-  std::vector<T> blocks_;        ///< [count x count] blocks by rows
-  std::vector<T> pivots_;        ///< inverse pivots
+  std::size_t count_;            ///< number of bodies without the base
+  double safe_;                  ///< smallest safe pivot as a share of the diagonal
+  std::vector<bool> is_filled_;  ///< [count x count] whether each block is kept
+  std::vector<T> blocks_;        ///< [count x count] blocks, row by row
+  std::vector<T> pivots_;        ///< reciprocal pivots
 };
 
 }  // namespace poesy::assembly

@@ -1,22 +1,23 @@
 #pragma once
 
-// Included only by kernels.cpp, which is compiled once for each instruction set.
+// Only kernels.cpp includes this file. It is compiled once for each instruction set.
 
 #include "models/assembly/kernel_state.h"
 
 namespace poesy::assembly {
 
-/// Rounds with the matrix of the nominal pose,
+/// Makes steps with the constant matrix of the nominal pose. The symbols are those of Equilibrium; dp is the change of
+/// p, and B0 is B at the nominal pose:
 ///
 ///     [ C  B0 ; B0^T  0 ] [ dp ; x ] = [ xi - C p ; -load - sum of p ; -J^T p ].
 ///
-/// Where limbs do not deform each other and no load acts, p is 0 and is left out.
+/// If limbs do not deform each other and no load acts, p is 0 and is omitted.
 template <class T>
 class ConstantStep {
  public:
   using Mask = typename T::MaskType;  ///< a truth value for each lane
 
-  /// It must outlive this.
+  /// The problem must outlive this object.
   explicit ConstantStep(const KernelProblem& problem)
       : problem_(problem),
         mismatch_(6 * problem.limbs.size()),
@@ -25,7 +26,7 @@ class ConstantStep {
         found_(problem.size),
         twists_(6 * problem.bodies.size(), T(0.0)) {}
 
-  /// Moves the lanes that go on.
+  /// Makes one round: moves the active lanes.
   LaneChange<T> round(LaneAssembly<T>& state, Mask active, int /*number*/) {
     for (T& row : right_) row = T(0.0);
     for (std::size_t b = 1; b < problem_.bodies.size(); ++b) {
@@ -43,7 +44,7 @@ class ConstantStep {
  private:
   using Motion = LaneMotion<T>;
 
-  /// Mismatch of a limb, and what is left of its equations.
+  /// Computes the mismatch of limb e, and what the limb contributes to the right side of the equations.
   void visit(const LaneAssembly<T>& state, std::size_t e) {
     const KernelLimb& limb = problem_.limbs[e];
     const T* p = &state.wrenches[6 * e];
@@ -73,7 +74,7 @@ class ConstantStep {
     }
   }
 
-  /// Adds the wrench that takes away what a passive joint feels of p.
+  /// Adds to `rest` the wrench that cancels the component of the limb's wrench p along a passive joint.
   static void add_felt(const KernelLimb& limb, const KernelJoint& joint, const Motion& g, const T* p, T* rest) {
     T twist[6];
     twist_of(joint, g, twist);
@@ -82,7 +83,8 @@ class ConstantStep {
     for (int k = 0; k < 6; ++k) rest[k] = nmadd(T(give[k]), felt, rest[k]);
   }
 
-  /// The limb's part of the right side: what is left, along the wrenches that it can carry.
+  /// Sets what the limb contributes to the right side: the components of the twist `left` along the wrenches that the
+  /// limb can carry.
   void set_right(const KernelLimb& limb, const T* left) {
     for (std::size_t m = 0; m < limb.carried; ++m) {
       T sum = T(limb.carry[m]) * left[0];
@@ -99,7 +101,7 @@ class ConstantStep {
 
   std::size_t first_body_row() const { return problem_.size - 6 * (problem_.bodies.size() - 1); }
 
-  /// Without wrenches the rows of bodies are 0, and nobody asks for lambda.
+  /// Solves the equations. Without wrenches the bodies' rows of the right side are 0, and lambda is not needed.
   void solve_linear() {
     const std::size_t columns = problem_.carries ? problem_.size : first_body_row();
     for (std::size_t row = problem_.carries ? 0 : first_body_row(); row < problem_.size; ++row) {
@@ -116,7 +118,7 @@ class ConstantStep {
     }
   }
 
-  /// Moves the limb's wrench in the lanes that go on. Returns the square of its change.
+  /// Changes the wrench of limb e in the active lanes. Returns the square of the change.
   T step_wrench(LaneAssembly<T>& state, std::size_t e, Mask active, T* wanted) {
     const KernelLimb& limb = problem_.limbs[e];
     T* p = &state.wrenches[6 * e];
@@ -137,7 +139,7 @@ class ConstantStep {
     return square;
   }
 
-  /// Moves wrench and joints of a limb in the lanes that go on.
+  /// Changes wrench and joints of limb e in the active lanes.
   void step(LaneAssembly<T>& state, std::size_t e, Mask active, LaneChange<T>& change) {
     const KernelLimb& limb = problem_.limbs[e];
     T wanted[6];
@@ -155,11 +157,11 @@ class ConstantStep {
   }
 
   const KernelProblem& problem_;
-  std::vector<T> mismatch_;    ///< [6 x limbs] xi
-  std::vector<T> particular_;  ///< [6 x limbs] the part of dp that answers what passive joints feel
+  std::vector<T> mismatch_;    ///< [6 x limbs] mismatch xi
+  std::vector<T> particular_;  ///< [6 x limbs] part of dp that cancels the components of p along passive joints
   std::vector<T> right_;
   std::vector<T> found_;
-  std::vector<T> twists_;  ///< [6 x bodies]
+  std::vector<T> twists_;  ///< [6 x bodies] twists of the bodies
 };
 
 }  // namespace poesy::assembly

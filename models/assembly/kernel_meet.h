@@ -1,35 +1,37 @@
 #pragma once
 
-// Included only by kernels.cpp, which is compiled once for each instruction set.
+// Only kernels.cpp includes this file. It is compiled once for each instruction set.
 
 #include "models/assembly/kernel_blocks.h"
 #include "models/assembly/kernel_state.h"
 
 namespace poesy::assembly {
 
-/// Rounds for limbs that can all meet their bodies, so that no limb has a wrench. With S the columns of a limb's
-/// passive joints, twists V of bodies and displacements dq minimise
+/// Makes steps if no limb has a wrench, because the joints can bring the end of every limb to its body. Let xi = log(g
+/// T^-1) be the mismatch between a limb's end, with the pose g, and its body, with the pose T. The columns of S are the
+/// twists of the limb's passive joints. The twists V of the bodies and the displacements dq of the passive joints
+/// minimise
 ///
 ///     sum over limbs from a to b of |xi + V_a - V_b + S dq|^2
 ///
-/// by a projection P = 1 - S (S^T S)^-1 S^T for each limb, and six equations for each body with the sums of P and P xi.
-/// Twists are measured by the motion of the platform's points. At the solution the minimum is zero, so steps converge
-/// quadratically with new projections; they are made in the first and then in every fourth round. Freedoms that move
-/// nothing make S^T S singular: constant terms of rank one keep them where they are. A lane is refused where a pivot
-/// is not safely positive.
+/// Each limb has a projection P = 1 - S (S^T S)^-1 S^T: P xi is the part of xi that its passive joints cannot remove.
+/// Each body has six equations, with the sums of P and of P xi over its limbs. Twists are measured by the motion of the
+/// platform's points. At the solution the minimum is zero, so steps with new projections converge quadratically. New
+/// projections are made in the first, the fifth, the ninth round and so on. Idle freedoms move nothing and make S^T S
+/// singular, so constant terms of rank one are added for them. A lane is refused if a pivot is not safely positive.
 template <class T>
 class MeetStep {
  public:
   using Mask = typename T::MaskType;  ///< a truth value for each lane
 
-  /// It must outlive this.
+  /// The problem must outlive this object.
   explicit MeetStep(const KernelProblem& problem)
       : problem_(problem),
         limbs_(problem.limbs.size()),
         matrix_(problem, kSafe),
         twists_(6 * problem.bodies.size(), T(0.0)) {}
 
-  /// Moves the lanes that go on.
+  /// Makes one round: moves the active lanes.
   LaneChange<T> round(LaneAssembly<T>& state, Mask active, int number) {
     const bool is_new = number % kMatrixRounds == 0;
     if (is_new) {
@@ -55,21 +57,22 @@ class MeetStep {
  private:
   using Motion = LaneMotion<T>;
   static constexpr int kMatrixRounds = 4;
-  static constexpr double kSafe = 1e-9;  ///< a pivot below this share of the diagonal is not safe
+  static constexpr double kSafe = 1e-9;  ///< a pivot below this share of its diagonal entry is not safe
 
-  /// A limb's mismatch, and its projection at the state for which that was made.
+  /// The mismatch of a limb, and its projection with the data on which it depends.
   struct Limb {
-    T open[6];                                  ///< xi, measured
-    T rows[6 * kMostOwnJoints];                 ///< Y = L^-1 S^T, where S^T S = L L^T
-    T factor[kMostOwnJoints * kMostOwnJoints];  ///< L, below the diagonal
-    T pivots[kMostOwnJoints];                   ///< 1 / diagonal of L
+    T open[6];                                  ///< mismatch xi in measured coordinates (KernelProblem::measured)
+    T rows[6 * kMostOwnJoints];                 ///< Y = L^-1 S^T with the Cholesky factor L: S^T S = L L^T
+    T factor[kMostOwnJoints * kMostOwnJoints];  ///< Cholesky factor L, below the diagonal
+    T pivots[kMostOwnJoints];                   ///< reciprocal diagonal of L
   };
 
   void measure(const T* twist, T* made) const {
     for (int k = 0; k < 6; ++k) made[k] = T(problem_.measured[k]) * twist[k];
   }
 
-  /// rest <- x - Y^T Y x; along: Y x, [n].
+  /// Splits a twist x into rest = P x and along = Y x [n], with the limb's projection P = 1 - Y^T Y. n: number of its
+  /// passive joints.
   template <std::size_t n>
   static void project(const Limb& of, const T* x, T* along, T* rest) {
     for (int k = 0; k < 6; ++k) rest[k] = x[k];
@@ -79,7 +82,8 @@ class MeetStep {
     }
   }
 
-  /// Mismatch of a limb at the present state, its projection if that is new, and its part of the right side.
+  /// Computes the mismatch of limb e and what the limb contributes to the right side; in a round with new matrices,
+  /// also its projection.
   template <std::size_t n>
   void visit(const LaneAssembly<T>& state, std::size_t e, bool is_new) {
     const KernelLimb& limb = problem_.limbs[e];
@@ -109,7 +113,8 @@ class MeetStep {
     }
   }
 
-  /// Cholesky's factor of S^T S, and Y.
+  /// Computes the Cholesky factor L of S^T S, and Y = L^-1 S^T. columns: twists of the passive joints, the columns of
+  /// S.
   template <std::size_t n>
   void set_rows(const KernelLimb& limb, const T* columns, Limb& of) {
     for (std::size_t a = 0; a < n; ++a) {
@@ -137,7 +142,7 @@ class MeetStep {
     }
   }
 
-  /// Adds P to the matrix of the bodies.
+  /// Adds a limb's projection P to the matrix of the equations of the bodies.
   template <std::size_t n>
   void add_projection(const KernelLimb& limb, const Limb& of) {
     T block[36];
@@ -157,8 +162,8 @@ class MeetStep {
     matrix_.add(limb.from, limb.to, block, -1.0);
   }
 
-  /// Moves the joints of a limb in the lanes that go on. What the step leaves open counts as a change, because limbs
-  /// that cannot meet have not settled.
+  /// Moves the joints of limb e in the active lanes. The mismatch that remains after the step counts as a change,
+  /// because limbs that do not reach their bodies have not settled.
   template <std::size_t n>
   void step(LaneAssembly<T>& state, std::size_t e, Mask active, LaneChange<T>& change) {
     const KernelLimb& limb = problem_.limbs[e];
@@ -179,10 +184,11 @@ class MeetStep {
   }
 
   const KernelProblem& problem_;
-  std::vector<Limb> limbs_;  ///< [limbs]
+  std::vector<Limb> limbs_;  ///< [limbs] mismatch and projection of each limb
   BodyMatrix<T> matrix_;
-  std::vector<T> twists_;  ///< [6 x bodies] right side, then the bodies' twists, measured; the base's is 0
-  Mask safe_;              ///< where the last projections are
+  /// [6 x bodies] The right side, then the twists of the bodies, in measured coordinates; 0 for the base.
+  std::vector<T> twists_;
+  Mask safe_;  ///< lanes in which the last projections are safe
 };
 
 }  // namespace poesy::assembly

@@ -1,20 +1,20 @@
 #pragma once
 
-// Included only by kernels.cpp, which is compiled once for each instruction set.
+// Only kernels.cpp includes this file. It is compiled once for each instruction set.
 
 #include "models/assembly/kernel_problem.h"
 #include "models/simd/rotation.h"
 
 namespace poesy::assembly {
 
-/// A rigid motion in each lane: rotation by rows, then translation.
+/// A rigid motion in each lane.
 template <class T>
 struct LaneMotion {
-  T r[9];  ///< rotation
+  T r[9];  ///< rotation matrix, row by row
   T p[3];  ///< translation
 };
 
-/// The same motion in every lane.
+/// Copies one rigid motion into all lanes.
 template <class T>
 LaneMotion<T> in_lanes(const KernelMotion& motion) {
   LaneMotion<T> made;
@@ -23,7 +23,7 @@ LaneMotion<T> in_lanes(const KernelMotion& motion) {
   return made;
 }
 
-/// a b
+/// The product of motions a b.
 template <class T>
 [[gnu::always_inline]] inline LaneMotion<T> product(const LaneMotion<T>& a, const LaneMotion<T>& b) {
   LaneMotion<T> c;
@@ -37,7 +37,7 @@ template <class T>
   return c;
 }
 
-/// g <- g * translation by t
+/// Moves a frame g by a translation t along its own axes: g := g x translation.
 template <class T>
 [[gnu::always_inline]] inline void shift(LaneMotion<T>& g, const T* t) {
   for (int row = 0; row < 3; ++row) {
@@ -46,7 +46,7 @@ template <class T>
   }
 }
 
-/// g <- g * constant
+/// Moves a frame g by a constant motion: g := g x motion.
 template <class T>
 [[gnu::always_inline]] inline void append(LaneMotion<T>& g, const KernelConstant& constant) {
   if (constant.shape == KernelConstant::Shape::identity) return;
@@ -58,7 +58,7 @@ template <class T>
   }
 }
 
-/// g <- g * the joint's motion
+/// Moves a frame g by the motion of a joint: g := g x motion. displacement: rad or in units of the reach.
 template <class T>
 [[gnu::always_inline]] inline void move(const KernelJoint& joint, T displacement, LaneMotion<T>& g) {
   if (joint.slides || joint.advance != 0.0) {
@@ -75,7 +75,7 @@ template <class T>
   }
 }
 
-/// The joint's twist [w; v] where its frame is g: a column of J.
+/// Computes the twist [w; v] of a joint with the frame g: a column of J.
 template <class T>
 [[gnu::always_inline]] inline void twist_of(const KernelJoint& joint, const LaneMotion<T>& g, T* twist) {
   const T axis[3] = {g.r[2], g.r[5], g.r[8]};
@@ -92,13 +92,13 @@ template <class T>
   for (int k = 0; k < 3; ++k) twist[3 + k] = madd(T(joint.advance), axis[k], twist[3 + k]);
 }
 
-/// A twist times a wrench.
+/// The product of a twist and a wrench.
 template <class T>
 [[gnu::always_inline]] inline T dot6(const T* a, const T* b) {
   return simd::dot3(a, b) + simd::dot3(a + 3, b + 3);
 }
 
-/// exp of the twist [w; v].
+/// The rigid motion exp(twist) of a twist [w; v].
 template <class T>
 [[gnu::always_inline]] inline LaneMotion<T> motion_of(const T* twist) {
   const T* w = twist;
@@ -116,7 +116,8 @@ template <class T>
   return made;
 }
 
-/// simd::rotation_log with shorter series for the lanes in which tan(theta/2)^2 is below 1e-3, as it is in mismatches.
+/// Like simd::rotation_log(), but with shorter series for lanes in which tan(theta/2)^2 of the rotation angle theta is
+/// below 1e-3, as is usual in mismatches.
 template <class T>
 [[gnu::always_inline]] inline simd::RotationLog<T> mismatch_log(const T* r) {
   static constexpr double kAtan[] = {1.0, -1.0 / 3.0, 1.0 / 5.0, -1.0 / 7.0, 1.0 / 9.0, -1.0 / 11.0};
@@ -137,7 +138,7 @@ template <class T>
   return made;
 }
 
-/// log(a b^-1) as [w; v].
+/// Computes the twist log(a b^-1) as [w; v].
 template <class T>
 [[gnu::always_inline]] inline void log_of(const LaneMotion<T>& a, const LaneMotion<T>& b, T* twist) {
   LaneMotion<T> c;
@@ -159,14 +160,15 @@ template <class T>
   }
 }
 
-/// Errors of a block as motions in the lanes from one sample on.
+/// The errors of a block of samples as motions. The first lane holds the sample at a given position; the next samples
+/// follow.
 template <class T>
 class LaneErrors {
  public:
-  /// at: the first sample of the lanes.
+  /// at: position of the sample in the first lane.
   LaneErrors(const KernelBlock& block, std::size_t at) : values_(block.values + at), stride_(block.stride) {}
 
-  /// What is between two joints.
+  /// The motion of a segment between two joints, with errors.
   LaneMotion<T> segment(const KernelSegment& segment) const {
     if (segment.pieces.empty()) return in_lanes<T>(segment.behind.motion);
     LaneMotion<T> g = in_lanes<T>(segment.pieces.front().before.motion);
@@ -185,7 +187,7 @@ class LaneErrors {
     return T(error.unit[n]) * T::load(values_ + static_cast<std::size_t>(row) * stride_);
   }
 
-  /// g <- g * error
+  /// Moves a frame g by an error: g := g x error.
   void add(const KernelError& error, LaneMotion<T>& g) const {
     T e[6];
     for (int n = 0; n < 6; ++n) e[n] = entry(error, n);

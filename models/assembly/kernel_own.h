@@ -1,31 +1,34 @@
 #pragma once
 
-// Included only by kernels.cpp, which is compiled once for each instruction set.
+// Only kernels.cpp includes this file. It is compiled once for each instruction set.
 
 #include "models/assembly/kernel_blocks.h"
 #include "models/assembly/kernel_state.h"
 
 namespace poesy::assembly {
 
-/// A pivot below this share of the diagonal is not safe.
+/// A pivot below this share of its diagonal entry is not safe.
 inline constexpr double kSafePivot = 1e-5;
 
-/// Rounds of Newton's method: with the matrix of each sample's own, made in the first and then in every fourth round.
-/// Limbs have regular C. With S the columns of J, ad xi for the bracket with the
-/// mismatch, the logarithm's differential E(x) = 1 + x/2 + x^2/12 and D = E(-ad xi) S the equations of one limb,
+/// Makes steps of Newton's method with a matrix for each sample, which is new in the first, the fifth, the ninth round
+/// and so on. The compliances C of the limbs are regular. A limb has the wrench p. Its mismatch xi = log(g T^-1) is
+/// that between its end, with the pose g, and body b, with the pose T. The columns of S are the twists of its passive
+/// joints. Let ad xi be the bracket with the mismatch, E(x) = 1 + x/2 + x^2/12 the differential of the logarithm, and D
+/// = E(-ad xi) S. V_a and V_b are the twists of the bodies a and b, and dq are the displacements of the passive joints.
+/// The equations of one limb from body a to body b,
 ///
 ///     p + dp = C^-1 (xi + D dq + E(-ad xi) V_a - E(ad xi) V_b)
 ///     S_j^T (p + dp) + sum over k < j of [S_k, S_j]^T p dq_k + [V_a, S_j]^T p = 0,
 ///
-/// are solved for dq, a matrix as large as the limb has passive joints; what is left of all limbs are six equations
-/// for each body. Freedoms that move nothing make the limb's matrix singular: constant terms of rank one keep them
-/// where they are. A lane is refused where a pivot is not safely positive, for then no stable equilibrium is near.
+/// are solved for dq, with a matrix that has a row for each passive joint of the limb. Six equations for each body
+/// remain. Idle freedoms move nothing and make the limb's matrix singular, so constant terms of rank one are added for
+/// them. A lane is refused if a pivot is not safely positive, because then no stable equilibrium is near.
 template <class T>
 class OwnStep {
  public:
   using Mask = typename T::MaskType;  ///< a truth value for each lane
 
-  /// It must outlive this.
+  /// The problem must outlive this object.
   explicit OwnStep(const KernelProblem& problem)
       : problem_(problem),
         present_(problem.limbs.size()),
@@ -33,7 +36,7 @@ class OwnStep {
         matrix_(problem, kSafePivot),
         twists_(6 * problem.bodies.size(), T(0.0)) {}
 
-  /// Moves the lanes that go on.
+  /// Makes one round: moves the active lanes.
   LaneChange<T> round(LaneAssembly<T>& state, Mask active, int number) {
     const bool is_new = number % kMatrixRounds == 0;
     if (is_new) {
@@ -59,25 +62,25 @@ class OwnStep {
   using Motion = LaneMotion<T>;
   static constexpr int kMatrixRounds = 4;
 
-  /// A limb at the present state. Rows of joints have six entries.
+  /// A limb in the present state. Each twist or wrench has six entries.
   struct Present {
-    T columns[6 * kMostOwnJoints];  ///< S
-    T open[6];                      ///< xi
-    T rest[6];                      ///< C^-1 xi - p
-    T alone[kMostOwnJoints];        ///< dq if no body moves
+    T columns[6 * kMostOwnJoints];  ///< columns of S: twists of the passive joints
+    T open[6];                      ///< mismatch xi
+    T rest[6];                      ///< wrench C^-1 xi that belongs to the mismatch, minus the present wrench p
+    T alone[kMostOwnJoints];        ///< dq of the passive joints if no body moves
   };
 
-  /// What belongs to a limb's matrix, at the state for which it was made.
+  /// The matrix of a limb, and the state for which it was made.
   struct Limb {
-    T xi[6];                                     ///< xi
-    T columns[6 * kMostOwnJoints];               ///< S
-    T turned[6 * kMostOwnJoints];                ///< D
-    T inverse[kMostOwnJoints * kMostOwnJoints];  ///< of the matrix
-    T by_to[6 * kMostOwnJoints];                 ///< dq by V_b
-    T by_from[6 * kMostOwnJoints];               ///< dq by V_a
+    T xi[6];                                     ///< mismatch xi
+    T columns[6 * kMostOwnJoints];               ///< columns of S: twists of the passive joints
+    T turned[6 * kMostOwnJoints];                ///< columns of D = E(-ad xi) S
+    T inverse[kMostOwnJoints * kMostOwnJoints];  ///< inverse of the limb's matrix
+    T by_to[6 * kMostOwnJoints];                 ///< dq per unit of V_b
+    T by_from[6 * kMostOwnJoints];               ///< dq per unit of V_a
   };
 
-  /// C^-1 times a twist.
+  /// Computes the wrench that belongs to a twist between a limb's end and its body: C^-1 twist, with the compliance C.
   static void stiffness_times(const KernelLimb& limb, const T* twist, T* wrench) {
     if (limb.is_diagonal) {
       for (int k = 0; k < 6; ++k) wrench[k] = T(limb.stiffness[7 * k]) * twist[k];
@@ -91,14 +94,14 @@ class OwnStep {
     }
   }
 
-  /// [a, b] of two twists.
+  /// Computes the Lie bracket [a, b] of two twists.
   static void bracket(const T* a, const T* b, T* made) {
     simd::cross(a, b, made);
     simd::cross(a, b + 3, made + 3);
     simd::add_cross(a + 3, b, made + 3);
   }
 
-  /// E(-ad xi) x
+  /// Computes E(-ad xi) x for a twist x, with the mismatch xi and E as in the class's comment.
   static void bend(const T* xi, const T* x, T* made) {
     T once[6];
     T twice[6];
@@ -107,14 +110,15 @@ class OwnStep {
     for (int k = 0; k < 6; ++k) made[k] = madd(T(1.0 / 12.0), twice[k], nmadd(T(0.5), once[k], x[k]));
   }
 
-  /// The h with h^T x = p^T [a, x] for every twist x.
+  /// Computes the vector h for which h^T x = p^T [a, x] holds for every twist x. a: twist; p: wrench.
   static void bracket_transposed(const T* a, const T* p, T* h) {
     simd::cross(p, a, h);
     simd::add_cross(p + 3, a + 3, h);
     simd::cross(p + 3, a, h + 3);
   }
 
-  /// Mismatch of a limb at the present state, its part of the matrix if that is new, and of the right side.
+  /// Computes the mismatch of limb e and what the limb contributes to the right side; in a round with new matrices,
+  /// also what it contributes to the matrix.
   template <std::size_t n>
   void visit(const LaneAssembly<T>& state, std::size_t e, bool is_new) {
     const KernelLimb& limb = problem_.limbs[e];
@@ -149,14 +153,15 @@ class OwnStep {
     }
   }
 
-  /// The limb's matrix in the lanes that are stale, and what it gives to that of the bodies. Returns where its pivots
-  /// are safe.
+  /// Computes the limb's matrix, and adds the limb's contribution to the matrix of the bodies. Returns the lanes in
+  /// which its pivots are safe.
   template <std::size_t n>
   Mask set_matrix(const KernelLimb& limb, const Present& now, const T* p, Limb& of) {
     for (int k = 0; k < 6; ++k) of.xi[k] = now.open[k];
     for (std::size_t k = 0; k < 6 * n; ++k) of.columns[k] = now.columns[k];
-    T stiff[6 * kMostOwnJoints];    // C^-1 S
-    T turning[6 * kMostOwnJoints];  // h_j, by which a joint's column turns
+    T stiff[6 * kMostOwnJoints];  // C^-1 S: wrench per unit displacement of each joint
+    // The vector h (see bracket_transposed()) of each column, for the rotation of the columns.
+    T turning[6 * kMostOwnJoints];
     for (std::size_t j = 0; j < n; ++j) {
       const T* column = now.columns + 6 * j;
       bend(of.xi, column, of.turned + 6 * j);
@@ -179,8 +184,8 @@ class OwnStep {
     return safe;
   }
 
-  /// dq by a body's twist, and what the limb's wrench by it gives to the matrix of the bodies. felt: what joints feel
-  /// of the twist [n x 6].
+  /// Computes dq per unit twist of a body, and adds the effect of the limb's wrench to the matrix of the bodies. felt:
+  /// [n x 6] moments and forces on the joints per unit twist of the body.
   template <std::size_t n>
   void add_body(const KernelLimb& limb, std::size_t body, const Limb& of, const T* felt, T* dq) {
     multiply<n>(of.inverse, felt, dq);
@@ -190,7 +195,7 @@ class OwnStep {
     if (limb.from != 0) matrix_.add(limb.from, body, block, 1.0);
   }
 
-  /// The inverse of a matrix [n x n] in its place, without exchange of rows. Returns where pivots are safe.
+  /// Inverts a matrix [n x n] in place, without row exchanges. Returns the lanes in which all pivots are safe.
   template <std::size_t n>
   static Mask invert(T* matrix) {
     Mask safe = T(0.0) < T(1.0);
@@ -213,7 +218,9 @@ class OwnStep {
     return safe;
   }
 
-  /// What joints feel of the twists of the limb's bodies, [n x 6] each. stiff: C^-1 S; turning: by which columns turn.
+  /// Computes the moments and forces on the joints per unit twist of the limb's bodies, [n x 6] each. xi: mismatch.
+  /// stiff: C^-1 S, the wrench per unit displacement of each joint. turning: the vector h (see bracket_transposed()) of
+  /// each joint's twist.
   template <std::size_t n>
   static void felt_by_bodies(const T* xi, const T* stiff, const T* turning, T* to, T* from) {
     for (std::size_t j = 0; j < 6 * n; j += 6) {
@@ -229,7 +236,7 @@ class OwnStep {
     }
   }
 
-  /// [n x n] times [n x 6]
+  /// Computes the product of a [n x n] and b [n x 6].
   template <std::size_t n>
   static void multiply(const T* a, const T* b, T* made) {
     for (std::size_t j = 0; j < n; ++j) {
@@ -241,7 +248,8 @@ class OwnStep {
     }
   }
 
-  /// sign E(-sign ad xi), [6 x 6]
+  /// Computes the matrix sign E(-sign ad xi) [6 x 6], where sign is 1 or -1, xi is the mismatch, and E is as in the
+  /// class's comment.
   static void bent_unit(const T* xi, double sign, T* made) {
     const T* w = xi;
     const T* v = xi + 3;
@@ -264,7 +272,7 @@ class OwnStep {
     }
   }
 
-  /// Subtracts 1/2 hat(w) from a block of rows of six.
+  /// Subtracts hat(w) / 2 from a [3 x 3] block of a matrix with rows of six.
   static void subtract_half_cross(const T* w, T* block) {
     const T half(0.5);
     block[1] = madd(half, w[2], block[1]);
@@ -275,7 +283,8 @@ class OwnStep {
     block[13] = nmadd(half, w[0], block[13]);
   }
 
-  /// The limb's wrench by the twist of one of its bodies, [6 x 6]: C^-1 (D by_body + E of the body).
+  /// Computes the limb's wrench per unit twist of one of its bodies, [6 x 6]: C^-1 (D by_body + E), with E as in the
+  /// class's equations.
   template <std::size_t n>
   static void pull_by(const KernelLimb& limb, const Limb& of, const T* by_body, double sign, T* block) {
     T moved[36];
@@ -300,7 +309,7 @@ class OwnStep {
     }
   }
 
-  /// Moves wrench and joints of a limb in the lanes that go on.
+  /// Changes wrench and joints of limb e in the active lanes.
   template <std::size_t n>
   void step(LaneAssembly<T>& state, std::size_t e, Mask active, LaneChange<T>& change) {
     const KernelLimb& limb = problem_.limbs[e];
@@ -335,11 +344,11 @@ class OwnStep {
   }
 
   const KernelProblem& problem_;
-  std::vector<Present> present_;  ///< [limbs]
-  std::vector<Limb> limbs_;       ///< [limbs]
+  std::vector<Present> present_;  ///< [limbs] present state of each limb
+  std::vector<Limb> limbs_;       ///< [limbs] matrix of each limb
   BodyMatrix<T> matrix_;
-  std::vector<T> twists_;  ///< [6 x bodies] right side, then the bodies' twists; the base's is 0
-  Mask safe_;              ///< where the last matrix is
+  std::vector<T> twists_;  ///< [6 x bodies] right side, then the twists of the bodies; 0 for the base
+  Mask safe_;              ///< lanes in which the last matrix is safe
 };
 
 }  // namespace poesy::assembly

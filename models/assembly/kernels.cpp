@@ -1,4 +1,4 @@
-// Compiled once for each instruction set.
+// This file is compiled once for each instruction set.
 #include "models/assembly/kernels.h"
 
 #include "models/assembly/kernel.h"

@@ -5,11 +5,11 @@
 
 namespace poesy::assembly {
 
-/// The kernels of one instruction set. Each is a translation unit of its own, kernels.cpp compiled for that set; see
+/// The kernels of one instruction set. Each set has its own translation unit, kernels.cpp compiled for that set; see
 /// simd::for_selected_isa().
 template <simd::Isa isa>
 Kernels kernels();
-/// Specialisations.
+/// The kernels of each instruction set.
 /// @{
 template <>
 Kernels kernels<simd::Isa::plain>();

@@ -14,19 +14,21 @@ using Vector = Eigen::VectorXd;
 
 Index index(std::size_t value) { return static_cast<Index>(value); }
 
-/// Where the passive joints of each limb begin among all passive joints, and at last how many there are.
+/// [limbs + 1] The position of each limb's first passive joint among all passive joints, then the number of all passive
+/// joints.
 std::vector<Index> first_passive(std::span<const LimbState> limbs) {
   std::vector<Index> first{0};
   for (const LimbState& limb : limbs) first.push_back(first.back() + limb.passive.cols());
   return first;
 }
 
-/// What moves the ends of a limb: a column of B, and where it is in x.
+/// A motion that moves an end of a limb: a column of the matrix B, and the position of its unknown in x.
 struct Mover {
   enum class What { from, joint, to };
   What what;
-  Index at;     ///< in x
-  Screw twist;  ///< B has it with a minus unless it is of the body where the limb ends
+  Index at;     ///< position in x
+  Screw twist;  ///< twist; it enters the matrix B (see Loops) with a minus sign unless it is that of the body at which
+                ///< the limb ends
 };
 
 std::vector<Mover> movers(const Limb& limb, const LimbState& state, Index first_joint, Index joints) {
@@ -44,8 +46,8 @@ std::vector<Mover> movers(const Limb& limb, const LimbState& state, Index first_
   return list;
 }
 
-/// The slopes of one limb's frames, by motions in front of what they move: of its columns, which a motion m in front
-/// changes by [m, c]. pulls: [6 x passive joints] d ln det N = sum of pull . dc.
+/// The slopes of ln det N by the errors of one limb's frames, as far as errors turn and shift the limb's columns c: a
+/// motion m in front of a column changes it by [m, c]. pulls: [6 x passive joints], with d ln det N = sum of pull . dc.
 std::vector<Screw> slopes_in_front(const Limb& limb, const LimbState& state, const Matrix& pulls) {
   std::vector<Screw> slopes(limb.chain.frames(), Screw::Zero());
   Index k = state.passive.cols();
@@ -76,13 +78,13 @@ Loops::Loops(const Assembly& assembly, const Nominal& pose, std::size_t idle)
 
 Vector Loops::taken_away(const Vector& mismatch) const { return weighed_ * (weighed_.transpose() * mismatch); }
 
-/// d ln det N = trace(N^-1 dN) = 2 trace(N^-1 B^T W dB), of which the columns of joints have parts.
+/// Uses d ln det N = trace(N^-1 dN) = 2 trace(N^-1 B^T W dB). The column of each joint contributes one term.
 std::vector<std::vector<Screw>> Loops::determinant_slopes() const {
   const std::size_t limbs = pose_->limbs.size();
   const std::vector<Index> first = first_passive(pose_->limbs);
   const Matrix pull = -2.0 * weighed_ * motions_.topRows(first.back()).transpose();  // [6 limbs x passive joints]
   std::vector<std::vector<Screw>> slopes;
-  Vector by_motion = Vector::Zero(motions_.rows());  // what each entry of x changes
+  Vector by_motion = Vector::Zero(motions_.rows());  // slope of ln det N by each unknown in x
   for (std::size_t e = 0; e < limbs; ++e) {
     const Limb& limb = assembly_->limbs[e];
     const LimbState& state = pose_->limbs[e];
@@ -97,7 +99,7 @@ std::vector<std::vector<Screw>> Loops::determinant_slopes() const {
     }
     if (limb.from != kBase) by_motion.segment<6>(first.back() + 6 * index(limb.from - 1)) += slopes[e][0];
   }
-  // Errors move ends by G, to which x = N^-1 B^T W G gives way.
+  // Errors move the limbs' ends by the twists G. Bodies and joints follow by x = N^-1 B^T W G.
   const Vector given_way = weighed_ * (motions_.transpose() * by_motion);
   for (std::size_t e = 0; e < limbs; ++e) {
     for (Screw& slope : slopes[e]) slope += root_.transpose() * given_way.segment<6>(6 * index(e));
@@ -115,7 +117,7 @@ Matrix bend(const Assembly& assembly, std::span<const LimbState> limbs, std::spa
     for (std::size_t n = 0; n < of_limb.size(); ++n) {
       const Mover& l = of_limb[n];
       const bool ends = l.what == Mover::What::to;
-      // -(d xi + B) along l, by the inverse Jacobians of the logarithm.
+      // -(d xi + B) along the motion l, by the inverse Jacobians of the logarithm
       const Screw once = lie::bracket(r[e], l.twist);
       const Screw beyond = W * Screw(0.5 * once + (ends ? 1.0 : -1.0) / 12.0 * lie::bracket(r[e], once));
       for (std::size_t m = 0; m < of_limb.size(); ++m) {

@@ -7,37 +7,40 @@
 
 namespace poesy::assembly {
 
-/// The loops of a perfect assembly at a pose, weighed by the platform's points: B of B x = V_b - V_a - J dq
-/// (motion_columns) and N = B^T W B, without the motions of passive joints that are idle there.
+/// The loops of a perfect assembly at a pose, weighed by the metric W of the platform's points. A vector x has the
+/// twists V of the bodies and the displacements dq of the passive joints. B x = V_b - V_a - J dq is the change of the
+/// mismatch of each limb from body a to body b, with the columns J of its passive joints (motion_columns()). N is B^T W
+/// B, without the idle motions of passive joints.
 class Loops {
  public:
-  /// The assembly and the pose must outlive it. idle: freedoms of passive joints that move no body.
+  /// The assembly and the pose must outlive this object. idle: number of freedoms of passive joints that move no body.
   Loops(const Assembly& assembly, const Nominal& pose, std::size_t idle);
 
-  /// Whether N is not singular. All that follows is only for loops that are regular.
+  /// Returns true if N is regular. All functions below require that it is.
   bool is_regular() const { return is_regular_; }
 
-  /// The motions x that count, [x x motions], such that B times each of them has length 1 by W.
+  /// [entries of x, motions] The motions x that are not idle. B x has length 1 in the metric W for each of them.
   const Eigen::MatrixXd& motions() const { return motions_; }
 
-  /// The part of a mismatch W^(1/2) xi [6 limbs] that bodies and joints could take away.
+  /// The part of a mismatch that motions of bodies and joints could remove. The mismatch xi of each limb is multiplied
+  /// by W^(1/2): [6 limbs].
   Eigen::VectorXd taken_away(const Eigen::VectorXd& mismatch) const;
 
-  /// By how much a unit of each error changes ln det N to first order, while bodies and joints give way: the slopes
-  /// times error_twist(). [limbs][n + 1], of each limb's frames.
+  /// [limbs][n + 1] The slopes of ln det N by the errors of each limb's frames. The product of a slope with
+  /// error_twist() is the first-order change per unit of an error, if bodies and joints follow the error.
   std::vector<std::vector<Screw>> determinant_slopes() const;
 
  private:
   const Assembly* assembly_;
   const Nominal* pose_;
-  Matrix6 root_;             ///< W^(1/2)
-  Eigen::MatrixXd motions_;  ///< see motions()
-  Eigen::MatrixXd weighed_;  ///< W^(1/2) B motions, [6 limbs x motions], orthonormal
+  Matrix6 root_;             ///< root W^(1/2) of the metric
+  Eigen::MatrixXd motions_;  ///< non-idle motions, see motions()
+  Eigen::MatrixXd weighed_;  ///< [6 limbs x motions] W^(1/2) B motions, with orthonormal columns
   bool is_regular_;
 };
 
-/// C(r): what mismatches r [limbs] by the metric W add to N = B^T W B in the derivative of B^T W xi, symmetric, with
-/// limbs and bodies where these states are.
+/// The symmetric matrix C(r) for limbs in these states, with mismatches r [limbs]. The derivative of B^T W xi (see
+/// Loops; xi: mismatch) is N + C(r).
 Eigen::MatrixXd bend(const Assembly& assembly, std::span<const LimbState> limbs, std::span<const Screw> r,
                      const Matrix6& W);
 

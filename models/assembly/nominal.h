@@ -7,33 +7,36 @@
 
 namespace poesy::assembly {
 
-/// A perfect assembly at a pose, rigid and without load: what compliance and loads belong to.
+/// A perfect assembly at a pose, rigid and without load. Compliances and loads are evaluated in this state.
 struct Nominal {
-  std::vector<double> displacements;  ///< [joints], limb by limb (rad, m)
+  std::vector<double> displacements;  ///< [joints] displacements, limb by limb (rad, m)
   std::vector<Transform> bodies;      ///< [bodies] base_T_body
-  std::vector<LimbState> limbs;       ///< [limbs]
-  std::vector<Matrix6> compliance;    ///< [limbs] C
-  std::vector<Screw> load;            ///< [bodies] wrench from outside; the base's is 0
-  std::vector<Screw> mismatch;        ///< [limbs] xi; 0 but where numbers are rounded
-  Matrix6 W;                          ///< metric of the platform's points
+  std::vector<LimbState> limbs;       ///< [limbs] states of the limbs
+  std::vector<Matrix6> compliance;    ///< [limbs] compliance C of each limb
+  std::vector<Screw> load;            ///< [bodies] wrench of the load; the base's is 0
+  std::vector<Screw> mismatch;  ///< [limbs] mismatch between the end of each limb and its body; 0 unless the file's
+                                ///< numbers are rounded
+  Matrix6 W;                    ///< metric of the platform's points
 };
 
-/// At these displacements [joints], which close the loops. By the metric of the platform C is W^-1, of which limbs in a
-/// row, through bodies other than the platform that only two limbs touch, take equal shares, and there is no load.
+/// The assembly for displacements [joints] (rad, m) that close the loops. With Metric::platform the compliances C are
+/// W^-1, with the metric W of the platform's points, and there is no load; limbs in a row then have equal shares of C
+/// (limbs_in_a_row()).
 Nominal nominal(const Assembly& assembly, std::span<const double> displacements);
 
-/// How many limbs are in a row with each, itself included, through bodies other than the platform that only two touch.
+/// [limbs] The number of limbs in a row with each limb, including itself. Limbs are in a row if they are connected
+/// through bodies that only two limbs touch. The platform does not count as such a body.
 std::vector<std::size_t> limbs_in_a_row(const Assembly& assembly);
 
-/// Of each limb the rank of its passive joints' columns, [limbs]: lengths in units of the reach about the platform's
-/// origin, singular values below the threshold times the largest count as 0.
+/// [limbs] The rank of the passive columns of each limb, about the platform's origin and with lengths in units of the
+/// reach. Singular values below the threshold times the largest count as 0.
 std::vector<std::size_t> passive_ranks(const Assembly& assembly, const Nominal& pose, double threshold);
 
-/// Twists about the origin of a frame and along its axes, with lengths in this unit (m): to those from twists in the
-/// base frame in m. frame: base_T_frame.
+/// [6 x 6] The matrix that converts twists from the base frame, with lengths in m, to the origin and axes of `frame`
+/// (base_T_frame), with lengths in units of `length` (m).
 Matrix6 twists_in_units(const Transform& frame, double length);
 
-/// base_T_frame of the frame in which a metric of points is diagonal: in their middle.
+/// The frame (base_T_frame) in which the metric W of points is diagonal. Its origin is the centroid of the points.
 Transform frame_of_metric(const Matrix6& W);
 
 }  // namespace poesy::assembly

@@ -7,11 +7,12 @@
 
 namespace poesy::assembly {
 
-/// chain::separation() of an assembly: what the drive of an error's limb takes away, and what the best correction of
-/// all drives leaves of its effect on the platform. NaN where the equations have no unique solution.
+/// The separation of errors as in chain::separation(): the part of an error's effect on the platform that the drives of
+/// its limb can remove, and what remains after the best correction of all drives. NaN if the equations have no unique
+/// solution.
 Separation separation(const AssemblyModel& model, std::span<const double> pose);
 
-/// What length it speaks of.
+/// The description of separation() for this model.
 SeparationDescription separation_description(const AssemblyModel& model);
 
 }  // namespace poesy::assembly

@@ -7,8 +7,9 @@
 
 namespace poesy::assembly {
 
-/// Puts a sketch whose joints and bodies are named at these nominal displacements [all joints] (rad, m), as
-/// chain::place() does. An error has one motion, that of the platform in equilibrium.
+/// Completes a sketch whose joints and bodies are named, at nominal displacements [all joints] (rad, m), as
+/// chain::place() does. An error has the motions of all limbs' ends if limbs are paired. Otherwise it has one motion,
+/// that of the platform in equilibrium.
 void place(Sketch& sketch, const AssemblyModel& model, std::span<const double> displacements);
 
 }  // namespace poesy::assembly

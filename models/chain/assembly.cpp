@@ -13,10 +13,10 @@ namespace poesy::chain {
 namespace {
 
 /// A step shorter than this counts as rest. The length of a step is the largest distance by which one joint alone moves
-/// the platform's points, divided by the reach; without a metric, the largest component in rad and m.
+/// the platform's points, divided by the reach. Without a metric, the length is the largest component in rad and m.
 constexpr double kRest = 1e-9;
 
-/// Sum of |delta_mu|_W^2 over the pairs.
+/// The sum of |delta_mu|_W^2 over all pairs of limbs.
 double sum_of_squares(std::span<const double> delta_mu, const lie::Matrix6<double>& W) {
   double sum = 0.0;
   for (std::size_t n = 0; n < delta_mu.size(); n += 6) {
@@ -26,7 +26,8 @@ double sum_of_squares(std::span<const double> delta_mu, const lie::Matrix6<doubl
   return sum;
 }
 
-/// Whether the first matrix is positive definite after both are scaled by the diagonal of the second argument.
+/// Returns true if a matrix is positive definite, after its rows and columns are divided by the square roots of
+/// `diagonal`.
 bool is_positive(Eigen::MatrixXd matrix, const Eigen::VectorXd& diagonal) {
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
   matrix = scale.asDiagonal() * matrix * scale.asDiagonal();
@@ -35,13 +36,13 @@ bool is_positive(Eigen::MatrixXd matrix, const Eigen::VectorXd& diagonal) {
 
 }  // namespace
 
-/// The descent of the passive joints to the least mismatch of a machine; see linalg::comes_to_rest().
+/// The descent of the passive joints to the least mismatch of a machine, for linalg::comes_to_rest().
 class Assembly::Descent {
  public:
   explicit Descent(Assembly& assembly)
       : assembly_(&assembly), delta_mu_(assembly.delta_mu_.size()), tried_delta_mu_(delta_mu_.size()) {}
 
-  /// Starts from nominal displacements, for these fixed frames.
+  /// Starts at nominal displacements, for limbs with these fixed frames.
   void begin(std::span<const lie::Transform<double>> frames) {
     Assembly& of = *assembly_;
     frames_ = frames;
@@ -110,7 +111,7 @@ void Assembly::prepare(std::span<const double> displacements, const Metric* metr
   is_asked_ = false;
 }
 
-/// Whether the perfect mechanism is regular (not singular). If so, this sets first_order_ and slopes_.
+/// Returns true if the perfect mechanism is not singular. If so, sets first_order_ and slopes_.
 bool Assembly::is_regular() {
   if (is_asked_) return !is_singular_;
   is_asked_ = true;
@@ -129,7 +130,7 @@ bool Assembly::is_impossible(std::span<const lie::Transform<double>> frames) {
   return linalg::comes_to_rest(*descent_, kRest) && is_open(frames, descent_->displacements());
 }
 
-/// Whether the loops are open where the joints rest.
+/// Returns true if the loops cannot close near these displacements of the joints, at which the mismatch is least.
 bool Assembly::is_open(std::span<const lie::Transform<double>> frames, std::span<const double> displacements) {
   loops_.evaluate(frames, displacements, delta_mu_);
   first_order_.taken_away(delta_mu_, part_);
@@ -138,7 +139,7 @@ bool Assembly::is_open(std::span<const lie::Transform<double>> frames, std::span
   return !is_positive(N - 2.0 * bend(part_), N.diagonal());
 }
 
-/// The symmetric part of C.
+/// The symmetric part of the matrix C for a residual delta_mu (see the class's comment).
 Eigen::MatrixXd Assembly::bend(std::span<const double> delta_mu) {
   using Screw = lie::Screw<double>;
   const std::span<const Screw> columns = loops_.columns();

@@ -8,11 +8,11 @@ namespace poesy::chain {
 /// The kernels of one instruction set.
 struct Kernels {
   KernelSolve solve;                 ///< solves a block of samples
-  KernelMapBlock map;                ///< maps a block to first order
-  KernelMovePlatform move_platform;  ///< finds the platform's motion in a block
+  KernelMapBlock map;                ///< maps a block of samples to first order
+  KernelMovePlatform move_platform;  ///< finds the motion of the platform for a block of samples
 };
 
-/// The kernels of one instruction set. Each set has its own translation unit: block_kernels.cpp, compiled for that set;
+/// The kernels of one instruction set. Each set has its own translation unit, block_kernels.cpp compiled for that set;
 /// see simd::for_selected_isa().
 template <simd::Isa isa>
 Kernels kernels();

@@ -6,12 +6,12 @@
 
 namespace poesy::chain {
 
-/// A solve by DeformationSolver: published Gauss-Newton from nominal displacements, whatever the options' method. pose:
-/// reachable; errors: [F], SI.
+/// The trace of a solve by DeformationSolver: the published Gauss-Newton method from nominal displacements, whatever
+/// method the options name. pose: reachable, SI. errors: [F], SI.
 SolveTrace deformation_trace(const DeformationModel& model, std::span<const double> pose,
                              std::span<const double> errors, const SolverOptions& options);
 
-/// The first-order closed form, which does not iterate. pose: reachable; errors: [F], SI.
+/// The trace of a first-order evaluation in closed form, which does not iterate. pose: reachable, SI. errors: [F], SI.
 SolveTrace first_order_trace(const DeformationModel& model, std::span<const double> pose,
                              std::span<const double> errors);
 

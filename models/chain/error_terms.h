@@ -7,27 +7,31 @@
 
 namespace poesy::chain {
 
-/// The way of a joint by which an error grows.
+/// The displacement of a joint to which an error is proportional, such as the error of a slide that grows with its
+/// travel.
 struct JointWay {
   std::size_t joint;  ///< position among the joints of all limbs
-  double from;        ///< displacement of this joint where the error is zero (rad, m)
+  double from;        ///< displacement of the joint at which the error is zero (rad, m)
 };
 
-/// What an error adds to an entry of a fixed frame's error: entry += at() x error.
+/// The contribution of an error to a component of a fixed frame's error: component += at(displacements) x error.
 struct ErrorTerm {
-  std::size_t limb;                    ///< counts from 0
-  std::size_t frame;                   ///< 0 .. joints of the limb
-  std::size_t component;               ///< position in [omega; v]: 0-2 angular, 3-5 linear
-  double scale = 1.0;                  ///< rad or m per unit of the error, and of the way if there is one
-  std::optional<JointWay> along = {};  ///< none: the same at all poses
+  std::size_t limb;       ///< position of the limb
+  std::size_t frame;      ///< position of the frame in the limb, from 0 to the number of its joints
+  std::size_t component;  ///< position in [omega; v]: 0-2 angular, 3-5 linear
+  /// Factor in rad or m per unit of the error; if the error grows with a displacement, also per unit of that
+  /// displacement.
+  double scale = 1.0;
+  /// Joint displacement to which the error is proportional; none if the error is the same at all poses.
+  std::optional<JointWay> along = {};
 
-  /// The factor of the error where the perfect mechanism's joints [all joints] are so displaced (rad, m).
+  /// The factor of the error for displacements [all joints] (rad, m) of the perfect mechanism's joints.
   double at(std::span<const double> displacements) const {
     return along ? scale * (displacements[along->joint] - along->from) : scale;
   }
 };
 
-/// All terms of an error, at least one. The first one says to which limb and frame the error belongs.
+/// All terms of an error, at least one. The first term says to which limb and frame the error belongs.
 using ErrorTerms = std::vector<ErrorTerm>;
 
 }  // namespace poesy::chain

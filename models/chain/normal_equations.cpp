@@ -83,7 +83,7 @@ void NormalEquations::assemble_matrix(std::span<const lie::Screw<double>> column
 void NormalEquations::hold_idle(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W) {
   idle_.clear();
   if (idle_freedoms_ == 0) return;
-  // The Jacobian of the loops, each limb minus the first; lengths in units of the reach.
+  // The Jacobian of the loops: each limb minus the first one, with lengths in units of the reach.
   const auto size = static_cast<Eigen::Index>(size_);
   Eigen::MatrixXd loops = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(limbs_ - 1), size);
   for (Eigen::Index column = 0; column < size; ++column) {
@@ -115,7 +115,7 @@ void NormalEquations::assemble_right_side(std::span<const double> delta_mu) {
   for (std::size_t row = 0; row < size_; ++row) solution_[row] = weighted_[row].dot(pull_[limb_of_[row]]);
 }
 
-// L D L^T without pivoting, row by row: the matrix is positive semidefinite by construction.
+// Factorises the matrix as L D L^T without pivoting, row by row. The matrix is positive semidefinite by construction.
 bool NormalEquations::factor() {
   const double smallest_ratio = 4.0 * static_cast<double>(size_) * std::numeric_limits<double>::epsilon();
   for (std::size_t row = 0; row < size_; ++row) {
@@ -124,7 +124,7 @@ bool NormalEquations::factor() {
       const double* b = matrix_.data() + column * size_;
       double sum = a[column];
       for (std::size_t k = 0; k < column; ++k) sum -= a[k] * b[k];
-      a[column] = sum;  // L D so far; divided by D below
+      a[column] = sum;  // this is L D; below it is divided by D
     }
     const double diagonal = a[row];
     double pivot = diagonal;

@@ -12,19 +12,20 @@ namespace poesy::chain {
 
 /// The reported points of the platform, in the base frame at a nominal pose; see KernelPlatform.
 struct PlatformPoints {
-  lie::Transform<double> platform;                ///< base_T_platform
-  std::optional<lie::Vector3<double>> tool = {};  ///< second point (m); none: only the origin
+  lie::Transform<double> platform;  ///< pose base_T_platform
+  /// Tool point, the second reported point (m); none if only the origin is reported.
+  std::optional<lie::Vector3<double>> tool = {};
 
-  /// Number of reported responses.
+  /// The number of reported responses.
   std::size_t rows() const { return platform_rows(tool.has_value()); }
 };
 
-/// The mean of the limbs' motions xi_i = log(g_i g_nominal^-1), in the base frame. frames [chain.frames()]: with
-/// errors; displacements [chain.joints()] (rad, m).
+/// The mean over the limbs of their motions xi_i = log(g_i g_nominal^-1), in the base frame. frames: [chain.frames()],
+/// with errors. displacements: [chain.joints()] (rad, m).
 lie::Screw<double> mean_motion(const ParallelChain& chain, std::span<const lie::Transform<double>> frames,
                                std::span<const double> displacements, const lie::Transform<double>& nominal);
 
-/// The displacements of the points by D = exp(xi), or by 1 + xi to first order, [points.rows()]; see platform_rows().
+/// The displacements [points.rows()] of the points by D = exp(xi), or by 1 + xi to first order; see platform_rows().
 /// Plain double arithmetic: the reference for the kernels.
 std::vector<double> platform_displacement(const lie::Screw<double>& xi, const PlatformPoints& points, bool is_linear);
 

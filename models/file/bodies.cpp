@@ -22,11 +22,11 @@ std::string copies_text(const Copies& copies) {
   return std::to_string(copies.count) + " about " + std::string(kAxes[copies.about]);
 }
 
-/// The copy of a body to which a copy of a limb belongs.
+/// The number of the body's copy to which copy number `copy` of a limb refers.
 std::size_t same_copy(const LimbLines& limb, const BodyLines& body, const Reference& reference, std::size_t copy) {
   if (limb.copies == body.copies) return copy;
   const std::string one = "name one of them, \"" + name_of(body, 0) + "\"";
-  if (limb.joints.empty()) {  // called for a load instead of a limb
+  if (limb.joints.empty()) {  // the reference is to the body of a load, for which the argument `limb` has no joints
     throw InputError(reference.place,
                      reference.key + " '" + reference.name + "' has copies, " + copies_text(body.copies), one);
   }
@@ -38,7 +38,7 @@ std::size_t same_copy(const LimbLines& limb, const BodyLines& body, const Refere
       alone ? one : "copy k of the limb goes with copy k of the body, so give both the same copies, or " + one);
 }
 
-/// The place of a body's table in the file; for base and platform that of [platform].
+/// The place of a body's table in the file; for base and platform the place of [platform].
 Place place_of(const MechanismFile& file, std::size_t body) {
   std::size_t first = kPlatform + 1;
   for (const BodyLines& lines : file.bodies) {

@@ -5,19 +5,20 @@
 
 #include "models/file/numbers.h"
 
-/// The bodies of a mechanism file, and the bodies that limbs name.
+/// The bodies of a mechanism file, and the bodies to which limbs refer.
 namespace poesy::file {
 
-/// Base, platform and the other bodies with their copies, at home. Throws InputError if two have the same name.
+/// The base, the platform and the other bodies with their copies, at home. platform: base_T_platform at home. Throws
+/// InputError if two bodies have the same name.
 std::vector<assembly::Body> bodies_of(const Numbers& numbers, const Transform& platform);
 
-/// The position of the body that a limb names, for the limb's k-th copy; `usual` if it names none. Throws InputError if
-/// no body has that name, or if the copies of limb and body do not match.
+/// The position of the body to which a limb's copy `copy` refers; `usual` if the limb names no body. Throws InputError
+/// if no body has that name, or if the copies of limb and body do not match.
 std::size_t body_of(const MechanismFile& file, const LimbLines& limb, const std::optional<Reference>& reference,
                     std::size_t usual, std::size_t copy);
 
-/// Throws InputError unless limbs from the base lead to every body, no limb ends at the base or where it begins, and
-/// all labels differ.
+/// Checks how limbs connect the bodies. Throws InputError if limbs from the base do not lead to every body, if two
+/// labels are equal, or if a limb ends at the base or at the body at which it begins.
 void check_branches(const MechanismFile& file, const Mechanism& made);
 
 }  // namespace poesy::file

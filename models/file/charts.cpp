@@ -11,14 +11,14 @@
 namespace poesy::file {
 namespace {
 
-/// Displacements count as equal if they differ by less (rad or shares of the reach). Tracking leaves a millionth of
-/// this.
+/// Displacements count as equal if they differ by less than this (rad, or shares of the reach). Tracking is accurate to
+/// a millionth of this.
 constexpr double kSame = 1e-6;
-/// The same tolerance for rounded numbers, in units of Precision::closed: the split of the mismatch depends on which
-/// joints are given.
+/// The tolerance kSame for a mechanism with rounded numbers, in units of Precision::closed. It is larger, because with
+/// rounded numbers limbs share a mismatch, and the shares depend on which joints are given.
 constexpr double kSameOfRounded = 100.0;
 
-/// The same mechanism with another frame of its platform.
+/// The mechanism whose platform has another frame.
 Mechanism with_platform_at(Mechanism mechanism, const Transform& platform_T_new) {
   mechanism.platform = mechanism.platform * platform_T_new;
   mechanism.bodies[kPlatform].home = mechanism.platform;
@@ -58,7 +58,7 @@ Chart actuators_chart(const Mechanism& mechanism) {
   return {std::move(description), mechanism, mechanism, Given::drives, Transform()};
 }
 
-/// Whether the chart's new names differ from those of the mechanism's coordinates.
+/// Returns true if the chart's names differ from those of other coordinates of the mechanism.
 bool names_are_new(const Chart& chart, const Mechanism& mechanism) {
   return std::ranges::none_of(chart.description().coordinates, [&](const PoseCoordinate& own) {
     const auto other = std::ranges::find(mechanism.coordinates, own.name, &Coordinate::name);

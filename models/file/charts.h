@@ -6,22 +6,23 @@
 #include "engine/model/model.h"
 #include "models/file/tracking.h"
 
-/// Alternative coordinates for the poses of a mechanism of a file.
+/// Charts: alternative coordinates for the poses of a mechanism of a file.
 namespace poesy::file {
 
-/// Coordinates that determine the pose like the mechanism's own, and the path to a pose from home.
+/// Coordinates that determine the pose as the mechanism's own coordinates do, and the path from home to a pose.
 class Chart {
  public:
-  /// tracked: the same mechanism, perhaps with another frame of its platform, whose pose in this frame is given as
-  /// tracked_T_platform.
+  /// tracked: the mechanism, perhaps with another frame of its platform. tracked_T_platform: pose of the mechanism's
+  /// platform in that frame.
   Chart(PoseChart description, const Mechanism& mechanism, const Mechanism& tracked, Given given,
         const Transform& tracked_T_platform);
 
-  const PoseChart& description() const { return description_; }  ///< Names, dimensions and descriptions.
+  /// The names, dimensions and descriptions of the coordinates.
+  const PoseChart& description() const { return description_; }
 
-  /// Tracks the straight path in these coordinates [those of the description], SI. All other computations follow the
-  /// straight path in the mechanism's own coordinates, so a pose is also unreachable if that path leads to another
-  /// working mode.
+  /// Tracks the straight path from home in these coordinates, which are those of the description, SI. All other
+  /// computations follow the straight path in the mechanism's own coordinates. So a pose is also unreachable if that
+  /// other path leads to another working mode.
   Tracked track(std::span<const double> coordinates) const;
 
  private:
@@ -34,13 +35,13 @@ class Chart {
   Transform tracked_T_platform_;
 };
 
-/// The coordinates [mechanism.coordinates] of a pose, SI.
+/// [mechanism.coordinates] The coordinates of a pose, SI.
 std::vector<double> coordinates_of(const Mechanism& mechanism, const PlatformPose& pose);
 
-/// The charts that any geometry offers. "tip", if the mechanism has a tool and a length among its coordinates: its
-/// coordinates with the tool's position instead of P's. "actuators", if it has as many drives as coordinates: the
-/// drives' displacements from home. A chart is left out if one of its names belongs to another coordinate of the
-/// mechanism.
+/// The charts that any geometry offers. "tip" exists if the mechanism has a tool and a length among its coordinates. It
+/// has the position of the tool in place of the position of the platform's origin P. "actuators" exists if the
+/// mechanism has as many drives as coordinates. It has the displacements of the drives from home. A chart is omitted if
+/// one of its names belongs to another coordinate of the mechanism.
 std::vector<Chart> charts_of(const Mechanism& mechanism);
 
 }  // namespace poesy::file

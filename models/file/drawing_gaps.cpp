@@ -21,23 +21,23 @@ namespace {
 using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 
-/// Orthonormal vectors are dependent if a singular value is below this.
+/// Orthonormal vectors count as dependent if a singular value is below this.
 constexpr double kDependent = 1e-6;
 
-/// An orthonormal basis of the x with A x = 0. Singular values up to `nothing` count as 0.
+/// An orthonormal basis of all x with A x = 0. Singular values up to `nothing` count as 0.
 Matrix null_space(const Matrix& A, double nothing = kDependent) {
   if (A.rows() == 0 || A.cols() == 0) return Matrix::Identity(A.cols(), A.cols());
   const linalg::SingularValueDecomposition svd = linalg::right_singular_vectors(A);
   return svd.V.rightCols(A.cols() - (svd.values.array() > nothing).count());
 }
 
-/// An orthonormal basis of what is perpendicular to the columns of A.
+/// An orthonormal basis of the space perpendicular to the columns of A.
 Matrix complement(const Matrix& A) { return null_space(A.transpose()); }
 
-/// A limb at a pose, with lengths in units of the reach.
+/// The geometry of a limb at a pose, with lengths in units of the reach.
 struct PlacedLimb {
-  std::vector<Transform> parts;  ///< [joints + 1] base_T_part of each frame's part
-  Matrix passive;                ///< [6 x passive joints] twists at the base's origin
+  std::vector<Transform> parts;  ///< [joints + 1] base_T_part of the part of each frame
+  Matrix passive;                ///< [6 x passive joints] twists of the passive joints at the base's origin
 };
 
 PlacedLimb placed(const Limb& limb, std::span<const double> displacements, const Transform& from) {
@@ -61,7 +61,7 @@ PlacedLimb placed(const Limb& limb, std::span<const double> displacements, const
   return made;
 }
 
-/// All limbs at these displacements [moving].
+/// All limbs for displacements [moving].
 std::vector<PlacedLimb> placed(const Mechanism& unit, std::span<const double> displacements) {
   std::vector<std::span<const double>> of_limb;
   for (const Limb& limb : unit.limbs) {
@@ -81,8 +81,8 @@ std::vector<PlacedLimb> placed(const Mechanism& unit, std::span<const double> di
   return list;
 }
 
-/// What a twist of each limb's end does while the drives are held, to first order: it moves bodies, or remains as a
-/// gap. [limbs] each [rows x 6].
+/// [limbs] The first-order effects [rows x 6] of a twist of each limb's end while the drives are held. The effects are
+/// motions of bodies, and the gap that remains in the loops.
 std::vector<Matrix> effects_of_ends(const Mechanism& unit, const std::vector<PlacedLimb>& limbs) {
   const auto rows = 6 * static_cast<Index>(limbs.size());
   Index passive = 0;
@@ -114,8 +114,8 @@ std::vector<Matrix> effects_of_ends(const Mechanism& unit, const std::vector<Pla
   return effects;
 }
 
-/// What unit errors of each part do, [limbs][joints + 1]: a triangle R with the length |R e| of all effects of an error
-/// e = [omega; v] of the part over the poses.
+/// [limbs][joints + 1] The effects of each part's errors. Each matrix is an upper triangle R, for which |R e| is the
+/// length of all effects over the poses of an error e = [omega; v] of the part.
 using PartEffects = std::vector<std::vector<Matrix>>;
 
 void add_pose(const Mechanism& unit, std::span<const double> displacements, PartEffects& effects) {
@@ -142,7 +142,7 @@ PartEffects part_effects(const Mechanism& mechanism) {
   return effects;
 }
 
-/// Whether a zone or the file states each error.
+/// [F] True for each error that a zone or the file states.
 std::vector<bool> stated_errors(const Mechanism& mechanism) {
   std::vector<bool> is_stated(mechanism.factors.size(), true);
   const auto remove = [&](const std::vector<FactorIndex>& errors) {
@@ -155,7 +155,7 @@ std::vector<bool> stated_errors(const Mechanism& mechanism) {
   return is_stated;
 }
 
-/// The stated errors of a part as columns of length 1, with lengths in units of the reach.
+/// The stated errors of a part, as columns of length 1 with lengths in units of the reach.
 Matrix stated_columns(const Mechanism& mechanism, const std::vector<bool>& is_stated, std::size_t limb,
                       std::size_t frame) {
   Matrix columns(6, 0);
@@ -175,18 +175,18 @@ Matrix stated_columns(const Mechanism& mechanism, const std::vector<bool>& is_st
 
 /// Directions in the axes of a part, as orthonormal columns.
 struct Directions {
-  Matrix displacements;  ///< [3 x d]
-  Matrix turns;          ///< [3 x t] where displacements do not count
+  Matrix displacements;  ///< [3 x d] directions of displacement
+  Matrix turns;          ///< [3 x t] axes of rotation, whatever displacement accompanies it
 };
 
-/// The directions that these columns [6 x k] do not span, whatever the point about which they turn.
+/// The directions that the twists [6 x k] of a part do not span, whatever the point about which they rotate.
 Directions not_spanned(const Matrix& columns) {
   const Matrix spanned = complement(complement(columns));
   const Matrix turns = spanned.topRows(3);
   return {complement(spanned.bottomRows(3) * null_space(turns)), complement(turns)};
 }
 
-/// "x, y and z".
+/// A list of words as text: "x, y and z".
 std::string listed(const std::vector<std::string>& words) {
   std::string text;
   for (std::size_t k = 0; k < words.size(); ++k) {
@@ -196,7 +196,7 @@ std::string listed(const std::vector<std::string>& words) {
   return text;
 }
 
-/// Orthonormal directions in words: "x and y", "(0.6, 0.8, 0)", "all that is perpendicular to (0.6, 0.8, 0)".
+/// Orthonormal directions as text: "x and y", "(0.6, 0.8, 0)", "all that is perpendicular to (0.6, 0.8, 0)".
 std::string direction_words(const Matrix& directions) {
   std::vector<std::string> words;
   Matrix oblique = directions * directions.transpose();
@@ -220,7 +220,8 @@ std::string direction_words(const Matrix& directions) {
   return listed(words);
 }
 
-/// "displacement along x and turn about z have no tolerance"; empty if there are none.
+/// A clause for directions without a tolerance: "displacement along x and turn about z have no tolerance"; empty if
+/// there are none.
 std::string clause(const Directions& left) {
   std::vector<std::string> words;
   if (left.displacements.cols() > 0) words.push_back("displacement along " + direction_words(left.displacements));
@@ -234,7 +235,7 @@ std::string body_words(const Mechanism& mechanism, std::size_t body) {
   return body == kPlatform ? "the platform" : "body '" + mechanism.bodies[body].name + "'";
 }
 
-/// The part that a frame's errors belong to; empty if the joint there has no such part.
+/// The name of the part to which a frame's errors belong; empty if the joint there has no such part.
 std::string part_words(const Mechanism& mechanism, const Limb& limb, std::size_t frame) {
   const std::size_t joints = limb.joints.size();
   if (frame > 0 && frame < joints && limb.joints[frame - 1].name == limb.joints[frame].name) {
@@ -244,7 +245,7 @@ std::string part_words(const Mechanism& mechanism, const Limb& limb, std::size_t
                      frame == joints ? body_words(mechanism, limb.to) : limb.joints[frame].name);
 }
 
-/// "limb 1", "limbs 1 and 3", "limbs 1 to 3".
+/// Limbs as text: "limb 1", "limbs 1 and 3", "limbs 1 to 3".
 std::string limbs_words(const Mechanism& mechanism, const std::vector<std::size_t>& limbs) {
   std::vector<std::string> labels;
   for (const std::size_t limb : limbs) labels.push_back(mechanism.limbs[limb].label);
@@ -254,7 +255,7 @@ std::string limbs_words(const Mechanism& mechanism, const std::vector<std::size_
   return "limbs " + listed(labels);
 }
 
-/// What limbs say alike.
+/// A clause, and the limbs for which it holds.
 struct SaidByLimbs {
   std::string words;
   std::vector<std::size_t> limbs;

@@ -9,14 +9,14 @@
 #include "engine/model/model.h"
 #include "models/file/physical.h"
 
-/// Expressions of numbers, parameters of the geometry, + - * / ^ ( ), sqrt, sin, cos, tan, atan2, pi, and units after
-/// numbers: "a + 20 mm", "pi * d^4 / 64", "20 N/um". Dimensions are evaluated together with values, so that a message
-/// names the place inside the expression.
+/// Expressions in mechanism files. They consist of numbers, parameters of the geometry, + - * / ^ ( ), sqrt, sin, cos,
+/// tan, atan2, pi, and units after numbers: "a + 20 mm", "pi * d^4 / 64", "20 N/um". Dimensions are evaluated together
+/// with values, so a message names the place inside the expression.
 ///
 /// A name directly after a number is a unit: "2 g" is two grams even if a parameter is called g, and "2 * g" is twice
-/// the parameter. Hence a parameter may have the name of a unit, except of length and angle. A unit is written without
-/// blanks around / and ^, and its power belongs to it: "2 m/s^2" is an acceleration, "2 m / s^2" divides by a
-/// parameter; "5 mm^2" is five square millimetres, "(5 mm)^2" is 25. An exponent is a whole number; -a^2 is -(a^2).
+/// the parameter. So a parameter may have the name of a unit, except of a unit of length or angle. A unit is written
+/// without blanks around / and ^, and its power belongs to it: "2 m/s^2" is an acceleration, but "2 m / s^2" divides by
+/// a parameter. "5 mm^2" is five square millimetres, "(5 mm)^2" is 25. An exponent is a whole number; -a^2 is -(a^2).
 ///
 /// poesy has its own parser because muparser (Debian) computes only with doubles. A second evaluation with other units
 /// of length and angle cannot find the dimension of zero ("offset + 1 deg" with offset = 0 mm). Operators on encoded
@@ -25,41 +25,41 @@ namespace poesy::file {
 
 /// A quantity as written in a mechanism file. It has no value yet, because a study may change the geometry.
 struct Expression {
-  std::string text;     ///< "a + 20 mm"
-  std::string key;      ///< for messages: "limb[0].joints[1].at[2]"
-  Place place;          ///< of the value in the file
+  std::string text;     ///< the expression as written: "a + 20 mm"
+  std::string key;      ///< key in the file, for messages: "limb[0].joints[1].at[2]"
+  Place place;          ///< place of the value in the file
   bool quoted = false;  ///< if true, the text begins one column after the place
 };
 
 /// A value with its dimension.
 struct Value {
-  double si = 0.0;     ///< in m, rad, kg, s and their powers
-  Powers powers = {};  ///< powers of its dimension
-  bool any = false;    ///< the bare number 0, which has any dimension
+  double si = 0.0;     ///< value in m, rad, kg, s and their powers
+  Powers powers = {};  ///< its dimension
+  bool any = false;    ///< true if it is the bare number 0, which fits every dimension
 
-  /// Whether the two values may be added.
+  /// Returns true if the two values may be added, because their dimensions agree.
   bool like(const Value& other) const;
 };
 
-Value of_dimension(double si, Dimension dimension);  ///< A value in the SI unit of a dimension.
+Value of_dimension(double si, Dimension dimension);  ///< A value of this dimension, given in its SI unit.
 
-std::string dimension_text(const Value& value);  ///< The dimension of a value, for messages.
+std::string dimension_text(const Value& value);  ///< The dimension of a value as text, for messages.
 
 /// The reason, as a clause, why a parameter may not have this name: it is a unit of length or angle, a function or pi,
-/// or it is not a name at all. Empty if it may.
+/// or it is not a name at all. Empty if the name is allowed.
 std::string why_no_parameter(std::string_view name);
 
-/// The value of an expression. values: those of the parameters, in their order. Throws InputError with line and column
-/// if the text is not an expression, adds unlike values, or is not finite.
+/// The value of an expression. values: of the parameters, in their order, SI. Throws InputError with line and column if
+/// the text is not an expression, adds unlike values, or is not finite.
 Value evaluate(const Expression& expression, std::span<const GeometryParameter> parameters,
                std::span<const double> values);
 
-/// The value in SI of an expression with this dimension: a length, an angle or a number. Throws InputError also for
-/// another dimension.
+/// The SI value of an expression for a length, an angle or a number. Also throws InputError if the expression has
+/// another dimension than `wanted`.
 double evaluate(const Expression& expression, Dimension wanted, std::span<const GeometryParameter> parameters,
                 std::span<const double> values);
 
-/// The value in SI of an expression for this quantity. Throws InputError also for another dimension.
+/// The SI value of an expression for a quantity. Also throws InputError if the expression has another dimension.
 double evaluate(const Expression& expression, const Physical& wanted, std::span<const GeometryParameter> parameters,
                 std::span<const double> values);
 

@@ -13,7 +13,7 @@ namespace {
 
 char axis_of(std::size_t component) { return "xyz"[component % 3]; }
 
-/// The joint's text for descriptions: "joint S (2 of 3)".
+/// An elementary joint as text for descriptions: "joint S (2 of 3)".
 std::string joint_text(const std::vector<Joint>& joints, std::size_t j) {
   std::size_t before = 0, all = 0;
   for (std::size_t k = 0; k < joints.size(); ++k) {
@@ -25,10 +25,10 @@ std::string joint_text(const std::vector<Joint>& joints, std::size_t j) {
   return "joint " + joints[j].name + part;
 }
 
-/// The two parts that a fixed frame of a limb connects.
+/// The names of the two parts that a fixed frame of a limb connects.
 struct Parts {
-  std::string behind;  ///< "joint A"
-  std::string before;  ///< "base"
+  std::string behind;  ///< part behind the frame: "joint A"
+  std::string before;  ///< part before the frame: "base"
 
   std::string text() const { return behind + " against " + before; }
 };
@@ -55,7 +55,7 @@ std::string description(const Mechanism& mechanism, const chain::ErrorTerm& term
   return text;
 }
 
-/// The error of one entry of a fixed frame. axis: empty for a scalar.
+/// The factor for an error of one component of a fixed frame. axis: name of the component's axis; empty for a scalar.
 Factor factor(const Mechanism& mechanism, const chain::ErrorTerm& term, std::string name, std::string axis) {
   return {std::move(name),
           term.component < 3 ? Dimension::angle : Dimension::length,
@@ -65,8 +65,8 @@ Factor factor(const Mechanism& mechanism, const chain::ErrorTerm& term, std::str
           std::move(axis)};
 }
 
-/// The terms of an angle of a limb's first or last frame that turns about the point of the joint there, where the
-/// solver turns it about the origin of the body: [epsilon; c x epsilon] with c that point.
+/// The terms of an angular error of a limb's first or last frame that rotates about the point c of the joint there. The
+/// solver rotates it about the origin of the body, so the terms are [epsilon; c x epsilon].
 chain::ErrorTerms about_joint(const Mechanism& mechanism, const chain::ErrorTerm& term) {
   chain::ErrorTerms list{term};
   const Limb& limb = mechanism.limbs[term.limb];
@@ -85,7 +85,7 @@ chain::ErrorTerms about_joint(const Mechanism& mechanism, const chain::ErrorTerm
   return list;
 }
 
-/// The errors of all entries of all fixed frames.
+/// The errors of all components of all fixed frames of a mechanism.
 struct FrameErrors {
   std::vector<Factor> factors;
   std::vector<chain::ErrorTerms> terms;
@@ -108,7 +108,7 @@ FrameErrors frame_errors(const Mechanism& mechanism) {
   return all;
 }
 
-/// Positions of the factors whose names match, ascending. Throws if there are none.
+/// The positions of the factors whose names match a pattern, ascending. Throws if there are none.
 std::vector<std::size_t> fitting(const Reference& pattern, const std::vector<Factor>& factors) {
   std::vector<std::size_t> found;
   for (std::size_t f = 0; f < factors.size(); ++f) {
@@ -142,19 +142,21 @@ std::string number_suffix(const SlotLines& slot, std::size_t k) {
   return slot.numbers[k] == 0 ? "" : "_" + std::to_string(slot.numbers[k]);
 }
 
-/// How an error of a limb grows.
+/// The way in which an error of a limb grows with the displacement of a joint, if it does.
 struct Growth {
-  std::optional<chain::JointWay> way = {};  ///< none: the error is the same at all poses
-  int length = 0;                           ///< power of m of the way
-  std::string text = {};                    ///< ", grows with q, from home"
+  /// Displacement to which the error is proportional; none if the error is the same at all poses.
+  std::optional<chain::JointWay> way = {};
+  /// Power of m of the displacement: 1 if the joint slides, 0 if it rotates.
+  int length = 0;
+  std::string text = {};  ///< text for descriptions: ", grows with q, from home"
 
-  /// Lets the terms grow.
+  /// Makes these terms proportional to the displacement.
   void apply(chain::ErrorTerms& terms) const {
     for (chain::ErrorTerm& term : terms) term.along = way;
   }
 };
 
-/// Throws unless the joint of the limb has one displacement. j: position of its first element.
+/// Throws unless the joint of the limb has exactly one displacement. j: position of its first elementary joint.
 void check_has_displacement(const Reference& name, const Limb& limb, std::size_t j) {
   const Joint& joint = limb.joints[j];
   const auto fail = [&](const std::string& problem, const std::string& remedy) {
@@ -188,7 +190,8 @@ Growth growth(const ErrorLines& error, std::size_t i, const Numbers& numbers, co
   return {chain::JointWay{at, from}, slides ? 1 : 0, ", grows with " + name.name + ", from " + start};
 }
 
-/// The scale of a component of an error: a number, or what makes an error that grows a number.
+/// The scale of a component of an error, which must be a number. An error that grows is itself a number, so its scale
+/// has the dimension of the component per displacement.
 double scale_of(const Expression& scale, std::size_t component, const Growth& growth, const Numbers& numbers) {
   const int wanted = growth.way ? (component < 3 ? 0 : 1) - growth.length : 0;
   const Value value = numbers.value(scale);
@@ -205,7 +208,7 @@ double scale_of(const Expression& scale, std::size_t component, const Growth& gr
                        (turns ? "\"1 / (1 m)\", and the error is in rad/m" : "\"1 m\", and the error is in m/rad"));
 }
 
-/// Adds an error for each limb and each component of a vector.
+/// Adds an error for each limb and each component of a named vector.
 void add_vector(const ErrorLines& error, const Numbers& numbers, Mechanism& mechanism) {
   const bool vector = error.components.size() > 1;
   const SlotLines& slot = error.slot;
@@ -227,17 +230,18 @@ void add_vector(const ErrorLines& error, const Numbers& numbers, Mechanism& mech
   }
 }
 
-/// The terms of an error, and what it measures.
+/// The terms of one error, and its dimension.
 struct Combination {
   chain::ErrorTerms terms;
-  std::optional<int> length;  ///< power of m that it is; none: not known yet
-  std::string growth = {};    ///< how it grows, for its description; empty: it does not
+  std::optional<int> length;  ///< power of m of the error: 1 for a length, 0 for an angle; none while it is not known
+  std::string growth = {};    ///< text that says how the error grows; empty if it does not grow
 };
 
 std::string measure_text(int length) { return length == 1 ? "a length" : "an angle"; }
 
-/// Adds the components of one frame. A share is per unit of the error: an error that is a length has numbers for delta
-/// and 1/length for epsilon. An error that grows is a number, and a share is also per unit of the way.
+/// Adds to `made` the components of an error in one frame. Each component has a share: its change per unit of the
+/// error. If the error is a length, shares of delta are numbers and shares of epsilon are 1/length. An error that grows
+/// is a number; its shares are also per unit of the displacement to which it is proportional.
 void add_components(const std::vector<ComponentLines>& components, std::size_t limb, std::size_t frame,
                     const Growth& growing, const Numbers& numbers, const Mechanism& mechanism, Combination& made) {
   made.growth = growing.text;
@@ -298,7 +302,7 @@ std::string components_text(const std::vector<ComponentLines>& components) {
   return text;
 }
 
-/// Adds the error of several components in each limb.
+/// Adds for each limb an error that changes several components.
 void add_combinations(const ErrorLines& error, const Numbers& numbers, Mechanism& mechanism) {
   const SlotLines& slot = error.slot;
   for (std::size_t k = 0; k < slot.limbs.size(); ++k) {
@@ -313,7 +317,7 @@ void add_combinations(const ErrorLines& error, const Numbers& numbers, Mechanism
   }
 }
 
-/// Adds the one error of several places.
+/// Adds one error that acts in several places.
 void add_shared(const ErrorLines& error, const Numbers& numbers, Mechanism& mechanism) {
   Combination made;
   std::string limbs;
@@ -334,12 +338,12 @@ void add_named(const ErrorLines& error, const Numbers& numbers, Mechanism& mecha
   add_vector(error, numbers, mechanism);
 }
 
-/// Whether two limbs have the same joints in the same order.
+/// Returns true if two limbs have the same joints in the same order.
 bool are_alike(const Limb& a, const Limb& b) {
   return std::ranges::equal(a.joints, b.joints, {}, &Joint::motion, &Joint::motion);
 }
 
-/// A text that names the limbs with this error, limb = "each", and the two parts that its frame connects in them.
+/// The text that names the limbs of an error with limb = "each", and the two parts that its frame connects in them.
 EachLimb each_limb(const ErrorLines& error, const Mechanism& mechanism) {
   const SlotLines& slot = error.slot;
   EachLimb each{"error " + error.name.name + " with limb = \"each\" is", true};

@@ -5,13 +5,14 @@
 
 namespace poesy::file {
 
-/// Sets factors, terms, features, sets and each of a mechanism whose limbs are complete. Errors of frames come in the
-/// order in which the file names them, or limb by limb, frame by frame, epsilon before delta; those of features and
-/// errors with their own names follow. Throws InputError if a pattern matches no error, or if two errors have the same
-/// name.
+/// Sets the errors of a mechanism whose limbs are complete: the members factors, terms, features, sets and each. Errors
+/// of frames come first, in the order in which the file names them, or else limb by limb and frame by frame, epsilon
+/// before delta. Errors of features follow, then errors with their own names. Throws InputError if a pattern matches no
+/// error, or if two errors have the same name.
 void add_factors(const Numbers& numbers, Mechanism& mechanism);
 
-/// Adds an error. name: of its table. Throws InputError if another error has the factor's name.
+/// Adds an error to the mechanism. name: of the error's table in the file. Throws InputError if another error has the
+/// factor's name.
 void add_error(Factor factor, chain::ErrorTerms terms, const Reference& name, Mechanism& mechanism);
 
 }  // namespace poesy::file

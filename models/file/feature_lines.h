@@ -9,78 +9,82 @@
 #include "engine/schema/keys.h"
 #include "models/file/lines.h"
 
-/// Features of a limb's parts with their tolerances, as written.
+/// Features of a limb's parts with their tolerances, as written in a mechanism file.
 namespace poesy::file {
 
 /// The kind of a feature in a file.
 enum class FeatureWord { axis, plane, point, distance };
 std::string_view name(FeatureWord kind);  ///< "axis", "plane", "point" or "distance".
 
-/// The part that bears a feature of a joint.
+/// On which side of a joint is the part that bears a feature.
 enum class PartSide { before, after };
 std::string_view name(PartSide side);  ///< "before" or "after".
 
-/// The shape of a zone that a drawing does not say by a diameter.
+/// The shape of a zone that has no diameter sign on the drawing: the usual shape for its feature, or the space between
+/// two planes.
 enum class ZoneShape { usual, planes };
 std::string_view name(ZoneShape shape);  ///< "usual" or "planes".
 
 /// A tolerance of a feature, as written.
 struct ZoneLines {
-  std::string_view key;  ///< "position"
-  Expression size;       ///< width or diameter
-  std::string datums;    ///< "A|B"; empty: none
+  std::string_view key;  ///< its key in the file: "position"
+  Expression size;       ///< width or diameter of the zone
+  std::string datums;    ///< datums: "A|B"; empty if there are none
 
-  bool is_general() const { return size.text == "general"; }  ///< Whether a standard gives its size.
+  /// Returns true if the drawing's general tolerance gives the size.
+  bool is_general() const { return size.text == "general"; }
 };
 
 /// A feature, as written.
 struct FeatureLines {
-  std::string name;                      ///< unique in the limb
-  std::string key;                       ///< for messages: "limb[0].features[1]"
-  Place place;                           ///< of its table
-  FeatureWord kind = FeatureWord::axis;  ///< what it is
-  std::optional<Reference> joint;        ///< the joint to which it belongs
-  std::optional<std::size_t> axis;       ///< elementary joint of that joint, from 1; none: first or last
-  PartSide part = PartSide::before;      ///< the part that bears it
-  std::optional<Triple> at;              ///< its middle
-  std::optional<Reference> at_point;     ///< its middle, by name
-  std::optional<Expression> length;      ///< of an axis
-  std::vector<Expression> size;          ///< sides of a plane, along x and y
-  std::optional<Expression> diameter;    ///< of a round plane
-  std::optional<Triple> direction;       ///< of a distance
-  /// How long a distance is.
+  std::string name;                      ///< name, unique in the limb
+  std::string key;                       ///< key in the file, for messages: "limb[0].features[1]"
+  Place place;                           ///< place of its table
+  FeatureWord kind = FeatureWord::axis;  ///< kind of the feature
+  std::optional<Reference> joint;        ///< joint to which the feature belongs
+  /// The elementary joint of `joint` that the feature belongs to, counted from 1; none: the first or the last one.
+  std::optional<std::size_t> axis;
+  PartSide part = PartSide::before;    ///< side of the joint on which the part is
+  std::optional<Triple> at;            ///< middle of the feature
+  std::optional<Reference> at_point;   ///< middle of the feature, as a named point
+  std::optional<Expression> length;    ///< length of an axis
+  std::vector<Expression> size;        ///< sides of a rectangular plane, along x and y
+  std::optional<Expression> diameter;  ///< diameter of a round plane
+  std::optional<Triple> direction;     ///< direction of a distance
+  /// The nominal length of a distance.
   std::optional<Expression> nominal_size;
-  std::optional<Triple> z;             ///< none: the joint's axis
-  std::optional<Triple> x;             ///< none: that of the joint's frame
-  ZoneShape shape = ZoneShape::usual;  ///< of its zones
-  std::string along;                   ///< "x" or "y": across the planes of its zones
-  std::vector<ZoneLines> zones;        ///< in the order of zone_traits()
+  std::optional<Triple> z;             ///< z axis of the feature; none: the joint's axis
+  std::optional<Triple> x;             ///< x axis of the feature; none: the x axis of the joint's frame
+  ZoneShape shape = ZoneShape::usual;  ///< shape of its zones
+  std::string along;                   ///< "x" or "y": normal of the planes between which its zones are
+  std::vector<ZoneLines> zones;        ///< its zones, in the order of zone_traits()
 };
 
-/// Where the pin of a clearance is.
+/// The position of the pin in the bore of a joint with clearance: always at the boundary of the clearance, or uniformly
+/// distributed in it.
 enum class Contact { boundary, uniform };
 std::string_view name(Contact contact);  ///< "boundary" or "uniform".
 
 /// A clearance, as written.
 struct ClearanceLines {
-  FeatureLines axis;                    ///< its axis, without zones
-  std::string fit;                      ///< "8 H7/g6"; empty: the two lengths
-  Place fit_place;                      ///< of the fit
-  std::optional<Expression> least;      ///< difference of the diameters
-  std::optional<Expression> most;       ///< difference of the diameters
-  Contact contact = Contact::boundary;  ///< where the pin is
+  FeatureLines axis;                    ///< axis of the joint, a feature without zones
+  std::string fit;                      ///< fit, such as "8 H7/g6"; empty if least and most are given
+  Place fit_place;                      ///< place of the fit in the file
+  std::optional<Expression> least;      ///< smallest difference of the diameters
+  std::optional<Expression> most;       ///< largest difference of the diameters
+  Contact contact = Contact::boundary;  ///< position of the pin
 };
 
 /// Reads `clearances = [ ... ]`.
 std::vector<ClearanceLines> read_clearances(const StudyValue& value);
 
-/// Its kind: a plane is a rectangle or round.
+/// The kind of a feature. A plane is a rectangle or round.
 FeatureKind kind_of(const FeatureLines& lines);
 
 /// Reads `features = [ ... ]`.
 std::vector<FeatureLines> read_features(const StudyValue& value);
 
-/// The tables of this header with all keys, for the reference.
+/// The tables of features and clearances with all keys, for the reference.
 StudyTables feature_tables();
 
 }  // namespace poesy::file

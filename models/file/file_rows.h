@@ -9,17 +9,18 @@
 #include "engine/schema/keys.h"
 #include "models/file/lines.h"
 
-/// Rows of the tables of a mechanism file, and functions that read their values.
+/// The keys of the tables of a mechanism file (each is a row of a table of keys), with functions that read their
+/// values.
 namespace poesy::file {
 
-/// The scope of tables whose rows need only the value.
+/// The scope for tables whose keys can be read from their value alone.
 struct Nothing {};
 
-/// A row of a table with scope Nothing.
+/// A key of a table with the scope Nothing.
 template <class Object>
 using Row = Key<Object, Nothing>;
 
-/// A value for the member at this path, made by `read` from a StudyValue.
+/// The value of a key: calls `read` with the StudyValue, and stores the result in the member at `path`.
 template <class Read, class... Path>
 auto kept(std::string type, Read read, Path... path) {
   using Object = OwnerOf<Path...>;
@@ -28,13 +29,13 @@ auto kept(std::string type, Read read, Path... path) {
                           }};
 }
 
-/// A value made by `read` from a StudyValue and the present object.
+/// The value of a key: calls `read` with the StudyValue and the object.
 template <class Object>
 KeyValue<Object> read_by(std::string type, void (*read)(const StudyValue&, Object&)) {
   return {.type = std::move(type), .read = read};
 }
 
-/// A required row, for all words of the table's chooser or only for these.
+/// A key that must be given. only_for: the choices of the table's type for which the key exists; empty: all.
 template <class Object>
 Row<Object> needed(std::string_view name, KeyValue<Object> value, std::string example, std::string_view meaning,
                    std::vector<std::string_view> only_for = {}) {
@@ -44,7 +45,7 @@ Row<Object> needed(std::string_view name, KeyValue<Object> value, std::string ex
   return row;
 }
 
-/// An optional row. usual: the value if it is left out.
+/// A key that may be left out. usual: its value then. only_for: as for needed().
 template <class Object>
 Row<Object> optional(std::string_view name, KeyValue<Object> value, std::string usual, std::string_view meaning,
                      std::vector<std::string_view> only_for = {}) {
@@ -53,20 +54,20 @@ Row<Object> optional(std::string_view name, KeyValue<Object> value, std::string 
   return row;
 }
 
-/// The base's axes by their names.
+/// The names of the base's axes.
 inline constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
 
-Expression expression(const StudyValue& value);  ///< A text or a bare number.
-Triple point(const StudyValue& value);           ///< A list of three entries.
-Triple direction(const StudyValue& value);       ///< "x", "-z", or three numbers or expressions.
+Expression expression(const StudyValue& value);  ///< Reads an expression: a text or a bare number.
+Triple point(const StudyValue& value);           ///< Reads a point: a list of three entries.
+Triple direction(const StudyValue& value);       ///< Reads a direction: "x", "-z", or three numbers or expressions.
 
-Reference reference(const StudyValue& value);                ///< A name.
-std::vector<Reference> references(const StudyValue& value);  ///< A name, or a list of names.
+Reference reference(const StudyValue& value);                ///< Reads a name.
+std::vector<Reference> references(const StudyValue& value);  ///< Reads a name, or a list of names.
 
-/// Throws if a name is too long or contains letters that names must not have.
+/// Throws if a name is too long or contains a character that names must not have.
 void check_name(const Reference& reference);
 
-/// Throws if the name is already taken.
+/// Throws if check_name() does, or if an element of `taken` already has the name.
 template <class Named>
 void check_new(const Reference& reference, const std::vector<Named>& taken, std::string_view whose) {
   check_name(reference);
@@ -77,18 +78,18 @@ void check_new(const Reference& reference, const std::vector<Named>& taken, std:
                    "give it a name of its own");
 }
 
-std::string read_name(const StudyValue& value);  ///< A text that passes check_name().
+std::string read_name(const StudyValue& value);  ///< Reads a text that passes check_name().
 
-/// The keys of a table, in the order of the file, which chooses their names.
+/// The keys of a table whose names the file chooses, in the order of the file.
 std::vector<Reference> keys_in_order(const StudySection& section);
 
-/// The tables of a list `[[...]]`.
+/// The tables of a list of tables, `[[...]]`.
 std::vector<StudyValue> tables(const StudyValue& value);
 
 /// Reads `copies = { count = 3, about = "z" }`.
 Copies read_copies(const StudyValue& value);
 
-/// The keys of `copies`, for the reference.
+/// The table of the keys of `copies`, for the reference.
 StudyTable copies_table();
 
 }  // namespace poesy::file

@@ -17,14 +17,14 @@ constexpr std::string_view kLengthClasses = "fmcv";
 constexpr std::string_view kZoneClasses = "HKL";
 constexpr std::string_view kStateIt = "write the length that is meant, because nothing is assumed in silence";
 
-/// The position of the class in a text such as "ISO 2768-1:1989 m".
+/// The position in `classes` of the class that ends a text such as "ISO 2768-1:1989 m"; none if there is no such class.
 std::optional<std::size_t> class_in(std::string_view text, std::string_view standard, std::string_view classes) {
   if (text.size() != standard.size() + 1 || !text.starts_with(standard)) return std::nullopt;
   const std::size_t at = classes.find(text.back());
   return at == std::string_view::npos ? std::nullopt : std::optional(at);
 }
 
-/// Sets what is not set yet.
+/// Sets the class of one part of the standard ISO 2768; throws if it is set already.
 template <class Class>
 void set(std::optional<Class>& to, std::size_t position, const Reference& text) {
   if (to) throw InputError(text.place, text.key + " names a part of ISO 2768 twice", "keep one class of each part");
@@ -59,7 +59,7 @@ const Keys<GeneralLines, Nothing>& drawing_keys() {
   return keys;
 }
 
-/// The table of Part 2 that has this zone.
+/// The table of ISO 2768-2 for a zone; none if the standard has no such table.
 std::optional<GeneralZone> table_of(std::string_view key) {
   if (key == "perpendicularity") return GeneralZone::perpendicularity;
   if (key == "flatness") return GeneralZone::flatness;
@@ -71,7 +71,7 @@ std::optional<GeneralZone> table_of(std::string_view key) {
   throw InputError(zone.size.place, zone.size.key + " is \"general\", " + problem, remedy);
 }
 
-/// The value of a table, or why there is none.
+/// The value found in a table; throws with the reason if there is none.
 double checked(std::optional<double> found, const ZoneLines& zone, double size, std::string_view standard) {
   if (found) return *found;
   fail(zone, "but " + std::string(standard.substr(0, standard.find(':'))) + " has no value for this class at " +

@@ -7,35 +7,36 @@
 #include "engine/base/error.h"
 #include "models/file/expression.h"
 
-/// The values of which tables of a mechanism file consist, as written.
+/// Values that the tables of a mechanism file share, as written.
 namespace poesy::file {
 
-/// A name that refers to something else, and its place in the file.
+/// A name that refers to something else in the file.
 struct Reference {
-  std::string name;  ///< as written
-  std::string key;   ///< for messages: "limb[0].joints[1].from"
-  Place place;       ///< of the value in the file
+  std::string name;  ///< name as written
+  std::string key;   ///< key in the file, for messages: "limb[0].joints[1].from"
+  Place place;       ///< place of the value in the file
 };
 
 /// A point, a direction or another vector, as written.
 struct Triple {
-  std::array<Expression, 3> entries;  ///< x, y, z
-  std::string key;                    ///< for messages
-  Place place;                        ///< of the value in the file
+  std::array<Expression, 3> entries;  ///< entries x, y, z
+  std::string key;                    ///< key in the file, for messages
+  Place place;                        ///< place of the value in the file
 };
 
-/// A point with a name.
+/// A point that has a name.
 struct NamedPoint {
-  std::string name;  ///< as references write it
-  Triple point;      ///< in the base frame, at home
+  std::string name;  ///< name by which references refer to it
+  Triple point;      ///< position in the base frame, at home
 };
 
-/// Copies of something, turned about an axis of the base.
+/// Copies of a limb or a body, rotated about an axis of the base.
 struct Copies {
-  std::size_t count = 1;  ///< number, at least 1
-  std::size_t about = 2;  ///< axis of the base: 0, 1, 2
+  std::size_t count = 1;  ///< number of copies including the first, at least 1
+  std::size_t about = 2;  ///< axis of the base about which copies are rotated: 0, 1, 2
 
-  bool operator==(const Copies&) const = default;  ///< Whether copies match one by one.
+  /// Returns true if both have the same number of copies about the same axis.
+  bool operator==(const Copies&) const = default;
 };
 
 }  // namespace poesy::file

@@ -4,41 +4,43 @@
 
 #include "models/file/mechanism.h"
 
-/// The equations that close a mechanism's loops, with lengths in units of its reach.
+/// The equations that close a mechanism's loops. Lengths are in units of the mechanism's reach.
 namespace poesy::file {
 
-/// The configuration of a mechanism: displacements [moving], limb by limb, then the poses [6] of the platform and of
-/// all other bodies except the base (rad, and lengths in units of the reach).
+/// The configuration of a mechanism: displacements [moving] of the joints, limb by limb, then the poses [6] of the
+/// platform and of all other bodies except the base (rad, and lengths in units of the reach).
 using State = Eigen::VectorXd;
 
-/// The state at home.
+/// The configuration at home. unit: a mechanism from in_reaches().
 State home_state(const Mechanism& unit);
 
-/// The loop equations, linearised. The end of every limb, from body a to body b, must agree with the pose of b: C_a
-/// dpose_a + J dq - C_b dpose_b = log(T_b (T_a g)^-1), twists [omega; v] at the base's origin.
+/// The linearised loop equations. The end of every limb, from body a to body b, must agree with the pose of b: C_a
+/// dpose_a + J dq - C_b dpose_b = log(T_b (T_a g)^-1). T are the poses of the bodies and g is the motion of the limb. C
+/// and J map changes of poses and of joint displacements to twists [omega; v] at the base's origin.
 struct LoopEquations {
-  Eigen::MatrixXd columns;   ///< [6 limbs x (moving + 6 bodies)]
-  Eigen::VectorXd residual;  ///< [6 limbs]
+  Eigen::MatrixXd columns;   ///< [6 limbs x (moving + 6 bodies)] left side
+  Eigen::VectorXd residual;  ///< [6 limbs] right side
 };
 
 /// The loop equations at a state. unit: a mechanism from in_reaches().
 LoopEquations loop_equations(const Mechanism& unit, const State& state);
 
-/// The pose of a body that is not the base.
+/// The pose of a body other than the base.
 PlatformPose pose_of(const Mechanism& unit, const State& state, std::size_t body = kPlatform);
 
-/// base_T_body of a body.
+/// The pose base_T_body of a body as a rigid motion.
 Transform transform_of(const Mechanism& unit, const State& state, std::size_t body);
 
-/// U at this pose of the platform: |U xi| is the root mean square displacement of the metric's points by the twist xi.
+/// [6 x 6] The root U of the metric at this pose of the platform: |U xi| is the root mean square displacement of the
+/// metric's points by the twist xi.
 lie::Matrix6<double> metric_root(const Mechanism& unit, const PlatformPose& pose);
 
-/// U times the rows of every limb: [6 limbs x columns].
+/// [6 limbs x columns] The product of `root` and the six rows of every limb.
 Eigen::MatrixXd weighed(const lie::Matrix6<double>& root, const Eigen::MatrixXd& rows);
 
-/// The limbs' mismatch for this residual as a share of the reach, defined like the response `gap`: the root mean square
-/// over the pairs of |r_k - r_i| by the metric, or, where limbs branch, over the independent loops, of which each has
-/// two limbs.
+/// The mismatch of the limbs for this residual as a share of the reach, defined like the response `gap`. With the parts
+/// r_i of the residual that belong to the limbs i, it is the root mean square over pairs of limbs of |r_k - r_i| in the
+/// metric. If the mechanism is branched, the mean is over the independent loops, each of which has two limbs.
 double mismatch(const Mechanism& unit, const lie::Matrix6<double>& root, const Eigen::VectorXd& residual);
 
 }  // namespace poesy::file

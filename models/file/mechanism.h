@@ -15,32 +15,32 @@
 #include "models/file/mechanism_file.h"
 #include "models/lie/se3.h"
 
-/// A mechanism of a file in numbers: SI, in the base frame, at home.
+/// A mechanism of a file in numbers: SI, in the base frame, at the home pose.
 namespace poesy::file {
 
-/// A point or a direction.
+/// A point (m) or a direction.
 using Vector3 = lie::Vector3<double>;
-/// A rigid motion.
+/// A rigid motion, or the pose of a frame.
 using Transform = lie::Transform<double>;
 
-/// The motion of an elementary joint, about or along its own z axis.
+/// The motion of an elementary joint, about or along its z axis.
 enum class Motion { fixed, revolute, prismatic, helical };
 
 /// An elementary joint, or a fixed frame.
 struct Joint {
-  std::string name;        ///< of the joint to which it belongs
-  Place place;             ///< of that joint in the file
-  JointKind kind;          ///< of that joint
-  Motion motion;           ///< fixed: a frame with errors and without a displacement
-  bool actuated;           ///< whether a drive holds it
-  double pitch;            ///< of a helical joint (m/rad); positive is right-handed
+  std::string name;        ///< name of the joint to which it belongs
+  Place place;             ///< place of that joint in the file
+  JointKind kind;          ///< type of that joint
+  Motion motion;           ///< motion; fixed: a frame with errors but without a displacement
+  bool actuated;           ///< true if a drive holds it
+  double pitch;            ///< pitch of a helical joint (m/rad); positive if right-handed
   Transform at_home;       ///< base_T_joint at home
   std::string drive = {};  ///< name of the drive, if the file gives one; joints of the same name move together
-  bool reaction = false;   ///< whether the reaction of its joint is a response
+  bool reaction = false;   ///< true if the reaction of the joint is a response
 
-  /// Whether it has a displacement.
+  /// Returns true if the joint has a displacement.
   bool moves() const { return motion != Motion::fixed; }
-  /// The joint as chain::Limb needs it; a fixed frame is an actuated joint that stays where it is.
+  /// The joint in the form that chain::Limb needs. A fixed frame is an actuated joint that stays where it is.
   chain::Joint of_chain() const;
 };
 
@@ -50,13 +50,14 @@ using assembly::kBase;
 using assembly::kPlatform;
 /// @}
 
-/// A limb in local product-of-exponentials form, as chain::Limb has it, from one body to another.
+/// A limb from one body to another, in local product-of-exponentials form as in chain::Limb.
 struct Limb {
-  std::vector<Joint> joints;    ///< [n], from the first body to the last
-  std::vector<Transform> home;  ///< [n + 1] at home: body to first joint, joint to joint, last joint to body
+  std::vector<Joint> joints;    ///< [n] joints, from the first body to the last
+  std::vector<Transform> home;  ///< [n + 1] frames at home: body to first joint, joint to joint, last joint to body
   std::size_t from = kBase;     ///< position of the first body
   std::size_t to = kPlatform;   ///< position of the last body
-  std::string label = {};       ///< its number, counted from 1, or its name and the number of the copy
+  /// Label: the number of the limb, counted from 1, or its name and the number of the copy.
+  std::string label = {};
   std::vector<assembly::Bearing> bearings = {};      ///< bearings with compliance
   std::vector<assembly::Link> links = {};            ///< links with compliance
   std::optional<assembly::Matrix6> compliance = {};  ///< compliance of the whole limb, in the frame of the last body
@@ -65,139 +66,146 @@ struct Limb {
   std::size_t moving() const;
 };
 
-/// A drive of one actuated joint, or of several that it moves by the same displacement from home (rad or m).
+/// A drive of one actuated joint, or of several joints that it moves by the same displacement from home (rad or m).
 struct Drive {
-  std::string name;                 ///< as in the file, or that of its joint's displacement
+  std::string name;                 ///< name in the file, or the name of its joint's displacement
   std::vector<std::size_t> joints;  ///< positions among all joints that move, ascending
 
-  /// Whether it moves several joints.
+  /// Returns true if the drive moves several joints.
   bool is_shared() const { return joints.size() > 1; }
 };
 
-/// Pose of a body: x, y, z of its origin (of the platform: P) in the base frame (m), and rx, ry, rz from home (rad).
+/// The pose of a body: x, y, z of its origin (P for the platform) in the base frame (m), then rx, ry, rz from home
+/// (rad).
 using PlatformPose = std::array<double, 6>;
 
-/// A coordinate of a pose.
+/// A coordinate of poses.
 struct Coordinate {
-  std::string name;       ///< as in the file
+  std::string name;       ///< name in the file
   std::size_t component;  ///< position in PlatformPose
-  double lower;           ///< lower limit of the workspace
-  double upper;           ///< upper limit of the workspace
+  double lower;           ///< lower limit of the workspace, SI
+  double upper;           ///< upper limit of the workspace, SI
 
   /// The dimension: length or angle.
   Dimension dimension() const { return component < 3 ? Dimension::length : Dimension::angle; }
 };
 
-/// Precision of exact numbers.
+/// The precision of a mechanism whose numbers are exact.
 /// @{
 inline constexpr double kRankThreshold = 1e-6;  ///< a singular value below this share of the largest counts as zero
-inline constexpr double kClosed = 1e-12;  ///< a loop with a smaller opening is closed: rad, and shares of the reach
+/// A loop counts as closed if it is open by less than this: rad, and shares of the reach.
+inline constexpr double kClosed = 1e-12;
 /// @}
 
-/// The precision of a mechanism's numbers; rounding.h finds it.
+/// The precision of a mechanism's numbers, which rounding.h finds.
 struct Precision {
   double rank_threshold = kRankThreshold;  ///< a singular value below this share of the largest counts as zero
-  /// Largest opening of a closed loop: rad, and shares of the reach. With rounded numbers it is the largest gap; a pose
-  /// is then the one with the smallest mismatch of the limbs by the metric of the mechanism's points, and this mismatch
-  /// remains.
+  /// The largest opening at which a loop counts as closed: rad, and shares of the reach. With rounded numbers it is the
+  /// largest gap. A pose is then the one with the smallest mismatch of the limbs in the metric of the mechanism's
+  /// points, and this mismatch remains.
   double closed = kClosed;
 
-  /// Whether loops count as closed although they stay open by more than kClosed.
+  /// Returns true if loops that stay open by more than kClosed count as closed.
   bool rounded() const { return closed > kClosed; }
 };
 
-/// An error with limb = "each".
+/// An error that the file states with limb = "each".
 struct EachLimb {
-  std::string text;  ///< its name, and the parts that it is between in each limb
-  bool alike;        ///< whether these parts are the same in all limbs
+  std::string text;  ///< name of the error, and the two parts that its frame connects in each limb
+  bool alike;        ///< true if these parts are the same in all limbs
 };
 
-/// A mechanism in numbers, immutable. Contains everything that a model needs except solvers.
+/// A mechanism in numbers. It contains everything that a model needs except solvers.
 struct Mechanism {
-  std::string name;                           ///< as in the file
-  std::string title;                          ///< as in the file
-  std::vector<assembly::Body> bodies = {};    ///< base, platform, and the others, copies included
-  std::vector<Limb> limbs = {};               ///< copies included
-  Transform platform;                         ///< base_T_platform at home
-  Rotation rotation;                          ///< meaning of rx, ry, rz
-  std::vector<Coordinate> coordinates = {};   ///< in the order of a pose's numbers
-  Place coordinates_place;                    ///< in the file
-  std::optional<Vector3> tool = {};           ///< tool point in the platform's frame (m)
-  std::vector<Vector3> points = {};           ///< of the metric, in the platform's frame (m); not all on a line
-  std::vector<Factor> factors = {};           ///< [F]
-  std::vector<chain::ErrorTerms> terms = {};  ///< [F] what each error adds to entries of frames' errors
-  std::vector<FactorSet> sets = {};           ///< "all" first
-  std::vector<EachLimb> each = {};            ///< the errors with limb = "each"
-  ErrorsAbout about = ErrorsAbout::joint;     ///< of errors of frames, and of those with their own names
-  bool errors_at_joints = true;               ///< see chain::Limb; false with features, whose errors are about frames
-  std::vector<Feature> features = {};         ///< of all limbs
-  /// [features] part_T_feature at home: the middle and the axes of each in the frame of its part (m).
+  std::string name;                          ///< name in the file
+  std::string title;                         ///< title in the file
+  std::vector<assembly::Body> bodies = {};   ///< base, platform, then the other bodies, including copies
+  std::vector<Limb> limbs = {};              ///< limbs, including copies
+  Transform platform;                        ///< base_T_platform at home
+  Rotation rotation;                         ///< meaning of rx, ry, rz of the platform
+  std::vector<Coordinate> coordinates = {};  ///< pose coordinates, in the order of a pose's numbers
+  Place coordinates_place;                   ///< place of the coordinates in the file
+  std::optional<Vector3> tool = {};          ///< tool point in the platform's frame (m)
+  /// Points of the platform that define the metric, in its frame (m); not all on a line.
+  std::vector<Vector3> points = {};
+  std::vector<Factor> factors = {};           ///< [F] errors
+  std::vector<chain::ErrorTerms> terms = {};  ///< [F] contributions of each error to components of frames' errors
+  std::vector<FactorSet> sets = {};           ///< sets of errors, "all" first
+  std::vector<EachLimb> each = {};            ///< errors with limb = "each"
+  ErrorsAbout about = ErrorsAbout::joint;     ///< points about which angular errors of frames rotate
+  /// True if angular errors rotate about joints, see chain::Limb; false if there are features, whose errors rotate
+  /// about frames.
+  bool errors_at_joints = true;
+  std::vector<Feature> features = {};  ///< features of all limbs
+  /// [features] part_T_feature at home: the middle (m) and the axes of each feature in the frame of its part.
   std::vector<Transform> feature_places = {};
-  double reach;              ///< m: largest distance between the joints' points, before copies, and P
-  Precision precision = {};  ///< of its numbers
-  assembly::Load load = {};  ///< used if there is stiffness
+  /// Largest distance between two of these points: the joints' points, before copies are made, and P; m.
+  double reach;
+  Precision precision = {};  ///< precision of the numbers
+  assembly::Load load = {};  ///< load, used only if there is stiffness
   /// Points of the platform whose displacements are reported.
   std::vector<NamedPlatformPoint> named = {};
 
-  /// Number of joints that have a displacement, over all limbs.
+  /// The number of joints that have a displacement, over all limbs.
   std::size_t moving() const;
-  /// Number of independent loops.
+  /// The number of independent loops.
   std::size_t loops() const { return limbs.size() - (bodies.size() - 1); }
-  /// Whether there are bodies other than base and platform.
+  /// Returns true if there are bodies other than the base and the platform.
   bool is_branched() const { return bodies.size() > 2; }
-  /// Whether anything has stiffness.
+  /// Returns true if any joint, link or limb has stiffness.
   bool is_elastic() const;
 };
 
 /// The default values of the parameters (SI), in the order of the file.
 std::vector<double> default_geometry(const MechanismFile& file);
 
-/// The mechanism for these values of file.geometry, SI. Throws InputError with the place in the file if they give no
+/// The mechanism for these values of file.geometry (SI). Throws InputError with the place in the file if they give no
 /// mechanism: wrong dimensions, directions without length, parallel axes that must not be parallel, metric points on a
 /// line.
 Mechanism mechanism(const MechanismFile& file, std::span<const double> geometry);
 
-/// The same mechanism with lengths in units of its reach; its reach becomes 1.
+/// The mechanism with lengths in units of its reach. Its reach is then 1.
 Mechanism in_reaches(Mechanism mechanism);
 
-/// The names q_i_j of the displacements of all moving joints, limb by limb: limbs i count from 1, j is the joint's
-/// position, from 1, among all joints and fixed frames of the limb.
+/// The names q_i_j of the displacements of all moving joints, limb by limb. The limb i is counted from 1. j is the
+/// position, counted from 1, among all joints and fixed frames of the limb.
 std::vector<JointDisplacement> displacement_names(const Mechanism& mechanism);
 
-/// The limb's text for messages: "limb 4", or with a name "limb 4 (left_1)". limb: position, counts from 0.
+/// A limb as text for messages: "limb 4", or with a name "limb 4 (left_1)". limb: position, counted from 0.
 std::string limb_text(const Mechanism& mechanism, std::size_t limb);
 
 /// The joints that have a displacement, limb by limb.
 std::vector<const Joint*> moving_joints(const Mechanism& mechanism);
 
-/// The drives of all limbs, in the order of their first joints.
+/// The drives of all limbs, in the order of each drive's first joint.
 std::vector<Drive> drives_of(const Mechanism& mechanism);
 
-/// base_T_platform of a pose: R = Rot(rx, ry, rz) R_home and P = (x, y, z).
+/// The platform's frame base_T_platform at a pose: R = Rot(rx, ry, rz) R_home and P = (x, y, z).
 Transform platform_transform(const Mechanism& mechanism, const PlatformPose& pose);
 
-/// base_T_body of a body that is not the base. For the platform see platform_transform(); for others rx, ry, rz are the
-/// rotation vector.
+/// The frame base_T_body of a body other than the base at a pose. For the platform see platform_transform(). For other
+/// bodies (rx, ry, rz) is the rotation vector.
 Transform body_transform(const Mechanism& mechanism, std::size_t body, const PlatformPose& pose);
 
-/// The twists [omega; v] of the body, at the base's origin, per unit of each component of its pose: [6 x 6].
+/// [6 x 6] The twists [omega; v] of the body, at the base's origin, per unit of each component of its pose.
 lie::Matrix6<double> body_columns(const Mechanism& mechanism, std::size_t body, const PlatformPose& pose);
 
-/// The body's pose at home, without rotation.
+/// The pose of a body at home: its origin, and no rotation.
 PlatformPose home_pose(const Mechanism& mechanism, std::size_t body);
 
-/// For each body except the base, a limb that ends there; in this order the bodies can be placed one after the other.
+/// [bodies - 1] For each body except the base, a limb that ends there. In this order the bodies can be placed one after
+/// the other.
 std::vector<std::size_t> placing_limbs(const Mechanism& mechanism);
 
-/// The pose at home: P, and no rotation.
+/// The pose of the platform at home: P, and no rotation.
 PlatformPose home_pose(const Mechanism& mechanism);
 
-/// The twists [omega; v] of the platform, at the base's origin, per unit of each component of its pose: [6 x 6].
+/// [6 x 6] The twists [omega; v] of the platform, at the base's origin, per unit of each component of its pose.
 lie::Matrix6<double> platform_columns(const Mechanism& mechanism, const PlatformPose& pose);
 
-/// Pose base_T_body of the body at the end of the limb for these displacements of its moving joints [moving] (rad, m).
-/// from: the pose of the body where it begins. columns: null, or [6 x moving], set to the twists [omega; v] of its end
-/// per unit of each displacement, at the base's origin.
+/// The pose base_T_body of the body at the end of the limb. displacements: [moving] of its moving joints (rad, m).
+/// from: pose of the body at which the limb begins. columns: null, or [6 x moving], set to the twists [omega; v] of the
+/// limb's end per unit of each displacement, at the base's origin.
 Transform limb_transform(const Limb& limb, std::span<const double> displacements,
                          Eigen::Matrix<double, 6, Eigen::Dynamic>* columns = nullptr, const Transform& from = {});
 

@@ -17,167 +17,177 @@
 #include "models/file/lines.h"
 #include "models/file/part_lines.h"
 
-/// A mechanism file as written: expressions, names and their places, without any number that depends on the geometry.
-/// mechanism.h evaluates it.
+/// A mechanism file as written: expressions, names and their places. No number here depends on the geometry;
+/// mechanism.h evaluates the file.
 namespace poesy::file {
 
 /// The types of joints.
 enum class JointKind { fixed, revolute, prismatic, helical, cylindrical, universal, spherical };
-/// The name in the file: "fixed", "R", "P", "H", "C", "U", "S".
+/// The name of a type of joint in files: "fixed", "R", "P", "H", "C", "U", "S".
 std::string_view name(JointKind kind);
-char letter(JointKind kind);  ///< 'F', 'R', ...: the letter in sketches (SketchedJoint::type).
-/// The number of elementary joints or fixed frames of this kind.
+char letter(JointKind kind);  ///< The letter in sketches (SketchedJoint::type): 'F', 'R', ...
+/// The number of elementary joints or fixed frames of this type of joint.
 std::size_t elements(JointKind kind);
 
 /// A joint as written.
 struct JointLines {
-  JointKind kind = JointKind::revolute;  ///< type of the joint
-  std::string name;                      ///< unique in the limb
-  std::string key;                       ///< for messages: "limb[0].joints[1]"
-  Place place;                           ///< of its table
-  std::optional<Triple> at;              ///< its point
-  std::optional<Reference> at_point;     ///< its point, by name
-  std::optional<Reference> from;         ///< point where its direction begins
-  std::optional<Reference> to;           ///< point where its direction ends
-  std::optional<Triple> axis;            ///< its direction, if from and to are absent
-  std::optional<Triple> axis2;           ///< of U: the second axis
-  std::optional<Triple> x;               ///< x axis of its first frame
-  std::optional<Expression> pitch;       ///< of H, per turn
-  std::array<bool, 2> actuated{};        ///< of each elementary joint
-  std::optional<Reference> drive;        ///< the drive that holds it; "*" is replaced by the number of the limb's copy
-  std::optional<StiffnessLines> stiffness;  ///< of its bearing and drive; none: rigid
-  bool reaction = false;                    ///< whether its reaction is a response
+  JointKind kind = JointKind::revolute;     ///< type of the joint
+  std::string name;                         ///< name, unique in the limb
+  std::string key;                          ///< key in the file, for messages: "limb[0].joints[1]"
+  Place place;                              ///< place of its table
+  std::optional<Triple> at;                 ///< point of the joint
+  std::optional<Reference> at_point;        ///< point of the joint, as a named point
+  std::optional<Reference> from;            ///< point at which the axis begins
+  std::optional<Reference> to;              ///< point at which the axis ends
+  std::optional<Triple> axis;               ///< direction of the axis, if from and to are absent
+  std::optional<Triple> axis2;              ///< second axis of a joint U
+  std::optional<Triple> x;                  ///< x axis of the joint's first frame
+  std::optional<Expression> pitch;          ///< pitch of a joint H, length per turn
+  std::array<bool, 2> actuated{};           ///< [elementary joints] true if the joint is actuated
+  std::optional<Reference> drive;           ///< name of the drive; the number of the limb's copy replaces "*"
+  std::optional<StiffnessLines> stiffness;  ///< stiffness of bearing and drive; none if they are rigid
+  bool reaction = false;                    ///< true if the joint's reaction is a response
 };
 
 /// A limb as written, with the number of its copies.
 struct LimbLines {
-  std::string name;                           ///< of the limb and its copies; empty: none
-  std::string key;                            ///< for messages: "limb[0]"
-  Place place;                                ///< of its table
-  std::optional<Reference> from;              ///< the body where it begins; none: the base
-  std::optional<Reference> to;                ///< the body where it ends; none: the platform
-  std::vector<JointLines> joints;             ///< base to platform
-  std::vector<NamedPoint> points;             ///< points of this limb alone
-  Copies copies;                              ///< copies of the limb
+  std::string name;                           ///< name of the limb and its copies; empty if there is none
+  std::string key;                            ///< key in the file, for messages: "limb[0]"
+  Place place;                                ///< place of its table
+  std::optional<Reference> from;              ///< body at which the limb begins; none: the base
+  std::optional<Reference> to;                ///< body at which the limb ends; none: the platform
+  std::vector<JointLines> joints;             ///< joints, in order from the first body to the last
+  std::vector<NamedPoint> points;             ///< named points that only this limb knows
+  Copies copies;                              ///< number of copies
   std::vector<LinkLines> links;               ///< links with compliance
-  std::vector<FeatureLines> features;         ///< of its parts, with tolerances
-  std::vector<ClearanceLines> clearances;     ///< of its joints
-  std::optional<ComplianceLines> compliance;  ///< in the frame of the last body
+  std::vector<FeatureLines> features;         ///< features of the limb's parts, with tolerances
+  std::vector<ClearanceLines> clearances;     ///< clearances of the limb's joints
+  std::optional<ComplianceLines> compliance;  ///< compliance of the whole limb, in the frame of the last body
 };
 
 /// A pose coordinate as written.
 struct CoordinateLines {
-  std::string name;       ///< "alpha"
-  std::string component;  ///< "rx"
-  std::string key;        ///< for messages
-  Place place;            ///< of its name
+  std::string name;       ///< name: "alpha"
+  std::string component;  ///< component of the platform's pose: "rx"
+  std::string key;        ///< key in the file, for messages
+  Place place;            ///< place of its name
   Expression lower;       ///< lower limit of the workspace
   Expression upper;       ///< upper limit of the workspace
 };
 
-/// The meaning of rx, ry, rz: the rotation of the platform from its home orientation.
+/// The meaning of rx, ry, rz, which rotate the platform from its home orientation: a rotation vector, or the order of
+/// the product of three rotations.
 enum class Rotation { vector, xyz, xzy, yxz, yzx, zxy, zyx };
-/// "vector", or the order of the product of three rotations.
+/// The name in files: "vector", or the order of the product, such as "xyz".
 std::string_view name(Rotation rotation);
 
 /// The platform as written.
 struct PlatformLines {
   std::optional<Triple> origin;              ///< P at home
-  std::optional<Triple> x;                   ///< its x axis at home; none: the base's
-  std::optional<Triple> z;                   ///< given with x
+  std::optional<Triple> x;                   ///< x axis at home; none: the base's x axis
+  std::optional<Triple> z;                   ///< z axis at home, given if x is
   Rotation rotation = Rotation::vector;      ///< meaning of rx, ry, rz
-  std::vector<CoordinateLines> coordinates;  ///< in the order of a pose's numbers
-  Place coordinates_place;                   ///< of their list
+  std::vector<CoordinateLines> coordinates;  ///< pose coordinates, in the order of a pose's numbers
+  Place coordinates_place;                   ///< place of the list of coordinates
   std::optional<Triple> tool;                ///< tool point in the platform's frame
   std::vector<NamedPoint> named;             ///< points whose displacements are reported, in the platform's frame
-  std::vector<Triple> points;      ///< of the metric, in the platform's frame; none: derived from the ends of the limbs
-  Place place;                     ///< of [platform] or its points
-  std::optional<Expression> mass;  ///< none: 0
-  std::optional<Triple> centre;    ///< of mass, in the platform's frame; none: its origin
+  /// Points of the metric, in the platform's frame; none: derived from the ends of the limbs.
+  std::vector<Triple> points;
+  Place place;                     ///< place of [platform] or of its points
+  std::optional<Expression> mass;  ///< mass; none: 0
+  std::optional<Triple> centre;    ///< centre of mass, in the platform's frame; none: its origin
 };
 
-/// The points about which angular errors of a limb's first and last frame turn. The axes are always those of base and
-/// platform.
+/// The centre about which an angular error of a limb's first or last frame rotates. The axes of rotation are always
+/// those of base and platform.
 enum class ErrorsAbout {
-  joint,  ///< the points of its first and of its last joint
-  frame   ///< the origins of base and platform
+  joint,  ///< the point of the limb's first or last joint
+  frame   ///< the origin of base or platform
 };
-/// "joint" or "frame".
+/// The name in files: "joint" or "frame".
 std::string_view name(ErrorsAbout about);
 
-/// A frame of some limbs, as `limb` and `frame` name it.
+/// One frame in each of one or more limbs, as the keys `limb` and `frame` of an error state it.
 struct SlotLines {
-  std::vector<std::size_t> limbs;  ///< limbs that have it, counted from 0
-  bool each = false;               ///< whether the limbs are written as "each"
-  /// [limbs] suffix of the name: the number of the limb or of its copy; 0: none.
+  std::vector<std::size_t> limbs;  ///< positions of the limbs, counted from 0
+  bool each = false;               ///< true if the limbs are written as "each"
+  /// [limbs] Suffix of the error's name: the number of the limb or of its copy; 0 if there is none.
   std::vector<std::size_t> numbers;
-  std::vector<std::size_t> frames;  ///< [limbs] position of the frame in each limb, from 0
+  std::vector<std::size_t> frames;  ///< [limbs] position of the frame in each limb, counted from 0
 };
 
-/// A component of a frame's error, and by how much an error changes it.
+/// A component of a frame's error, and its change by an error.
 struct ComponentLines {
   std::size_t component;  ///< position in [epsilon; delta]
-  Expression scale;       ///< per unit of the error
+  Expression scale;       ///< change of the component per unit of the error
 };
 
-/// A place of an error that has several.
+/// One of several places in which an error acts.
 struct PlaceLines {
-  SlotLines slot;                          ///< where it is
-  std::vector<ComponentLines> components;  ///< what it changes there
+  SlotLines slot;                          ///< frame in which it acts
+  std::vector<ComponentLines> components;  ///< components that it changes there
 };
 
 /// A named error, `[[error]]`, as written.
 struct ErrorLines {
-  Reference name;                            ///< without the number of a limb
-  SlotLines slot;                            ///< where it is, one error in each limb; without limbs: see places
-  std::vector<std::size_t> components;       ///< positions in [epsilon; delta], each an error; none: see combination
-  Expression scale{"1", "scale", {}, true};  ///< the entry of the frame's error is the error times this
-  std::vector<ComponentLines> combination;   ///< components that are one error
-  std::vector<PlaceLines> places;            ///< of one error
-  std::optional<Reference> grows_with;       ///< joint of the limb with whose displacement it grows; none: it does not
-  std::optional<Expression> from;            ///< displacement from home where it is zero; none: 0
-  std::string description;                   ///< empty: the description of the frame
+  Reference name;  ///< name, without the number of a limb
+  /// The frame in which the error acts. Each limb of the slot has an error of its own. Without limbs if `places` are
+  /// given.
+  SlotLines slot;
+  /// Positions in [epsilon; delta] of components, each of which is an error of its own; none if `combination` is given.
+  std::vector<std::size_t> components;
+  Expression scale{"1", "scale", {}, true};  ///< factor from the error to the component of the frame's error
+  std::vector<ComponentLines> combination;   ///< components that form one error together
+  std::vector<PlaceLines> places;            ///< places of an error that acts in several
+  /// Joint of the limb to whose displacement the error is proportional; none if it does not grow.
+  std::optional<Reference> grows_with;
+  std::optional<Expression> from;  ///< displacement from home at which the error is zero; none: 0
+  std::string description;         ///< description; empty: the description of the frame
 };
 
 /// A factor set as written.
 struct SetLines {
-  Reference name;                   ///< of the set
-  std::vector<Reference> patterns;  ///< names of errors, or patterns
+  Reference name;                   ///< name of the set
+  std::vector<Reference> patterns;  ///< names of errors, or patterns of names
 };
 
 /// A mechanism file in which everything that does not depend on values of the geometry has been checked.
 struct MechanismFile {
-  std::string path;                              ///< for messages
-  std::string name;                              ///< of the mechanism
-  std::string title;                             ///< text for people
-  std::vector<GeometryParameter> geometry;       ///< in the order of the file, with defaults
-  std::vector<NamedPoint> points;                ///< points for all limbs
+  std::string path;   ///< path of the file, for messages
+  std::string name;   ///< name of the mechanism
+  std::string title;  ///< title for people
+  /// Parameters of the geometry, in the order of the file, with defaults.
+  std::vector<GeometryParameter> geometry;
+  std::vector<NamedPoint> points;                ///< named points that all limbs know
   PlatformLines platform;                        ///< the platform
   std::vector<BodyLines> bodies;                 ///< bodies other than base and platform, without copies
-  LoadLines load;                                ///< used if there is stiffness
-  std::vector<LimbLines> limbs;                  ///< as written, without copies
+  LoadLines load;                                ///< load, used only if there is stiffness
+  std::vector<LimbLines> limbs;                  ///< limbs as written, without copies
   std::optional<std::vector<Reference>> frames;  ///< frame errors, by names and patterns; none: see all_frames()
-  bool all = false;                              ///< whether `frames = "all"` is written
-  ErrorsAbout about = ErrorsAbout::joint;        ///< of all errors
+  bool all = false;                              ///< true if the file says `frames = "all"`
+  ErrorsAbout about = ErrorsAbout::joint;        ///< centre of rotation of all angular errors of frames
   std::vector<ErrorLines> errors;                ///< errors with their own names
-  std::vector<SetLines> sets;                    ///< sets other than "all"
+  std::vector<SetLines> sets;                    ///< sets of errors other than "all"
   GeneralLines general;                          ///< general tolerances of the drawing
 
-  /// Whether a limb has features.
+  /// Returns true if any limb has features.
   bool has_features() const;
-  /// Whether every entry of every fixed frame is an error: if the file says so, or if it names no error at all.
+  /// Returns true if every component of every fixed frame is an error. That is so if the file says it, or if the file
+  /// names no error at all.
   bool all_frames() const { return all || (!frames && errors.empty() && !has_features()); }
 };
 
-/// The tables of a mechanism file with every key, for the reference.
+/// The tables of a mechanism file with all keys, for the reference.
 const StudyTables& mechanism_file_tables();
 
-/// Reads its responses of one's own for a model with this description; none if it has none. Throws InputError.
+/// Reads the own responses that a file defines, for a model with this description; none if it defines none. Throws
+/// InputError.
 std::vector<OwnResponse> read_own_responses(const std::string& text, const std::string& path,
                                             const ModelDescription& model);
 
 /// Reads a mechanism file of format version 1. path: for messages. Throws InputError "FILE:LINE:COL: ..." for any
-/// mistake in the text or with the default geometry; a file that is returned also makes a Mechanism (mechanism.h).
+/// mistake in the text or with the default geometry. So mechanism() accepts every file that is returned, with its
+/// default geometry.
 MechanismFile read_mechanism_file(const std::string& text, const std::string& path);
 
 }  // namespace poesy::file

@@ -23,19 +23,22 @@ using Vector = Eigen::VectorXd;
 constexpr double kDependent = 1e-9;
 constexpr double kMillimetres = 1e3;
 
-/// A joint of a limb and its copies, whose point or axis may be wrong.
+/// A joint whose point or axis may be wrong, in a limb and its copies.
 struct Suspect {
   std::vector<std::size_t> limbs;
   std::size_t first;  ///< position of its first elementary joint
   std::size_t count;  ///< number of its elementary joints
-  bool point;         ///< whether its point is suspected; else its common axis
+  bool point;         ///< true: its point is suspected; false: its axis
 };
 
-/// The loop equations at one pose, reduced by the metric to what no joint can change.
+/// The loop equations at one pose, projected onto the mismatch that no motion of the joints can remove. The metric
+/// weighs rotation against displacement.
 struct PoseEquations {
   State state;
   lie::Matrix6<double> root;
-  Matrix rest;      ///< [6 limbs x D] orthonormal, perpendicular to motions of the joints and of the pose
+  /// [6 limbs x D] Orthonormal basis of the D-dimensional space of this mismatch. It is perpendicular to the effects of
+  /// the joints' motions and of the pose components that are not given.
+  Matrix rest;
   Vector mismatch;  ///< [D] mismatch in this basis
 };
 
@@ -44,7 +47,7 @@ PoseEquations equations_at(const Mechanism& unit, const Tracked& tracked) {
   made.state = tracked.state;
   const LoopEquations loops = loop_equations(unit, made.state);
   std::vector<std::size_t> free;
-  const std::size_t moving = unit.moving();  // the platform's pose follows
+  const std::size_t moving = unit.moving();  // number of moving joints; the platform's pose follows
   for (std::size_t k = 0; k < static_cast<std::size_t>(made.state.size()); ++k) {
     const bool given = k >= moving && std::ranges::find(unit.coordinates, k - moving, &Coordinate::component) !=
                                           unit.coordinates.end();
@@ -57,8 +60,9 @@ PoseEquations equations_at(const Mechanism& unit, const Tracked& tracked) {
   return made;
 }
 
-/// Adds the suspects of a limb: the joints as written, each with its point or axis. The axes of S are not suspects,
-/// because they follow from its neighbours; those of C are one axis.
+/// Adds to `list` the suspects of a limb: its joints as written, each once for its point and once for its axis. The
+/// axes of spherical joints (S) are not suspects, because they follow from neighbouring joints. The two axes of a
+/// cylindrical joint (C) are one suspect.
 void add_suspects(const Limb& limb, std::size_t position, std::vector<Suspect>& list) {
   for (std::size_t j = 0; j < limb.joints.size();) {
     std::size_t end = j + 1;
@@ -75,7 +79,7 @@ void add_suspects(const Limb& limb, std::size_t position, std::vector<Suspect>& 
   }
 }
 
-/// The suspects of all limbs. Copies share one suspect, because they are written once.
+/// The suspects of all limbs. Copies share one suspect, because the file states them once.
 std::vector<Suspect> suspects_of(const Mechanism& unit) {
   std::vector<Suspect> list;
   const auto written = [&](std::size_t limb) {
@@ -94,8 +98,8 @@ std::vector<Suspect> suspects_of(const Mechanism& unit) {
   return list;
 }
 
-/// The effects of twists of a joint's axis at home on the residual of its limb while the limb's other axes stay. [6 x
-/// 6]
+/// For each elementary joint of the suspect, the effects [6 x 6] of a small twist of its axis at home on the residual
+/// of its limb, if the limb's other axes stay.
 std::vector<lie::Matrix6<double>> effects_of_axes(const Mechanism& unit, const State& state, const Suspect& suspect,
                                                   std::size_t position) {
   std::size_t k = 0;
@@ -114,8 +118,8 @@ std::vector<lie::Matrix6<double>> effects_of_axes(const Mechanism& unit, const S
   return effects;
 }
 
-/// Directions in which the suspect's point may move or its axis may turn in a limb, as twists at the base's origin.
-/// They are along and about axes of the suspect's frame, which copies turn with them.
+/// The directions in which the suspect's point may move or its axis may rotate in a limb, as twists at the base's
+/// origin. They are along and about axes of the suspect's frame, which rotate with the copies.
 Eigen::Matrix<double, 6, Eigen::Dynamic> twists_of(const Suspect& suspect, const Limb& limb) {
   const Transform& home = limb.joints[suspect.first].at_home;
   Eigen::Matrix<double, 6, Eigen::Dynamic> twists(6, suspect.point ? 3 : 2);
@@ -131,11 +135,11 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> twists_of(const Suspect& suspect, const
   return twists;
 }
 
-/// A corrected suspect, and the mismatch that would remain.
+/// A correction of a suspect, and the mismatch that would remain.
 struct Correction {
   Suspect suspect;
-  Vector by;       ///< correction along its twists, rad or shares of the reach
-  Vector is_left;  ///< [poses] remaining |mismatch| at each
+  Vector by;       ///< correction along the suspect's twists, rad or shares of the reach
+  Vector is_left;  ///< [poses] remaining |mismatch| at each pose
 };
 
 Correction correction_of(const Mechanism& unit, const std::vector<PoseEquations>& poses, const Suspect& suspect) {
@@ -166,7 +170,7 @@ Correction correction_of(const Mechanism& unit, const std::vector<PoseEquations>
   return made;
 }
 
-/// Text of a correction: "its axis along (0, 0, 1) instead of (0.001, 0, 1)".
+/// A correction as text: "its axis along (0, 0, 1) instead of (0.001, 0, 1)".
 std::string corrected_text(const Transform& home, double reach, const Correction& correction) {
   if (correction.suspect.point) {
     const double scale = kMillimetres * reach;
@@ -193,7 +197,8 @@ InputError misfit(const Mechanism& mechanism, std::span<const PoseMobility> pose
     Correction correction = correction_of(unit, equations, suspect);
     if (!best || correction.is_left.norm() < best->is_left.norm()) best = std::move(correction);
   }
-  // The gap is over pairs, the remaining mismatch over limbs: sum over pairs |r_k - r_i|^2 = limbs sum |r_i|^2.
+  // The gap is a mean over pairs of limbs, but the remaining mismatch is a sum over limbs: sum over pairs of |r_k -
+  // r_i|^2 = limbs x sum of |r_i|^2.
   const double is_left =
       mechanism.reach * best->is_left.maxCoeff() * std::sqrt(2.0 / static_cast<double>(unit.loops()));
   const std::size_t first = best->suspect.limbs.front();

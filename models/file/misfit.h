@@ -6,9 +6,9 @@
 
 namespace poesy::file {
 
-/// The error that the limbs do not fit each other. It names the joint whose corrected axis or point would reduce the
-/// mismatch most, with the corrected value. mechanism: with a precision at which the poses were reached; poses: at
-/// least one.
+/// Makes the error message that the limbs do not fit each other. It names the joint whose corrected axis or point would
+/// reduce the mismatch most, with the corrected value. mechanism: with a precision at which the poses were reached.
+/// poses: at least one.
 InputError misfit(const Mechanism& mechanism, std::span<const PoseMobility> poses);
 
 }  // namespace poesy::file

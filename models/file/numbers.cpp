@@ -5,7 +5,7 @@
 namespace poesy::file {
 namespace {
 
-constexpr double kSamePoint = 1e-9;  ///< as a share of the reach
+constexpr double kSamePoint = 1e-9;  ///< points count as equal if their distance is below this share of the reach
 
 }  // namespace
 

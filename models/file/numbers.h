@@ -8,32 +8,35 @@
 namespace poesy::file {
 
 /// Evaluates the expressions of a file for values of its geometry, in SI. All functions throw InputError with the place
-/// in the file if an expression has no value or another dimension.
+/// in the file if an expression has no value, or a dimension that is not the wanted one.
 class Numbers {
  public:
-  /// values: of file.geometry, SI. Both arguments must outlive the object.
+  /// values: of file.geometry, SI. Both arguments must outlive this object.
   Numbers(const MechanismFile& file, std::span<const double> values) : file_(&file), values_(values) {}
 
   const MechanismFile& file() const { return *file_; }  ///< The file of the expressions.
 
-  /// The mechanism's reach (m), the scale at which two points count as equal.
+  /// The reach of the mechanism (m). It is the scale at which two points count as equal.
   /// @{
   void set_reach(double reach) { reach_ = reach; }
   double reach() const { return reach_; }
   /// @}
 
-  double quantity(const Expression& expression, const Physical& wanted) const;  ///< SI value of this quantity.
-  double positive(const Expression& expression, const Physical& wanted) const;  ///< The same, checked to be positive.
-  double length(const Expression& expression) const;                            ///< SI value of a length (m).
-  Value value(const Expression& expression) const;                              ///< A value of any dimension.
-  Vector3 point(const Triple& triple) const;                                    ///< A point (m).
+  /// The SI value of an expression for this quantity.
+  double quantity(const Expression& expression, const Physical& wanted) const;
+  /// The SI value for this quantity; throws unless it is positive.
+  double positive(const Expression& expression, const Physical& wanted) const;
+  double length(const Expression& expression) const;  ///< The SI value of a length (m).
+  /// The value of an expression of any dimension.
+  Value value(const Expression& expression) const;
+  Vector3 point(const Triple& triple) const;                           ///< A point (m).
   Vector3 vector(const Triple& triple, const Physical& wanted) const;  ///< A vector with entries of this quantity.
   /// A direction as a unit vector. Throws if its entries have different dimensions or are all zero.
   Vector3 direction(const Triple& triple) const;
-  /// The rotation of a frame with this z axis; x is made perpendicular to z.
+  /// The rotation of a frame with this z axis. The x axis is made perpendicular to z.
   lie::Matrix3<double> axes(const Triple& x, const Triple& z) const;
 
-  bool same(const Vector3& a, const Vector3& b) const;  ///< Whether two points are the same.
+  bool same(const Vector3& a, const Vector3& b) const;  ///< Returns true if two points are equal up to rounding.
 
  private:
   const MechanismFile* file_;
@@ -41,18 +44,18 @@ class Numbers {
   double reach_ = 1.0;
 };
 
-/// Directions count as parallel below this angle (rad).
+/// Directions count as parallel if the angle between them is below this (rad).
 inline constexpr double kParallel = 1e-6;
 
-bool parallel(const Vector3& a, const Vector3& b);  ///< Whether two unit vectors are parallel.
+bool parallel(const Vector3& a, const Vector3& b);  ///< Returns true if two unit vectors are parallel.
 
-/// The rotation of a frame with these axes, which are perpendicular unit vectors.
+/// The rotation of a frame with the perpendicular unit vectors x and z as axes.
 lie::Matrix3<double> frame_of(const Vector3& x, const Vector3& z);
 
-/// The part of a direction perpendicular to z, as a unit vector.
+/// The part of a direction that is perpendicular to z, scaled to unit length.
 Vector3 perpendicular(const Vector3& direction, const Vector3& z);
 
-/// The motion from the first copy to copy k, in the base frame.
+/// The rigid motion from the first copy to copy k, in the base frame.
 Transform turned(const Copies& copies, std::size_t k);
 
 }  // namespace poesy::file

@@ -8,7 +8,7 @@
 namespace poesy::file {
 namespace {
 
-/// Reserved names, which bodies must not have.
+/// Names that bodies must not have.
 constexpr std::array<std::string_view, 3> kReserved{"base", "platform", "tip"};
 
 std::string read_body_name(const StudyValue& value) {

@@ -21,11 +21,11 @@ constexpr std::array<Physical, 7> kOfDimensions{{kLength,
                                                  kMoment,
                                                  {"an energy", kMoment.powers, "J", "2 J"}}};
 
-/// Quantities with mass or time that have a name.
+/// Quantities with mass or time whose dimension has a name.
 constexpr std::array<Physical, 7> kNamed{
     {kMass, kAcceleration, kForce, kMoment, kStiffness, kRotationalStiffness, kModulus}};
 
-/// Whether the powers include mass or time, which geometry does not have.
+/// Returns true if the powers include mass or time, which no quantity of geometry has.
 bool is_mechanical(const Powers& powers) { return powers.mass != 0 || powers.time != 0; }
 
 /// A unit that may follow a number.
@@ -35,8 +35,8 @@ struct KnownUnit {
   Powers powers;
 };
 
-/// The dimensions of units of studies (engine/base/units.h) that expressions know. Time is missing, because h could not
-/// be distinguished from a parameter.
+/// The dimensions whose units in studies (engine/base/units.h) are also units in expressions. Time is missing, because
+/// h could not be distinguished from a parameter.
 constexpr std::array<Dimension, 4> kOfStudies{Dimension::length, Dimension::angle, Dimension::force, Dimension::moment};
 
 constexpr std::array<KnownUnit, 22> kOthers{{{"N/m", 1.0, kStiffness.powers},
@@ -72,7 +72,7 @@ std::vector<KnownUnit> all_units() {
   return list;
 }
 
-/// An alternative spelling of a part of a unit's name, in UTF-8.
+/// An alternative spelling, in UTF-8, of a sequence of letters in a unit's name.
 struct Sign {
   std::string_view part;
   std::string_view sign;
@@ -80,13 +80,13 @@ struct Sign {
 
 constexpr std::array<Sign, 3> kSigns{{{"um", "\xC2\xB5m"}, {"um", "\xCE\xBCm"}, {"deg", "\xC2\xB0"}}};
 
-/// Whether a word may continue with this character.
+/// Returns true if a word may continue with this character.
 bool goes_on(char c) {
   const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
   return letter || (c >= '0' && c <= '9') || static_cast<unsigned char>(c) >= 0x80;
 }
 
-/// Number of bytes of this unit's name at the beginning of the text; 0 if the text begins otherwise.
+/// The number of bytes of this unit's name at the beginning of the text; 0 if the text begins with something else.
 std::size_t length_of(std::string_view name, std::string_view text) {
   const std::size_t size = text.size();
   while (!name.empty()) {
@@ -100,7 +100,7 @@ std::size_t length_of(std::string_view name, std::string_view text) {
   return !text.empty() && goes_on(text.front()) ? 0 : size - text.size();
 }
 
-/// The product of units as text, without powers of 0: "m^2 s^-1".
+/// A product of units as text, without powers of 0: "m^2 s^-1".
 std::string powers_text(std::span<const std::pair<std::string_view, int>> powers) {
   std::string text;
   for (const auto& [unit, power] : powers) {

@@ -13,9 +13,9 @@ namespace {
 using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 
-/// A wrench strains a limb only if the strain is at least this share of the limb's largest compliance.
+/// A limb counts as strained by a wrench only if the strain is at least this share of the limb's largest compliance.
 constexpr double kRigid = 1e-12;
-/// A smaller share of a wrench is rounding.
+/// Two limbs load each other if the products of their rows of the wrenches' basis exceed this.
 constexpr double kNothing = 1e-6;
 
 /// An orthonormal basis of a matrix's null space.
@@ -25,8 +25,8 @@ Matrix null_space(const Matrix& matrix, double threshold) {
   return svd.V.rightCols(matrix.cols() - rank);
 }
 
-/// Wrenches of all limbs, in the order of the equations, that balance at every body and strain no limb: null vectors of
-/// the matrix that are not motions, [wrenches x k].
+/// [wrenches x k] The wrenches of all limbs, in the order of the equations, that balance at every body and strain no
+/// limb: null vectors of the matrix that are not motions.
 Matrix unstrained(const assembly::Equilibrium& equations, double rank_threshold) {
   const Matrix& matrix = equations.matrix();
   const Index wrenches = equations.first_wrenches().back();
@@ -45,7 +45,7 @@ Matrix unstrained(const assembly::Equilibrium& equations, double rank_threshold)
   return balanced * svd.V.rightCols(balanced.cols() - strained);
 }
 
-/// The limbs that load each other by these wrenches: the first such limb, and all that are connected with it.
+/// The limbs that load each other by these wrenches: the first such limb, and all limbs that are connected with it.
 std::vector<std::size_t> loaded_together(const Matrix& wrenches, const assembly::Equilibrium& equations) {
   const std::span<const Index> first = equations.first_wrenches();
   const auto rows = [&](std::size_t e) { return wrenches.middleRows(first[e], first[e + 1] - first[e]); };
@@ -57,7 +57,7 @@ std::vector<std::size_t> loaded_together(const Matrix& wrenches, const assembly:
   return limbs;
 }
 
-/// Labels of limbs for messages: "limbs 1, 2 and left_3".
+/// Labels of limbs as text for messages: "limbs 1, 2 and left_3".
 std::string labels_text(const Mechanism& mechanism, const std::vector<std::size_t>& limbs) {
   std::string text = limbs.size() == 1 ? "limb " : "limbs ";
   for (std::size_t k = 0; k < limbs.size(); ++k) {

@@ -5,9 +5,9 @@
 
 namespace poesy::file {
 
-/// Throws InputError, with their labels, if rigid limbs over-constrain each other at home. Then wrenches exist that
-/// need no load and cause no strain, so the equations of the assembly do not determine their size. model: the
-/// mechanism's assembly with stiffness.
+/// Throws InputError, with the labels of the limbs, if rigid limbs over-constrain each other at home. Then there are
+/// wrenches that need no load and cause no strain, and the equations of the assembly do not determine their size.
+/// model: the mechanism's assembly with stiffness.
 void check_rigid_limbs(const Mechanism& mechanism, const assembly::AssemblyModel& model,
                        const assembly::Nominal& at_home);
 

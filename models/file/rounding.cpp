@@ -10,15 +10,16 @@
 namespace poesy::file {
 namespace {
 
-/// The largest singular value that may be zero but for rounded input, relative to the largest of all.
+/// A singular value (as a share of the largest) up to this may be zero in the exact mechanism and differ from zero only
+/// because numbers are rounded.
 constexpr double kLargestZero = 1e-2;
-/// The number of gaps that are tried.
+/// The largest number of gaps between singular values that are tried.
 constexpr std::size_t kMostGaps = 4;
-/// Factors by which singular values that are zero but for rounding may grow at other poses. The second is used if, with
-/// the first, the rank leaves no motion.
+/// The singular values that would be zero without rounding may be this many times as large at other poses. The second
+/// factor is tried if the rank with the first one leaves no motion.
 constexpr std::array kMargins{5.0, 1.5};
 
-/// The error that a check throws; empty if it passes.
+/// The error that a check throws; none if the check passes.
 template <class Check>
 std::optional<InputError> problem_of(Check check) {
   try {
@@ -29,7 +30,7 @@ std::optional<InputError> problem_of(Check check) {
   return std::nullopt;
 }
 
-/// A rank, and its neighbouring singular values as shares of the largest.
+/// A rank, and the singular values just above and below its threshold, as shares of the largest.
 struct Gap {
   std::size_t rank;
   double above;
@@ -37,19 +38,21 @@ struct Gap {
   double margin;  ///< one of kMargins
 
   double ratio() const { return above / std::max(below, kRankThreshold); }
-  /// Whether the mechanism has this rank at this configuration too. Narrows the gap to the values there.
+  /// Narrows the gap by the singular values of another configuration. Returns true if the mechanism can have this rank
+  /// there: a gap remains.
   bool narrow(const std::vector<double>& values) {
     above = std::min(above, values[rank - 1] / values[0]);
     below = std::max(below, values[rank] / values[0]);
     return above > below;
   }
-  /// The threshold between both sides. It is nearer to the lower one, because the upper one falls near singular poses.
+  /// The threshold between the two singular values. It is nearer to the lower one, because the upper one becomes
+  /// smaller near singular poses.
   double threshold() const {
     return margin * below <= kRankThreshold ? kRankThreshold : std::min(margin * below, std::sqrt(above * below));
   }
 };
 
-/// The gaps where the rank of rounded numbers may be, the widest first.
+/// The gaps between singular values at which the rank of a mechanism with rounded numbers may be, the widest gap first.
 std::vector<Gap> gaps_of(const std::vector<double>& values) {
   std::vector<Gap> list;
   for (std::size_t rank = 1; rank < values.size(); ++rank) {
@@ -61,20 +64,20 @@ std::vector<Gap> gaps_of(const std::vector<double>& values) {
   return list;
 }
 
-/// The largest mismatch of the limbs at these poses.
+/// The largest mismatch of the limbs over these poses.
 double largest_mismatch(const std::vector<PoseMobility>& poses) {
   double largest = 0.0;
   for (const PoseMobility& pose : poses) largest = std::max(largest, pose.tracked.mismatch);
   return largest;
 }
 
-/// The result of treating numbers as rounded; empty if the mechanism does not move that way.
+/// The result of treating numbers as rounded; empty if the mechanism then does not move as its coordinates say.
 struct Attempt {
   std::optional<Checked> checked = {};
   std::optional<InputError> misfit = {};  ///< set if the loops close only approximately
 };
 
-/// Tries the rank of this gap.
+/// Treats the numbers as rounded, with the rank that this gap separates.
 Attempt rounded(Mechanism mechanism, Gap gap) {
   const auto passes = [&](const Mobility& home, std::span<const PoseMobility> poses) {
     return !problem_of([&] {
@@ -115,7 +118,7 @@ Checked checked(Mechanism mechanism, Workspace workspace) {
     if (workspace == Workspace::in_reach) check_mobility(mechanism, home, poses);
   });
   if (!problem && !open) return {std::move(mechanism), std::move(home)};
-  // With stiffness, limbs that fit only to some digits would press on each other as parts do not.
+  // Rounded limbs with stiffness would press on each other, which parts of the real machine do not do.
   if (mechanism.is_branched() && mechanism.is_elastic() && problem) throw *problem;
   std::optional<InputError> nearly;
   for (Gap gap : gaps_of(home.singular_values)) {

@@ -4,29 +4,33 @@
 
 #include "models/file/mobility.h"
 
-/// Mechanisms with rounded numbers, as from CAD, URDF or drawings: the limbs fit each other only to some digits.
+/// Mechanisms with rounded numbers, for example from CAD, URDF or drawings. Their limbs fit each other only
+/// approximately.
 namespace poesy::file {
 
-/// The largest gap of the limbs, as a share of the reach, that counts as rounding.
+/// The largest gap of the limbs that counts as rounding, as a share of the reach.
 inline constexpr double kRoundedGap = 1e-4;
-/// Up to this share of the reach the message names the joint whose numbers would close the loops.
+/// If the gap of the limbs is at most this share of the reach, the message names the joint whose numbers would close
+/// the loops.
 inline constexpr double kNamedGap = 1e-2;
 
-/// A mechanism that moves as its coordinates say.
+/// A mechanism that passed its check: it moves as its coordinates say.
 struct Checked {
-  Mechanism mechanism;    ///< with the precision of its numbers
-  Mobility home;          ///< by this precision
-  double mismatch = 0.0;  ///< m: largest gap of the perfect limbs at home and at the tested poses; 0: exact
+  Mechanism mechanism;  ///< the mechanism, with the precision of its numbers
+  Mobility home;        ///< mobility at home, with this precision
+  /// Largest gap of the perfect limbs at home and at the tested poses, m; 0 if the numbers are exact.
+  double mismatch = 0.0;
 };
 
-/// Whether the check requires that a part of the workspace is reached.
+/// Whether the check requires that some pose of the workspace is reached (in_reach) or not (as_it_is).
 enum class Workspace { as_it_is, in_reach };
 
-/// Treats the numbers as exact if the mechanism passes check_mobility() and no path to the poses of
-/// workspace_mobility() ends because loops stay open. Otherwise treats them as rounded, if the mechanism passes then.
-/// The rank is at the widest gap between singular values, between 1e-6 and 1e-2 of the largest, that lets the mechanism
-/// move as its coordinates say; loops must close to kRoundedGap of the reach. If both fail, throws the error of the
-/// exact check, or, if the loops close to kNamedGap, an InputError that names the joint whose numbers would close them.
+/// Checks a mechanism. The numbers count as exact if it passes check_mobility(), and if no path to the poses of
+/// workspace_mobility() ends because loops stay open. Otherwise the check is repeated with a lower precision; if the
+/// mechanism passes then, its numbers count as rounded. The rank of such a mechanism is taken at a gap between singular
+/// values that are between 1e-6 and 1e-2 of the largest: at the widest gap with which the mechanism moves as its
+/// coordinates say. Its loops must close to kRoundedGap of the reach. If both checks fail, throws the error of the
+/// exact check. But if the loops close to kNamedGap, the InputError names the joint whose numbers would close them.
 Checked checked(Mechanism mechanism, Workspace workspace);
 
 }  // namespace poesy::file

@@ -8,12 +8,12 @@
 namespace poesy::file {
 
 /// Sets the compliances of a limb whose joints are known: bearings, links and the whole limb. turn: the motion from the
-/// first copy to this one. Throws InputError if an entry is not positive, a link passes a joint whose axis is not on
-/// its line, or a compliance is not symmetric or has a negative eigenvalue.
+/// first copy of the limb to this one. Throws InputError if an entry is not positive, if a link passes a joint whose
+/// axis is not on the link's line, or if a compliance is not symmetric or has a negative eigenvalue.
 void add_stiffness(const Numbers& numbers, const LimbLines& lines, const Transform& turn,
                    const std::vector<assembly::Body>& bodies, Limb& limb);
 
-/// The loads of the file on the bodies of a mechanism.
+/// The loads of the file that act on the bodies of a mechanism.
 assembly::Load load_of(const Numbers& numbers, const Mechanism& made);
 
 }  // namespace poesy::file

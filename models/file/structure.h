@@ -7,41 +7,41 @@
 #include "engine/model/sketch.h"
 #include "models/file/mobility.h"
 
-/// Texts that show how a mechanism file was understood.
+/// Texts that show how the program understood a mechanism file.
 namespace poesy::file {
 
-/// A line for each elementary joint and fixed frame with its frame at home (mm, in the base frame), the named drives,
-/// and the rule that chose the frames.
+/// Text with a line for each elementary joint and fixed frame, with its frame at home (mm, in the base frame). The
+/// named drives and the rule that chose the frames follow.
 std::string structure_text(const Mechanism& mechanism);
 
-/// The joints of a drive: "joint q of limb 1 and joint q of limb 4".
+/// The joints of a drive as text: "joint q of limb 1 and joint q of limb 4".
 std::string joints_text(const Mechanism& mechanism, const Drive& drive);
 
 /// A vector as text: "(0, 0.707107, 0.707107)".
 std::string triple_text(const Vector3& value);
 
-/// A small length as text: "0.12 um", or in mm from 0.01 mm on.
+/// A small length as text: "0.12 um", or in mm if it is at least 0.01 mm.
 std::string small_length_text(double metres);
 
 /// The description of a coordinate.
 std::string coordinate_text(const Coordinate& coordinate);
 
-/// The sketch of the joints at home, as written in the file: elementary joints of one joint are shown as one. With the
-/// features of the drawing.
+/// The sketch of the joints at home as the file states them: the elementary joints of one joint are shown as one joint.
+/// It includes the features of the drawing.
 Sketch sketch_of(const Mechanism& mechanism);
 
-/// A clause for each coordinate of home that is outside its workspace.
+/// Clauses about coordinates whose value at home is outside their workspace, one for each.
 std::vector<std::string> home_outside(const Mechanism& mechanism);
 
-/// A clause for each error with limb = "each" whose limbs are not alike.
+/// Clauses about errors with limb = "each" for which the limbs are not alike, one for each error.
 std::vector<std::string> unlike_limbs(const Mechanism& mechanism);
 
-/// A remark on the mismatch of perfect limbs with rounded numbers (mismatch: its largest value, m); empty if they are
-/// exact.
+/// A remark on the mismatch of perfect limbs with rounded numbers; empty if numbers are exact. mismatch: its largest
+/// value, m.
 std::vector<std::string> rounding_remarks(const Mechanism& mechanism, double mismatch);
 
-/// Lines on joints, ranks and freedoms at home, the singular values around the gap, and the differences at the first
-/// poses of the workspace that differ.
+/// Lines about the mobility at home: joints, ranks, freedoms, and the singular values just above and below the rank's
+/// threshold. Then lines about the first poses of the workspace whose mobility differs from that at home.
 std::vector<std::string> mobility_lines(const Mechanism& mechanism, const Mobility& home,
                                         std::span<const PoseMobility> poses);
 

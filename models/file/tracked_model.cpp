@@ -12,11 +12,11 @@
 namespace poesy::file {
 namespace {
 
-/// Shortest link as a share of the reach. Joints that are closer belong to one part, and errors may be as large as
-/// their distance.
+/// The shortest distance between joints that counts as a link, as a share of the reach. Joints that are closer belong
+/// to one part, whose errors may be as large as their distance.
 constexpr double kShortestLink = 0.02;
 
-/// Positions of the responses with these names.
+/// The positions of the responses with these names, without names that no response has.
 std::vector<std::size_t> positions(const std::vector<Response>& responses, std::span<const std::string_view> names) {
   std::vector<std::size_t> list;
   for (const std::string_view name : names) {

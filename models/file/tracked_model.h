@@ -13,8 +13,7 @@
 
 namespace poesy::file {
 
-/// The part of a model that needs no solver: the poses and charts of a mechanism of a file, its mobility, and the
-/// bounds of its errors.
+/// The part of a model of a mechanism file that needs no solver: poses and charts, mobility, and bounds of errors.
 class TrackedModel : public Model {
  public:
   const ModelDescription& description() const override { return description_; }
@@ -26,42 +25,44 @@ class TrackedModel : public Model {
   std::vector<std::string> mobility() const override;
   std::vector<std::string> remarks() const override;
   std::vector<std::string> unusual_geometry() const override;
-  /// base_R_platform of perfect limbs at a reachable pose (SI), or at home if the pose is empty.
+  /// The rotation base_R_platform of perfect limbs at a reachable pose (SI), or at home if the pose is empty.
   virtual lie::Matrix3<double> orientation(std::span<const double> pose) const = 0;
-  /// The shortest link of the error's limb, or the mechanism's reach if it has none; for an angle half a turn.
+  /// The bound of an error: for a length, the shortest link of its limb, or the mechanism's reach if the limb has no
+  /// link; for an angle, half a turn.
   ErrorBound error_bound(FactorIndex factor) const override;
 
  protected:
-  /// Completes the description except for responses and data derived from them.
+  /// Completes the description, except for responses and the data that follow from them.
   TrackedModel(const MechanismFile& file, Checked found);
 
-  /// Sets the responses and those shown in summaries. deforms: whether these may include the gap.
+  /// Sets the responses, and those that summaries show. deforms: true if the gap may be among those that summaries
+  /// show.
   void set_responses(std::vector<Response> responses, bool deforms = true);
 
-  /// For derived classes that solve the mechanism.
+  /// The mechanism and its tracker, for derived classes that solve the mechanism.
   /// @{
   const Mechanism& mechanism() const { return mechanism_; }
   const std::shared_ptr<const Tracker>& tracker() const { return tracker_; }
   /// @}
-  /// For derived classes that complete the description.
+  /// The description, for derived classes that complete it.
   ModelDescription& described() { return description_; }
 
  private:
   Mechanism mechanism_;
-  double mismatch_;  ///< m: largest mismatch of perfect limbs
+  double mismatch_;  ///< largest mismatch of perfect limbs, m
   std::shared_ptr<const Tracker> tracker_;
   std::vector<Chart> charts_;
   ModelDescription description_;
 };
 
-/// A limb in the form for solvers. drives: Joint::drive of each joint that moves; those of the limb are removed from
-/// the front.
+/// A limb in the form that solvers need. drives: Joint::drive of each moving joint, from this limb's first one on. The
+/// function removes the numbers of this limb from the front.
 chain::Limb chain_limb(const Limb& limb, bool errors_at_joints, std::span<const std::size_t>& drives);
 
-/// For each joint that moves, the number of its drive if the drive moves other joints too, else 0.
+/// [moving] For each joint that moves, the number of its drive, or 0 if the drive moves no other joint.
 std::vector<std::size_t> shared_drives(const Mechanism& mechanism);
 
-/// The displacements of all joints and fixed frames, from those of the joints that move [moving].
+/// The displacements of all joints and fixed frames. moving: [moving] those of the joints that move (rad, m).
 std::vector<double> with_fixed(const Mechanism& mechanism, std::span<const double> moving);
 
 }  // namespace poesy::file

@@ -16,13 +16,16 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-constexpr double kFirstStep = 0.25;           ///< share of the path
-constexpr double kSmallestStep = 1.0 / 2048;  ///< share of the path
-constexpr double kLargestMove = 0.5;          ///< of a joint in Newton's first step, rad or shares of the reach
-constexpr double kContraction = 0.25;         ///< largest ratio of a later step to the previous one
-constexpr double kRest = 1e-12;               ///< a smaller step ends the iteration
-constexpr double kRounding = 1e-13;           ///< a smaller residual ends it too, rad or shares of the reach
-constexpr double kDependent = 1e-12;          ///< smallest pivot of independent columns, as a share of the largest
+constexpr double kFirstStep = 0.25;           ///< first step along the path, as a share of the path
+constexpr double kSmallestStep = 1.0 / 2048;  ///< smallest step along the path, as a share of the path
+/// Largest change of a joint in Newton's first step, rad or shares of the reach.
+constexpr double kLargestMove = 0.5;
+constexpr double kContraction = 0.25;  ///< largest ratio of a Newton step to the previous one
+constexpr double kRest = 1e-12;        ///< a smaller Newton step ends the iteration
+/// A smaller residual also ends the iteration, rad or shares of the reach.
+constexpr double kRounding = 1e-13;
+/// Smallest pivot with which columns count as independent, as a share of the largest pivot.
+constexpr double kDependent = 1e-12;
 constexpr int kMostSteps = 12;
 constexpr int kMostSettlings = 60;
 
@@ -85,7 +88,7 @@ Tracker::Tracker(const Mechanism& mechanism, Given given)
   }
 }
 
-/// The columns of the unknowns: [6 limbs x free]. Joints of one drive share the sum of their columns.
+/// [6 limbs x unknowns] The columns of the unknowns. The column of a drive is the sum of the columns of its joints.
 Matrix Tracker::matrix_of(const LoopEquations& equations) const {
   if (shared_.empty()) return equations.columns(Eigen::all, free_);
   Matrix all = equations.columns;
@@ -97,7 +100,8 @@ Matrix Tracker::matrix_of(const LoopEquations& equations) const {
   return all(Eigen::all, free_);
 }
 
-/// A Newton step. For rounded numbers it minimises the residual by the metric, among steps of the mechanism's rank.
+/// A Newton step. For rounded numbers it minimises the residual in the metric, among the steps that the mechanism's
+/// rank allows.
 Vector Tracker::step(const LoopEquations& equations, const State& state) const {
   const Matrix matrix = matrix_of(equations);
   if (!unit_.precision.rounded()) return linalg::least_squares(matrix, equations.residual, kRankThreshold);
@@ -114,7 +118,7 @@ bool Tracker::is_closed(const State& state) const {
          is_regular(state);
 }
 
-/// Whether the equations determine all unknowns except idle freedoms.
+/// Returns true if the equations determine all unknowns except the idle freedoms.
 bool Tracker::is_regular(const State& state) const {
   const Matrix matrix = matrix_of(loop_equations(unit_, state));
   const Vector values = linalg::singular_values(matrix);
@@ -128,7 +132,8 @@ void Tracker::move_together(State& state) const {
   }
 }
 
-/// Newton's method, as long as every step is a fraction of the previous one; then the root is the one on the path.
+/// Newton's method. It continues only as long as every step is smaller than a fixed fraction of the previous one, so it
+/// finds the root that continues the path.
 Tracker::Ending Tracker::close(State& state) const {
   double most = kLargestMove;
   for (int n = 0; n < kMostSteps; ++n) {
@@ -148,10 +153,10 @@ Tracker::Ending Tracker::close(State& state) const {
 
 namespace {
 
-/// Minimises the sum of squares of the displacements of a limb that can move while its end is fixed: Newton's method on
-/// min |q|^2 / 2 with fixed g(q). The constraint log(g(q) g^-1) is to second order sum xi_j dq_j + sum_{i<j} [xi_i,
-/// xi_j] dq_i dq_j / 2. free: the joints that may move; rank: of their columns; end: pose of the limb's end in the body
-/// where it begins.
+/// Minimises the sum of squares of the displacements q of those joints of a limb that can move while its end is fixed.
+/// This is Newton's method on min |q|^2 / 2 with fixed g(q). To second order the constraint log(g(q) g^-1) is sum xi_j
+/// dq_j + sum_{i<j} [xi_i, xi_j] dq_i dq_j / 2. free: positions of the joints that may move. rank: of their columns.
+/// end: pose of the limb's end in the body at which the limb begins.
 bool settle_limb(const Limb& limb, const std::vector<std::size_t>& free, Index rank, const Transform& end,
                  Eigen::Ref<Vector> q) {
   const Index joints = index(free.size());
@@ -195,7 +200,7 @@ bool Tracker::settle(State& state) const {
     if (limb_ranks_[i] == limb_joints_[i].size()) continue;
     Transform end = transform_of(unit_, state, limb.to);
     if (limb.from != kBase) end = transform_of(unit_, state, limb.from).inverse() * end;
-    // For rounded numbers the limb keeps its share of the mismatch.
+    // If numbers are rounded, the limb keeps its share of the mismatch.
     if (unit_.precision.rounded()) end = limb_transform(limb, {q.data(), limb.moving()});
     if (!settle_limb(limb, limb_joints_[i], index(limb_ranks_[i]), end, q)) return false;
   }
@@ -203,7 +208,7 @@ bool Tracker::settle(State& state) const {
 }
 
 std::string Tracker::why(const State& state, Ending ending, double share) const {
-  // Number of unknown joint displacements; components of the bodies' poses follow them.
+  // The number of unknown joint displacements. Unknown components of the bodies' poses follow them.
   const auto joints = std::ranges::count_if(free_, [&](std::size_t place) { return place < unit_.moving(); });
   const std::string where =
       "the way there from home ends after " + readable_text({100.0 * share, Dimension::number}, 3) + " %: ";

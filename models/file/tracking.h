@@ -9,40 +9,42 @@
 
 namespace poesy::file {
 
-/// The displacements [moving] with those of prismatic joints multiplied by a factor.
+/// The displacements [moving of the mechanism]; those of prismatic joints are multiplied by a factor.
 std::vector<double> scaled_displacements(const Mechanism& mechanism, std::span<const double> displacements,
                                          double factor);
 
-/// A tracked pose, or the end of the path towards it.
+/// The result of tracking: the pose, or the end of the path towards it.
 struct Tracked {
-  std::vector<double> displacements;  ///< [moving], limb by limb, from home (rad, m); at the end of the path
-  PlatformPose pose;                  ///< of the platform at the end of the path
-  Transform platform;                 ///< base_T_platform at the end of the path
-  double share;                       ///< share of the path that was tracked; 1: the pose is reached
-  std::string unreachable;            ///< why the path ended; empty: the pose is reached
-  /// Whether the path ended because the loops stay open beyond, although no pose on it is singular.
+  /// [moving] Joint displacements from home (rad, m) at the end of the path, limb by limb.
+  std::vector<double> displacements;
+  PlatformPose pose;        ///< pose of the platform at the end of the path
+  Transform platform;       ///< frame base_T_platform at the end of the path
+  double share;             ///< share of the path that was tracked; 1 if the pose is reached
+  std::string unreachable;  ///< reason why the path ended; empty if the pose is reached
+  /// True if the path ended because the loops stay open beyond its end, although no pose on the path is singular.
   bool open = false;
-  double mismatch = 0.0;  ///< m: gap of the limbs at the end if numbers are rounded; else 0
-  State state = {};       ///< at the end, with lengths in units of the reach
+  double mismatch = 0.0;  ///< gap of the limbs at the end of the path if numbers are rounded, m; else 0
+  State state = {};       ///< state at the end of the path, with lengths in units of the reach
 };
 
-/// The numbers that define the configuration: the coordinates of the platform (inverse kinematics), or the
-/// displacements of the drives from home, in the order of drives_of() (forward kinematics).
+/// Which numbers define the configuration: the coordinates of the platform (inverse kinematics), or the displacements
+/// of the drives from home, in the order of drives_of() (forward kinematics).
 enum class Given { coordinates, drives };
 
-/// Computes nominal joint displacements at a pose. Tracks the straight line in the given numbers from home, by Newton's
-/// method on all other joints and components of the bodies' poses. Steps along the line are halved until Newton
-/// converges at once, so the limbs stay in the working mode of home. Newton steps have the least norm for the rank that
-/// the mechanism has at home, so redundant loop equations do no harm. The joints of one drive are one unknown. Among
-/// the displacements at a pose those with the least sum of squares nearby (rad, and lengths in units of the reach) are
-/// chosen, so that idle freedoms do not depend on the path. With rounded numbers (Precision) a pose is the
-/// least-squares one by the metric. A result depends only on the mechanism and the pose.
+/// Computes nominal joint displacements at a pose. The tracker follows the straight line in the given numbers from
+/// home, and solves for all other joint displacements and body poses by Newton's method. It halves the steps along the
+/// line until Newton converges at once, so the limbs stay in the working mode of home. Newton steps have the least norm
+/// for the rank that the mechanism has at home, so redundant loop equations do no harm. The joints of one drive are one
+/// unknown. If several displacements give the pose, the tracker chooses among those nearby the ones with the least sum
+/// of squares (rad, and lengths in units of the reach), so that idle freedoms do not depend on the path. With rounded
+/// numbers (Precision) a pose is the least-squares one in the metric. A result depends only on the mechanism and the
+/// pose.
 class Tracker {
  public:
-  /// Copies the mechanism. Precondition for drives: if all are held, the platform has no freedom.
+  /// Copies the mechanism. Precondition for Given::drives: if all drives are held, the platform has no freedom.
   explicit Tracker(const Mechanism& mechanism, Given given = Given::coordinates);
 
-  /// Tracks a pose. numbers: [mechanism.coordinates] or [drives], SI. Never throws for a pose that is not reached.
+  /// Tracks a pose. numbers: [mechanism.coordinates] or [drives], SI. Does not throw for a pose that is not reached.
   Tracked track(std::span<const double> numbers) const;
 
  private:
@@ -57,18 +59,18 @@ class Tracker {
   bool settle(State& state) const;
   std::string why(const State& state, Ending ending, double share) const;
 
-  Mechanism unit_;                  ///< lengths in units of the reach
-  double reach_;                    ///< m
-  Given by_;                        ///< what is given
+  Mechanism unit_;                  ///< mechanism with lengths in units of the reach
+  double reach_;                    ///< reach, m
+  Given by_;                        ///< which numbers are given
   std::vector<std::size_t> given_;  ///< positions of the given numbers in a state
   std::vector<double> units_;       ///< [given] unit of each number, SI
   std::vector<std::size_t> free_;   ///< positions of all other numbers in a state, ascending
-  std::vector<Drive> shared_;       ///< drives of several joints; the first joint is the unknown
-  /// For each limb, the positions among its moving joints of those that are neither given nor share a drive with
+  std::vector<Drive> shared_;       ///< drives of several joints, each of which is one unknown at its first joint
+  /// For each limb, positions among its moving joints: those of the joints that are not given and share no drive with
   /// others.
   std::vector<std::vector<std::size_t>> limb_joints_;
-  std::vector<std::size_t> limb_ranks_;  ///< rank of their columns at home
-  std::size_t idle_ = 0;                 ///< number of joints in excess of these ranks
+  std::vector<std::size_t> limb_ranks_;  ///< [limbs] rank of the columns of these joints at home
+  std::size_t idle_ = 0;                 ///< number of these joints in excess of the ranks: the idle freedoms
 };
 
 }  // namespace poesy::file

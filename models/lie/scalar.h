@@ -4,8 +4,8 @@
 
 namespace poesy::lie {
 
-// Functions that let one formula serve a number and a batch of numbers: a comparison gives a mask, `select` chooses per
-// lane, `any` tells whether some lane needs a rare branch.
+// These functions let one formula work on a number and on a batch of numbers (lanes). A comparison gives a mask,
+// `select` chooses in each lane, and `any` tells whether a lane exists that needs a rare branch.
 
 template <class T>
 requires std::is_floating_point_v<T>

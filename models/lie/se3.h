@@ -4,7 +4,7 @@
 
 namespace poesy::lie {
 
-/// A screw in ray order [omega; v], as in Du et al. 2022, Eq. A1.
+/// A screw [omega; v] in ray order (Du et al. 2022, Eq. A1).
 template <class T>
 using Screw = Eigen::Matrix<T, 6, 1>;
 template <class T>
@@ -13,18 +13,18 @@ using Matrix6 = Eigen::Matrix<T, 6, 6>;
 /// A rigid motion x -> R x + p. base_T_platform maps platform coordinates to base coordinates.
 template <class T>
 struct Transform {
-  /// Rotation.
+  /// The rotation matrix.
   Matrix3<T> R = Matrix3<T>::Identity();
-  /// Translation.
+  /// The translation vector.
   Vector3<T> p = Vector3<T>::Zero();
 
   /// The inverse motion x -> R^T (x - p).
   Transform inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
-  /// The motion b followed by a.
+  /// The product a b: first the motion b, then a.
   friend Transform operator*(const Transform& a, const Transform& b) { return {a.R * b.R, a.R * b.p + a.p}; }
 };
 
-/// The motion exp(screw) (Eqs. A2, A4), stable at every angle.
+/// The motion exp(screw) (Du et al. 2022, Eqs. A2, A4), accurate at every angle.
 template <class T>
 Transform<T> exp(const Screw<T>& screw) {
   const Vector3<T> w = screw.template head<3>();
@@ -32,8 +32,8 @@ Transform<T> exp(const Screw<T>& screw) {
   return {exp(w), left_jacobian(w) * v};
 }
 
-/// The screw of a motion, with rotation angle at most pi: exp(log(g)) = g. Differs from the printed Eq. A6, which is
-/// 0/0 at small angles, and equals it elsewhere.
+/// The screw of a motion g, with a rotation angle of at most pi: exp(log(g)) = g. It equals Eq. A6 of Du et al. 2022,
+/// except at small angles, where the printed equation is 0/0.
 template <class T>
 Screw<T> log(const Transform<T>& g) {
   const Vector3<T> w = log(g.R);
@@ -43,7 +43,8 @@ Screw<T> log(const Transform<T>& g) {
   return screw;
 }
 
-/// Ad(g): transforms a screw from the frame of g to the frame in which g is expressed (Eq. A8).
+/// The adjoint Ad(g), which transforms a screw from the frame of g to the frame in which g is expressed (Du et al.
+/// 2022, Eq. A8).
 template <class T>
 Matrix6<T> adjoint(const Transform<T>& g) {
   Matrix6<T> ad = Matrix6<T>::Zero();
@@ -53,7 +54,7 @@ Matrix6<T> adjoint(const Transform<T>& g) {
   return ad;
 }
 
-/// Lie bracket [a, b]: the derivative of Ad(exp(t a)) b at t = 0.
+/// The Lie bracket [a, b]: the derivative of Ad(exp(t a)) b at t = 0.
 template <class T>
 Screw<T> bracket(const Screw<T>& a, const Screw<T>& b) {
   const Vector3<T> wa = a.template head<3>(), va = a.template tail<3>();
@@ -64,7 +65,7 @@ Screw<T> bracket(const Screw<T>& a, const Screw<T>& b) {
   return c;
 }
 
-/// The wrench [moment; force] whose product with each twist a equals the product of `wrench` with the bracket [a, b].
+/// The wrench [moment; force] whose product with every twist a equals the product of `wrench` with the bracket [a, b].
 template <class T>
 Screw<T> wrench_of_bracket(const Screw<T>& wrench, const Screw<T>& b) {
   const Vector3<T> moment = wrench.template head<3>(), force = wrench.template tail<3>();
@@ -77,7 +78,7 @@ Screw<T> wrench_of_bracket(const Screw<T>& wrench, const Screw<T>& b) {
 
 enum class Axis { x, y, z };
 
-/// Rot(axis, angle): rotation about a coordinate axis.
+/// Rotation by an angle (rad) about a coordinate axis.
 template <class T>
 Transform<T> rotation(Axis axis, T angle) {
   Vector3<T> w = Vector3<T>::Zero();
@@ -85,7 +86,7 @@ Transform<T> rotation(Axis axis, T angle) {
   return {exp(w), Vector3<T>::Zero()};
 }
 
-/// Trans(axis, distance): translation along a coordinate axis.
+/// Translation by a distance along a coordinate axis.
 template <class T>
 Transform<T> translation(Axis axis, T distance) {
   Transform<T> g;

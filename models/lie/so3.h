@@ -21,7 +21,7 @@ Matrix3<T> hat(const Vector3<T>& w) {
   return m;
 }
 
-/// The vector of the antisymmetric part of m: the inverse of hat.
+/// The vector of the antisymmetric part of m; the inverse of hat().
 template <class T>
 Vector3<T> vee(const Matrix3<T>& m) {
   return T(0.5) * Vector3<T>(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
@@ -41,7 +41,7 @@ ExpCoefficients<T> exp_coefficients(T theta_squared) {
   using std::sin;
   using std::sqrt;
   const T x = theta_squared;
-  // Below 1/4 the closed forms lose digits to cancellation; these series are exact to rounding there.
+  // The closed forms lose digits to cancellation if theta^2 < 1/4. These series are exact to rounding there.
   const auto small = x < T(0.25);
   const T a_series =
       T(1) - x / T(6) *
@@ -70,7 +70,7 @@ ExpCoefficients<T> exp_coefficients(T theta_squared) {
           select(small, c_series / T(6), (theta - sine) / (safe * theta))};
 }
 
-/// Rotation by the angle |w| about w (Du et al. 2022, Eq. A5), stable at every angle.
+/// The rotation by the angle |w| about w (Du et al. 2022, Eq. A5), accurate at every angle.
 template <class T>
 Matrix3<T> exp(const Vector3<T>& w) {
   const auto [a, b, c] = exp_coefficients<T>(w.squaredNorm());
@@ -81,7 +81,7 @@ Matrix3<T> exp(const Vector3<T>& w) {
   return rotation;
 }
 
-/// exp(w) x - x: the displacement of a point by a rotation, without cancellation at small angles.
+/// The displacement exp(w) x - x of a point by a rotation, without cancellation at small angles.
 template <class T>
 Vector3<T> moved_by_rotation(const Vector3<T>& w, const Vector3<T>& x) {
   const auto [a, b, c] = exp_coefficients<T>(w.squaredNorm());
@@ -90,7 +90,8 @@ Vector3<T> moved_by_rotation(const Vector3<T>& w, const Vector3<T>& x) {
   return a * across + b * w.cross(across);
 }
 
-/// Left Jacobian of SO(3) at w: V with exp([w; v]) = (exp(w), V v) (Eq. A4 for a vector that is not of unit length).
+/// The left Jacobian V of SO(3) at w, for which exp([w; v]) = (exp(w), V v). It is Eq. A4 of Du et al. 2022 for a w of
+/// any length.
 template <class T>
 Matrix3<T> left_jacobian(const Vector3<T>& w) {
   const auto [a, b, c] = exp_coefficients<T>(w.squaredNorm());
@@ -101,7 +102,7 @@ Matrix3<T> left_jacobian(const Vector3<T>& w) {
   return v;
 }
 
-/// Inverse of left_jacobian, for |w| < 2 pi.
+/// The inverse of left_jacobian(), for |w| < 2 pi.
 template <class T>
 Matrix3<T> left_jacobian_inverse(const Vector3<T>& w) {
   using std::cos;
@@ -109,7 +110,7 @@ Matrix3<T> left_jacobian_inverse(const Vector3<T>& w) {
   using std::sqrt;
   const T x = w.squaredNorm();
   const auto small = x < T(0.25);
-  // (1 - theta/2 cot(theta/2)) / theta^2 = sum of |B_2n| theta^(2n-2) / (2n)!, Bernoulli numbers B.
+  // (1 - theta/2 cot(theta/2)) / theta^2 = sum of |B_2n| theta^(2n-2) / (2n)!, where B_2n are Bernoulli numbers.
   const T series =
       T(1) / T(12) +
       x * (T(1) / T(720) + x * (T(1) / T(30240) + x * (T(1) / T(1209600) +
@@ -126,8 +127,9 @@ Matrix3<T> left_jacobian_inverse(const Vector3<T>& w) {
 
 namespace detail {
 
-/// Unit axis of a rotation by more than 90 degrees from its symmetric part S, because the antisymmetric part vanishes
-/// at 180 degrees. n n^T (1 - c) = S - c I; the column of the largest diagonal entry is the most accurate.
+/// The unit axis n of a rotation by more than 90 degrees, from the symmetric part S of the matrix, because the
+/// antisymmetric part vanishes at 180 degrees. With the cosine c of the angle, n n^T (1 - c) = S - c I. The column with
+/// the largest diagonal entry is the most accurate.
 template <class T>
 Vector3<T> axis_from_symmetric_part(const Matrix3<T>& rotation, T cosine, const Vector3<T>& antisymmetric) {
   using std::sqrt;
@@ -146,13 +148,13 @@ Vector3<T> axis_from_symmetric_part(const Matrix3<T>& rotation, T cosine, const 
 
 }  // namespace detail
 
-/// The rotation vector w with exp(w) = rotation and |w| <= pi, accurate from 0 to pi. At pi the sign is arbitrary.
-/// Differs from Eq. A6, which is 0/0 at the identity and at pi.
+/// The rotation vector w with exp(w) = rotation and |w| <= pi, accurate from 0 to pi. At pi its sign is arbitrary. It
+/// equals Eq. A6 of Du et al. 2022, except at the identity and at pi, where the printed equation is 0/0.
 template <class T>
 Vector3<T> log(const Matrix3<T>& rotation) {
   using std::atan2;
   using std::sqrt;
-  const Vector3<T> antisymmetric = vee(rotation);  // n sin(theta)
+  const Vector3<T> antisymmetric = vee(rotation);  // n sin(theta) for the axis n and the angle theta
   const T sine = sqrt(antisymmetric.squaredNorm());
   const T cosine = T(0.5) * (rotation.trace() - T(1));
   const T theta = atan2(sine, cosine);

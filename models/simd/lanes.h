@@ -1,13 +1,13 @@
 #pragma once
 
-// The number types of the instruction set for which a kernel's source is being compiled (models/CMakeLists.txt).
+// The number type of the instruction set for which a kernel's source is being compiled (models/CMakeLists.txt).
 
 #ifdef POESY_KERNEL_OF_NUMBERS
 #include "models/simd/number.h"
 
 namespace poesy::simd {
 
-/// One number at a time.
+/// Kernels compute with one number at a time.
 using Lanes = Number;
 
 }  // namespace poesy::simd
@@ -16,7 +16,7 @@ using Lanes = Number;
 
 namespace poesy::simd {
 
-/// A batch of numbers.
+/// Kernels compute with a batch of numbers at a time.
 using Lanes = HWY_NAMESPACE::Pack;
 
 }  // namespace poesy::simd

@@ -4,7 +4,7 @@
 
 namespace poesy::simd {
 
-/// c[0] + c[1] x + ... + c[n-1] x^(n-1)
+/// The polynomial c[0] + c[1] x + ... + c[n-1] x^(n-1).
 template <class T, std::size_t n>
 inline T polynomial(T x, const double (&c)[n]) {
   T sum = c[n - 1];
@@ -32,14 +32,14 @@ inline SinCos<T> sin_cos_near_zero(T x) {
   return {madd(x * z, polynomial(z, kSin), x), madd(z * z, polynomial(z, kCos), nmadd(T(0.5), z, T(1.0)))};
 }
 
-/// Sine and cosine for |x| < 100, within 2 ulp; near their zeros at multiples of pi/2, within 1e-26 for each quarter
-/// turn. Reduces x by pi/2 in two parts (Cody and Waite). The reduction is skipped if no lane needs it, which changes
-/// no bit of any lane.
+/// Sine and cosine for |x| < 100, within 2 ulp (units in the last place). Near the zeros at multiples of pi/2, the
+/// error is at most 1e-26 per quarter turn. The reduction by multiples of pi/2 uses pi/2 in two parts (Cody and Waite).
+/// It is skipped if no lane needs it, which changes no bit of any lane.
 template <class T>
 inline SinCos<T> sin_cos(T x) {
   constexpr double kTwoOverPi = 0.63661977236758134308;
   constexpr double kHalfPiHigh = 1.57079632673412561417e+00;  // the first 33 bits of pi/2
-  constexpr double kHalfPiLow = 6.07710050650619224932e-11;   // the rest
+  constexpr double kHalfPiLow = 6.07710050650619224932e-11;   // the remaining bits of pi/2
   const T quarters = x * T(kTwoOverPi);
   if (!any(!(abs(quarters) < T(0.5)))) return sin_cos_near_zero(x);
   const T n = nearest(quarters);

@@ -5,11 +5,11 @@
 
 namespace poesy::simd {
 
-/// A truth value with the interface of simd::Mask.
+/// A truth value with the interface of a SIMD mask.
 struct NumberMask {
-  bool m;  ///< the one lane
+  bool m;  ///< the truth value
 
-  /// Operations on the one lane.
+  /// Operations on truth values.
   /// @{
   friend NumberMask operator&(NumberMask a, NumberMask b) { return {a.m && b.m}; }
   friend NumberMask operator|(NumberMask a, NumberMask b) { return {a.m || b.m}; }
@@ -19,16 +19,16 @@ struct NumberMask {
   /// @}
 };
 
-/// A double with the interface of a batch: the reference for every batch, and the portable fallback.
+/// A double with the interface of a SIMD batch. It is the reference for all batches and the portable fallback.
 struct Number {
-  /// The type of comparisons.
+  /// The type of the result of a comparison.
   using MaskType = NumberMask;
-  static constexpr std::size_t kLanes = 1;  ///< one lane
+  static constexpr std::size_t kLanes = 1;  ///< the number of lanes is one
 
-  double v;  ///< the lane
+  double v;  ///< the number
 
   Number() = default;
-  /// Implicit, so that formulas may contain constants.
+  /// The conversion is implicit, so that formulas may contain constants.
   Number(double value) : v(value) {}
 
   /// Reads one double.
@@ -47,7 +47,7 @@ struct Number {
   friend NumberMask operator>(Number a, Number b) { return {a.v > b.v}; }
   /// @}
 
-  /// The operations of Pack; madd and nmadd round twice.
+  /// The functions of Pack for one double. Here madd and nmadd round twice.
   /// @{
   friend Number madd(Number a, Number b, Number c) { return a.v * b.v + c.v; }
   friend Number nmadd(Number a, Number b, Number c) { return c.v - a.v * b.v; }

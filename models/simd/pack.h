@@ -1,7 +1,7 @@
 #pragma once
 
-// A batch of numbers that is used like one number. Included only by translation units compiled for one instruction set:
-// every name is in a namespace of that set, so that no inline function of one set can be linked into another.
+// A SIMD batch of doubles that is used like one number. Only translation units compiled for one instruction set include
+// this file. Every name is in a namespace of that set, so no inline function of one set can be linked into another.
 #define HWY_COMPILE_ONLY_STATIC
 #include <hwy/highway.h>
 
@@ -17,7 +17,7 @@ using Tag = hn::ScalableTag<double>;
 struct Mask {
   hn::Mask<Tag> m;  ///< one bit for each lane
 
-  /// Operations lane by lane; any: whether some lane is true.
+  /// Logical operations lane by lane; `any` tells whether some lane is true.
   /// @{
   friend Mask operator&(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
   friend Mask operator|(Mask a, Mask b) { return {hn::Or(a.m, b.m)}; }
@@ -32,20 +32,20 @@ struct Mask {
   }
 };
 
-/// A batch of doubles. madd and nmadd round once; every other operation is a single IEEE operation per lane, so that
-/// instruction sets with fused multiply-add agree in every bit.
+/// A SIMD batch of doubles. madd and nmadd round once, and every other operation is a single IEEE operation per lane.
+/// So all instruction sets with fused multiply-add agree in every bit.
 struct Pack {
-  /// The type of comparisons.
+  /// The type of the result of a comparison.
   using MaskType = Mask;
-  /// Number of lanes of this instruction set.
+  /// The number of lanes of this instruction set.
   static constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 
   hn::Vec<Tag> v;  ///< the lanes
 
   Pack() = default;
-  /// A batch of these lanes.
+  /// The batch with these lanes.
   Pack(hn::Vec<Tag> lanes) : v(lanes) {}
-  /// The same number in every lane.
+  /// The batch with the same number in every lane.
   Pack(double value) : v(hn::Set(Tag(), value)) {}
 
   /// Reads kLanes doubles.
@@ -64,9 +64,9 @@ struct Pack {
   friend Mask operator>(Pack a, Pack b) { return {hn::Gt(a.v, b.v)}; }
   /// @}
 
-  /// a b + c
+  /// The fused product and sum a b + c.
   friend Pack madd(Pack a, Pack b, Pack c) { return hn::MulAdd(a.v, b.v, c.v); }
-  /// c - a b
+  /// The fused difference c - a b.
   friend Pack nmadd(Pack a, Pack b, Pack c) { return hn::NegMulAdd(a.v, b.v, c.v); }
   /// Selection and functions lane by lane.
   /// @{

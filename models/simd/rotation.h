@@ -2,11 +2,11 @@
 
 #include "models/simd/math.h"
 
-// Vectors [3] and rotation matrices [9] by rows.
+// Vectors are [3]; rotation matrices are [9], row by row.
 
 namespace poesy::simd {
 
-/// a x b
+/// The cross product c = a x b.
 template <class T>
 inline void cross(const T* a, const T* b, T* c) {
   c[0] = nmadd(a[2], b[1], a[1] * b[2]);
@@ -14,7 +14,7 @@ inline void cross(const T* a, const T* b, T* c) {
   c[2] = nmadd(a[1], b[0], a[0] * b[1]);
 }
 
-/// c += a x b
+/// Adds a cross product: c += a x b.
 template <class T>
 inline void add_cross(const T* a, const T* b, T* c) {
   c[0] = nmadd(a[2], b[1], madd(a[1], b[2], c[0]));
@@ -27,7 +27,8 @@ inline T dot3(const T* a, const T* b) {
   return madd(a[2], b[2], madd(a[1], b[1], a[0] * b[0]));
 }
 
-// Taylor series in x = theta^2, exact to rounding at the small angles for which the functions below use them.
+// Taylor series in x = theta^2 of sin(theta) / theta, (1 - cos(theta)) / theta^2 and (theta - sin(theta)) / theta^3.
+// They are exact to rounding at the small angles for which the functions below use them.
 inline constexpr double kSincSeries[] = {1.0,           -1.0 / 6.0,        1.0 / 120.0,        -1.0 / 5040.0,
                                          1.0 / 362880., -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368000.0};
 inline constexpr double kCoscSeries[] = {
@@ -36,7 +37,7 @@ inline constexpr double kCoscSeries[] = {
 inline constexpr double kCubeSeries[] = {
     1.0 / 6.0,        -1.0 / 120.0,        1.0 / 5040.0,          -1.0 / 362880.0,
     1.0 / 39916800.0, -1.0 / 6227020800.0, 1.0 / 1307674368000.0, -1.0 / 355687428096000.0};
-/// (1 - theta/2 cot(theta/2)) / theta^2 below 0.75 rad.
+/// Taylor series in theta^2 of (1 - theta/2 cot(theta/2)) / theta^2, used below 0.75 rad.
 inline constexpr double kCotSeries[] = {1.0 / 12.0,
                                         1.0 / 720.0,
                                         1.0 / 30240.0,
@@ -46,17 +47,17 @@ inline constexpr double kCotSeries[] = {1.0 / 12.0,
                                         1.0 / 74724249600.0,
                                         3617.0 / 10670622842880000.0,
                                         43867.0 / 5109094217170944000.0};
-/// atan(t) / t in t^2, for |t| <= 0.415: tan(pi/8).
+/// Taylor series in t^2 of atan(t) / t, used for |t| <= 0.415, which includes tan(pi/8).
 inline constexpr double kAtanSeries[] = {1.0,        -1.0 / 3.0,  1.0 / 5.0,  -1.0 / 7.0,  1.0 / 9.0,  -1.0 / 11.0,
                                          1.0 / 13.0, -1.0 / 15.0, 1.0 / 17.0, -1.0 / 19.0, 1.0 / 21.0, -1.0 / 23.0,
                                          1.0 / 25.0, -1.0 / 27.0, 1.0 / 29.0, -1.0 / 31.0, 1.0 / 33.0, -1.0 / 35.0,
                                          1.0 / 37.0, -1.0 / 39.0, 1.0 / 41.0, -1.0 / 43.0};
-/// The first terms of the same, for |t| <= 0.335.
+/// The first terms of kAtanSeries, used for |t| <= 0.335.
 inline constexpr double kAtanShort[] = {1.0,        -1.0 / 3.0,  1.0 / 5.0,  -1.0 / 7.0,  1.0 / 9.0,  -1.0 / 11.0,
                                         1.0 / 13.0, -1.0 / 15.0, 1.0 / 17.0, -1.0 / 19.0, 1.0 / 21.0, -1.0 / 23.0,
                                         1.0 / 25.0, -1.0 / 27.0, 1.0 / 29.0, -1.0 / 31.0, 1.0 / 33.0};
 
-/// exp(w) = I + a hat(w) + b hat(w)^2: a = sin(theta) / theta and b = (1 - cos(theta)) / theta^2.
+/// The coefficients of exp(w) = I + a hat(w) + b hat(w)^2 at the angle theta = |w|.
 template <class T>
 struct ExpCoefficients {
   T a;  ///< sin(theta) / theta
@@ -79,7 +80,7 @@ inline ExpCoefficients<T> exp_coefficients(T theta_squared) {
   return c;
 }
 
-/// left_jacobian(w) = I + b hat(w) + c hat(w)^2: b = (1 - cos(theta)) / theta^2, c = (theta - sin(theta)) / theta^3.
+/// The coefficients of left_jacobian(w) = I + b hat(w) + c hat(w)^2 at the angle theta = |w|.
 template <class T>
 struct LeftJacobianCoefficients {
   T b;  ///< (1 - cos(theta)) / theta^2
@@ -102,7 +103,7 @@ inline LeftJacobianCoefficients<T> left_jacobian_coefficients(T theta_squared) {
   return coefficients;
 }
 
-/// r = exp(w), with theta_squared = |w|^2; the inverse if the sign of `c.a` is changed.
+/// Sets r to the rotation matrix exp(w), with theta_squared = |w|^2. With the opposite sign of `c.a` it is the inverse.
 template <class T>
 inline void rotation_matrix(const T* w, T theta_squared, const ExpCoefficients<T>& c, T* r) {
   // R = (1 - b theta^2) I + a hat(w) + b w w^T
@@ -120,15 +121,16 @@ inline void rotation_matrix(const T* w, T theta_squared, const ExpCoefficients<T
   r[7] = madd(c.a, w[0], r[7]);
 }
 
-/// A rotation vector in each lane.
+/// A rotation vector for each lane.
 template <class T>
 struct RotationLog {
   T w[3];  ///< components x, y, z
   T bend;  ///< (1 - theta/2 cot(theta/2)) / theta^2: left_jacobian(w)^-1 = I - hat(w) / 2 + bend hat(w)^2
 };
 
-/// Logarithm of rotations by less than 180 deg. The angle is computed from tan(theta/2) = s / (1 + c), exact at the
-/// small angles of residuals; beyond 37 deg, from tan(theta/8). Close to 180 deg digits are lost.
+/// The logarithm of rotations by less than 180 deg. The angle theta is computed from tan(theta/2) = s / (1 + c), with s
+/// = sin(theta) and c = cos(theta), which is exact at the small angles of residuals. Beyond 37 deg it is computed from
+/// tan(theta/8). Digits are lost close to 180 deg.
 template <class T>
 inline RotationLog<T> rotation_log(const T* r) {
   const T half(0.5);

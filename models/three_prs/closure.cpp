@@ -24,7 +24,8 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 const PlatformMotion kNoMotion{Matrix3::Identity(), Vector3::Zero()};
 
-/// The six equations without swings, and their derivative with respect to [delta; dr] with E -> exp(delta) E.
+/// The six equations of close_limbs() without swings, and their derivative with respect to [delta; dr]: a further small
+/// rotation delta of the platform (E becomes exp(delta) E) and the displacement dr of P.
 struct Equations {
   Step residual;
   Matrix6 jacobian;
@@ -55,13 +56,13 @@ PlatformMotion moved(const PlatformMotion& motion, const Step& step) {
   return {lie::exp(Vector3(step.head<3>())) * motion.E, motion.dr + step.tail<3>()};
 }
 
-/// Whether limbs that cannot be assembled may give this status.
+/// Returns true if a solve that ends with this status may have failed because the limbs cannot be assembled.
 bool may_be_impossible(SolveStatus status) {
   return status == SolveStatus::iteration_cap || status == SolveStatus::singular;
 }
 
-/// The descent of the platform to the least mismatch of its limbs; see linalg::comes_to_rest(). The equations of rods
-/// are divided by the rods' lengths, so that all are lengths (m).
+/// The descent of the platform to the least mismatch of its limbs, for linalg::comes_to_rest(). The equations of rods
+/// are divided by the rods' lengths, so that all mismatches are lengths (m).
 class Descent {
  public:
   Descent(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, const PlatformMotion& start)
@@ -105,7 +106,7 @@ class Descent {
   Equations there_;
 };
 
-/// Newton's iteration of close_limbs().
+/// Newton's iteration in close_limbs().
 Closing iterate(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, double orientation,
                 const SolverOptions& options, PlatformMotion& motion, const ClosureObserver& observe) {
   const double rounding = rounding_level(r);
@@ -145,7 +146,7 @@ void describe_limb(const Configuration& nominal, std::size_t i, ClosureLimb& lim
   limb.q = nominal.limbs[i].q;
 }
 
-/// Sets the constant errors, and the rows of `values` that replace them.
+/// Sets the constant errors of a pose, and for each varied error the row of `values` that has its numbers.
 void vary(ClosurePose& pose, std::span<const double> errors, std::span<const FactorIndex> varied) {
   for (std::size_t i = 0; i < kLimbs; ++i) {
     ClosureLimb& limb = pose.limb[i];
@@ -249,7 +250,7 @@ ClosureSolver::ClosureSolver(const Geometry& geometry, const SolverOptions& opti
     : geometry_(geometry),
       options_(options),
       kernels_(simd::for_selected_isa([]<simd::Isa isa> { return kernels<isa>(); })),
-      // One alignment more than needed, so that an aligned start fits.
+      // The extra kMostLanes numbers leave room to begin at an aligned address.
       scratch_(kClosureScratch + kMostLanes) {}
 
 void ClosureSolver::prepare(const Configuration& nominal, const SampleBlock& samples, const ClosureStart& start) {
@@ -281,7 +282,7 @@ void ClosureSolver::solve(const Configuration& nominal, const SampleBlock& sampl
   }
 }
 
-/// Finds the samples that cannot be assembled among those that the kernel did not solve.
+/// Sets the status not_assembled for samples that the kernel did not solve because their limbs cannot be assembled.
 void ClosureSolver::review(const Configuration& nominal, const SampleBlock& samples, const ClosureStart& start,
                            const OutcomeBlock& outcomes) const {
   if (start.orientation() == 0.0) return;

@@ -14,47 +14,51 @@
 
 namespace poesy::three_prs {
 
-/// One limb with its errors, in the base frame (m). Its carriage stays at the nominal pose.
+/// One limb with its errors, in the base frame (m). Its carriage keeps its nominal position.
 struct LimbWithErrors {
   lie::Vector3<double> carriage;         ///< centre of the revolute joint
   lie::Matrix3<double> base_R_revolute;  ///< second column: axis of the revolute joint
-  lie::Vector3<double> rod;              ///< from that centre to C_i in the revolute's frame, before the swing
-  lie::Vector3<double> joint;            ///< from P to C_i, at the nominal rotation of the platform
+  /// From the carriage to the spherical joint C_i, in the revolute joint's frame before the swing.
+  lie::Vector3<double> rod;
+  lie::Vector3<double> joint;  ///< from P to C_i, at the nominal rotation of the platform
 };
 
-/// The limb at a nominal configuration with its errors [20] (rad, m), ordered as Source.
+/// The limb at a nominal configuration with its errors [20] (rad, m), in the order of Source.
 LimbWithErrors limb_with_errors(const Geometry& geometry, const Configuration& nominal, std::size_t limb,
                                 std::span<const double, kSources> errors);
 
-/// Finite motion of the platform from its nominal pose, in the base frame.
+/// The finite motion of the platform from its nominal pose, in the base frame.
 struct PlatformMotion {
-  lie::Matrix3<double> E;   ///< rotation: the displaced platform has orientation E R
+  lie::Matrix3<double> E;   ///< rotation: the displaced platform has the orientation E R
   lie::Vector3<double> dr;  ///< displacement of P, m
 };
 
-/// The end of a solve.
+/// How a solve ended.
 struct Closing {
   SolveStatus status;        ///< why the solve ended
   std::uint32_t iterations;  ///< number of iterations
 };
 
-/// The start of solves at a nominal configuration: one Newton step from no motion with the nominal Jacobian, which is
-/// the first-order motion by the errors. At a singular pose solves start from no motion.
+/// Computes the starting point of solves at a nominal configuration. It is the first-order motion by the errors: one
+/// Newton step from zero displacement with the nominal Jacobian. At a singular pose solves start from zero
+/// displacement.
 class ClosureStart {
  public:
-  /// Computes the nominal Jacobian's inverse at a configuration.
+  /// Inverts the nominal Jacobian at a configuration.
   ClosureStart(const Geometry& geometry, const Configuration& nominal);
 
-  /// The first-order motion, the start of a solve.
+  /// The first-order motion of the platform for limbs with errors, where a solve starts.
   PlatformMotion operator()(const std::array<LimbWithErrors, kLimbs>& limbs) const;
 
-  /// The matrix from the values of the six equations without motion to [delta; dr]; zero at a singular pose.
+  /// The matrix that maps the values of the six equations at zero displacement to [delta; dr] (rad, m); zero at a
+  /// singular pose.
   const lie::Matrix6<double>& from_residual() const { return from_residual_; }
-  /// Order in which partial pivoting eliminates the equations for [dr; delta]: entry n is the position of equation n.
+  /// The order in which partial pivoting eliminates the six equations for [dr; delta]: entry n is the position of
+  /// equation n in this order.
   const std::array<std::size_t, 6>& elimination_order() const { return order_; }
-  /// Sign of the Jacobian's determinant without errors and motion, as 1.0 or -1.0; 0 at a singular pose.
+  /// The sign of the Jacobian's determinant without errors and motion: 1.0 or -1.0, or 0 at a singular pose.
   double orientation() const { return orientation_; }
-  /// Sign of the product of the pivots in that order, as 1.0 or -1.0; 0 at a singular pose.
+  /// The sign of the product of the pivots in elimination_order(): 1.0 or -1.0, or 0 at a singular pose.
   double pivot_sign() const { return pivot_sign_; }
 
  private:
@@ -65,25 +69,28 @@ class ClosureStart {
   double pivot_sign_ = 0.0;
 };
 
-/// A smaller change (rad, m) may be rounding: 64 eps x max(1, |r|).
+/// The level below which a change (rad, m) of the motion may be rounding: 64 eps x max(1, |r|). r: P in the base frame,
+/// m.
 double rounding_level(const lie::Vector3<double>& r);
 
-/// The results of one iteration.
+/// The residual and the step of one Newton iteration.
 struct ClosureIteration {
-  lie::Screw<double> residual;  ///< six equations before the step: of rods (m^2), of joints (m)
-  lie::Screw<double> step;      ///< [delta; dr] (rad, m)
+  /// Values of the six equations before the step: three of rods (m^2), three of joints (m).
+  lie::Screw<double> residual;
+  lie::Screw<double> step;  ///< step [delta; dr] (rad, m)
 };
 /// Called after each iteration.
 using ClosureObserver = std::function<void(const ClosureIteration&)>;
 
-/// Finds the motion at which all limbs close, for errors of finite size: the nine equations
+/// Finds the motion at which all limbs close, for errors of finite size. The nine equations are
 ///     r + dr + E R R_i (c0 + dc_i) = R_i (a0 + da_i) + R_i E(tA_i) e3 (q_i + dq_i) + R_i E(tA_i) E(tB_i) db_i
 ///                                    + R_i E(tA_i) E(tB_i) Ry(th_i + dphi_i) E(tB'_i) e3 (l + dl_i),  i = 1, 2, 3
-/// of which Eq. 14 is the first order. The swings dphi_i are eliminated exactly: a rod that turns about its revolute
-/// joint keeps its length and its component along the joint. The remaining six equations for E and dr are solved by
-/// Newton with their exact Jacobian, where Gauss-Newton is the same method. A rod's equation is (|rod|^2 - l^2) / 2.
+/// of which Eq. 14 of San et al. 2023 is the first order. The swings dphi_i are eliminated exactly: a rod that turns
+/// about its revolute joint keeps its length and its component along the joint axis. Newton's method solves the
+/// remaining six equations for E and dr with their exact Jacobian; Gauss-Newton is the same method here. The equation
+/// of a rod is (|rod|^2 - l^2) / 2.
 ///
-/// Stopping rule. With c_j the largest component of step j (rad, m), step j ends the solve as
+/// Stopping rule: let c_j be the largest component of step j (rad, m). Step j ends the solve as
 ///     converged      when c_j is below the tolerance;
 ///     stagnated      when c_j is at rounding level, 64 eps x max(1, |r|), and not below the smallest c so far;
 ///     iteration_cap  when j is the allowed number of iterations;
@@ -92,28 +99,30 @@ using ClosureObserver = std::function<void(const ClosureIteration&)>;
 ///                    nominal pose to such a root passes a singular pose (theory.md, "Which root");
 ///     non_finite     when an equation's value is not finite.
 /// A solve that ends at the cap or as singular is not_assembled instead if is_impossible() returns true and orientation
-/// is not 0. motion: the start on entry, the last iterate on return. orientation: ClosureStart::orientation(); 0
-/// accepts any root. observe: may be empty.
+/// is not 0. r: P in the base frame, m. motion: the starting point on entry, the last iterate on return. orientation:
+/// ClosureStart::orientation(); 0 accepts any root. observe: may be empty.
 Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r, double orientation,
                     const SolverOptions& options, PlatformMotion& motion, const ClosureObserver& observe = {});
 
-/// Whether the limbs cannot be assembled. True if the descent of their mismatch from this motion
-/// (linalg::comes_to_rest()) ends where they are apart by more than 1e-9 of |r|. The three limbs of the 3-PRS do not
-/// over-constrain it, so no joint can remove a mismatch that remains there. False if the descent does not come to rest.
+/// Returns true if the limbs cannot be assembled. The mismatch of the limbs is minimised by descent from `start`
+/// (linalg::comes_to_rest()). If the limbs are then still apart by more than 1e-9 of |r|, the result is true: the three
+/// limbs of the 3-PRS do not over-constrain it, so in a machine that can be assembled the mismatch would vanish.
+/// Returns false if the descent does not converge.
 bool is_impossible(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r,
                    const PlatformMotion& start);
 
-/// Swing th_i + dphi_i (rad) of a limb's rod at this motion, from th = 0 in the revolute's frame.
+/// The swing th_i + dphi_i (rad) of a limb's rod at this motion, measured from th = 0 in the revolute joint's frame.
 double swing(const LimbWithErrors& limb, const lie::Vector3<double>& r, const PlatformMotion& motion);
 
-/// Closes the limbs of blocks of samples with the fastest kernel that this machine supports. close_limbs() solves the
-/// samples that the kernel gives up. Owns the scratch of one thread.
+/// Closes the limbs for blocks of samples with the fastest kernel that this machine supports. close_limbs() solves the
+/// samples that the kernel gives up. Owns the scratch memory of one thread.
 class ClosureSolver {
  public:
-  /// Allocates the scratch of one thread.
+  /// Allocates the scratch memory of one thread.
   ClosureSolver(const Geometry& geometry, const SolverOptions& options);
 
-  /// Computes responses, status and iterations of a block at its nominal configuration, but no details.
+  /// Computes responses, status and iterations of a block of samples at its nominal configuration, but not the swings
+  /// of the rods.
   void solve(const Configuration& nominal, const SampleBlock& samples, const OutcomeBlock& outcomes);
 
  private:
@@ -130,12 +139,12 @@ class ClosureSolver {
   std::vector<double> scratch_;
 };
 
-/// Solves one sample of a block by close_limbs(); computes no details.
+/// Solves one sample of a block by close_limbs(). Does not compute the swings of the rods.
 void close_sample(const Geometry& geometry, const Configuration& nominal, const SampleBlock& samples,
                   std::size_t sample, const ClosureStart& start, const SolverOptions& options,
                   const OutcomeBlock& outcomes, const ClosureObserver& observe = {});
 
-/// The limbs of one sample of a block.
+/// The limbs with the errors of one sample of a block.
 std::array<LimbWithErrors, kLimbs> limbs_of_sample(const Geometry& geometry, const Configuration& nominal,
                                                    const SampleBlock& samples, std::size_t sample);
 

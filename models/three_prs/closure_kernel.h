@@ -10,20 +10,20 @@
 namespace poesy::three_prs {
 
 /// Solves the closure of all limbs for a tile of samples, T::kLanes at a time. T is simd::Number or a SIMD batch.
-/// Equations, Newton steps, stopping rule and iteration counts are those of close_limbs(). A lane that has ended keeps
-/// its motion, and no operation mixes lanes.
+/// Equations, Newton steps, stopping rule and iteration counts are those of close_limbs(). A lane whose solve has ended
+/// keeps its motion, and no operation mixes lanes.
 ///
-/// The rows of the Jacobian are eliminated in the same order for all samples of a pose. A sample is given up if this is
-/// not possible: pivots that differ by a factor of more than 1e6, steps that are large or not finite, attitude errors
-/// beyond 100 rad, and final rotations by more than 120 deg.
+/// The rows of the Jacobian are eliminated in the same order for all samples of a pose. The kernel gives up a sample if
+/// its pivots differ by a factor of more than 1e6, a step is large or not finite, an attitude error exceeds 100 rad, or
+/// the final rotation exceeds 120 deg.
 template <class T>
 class ClosureKernel {
  public:
-  /// Keeps references to all arguments. scratch: [kClosureScratch], aligned to 64 bytes.
+  /// Keeps references to pose, options and tile. scratch: [kClosureScratch], aligned to 64 bytes.
   ClosureKernel(const ClosurePose& pose, const ClosureOptions& options, const Tile& tile, double* scratch)
       : pose_(pose), options_(options), tile_(tile), group_(reinterpret_cast<Group*>(scratch)) {}
 
-  /// Solves the tile. Returns the number of samples that were given up.
+  /// Solves the tile. Returns the number of samples that it gave up.
   std::size_t solve();
 
  private:
@@ -31,10 +31,11 @@ class ClosureKernel {
   static constexpr std::size_t kLanes = T::kLanes;
   static constexpr unsigned kAllLanes = (1u << kLanes) - 1u;
   static constexpr double kPivotRatio = 1e-6;
-  static constexpr double kLargestStep = 50.0;  ///< sum of magnitudes (rad, m)
+  /// Largest sum of the magnitudes of a step's components (rad, m) that is not given up.
+  static constexpr double kLargestStep = 50.0;
   static constexpr double kLargestAngle2 = 1e4;
 
-  /// A limb with its errors; see LimbWithErrors.
+  /// A limb with its errors, as LimbWithErrors.
   struct Limb {
     T carriage[3];
     T axis[3];
@@ -46,29 +47,30 @@ class ClosureKernel {
     Limb limb[kLimbs];
     T E[9];
     T dr[3];
-    T smallest;  ///< smallest change so far
-    T active;    ///< 1 in lanes that continue, 0 in those that have ended
+    T smallest;  ///< smallest change of all iterations so far
+    T active;    ///< 1 in lanes that continue, 0 in lanes that have ended
   };
   static_assert(sizeof(Group) <= 48 * kLanes * sizeof(double));
 
   struct Equations {
-    T joint[kLimbs][3];  ///< from P to C_i
+    T joint[kLimbs][3];  ///< vector from P to C_i
     T rod[kLimbs][3];
     T value[6];
   };
 
-  // The equations and their steps.
+  // Functions for the equations and their steps.
   Limb limb_with_errors(const ClosureLimb& limb, std::size_t at) const;
   void evaluate(const Group& group, Equations& equations) const;
   Mask first_step(const Group& group, T* step) const;
   Mask newton_step(const Group& group, T* step, T& pivots) const;
   static Mask eliminate(T (&m)[6][7], T* x, T& pivots);
 
-  // The loop over samples.
+  // Functions for the loop over samples.
   void begin(std::size_t g);
   bool round(std::size_t g, std::uint32_t iteration);
   void move(Group& group, const T* step, Mask lanes) const;
-  /// Stores the end of these lanes, given as bits. Iterations are not stored for lanes that are given up.
+  /// Stores the status and iterations of lanes that have ended, given as bits. No iterations are stored for lanes that
+  /// are given up.
   void end(std::size_t g, unsigned lanes, SolveStatus status, std::uint32_t iterations) const;
   void store(std::size_t g);
 
@@ -80,7 +82,7 @@ class ClosureKernel {
 
 namespace kernel {
 
-/// exp(w) x
+/// Rotates a vector x by the rotation vector w: exp(w) x.
 template <class T>
 inline void rotate(const T* w, const simd::ExpCoefficients<T>& c, T* x) {
   T once[3], twice[3];
@@ -89,7 +91,7 @@ inline void rotate(const T* w, const simd::ExpCoefficients<T>& c, T* x) {
   for (int k = 0; k < 3; ++k) x[k] = madd(c.b, twice[k], madd(c.a, once[k], x[k]));
 }
 
-/// exp(w) e_y
+/// Sets x to the second column of the rotation matrix exp(w): the direction of the rotated y axis.
 template <class T>
 inline void second_column(const T* w, const simd::ExpCoefficients<T>& c, T* x) {
   const T scaled = c.b * w[1];
@@ -98,7 +100,7 @@ inline void second_column(const T* w, const simd::ExpCoefficients<T>& c, T* x) {
   x[2] = madd(c.a, w[0], scaled * w[2]);
 }
 
-/// Rotates x about z.
+/// Rotates x about the z axis.
 template <class T>
 inline void turn(double cosine, double sine, T* x) {
   const T before = x[0];
@@ -147,7 +149,7 @@ auto ClosureKernel<T>::limb_with_errors(const ClosureLimb& limb, std::size_t at)
 
   const T length = T(pose_.l) + error[static_cast<std::size_t>(Source::l)];
   out.rod_y = length * nmadd(exp_Bp.a, theta_Bp[0], exp_Bp.b * theta_Bp[1] * theta_Bp[2]);
-  // Beyond the range of the sine no equation has a value, and the sample is given up.
+  // Beyond the range of the sine the equations have no value. The NaN makes the kernel give up the sample.
   const T largest = max(angle2_A, max(angle2_B, angle2_Bp));
   out.length2 = select(largest < T(kLargestAngle2), length * length, T(__builtin_nan("")));
   return out;
@@ -168,7 +170,8 @@ void ClosureKernel<T>::evaluate(const Group& group, Equations& equations) const 
   }
 }
 
-/// The first step of solves: that of the nominal Jacobian from no motion. Returns the lanes where it is usable.
+/// Computes the first step of a solve: a Newton step from zero displacement with the nominal Jacobian. Returns the
+/// lanes in which it is short enough to be used.
 template <class T>
 auto ClosureKernel<T>::first_step(const Group& group, T* step) const -> Mask {
   Equations equations;
@@ -183,8 +186,8 @@ auto ClosureKernel<T>::first_step(const Group& group, T* step) const -> Mask {
   return size < T(kLargestStep);
 }
 
-/// Solves A x = b for m = [A | b]. Returns the lanes where no pivot is small relative to the others. pivots: set to
-/// their product.
+/// Solves A x = b for m = [A | b]. Returns the lanes in which no pivot is small relative to the others. Sets `pivots`
+/// to the product of the pivots.
 template <class T>
 auto ClosureKernel<T>::eliminate(T (&m)[6][7], T* x, T& pivots) -> Mask {
   T inverse[6];
@@ -216,8 +219,8 @@ auto ClosureKernel<T>::eliminate(T (&m)[6][7], T* x, T& pivots) -> Mask {
   return smallest > T(kPivotRatio) * largest;
 }
 
-/// Computes a Newton step. step: [delta; dr]; pivots: product of the Jacobian's pivots. Returns the lanes where the
-/// step is usable.
+/// Computes a Newton step. Sets step to [delta; dr] and pivots to the product of the Jacobian's pivots. Returns the
+/// lanes in which the step is usable.
 template <class T>
 auto ClosureKernel<T>::newton_step(const Group& group, T* step, T& pivots) const -> Mask {
   Equations equations;
@@ -269,7 +272,7 @@ void ClosureKernel<T>::move(Group& group, const T* step, Mask lanes) const {
   for (int k = 0; k < 3; ++k) group.dr[k] = select(lanes, group.dr[k] + step[3 + k], group.dr[k]);
 }
 
-/// One iteration of a group. Returns whether any of its lanes continues.
+/// Makes one iteration of a group of lanes. Returns true if any of its lanes continues.
 template <class T>
 bool ClosureKernel<T>::round(std::size_t g, std::uint32_t iteration) {
   Group& group = group_[g];
@@ -286,7 +289,7 @@ bool ClosureKernel<T>::round(std::size_t g, std::uint32_t iteration) {
   group.active = select(on, T(1.0), T(0.0));
   end(g, bits(converged), SolveStatus::converged, iteration);
   end(g, bits(stagnated), SolveStatus::stagnated, iteration);
-  // Roots beyond a singular pose; see close_limbs().
+  // A root beyond a singular pose counts as singular; see close_limbs().
   const Mask beyond = T(pose_.pivot_sign) * pivots < T(0.0);
   end(g, bits((converged | stagnated) & beyond), SolveStatus::singular, iteration);
   return any(on);

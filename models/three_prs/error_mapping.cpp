@@ -11,7 +11,7 @@ namespace {
 using RowVector3 = Eigen::RowVector3d;
 using Matrix = linalg::Matrix;
 
-/// The columns of one limb's sources in one row of a mapping.
+/// One row of a mapping, restricted to the columns of one limb's error sources.
 class LimbRow {
  public:
   template <class Mapping>
@@ -49,7 +49,8 @@ void set_constraint_row(LimbRow row, const LimbConfiguration& limb, double l, co
   row.set(Source::c, -v_in_platform_limb);
 }
 
-/// Sets the swing by the sources themselves, without the platform's motion. d_in_platform_limb: direction of the swing.
+/// Sets the swing of a rod caused directly by its limb's errors, without the platform's motion. d_in_platform_limb:
+/// unit direction in which the end of the rod swings, in the limb's frame on the platform.
 void set_swing_row(LimbRow row, const LimbConfiguration& limb, double l, const RowVector3& d_in_platform_limb) {
   const double cosine = std::cos(limb.swing);
   const double sine = std::sin(limb.swing);
@@ -62,8 +63,8 @@ void set_swing_row(LimbRow row, const LimbConfiguration& limb, double l, const R
   row.set(Source::c, d_in_platform_limb / l);
 }
 
-/// The matrix [9 x 6] from [theta; dr] to the displacements of the three spherical joints divided by sqrt(3), whose
-/// norm is the norm of a twist.
+/// [9 x 6] The matrix from a twist [theta; dr] to the displacements of the three spherical joints divided by sqrt(3).
+/// The norm of its result is the norm of the twist.
 Matrix joint_displacements(const Configuration& nominal) {
   Matrix map(3 * kLimbs, 6);
   for (std::size_t i = 0; i < kLimbs; ++i) {
@@ -116,8 +117,8 @@ Separation separation(const Geometry& geometry, const Configuration& nominal) {
   const Matrix drive = by_drive * G.topRows<3>();
   const Matrix constraint = by_rows.rightCols<3>() * G.bottomRows<3>();
   const Matrix effect = drive + constraint;
-  // Least squares: corrections reach the span of by_drive, which contains the drive part, and nothing perpendicular to
-  // it.
+  // Least squares. Corrections can reach the whole span of by_drive, which contains the drive part, and nothing
+  // perpendicular to it.
   const Matrix residual = linalg::orthogonal_complement(by_drive).transpose() * constraint;
   return {column_norms(drive), column_norms(constraint), column_norms(effect), column_norms(residual)};
 }
@@ -125,7 +126,7 @@ Separation separation(const Geometry& geometry, const Configuration& nominal) {
 Corrections corrections(const Geometry& geometry, const Configuration& nominal) {
   const Effects effects = first_order_effects(geometry, nominal);
   Corrections found;
-  // A corrected carriage moves like one with an error of its initial position.
+  // The correction of a carriage has the effect of an error of its initial position.
   for (std::size_t i = 0; i < kLimbs; ++i) {
     found.motions.col(static_cast<Eigen::Index>(i)) = effects.col(static_cast<Eigen::Index>(factor_of(i, Source::q)));
   }

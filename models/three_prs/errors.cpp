@@ -8,18 +8,18 @@
 namespace poesy::three_prs {
 namespace {
 
-/// The class of a source in the paper (Section 4.2).
+/// The class of an error source (San et al. 2023, Section 4.2).
 enum class Role {
   none,            ///< no first-order effect
   compensable,     ///< enters the drive rows, except that c enters the constraint rows as well
   non_compensable  ///< enters the constraint rows
 };
 
-/// One row per component of a source, in the order of Source.
+/// One component of an error source. The table lists components in the order of Source.
 struct Entry {
   std::size_t frame;
   std::string_view source;
-  std::string_view axis;  ///< empty for a scalar
+  std::string_view axis;  ///< axis of a vector's component; empty for a scalar
   Role role;
 };
 constexpr std::array<Entry, kSources> kEntries{{{0, "a", "x", Role::compensable},
@@ -43,7 +43,7 @@ constexpr std::array<Entry, kSources> kEntries{{{0, "a", "x", Role::compensable}
                                                 {7, "c", "y", Role::compensable},
                                                 {7, "c", "z", Role::compensable}}};
 
-/// The object that an error of a frame displaces, and the axes along which the error is measured.
+/// The body that the errors of a frame displace, and the axes along which the errors are measured.
 struct Meaning {
   std::string_view part;
   std::array<std::string_view, 3> axes;
@@ -51,7 +51,7 @@ struct Meaning {
 constexpr std::array<std::string_view, 3> kLimbAxes{"outwards", "the revolute joint's axis", "down the rail"};
 constexpr std::array<std::string_view, 3> kRodAxes{"across the rod", "the revolute joint's axis", "the rod's own axis"};
 constexpr std::array<std::string_view, 3> kPlatformAxes{"outwards", "across", "the platform's axis"};
-/// The frames' meanings, in their order (Figures 3 and 4 of the paper).
+/// The meanings of the frames 0 to 7 (San et al. 2023, Figures 3 and 4).
 constexpr std::array<Meaning, kFrames> kMeanings{{{"position error of the rail's upper end A", kLimbAxes},
                                                   {"error of the carriage's initial position on its rail", {}},
                                                   {"attitude error of the rail", kLimbAxes},

@@ -105,7 +105,7 @@ class CalibratedEvaluator final : public Evaluator {
  private:
   using Rows = Eigen::Map<Eigen::VectorXd, 0, Eigen::InnerStride<>>;
 
-  /// The rows of one sample in a block.
+  /// The rows of one sample in a block of responses or of swings. count: number of samples in the block.
   static Rows rows_of(std::span<double> block, std::size_t sample, std::size_t count) {
     return {block.data() + sample, static_cast<Eigen::Index>(block.size() / count),
             Eigen::InnerStride<>(static_cast<Eigen::Index>(count))};

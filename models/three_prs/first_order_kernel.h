@@ -5,7 +5,8 @@
 
 namespace poesy::three_prs {
 
-/// Computes the first `rows` rows of the map for the samples from `at` on.
+/// Computes the first `rows` rows of the map (components of vectors, then swings) for the samples of a tile from
+/// position `at` on.
 template <class T, std::size_t rows>
 inline void map_lanes(const FirstOrderMap& map, const Tile& tile, std::size_t at, T* sum) {
   for (std::size_t r = 0; r < rows; ++r) sum[r] = T(map.constant[r]);
@@ -16,7 +17,7 @@ inline void map_lanes(const FirstOrderMap& map, const Tile& tile, std::size_t at
   }
 }
 
-/// Stores vectors and their norms. Returns the lanes where all of them are finite.
+/// Stores the vectors and their norms. Returns the lanes in which all of them are finite.
 template <class T>
 inline typename T::MaskType store_responses(const T* vectors, const Tile& tile, std::size_t at) {
   T norms(0.0);

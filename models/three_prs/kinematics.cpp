@@ -25,7 +25,7 @@ LimbConfiguration limb_configuration(const Geometry& g, const lie::Transform<dou
 
 bool is_tilt(double angle) { return std::abs(angle) < std::numbers::pi / 2.0; }
 
-/// The matrix [6 x 6] that a twist of the platform is multiplied by: the constraint rows of J, then the rows of the
+/// [6 x 6] The matrix that multiplies a twist of the platform: the constraint rows of J, then three rows that give the
 /// tip's velocity.
 Matrix6 tip_jacobian(const Geometry& geometry, const Configuration& at) {
   Matrix6 rows;
@@ -35,7 +35,7 @@ Matrix6 tip_jacobian(const Geometry& geometry, const Configuration& at) {
   return rows;
 }
 
-/// Rates of alpha, beta, gamma if the platform turns by omega: omega = e_x alpha' + Rx e_y beta' + R e_z gamma'.
+/// The rates of alpha, beta and gamma if the platform turns by omega: omega = e_x alpha' + Rx e_y beta' + R e_z gamma'.
 Vector3 angle_rates(const Pose& pose, const Matrix3& R, const Vector3& omega) {
   Matrix3 axes;
   axes << Vector3::UnitX(), Vector3(0.0, std::cos(pose.alpha), std::sin(pose.alpha)), R.col(2);
@@ -50,15 +50,15 @@ Pose moved(const Pose& pose, const Matrix3& R, const lie::Screw<double>& twist) 
 
 Vector3 carriages(const Configuration& at) { return {at.limbs[0].q, at.limbs[1].q, at.limbs[2].q}; }
 
-/// Whether a place is so far away that squares of its distance may overflow, and that rounding there exceeds the size
-/// of the mechanism. Nearer places that only the rails exclude have a message of their own.
+/// Returns true if a point is so far away that squares of its distance may overflow, or that rounding there exceeds the
+/// size of the mechanism. Points that are nearer than that, but beyond the rails, get a message of their own.
 bool is_far(const Geometry& g, const Vector3& place) {
   constexpr double kReaches = 1e6;
   const double reach = g.rail + g.a + g.l + g.c + g.h;
   return !(place.cwiseAbs().maxCoeff() <= kReaches * reach);
 }
 
-/// The upright pose at the mean height of these carriages.
+/// The upright pose at the mean height of carriages with positions q (m).
 Pose upright(const Geometry& g, const Vector3& q) {
   return {0.0, 0.0, q.mean() + std::sqrt(g.l * g.l - (g.c - g.a) * (g.c - g.a))};
 }
@@ -148,7 +148,7 @@ std::optional<Pose> pose_of_carriages(const Geometry& geometry, const Vector3& q
     lie::Screw<double> wanted = lie::Screw<double>::Zero();
     wanted.head<3>() = missing;
     const lie::Screw<double> twist = linalg::solve(velocity_jacobian(at), wanted);
-    // A full step may lead to a pose where a rod is too short, or away from the solution; then a shorter step is taken.
+    // A full step may lead away from the solution, or to a pose where a rod is too short. Then a shorter step is taken.
     bool nearer = false;
     for (double share = 1.0; share >= kShortest && !nearer; share *= 0.5) {
       const Pose next = moved(pose, at.platform.R, share * twist);

@@ -22,7 +22,7 @@ FactorSet set_of_places(const char* name, const char* description, std::size_t f
   return set;
 }
 
-/// The machine's sets: all, head, slides, then the head's own sets except its "all".
+/// The sets of errors of the machine: all, head, slides, then the head's own sets except its "all".
 std::vector<FactorSet> machine_sets(const ModelDescription& head) {
   FactorSet slides = set_of_places("slides", "all errors of the slides", kFactors, kFactors + kSlideFactors);
   FactorSet head_set = *head.find_set("all");
@@ -60,8 +60,8 @@ void add_slide(ModelDescription& description, const std::string& letter, double 
   description.pose_upper.push_back(0.5 * travel);
 }
 
-/// The head's description with the additions of the slides. The machine's base frame is the rack's, {O}; the head's is
-/// parallel to it, with its error-free origin at (slide_x, slide_y, 0).
+/// The description of the head with the additions of the slides. The base frame of the machine is the rack's frame {O}.
+/// The head's frame is parallel to it, with its error-free origin at (slide_x, slide_y, 0).
 ModelDescription describe() {
   const ModelDescription head = catalog_entry().description;
   const Travel chosen;

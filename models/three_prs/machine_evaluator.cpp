@@ -14,7 +14,7 @@ namespace {
 
 using Vector3 = lie::Vector3<double>;
 
-/// A varied error of the slides: its position among their errors, and its row of SampleBlock::values.
+/// A varied error of the slides: its position among the slides' errors, and its row in SampleBlock::values.
 struct VariedSlide {
   std::size_t factor;
   std::size_t row;
@@ -56,7 +56,7 @@ class MachineEvaluator final : public Evaluator {
     }
   }
 
-  /// The rows of samples.values for the head's errors. Usually they are the first rows and are not copied.
+  /// The rows of samples.values that belong to errors of the head. Usually they are the first rows and need no copy.
   std::span<const double> head_values(const SampleBlock& samples) {
     const std::size_t size = head_varied_.size() * samples.count;
     if (std::ranges::equal(head_varied_, samples.varied.first(head_varied_.size()))) return samples.values.first(size);
@@ -94,7 +94,7 @@ class MachineEvaluator final : public Evaluator {
     std::ranges::fill(outcomes.iterations, iterations);
   }
 
-  /// P and the tool tip in the head's frame at the nominal pose.
+  /// P and the tool tip in the head's frame at the nominal pose, m.
   struct Points {
     Vector3 P;
     Vector3 tip;
@@ -112,7 +112,7 @@ class MachineEvaluator final : public Evaluator {
     return errors;
   }
 
-  /// Adds the effects of the slides to the nine components of the head's responses, [9 x B].
+  /// Adds the first-order effects of the slides' errors to the nine components of the head's responses, [9 x samples].
   void add_slides(const SampleBlock& samples, std::span<double> responses) const {
     const Points at = points(samples);
     const SlideEffects effects = slide_effects(samples.pose[4], at.P, at.tip);

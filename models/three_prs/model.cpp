@@ -31,8 +31,8 @@ std::vector<PoseChart> charts() {
            "bring q_1, q_2, q_3 closer together, for the carriages may be too far apart for the rods"}};
 }
 
-/// The curves of the paper's Section 5.2.1. It prints no start height; the chosen origin keeps the carriages on their
-/// rails.
+/// The curves of San et al. 2023, Section 5.2.1. The paper prints no start height; the origin chosen here keeps the
+/// carriages on their rails.
 std::vector<NamedCurve> curves() {
   const std::vector<double> origin{0.0, 0.0, 0.85};
   const auto helix = [](double t) {
@@ -148,8 +148,8 @@ class ThreePrs final : public Model {
     return head_trace(geometry_, fidelity_, pose, errors, options);
   }
 
-  /// Exact solves leave a standard deviation of up to a tenth of the level at which they stop. First order only
-  /// multiplies.
+  /// The standard deviation of exact solves by rounding is up to a tenth of the level at which they stop. First-order
+  /// solves do not iterate, so they have no such rounding.
   double rounding(std::size_t /*response*/) const override {
     if (fidelity_ == Fidelity::first_order) return 0.0;
     return rounding_level({geometry_.a, 0.0, geometry_.rail + geometry_.l + geometry_.h});

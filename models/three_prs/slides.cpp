@@ -15,14 +15,15 @@ using Matrix3 = lie::Matrix3<double>;
 
 constexpr std::size_t kXSlide = kLimbs + 1;
 constexpr std::size_t kYSlide = kLimbs + 2;
-/// Frames after the head's; unlike limbs, slides are not copies of one another.
+/// The frames of the slides, numbered after those of the head. Each slide has its own, because slides are not copies of
+/// one another.
 enum Frame : std::size_t { kXTranslation = kFrames, kXRotation, kYTranslation, kYRotation, kSquareness };
 
 struct Entry {
   std::string_view name;
   std::size_t slide;
   std::size_t frame;
-  std::string_view axis;  ///< empty for a scalar
+  std::string_view axis;  ///< axis of a vector's component; empty for a scalar
   std::string_view symbol;
   std::string_view meaning;
 };
@@ -56,7 +57,8 @@ Vector3 vector(SlideErrors errors, SlideSource source) {
   return Eigen::Map<const Vector3>(errors.data() + static_cast<std::size_t>(source));
 }
 
-/// Sets the displacement of a point by a translation and by a rotation about a point at the distance `arm`.
+/// Sets the displacement of a point by a translation, and by a rotation about a centre. arm: from the centre to the
+/// point.
 void set_point(SlideEffects& effects, int row, SlideSource translation, SlideSource rotation, const Vector3& arm) {
   effects.block<3, 3>(row, static_cast<Eigen::Index>(translation)).setIdentity();
   effects.block<3, 3>(row, static_cast<Eigen::Index>(rotation)) = -lie::hat(arm);
@@ -74,7 +76,7 @@ lie::Transform<double> nominal_T_head(double slide_y, SlideErrors errors) {
   const Matrix3 E_x = lie::exp(vector(errors, SlideSource::x_rotation));
   const double squareness = errors[static_cast<std::size_t>(SlideSource::squareness)];
   const Matrix3 along_y = E_x * lie::exp(Vector3(0.0, 0.0, squareness));
-  // The travel itself as (E_x Rz - I) (0, slide_y, 0), which is exactly zero without rotation.
+  // The displacement of the travel itself, (E_x Rz - I) (0, slide_y, 0), is exactly zero without rotation.
   const Vector3 turned = slide_y * (along_y.col(1) - Vector3::UnitY());
   return {E_x * lie::exp(vector(errors, SlideSource::y_rotation)),
           vector(errors, SlideSource::x_translation) + along_y * vector(errors, SlideSource::y_translation) + turned};

@@ -9,11 +9,12 @@
 
 namespace poesy::three_prs {
 
-/// Cuts blocks into tiles. If the rows of a tile do not end at a multiple of kMostLanes, the tile is copied to padded
-/// rows.
+/// Cuts blocks of samples into tiles. A tile whose number of samples is not a multiple of kMostLanes is copied to
+/// padded rows.
 class Tiles {
  public:
-  /// Calls work(tile) for each tile of a block. Details are null where the block asks for none.
+  /// Calls work(tile) for each tile of a block. Tile::details is null if the caller does not want the swings of the
+  /// rods.
   template <class Work>
   void for_each(const SampleBlock& samples, const OutcomeBlock& outcomes, Work work) {
     for (std::size_t first = 0; first < samples.count; first += kTile) {
@@ -40,7 +41,7 @@ class Tiles {
             outcomes.iterations.data() + first};
   }
 
-  /// Copies a tile to padded rows. The lanes behind the last sample repeat it, so that they end when it does.
+  /// Copies a tile to padded rows. The lanes behind the last sample repeat it, so that they end at the same iteration.
   void stage(const SampleBlock& samples, Tile& tile) {
     POESY_EXPECTS(samples.varied.size() <= kFactors);
     for (std::size_t v = 0; v < samples.varied.size(); ++v) {

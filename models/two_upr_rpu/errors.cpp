@@ -6,8 +6,9 @@
 namespace poesy::two_upr_rpu {
 namespace {
 
-/// One row per frame j = 0..4, one column per error: delta x, y, z, epsilon x, y, z.
-/// '.' no geometric error; 'o' a geometric error; 'x' one that causes internal forces and deformations (Table 7).
+/// The kinds of errors of a limb: a row for each frame j = 0..4, a column for each of delta x, y, z, epsilon x, y, z.
+/// '.' marks no geometric error, 'o' a geometric error, and 'x' a geometric error that causes internal forces and
+/// deformations (Du et al. 2022, Table 7).
 using Table = std::array<std::string_view, 5>;
 constexpr Table kUprLimb{"oxx.xx",   //
                          "oxox.x",   //
@@ -21,8 +22,8 @@ constexpr Table kRpuLimb{"ooo.xx",   //
                          "ooox.x"};  //
 constexpr std::array<Table, 3> kLimbs{kUprLimb, kUprLimb, kRpuLimb};
 
-/// The object that the errors of each frame j = 0..4 of a limb displace, and its reference (Tables 1 to 3 and the text
-/// below Eq. 25).
+/// The body that the errors of frame j = 0..4 of a limb displace, and the body relative to which it is displaced (Du et
+/// al. 2022, Tables 1 to 3 and the text below Eq. 25).
 using Parts = std::array<std::string_view, 5>;
 constexpr Parts kUprParts{"universal joint's first axis against the base",         //
                           "universal joint's second axis against its first",       //
@@ -36,7 +37,8 @@ constexpr Parts kRpuParts{"revolute joint against the base",                    
                           "universal joint's hole against the platform"};
 constexpr std::array<Parts, 3> kParts{kUprParts, kUprParts, kRpuParts};
 
-/// The frame whose axes measure the errors of frame j. The z axis of a frame is its joint's.
+/// The name of the frame along whose axes the errors of frame j are measured. The z axis of a frame is the axis of its
+/// joint.
 std::string axes_of(std::size_t frame, char axis) {
   if (frame == 0) return "the base";
   if (frame == 4) return "the platform";

@@ -11,19 +11,20 @@ using Vector3 = lie::Vector3<double>;
 
 constexpr double kQuarter = std::numbers::pi / 2.0;
 
-/// Angle from a to b about the normal, in [-pi/2, 3 pi/2): equal to the paper's arccos between 0 and pi, and continued
-/// where a leg swings past the line of the platform.
+/// The angle from a to b about the normal, in [-pi/2, 3 pi/2). It equals the paper's arccos between 0 and pi, and
+/// continues where a leg swings past the line of the platform.
 double angle(const Vector3& a, const Vector3& b, const Vector3& normal) {
   const double turn = std::atan2(normal.dot(a.cross(b)), a.dot(b));
   return turn < -kQuarter ? turn + 4.0 * kQuarter : turn;
 }
 
-/// The joint variables as absolute angles and lengths (rad, m). Displacements are their differences from home.
+/// The joint variables as absolute angles and lengths (rad, m). Joint displacements are their differences from the home
+/// pose.
 std::array<double, 12> joint_variables(const Geometry& g, const Pose& pose) {
   const lie::Transform<double> platform = base_T_platform(pose);
   const Vector3 x = Vector3::UnitX(), y = Vector3::UnitY();
   const Vector3 u = platform.R.col(0), v = platform.R.col(1);
-  // B_i A_i, Eq. 2.
+  // Vectors B_i A_i along the legs, Eq. 2.
   const Vector3 leg1 = platform.p + g.l_A * u - g.l_B * x;
   const Vector3 leg2 = platform.p - g.l_A * u + g.l_B * x;
   const Vector3 leg3 = platform.p + g.l_A * v - g.l_B * y;
@@ -48,7 +49,8 @@ std::array<double, 12> home_variables(const Geometry& geometry) {
 lie::Transform<double> rot(Axis axis, double angle) { return lie::rotation<double>(axis, angle); }
 lie::Transform<double> trans(Axis axis, double distance) { return lie::translation<double>(axis, distance); }
 
-/// A UPR limb (Eqs. 15 and 16). side: +1 for the first limb, -1 for the second; angle, length: at home (rad, m).
+/// A UPR limb (Du et al. 2022, Eqs. 15 and 16). side: +1 for the first limb, -1 for the second. angle, length: of the
+/// leg at the home pose (rad, m).
 chain::Limb upr_limb(const Geometry& g, double side, double angle, double length) {
   return {{{chain::JointType::revolute, false},
            {chain::JointType::revolute, false},
@@ -60,7 +62,7 @@ chain::Limb upr_limb(const Geometry& g, double side, double angle, double length
            trans(Axis::y, side * g.l_A) * rot(Axis::y, -kQuarter) * rot(Axis::z, -kQuarter)}};
 }
 
-/// The RPU limb (Eq. 17). angle, length: at home (rad, m).
+/// The RPU limb (Du et al. 2022, Eq. 17). angle, length: of the leg at the home pose (rad, m).
 chain::Limb rpu_limb(const Geometry& g, double angle, double length) {
   return {{{chain::JointType::revolute, false},
            {chain::JointType::prismatic, true},

@@ -10,8 +10,7 @@
 namespace poesy::allocation {
 namespace {
 
-/// [N] The part of the limits that each part's tolerance uses on root mean squares, weighted by the multipliers of the
-/// limits.
+/// [parts] The share of each part in the mean squares under the limits, weighted by the multipliers of the limits.
 std::vector<double> shares_by_multipliers(const ToleranceLimits& limits, const Candidate& candidate) {
   std::vector<double> shares(limits.parts, 0.0);
   for (std::size_t l = 0; l < limits.count(); ++l) {
@@ -27,7 +26,8 @@ std::vector<double> shares_by_multipliers(const ToleranceLimits& limits, const C
   return shares;
 }
 
-/// The machines of largest load, from which the gradient is estimated.
+/// The machines with the largest ratios of a response to its limit (loads). The gradient of the yield is estimated from
+/// them.
 std::vector<std::uint32_t> machines_of_largest_load(const SearchProblem& problem, const ToleranceDesign& design) {
   const auto& [numbers, load] = design.screened;
   const std::size_t share = std::min<std::size_t>(kMaxGradientMachines, design.load.size() / 30);
@@ -40,8 +40,8 @@ std::vector<std::uint32_t> machines_of_largest_load(const SearchProblem& problem
   return machines;
 }
 
-/// One limit that replaces all others: what each part adds to the machines of largest load, by its score among them.
-/// Where the score is noise, the part's share [N] on root mean squares is used.
+/// A single limit that replaces all others. The effect of each part is its score among the machines with the largest
+/// loads, or, if the score is not significant, its share in the mean squares. shares: [parts].
 ToleranceLimits gradient_limit(const SearchProblem& problem, const ToleranceDesign& design,
                                std::span<const double> shares) {
   const auto [scores, is_sure] = part_scores(problem, design, machines_of_largest_load(problem, design));
@@ -59,7 +59,7 @@ ToleranceLimits gradient_limit(const SearchProblem& problem, const ToleranceDesi
   return limit;
 }
 
-/// The design with the tolerances that this limit gives, scaled to the yield; none if they save too little.
+/// Chooses tolerances under this limit and scales it until the yield is kept. None if the tolerances save too little.
 std::optional<ToleranceDesign> fit_gradient(const SearchProblem& problem, const ToleranceDesign& from,
                                             ToleranceLimits limit) {
   const TolerancePoint& before = from.candidate.point;

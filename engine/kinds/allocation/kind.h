@@ -4,13 +4,14 @@
 
 namespace poesy {
 
-/// How results of studies that find tolerances under limits are stored and reported.
+/// How results of studies of kind `allocation` are stored and reported. Such a study finds the tolerances of parts
+/// under limits.
 /// @{
 extern const FileKind kAllocationFile;
 extern const ReportKind kAllocationReport;
 /// @}
 
-/// Runs and reports studies that find tolerances under limits.
+/// Runs studies of kind `allocation` and describes their keys, files and reports.
 extern const Kind kAllocationKind;
 
 }  // namespace poesy

@@ -5,26 +5,26 @@
 #include "engine/base/index.h"
 #include "engine/study/study_kind.h"
 
-/// Reads which errors a block [[analysis.parts]] joins into parts.
+/// Reads which errors each block [[analysis.parts]] joins into parts.
 namespace poesy {
 
-using PartMembers = std::vector<FactorIndex>;  ///< Errors that share one tolerance, at least one.
+using PartMembers = std::vector<FactorIndex>;  ///< The errors of a part, which share one tolerance; at least one.
 
-using Limbs = std::vector<std::size_t>;  ///< Numbers of limbs, as files count them.
+using Limbs = std::vector<std::size_t>;  ///< Numbers of limbs, counted from 1 as in study files.
 
-/// The limbs of a list, at least two and each once. Throws InputError at a value that names none of the model's.
+/// Reads a list of limbs: at least two, none twice. Throws InputError at a value that is not a limb of the model.
 Limbs read_limbs(const StudyValue& value, const ModelDescription& model);
 
-/// Throws InputError at the value for errors whose tolerance cannot be chosen: measured, correlated, about a mean, or
-/// drawn anew at each pose.
+/// Throws InputError at the value if an error's tolerance cannot be chosen: if the error is measured, correlated, has a
+/// stated mean, or is drawn anew at each pose.
 void check_distributions(const StudyValue& value, const PartMembers& members, const Study& study);
 
-/// The errors of each part of one block: a single part, or with `each` a part for each error, where corresponding
-/// errors of identical limbs share a part. An error is in one part of the block. Throws InputError at the place for
-/// errors that a part cannot have: unknown or fixed ones, and those whose distribution is measured or correlated.
+/// The errors of each part of a block. A block is one part. With `each`, every error is a part, but corresponding
+/// errors of identical limbs share one. No error is in two parts of the block. Throws InputError for an error that
+/// cannot be in a part: unknown, fixed, measured or correlated.
 std::vector<PartMembers> read_members(const StudySection& block, const Study& study);
 
-/// Whether every error of the block is a part of its own.
+/// Whether the block has `each`, so that every error is a part of its own.
 bool is_each(const StudySection& block);
 
 }  // namespace poesy

@@ -7,31 +7,34 @@
 
 namespace poesy {
 
-/// The machines whose loads are near the limit of 1, which tell how many rejects one coarser part adds. A machine
-/// counts fractionally as a reject, from 0 to 1 within a window around the limit, because many effects are too small to
-/// change a count. theory.md, "A coarser part".
+/// The machines whose loads are near 1. From them the number of rejects is estimated that a larger tolerance of a part
+/// adds. The load of a machine is the largest ratio of a response to its limit, over all limits and poses; above 1 the
+/// machine is a reject. Because many effects are too small to change a count, a machine counts as a fraction of a
+/// reject: the fraction rises from 0 to 1 in a window around the load 1. See theory.md, "A coarser part".
 class NearLimit {
  public:
-  /// Chooses the `count` machines nearest to the limit, within a window of at most 0.2. machines: [m] ascending
-  /// numbers, which include all rejects; loads: [m].
+  /// Chooses the `count` machines with loads nearest to 1, within a window of at most 0.2. machines: [listed] ascending
+  /// numbers, including all rejects; loads: [listed].
   NearLimit(std::span<const std::uint32_t> machines, std::span<const double> loads, std::size_t count);
 
-  const std::vector<std::uint32_t>& machines() const { return machines_; }  ///< [n] The chosen machines, ascending.
-  double window() const { return window_; }  ///< They are the machines with loads from 1 - window to 1 + window.
+  /// The numbers of the chosen machines, ascending.
+  const std::vector<std::uint32_t>& machines() const { return machines_; }
+  /// The half-width of the window: chosen loads are from 1 - window to 1 + window.
+  double window() const { return window_; }
 
-  /// [n] The loads of one variation. loads: [V x n] of all variations.
+  /// [chosen] The loads of machines() under one variation. loads: [variations x chosen] loads under all variations.
   std::span<const double> of_variation(const std::vector<double>& loads, std::size_t variation) const {
     return std::span(loads).subspan(variation * machines_.size(), machines_.size());
   }
-  /// The root mean square of the changes of the loads. loads: [n] with a part changed. Infinite loads are left out. 0
-  /// if there are no machines.
+  /// The root mean square change of the loads if the tolerance of a part changes. loads: [chosen] loads of machines()
+  /// after the change. Machines with an infinite load are left out. Returns 0 if all are.
   double change(std::span<const double> loads) const;
-  /// The expected number of rejects that a coarser part adds among all machines, by the loads [n] of the chosen
-  /// machines with that part coarser.
+  /// The expected number of rejects that a larger tolerance of a part adds among all machines. coarser: [chosen] loads
+  /// of machines() with this larger tolerance.
   double added_rejects(std::span<const double> coarser) const;
-  /// The same from antithetic pairs (e, -e) of a part's errors, which reduce the variance. Precondition: the errors are
-  /// symmetric about zero. Loads [n] of the chosen machines: with the part coarser, with its errors mirrored, and with
-  /// both.
+  /// The same number, estimated from antithetic pairs (e, -e) of the part's errors e, which have less variance.
+  /// Precondition: the errors are symmetric about zero. All arguments are loads [chosen] of machines(): with the larger
+  /// tolerance, with -e instead of e, and with both changes.
   double added_rejects(std::span<const double> coarser, std::span<const double> mirrored,
                        std::span<const double> mirrored_coarser) const;
 
@@ -41,8 +44,8 @@ class NearLimit {
 
   double window_;
   std::vector<std::uint32_t> machines_;
-  std::vector<double> loads_;  ///< [n]
-  double scale_ = 1.0;         ///< the number of rejects over the sum of the fractional counts
+  std::vector<double> loads_;  ///< [chosen] loads of the chosen machines
+  double scale_ = 1.0;         ///< number of rejects divided by the sum of fractional rejects
 };
 
 }  // namespace poesy

@@ -19,8 +19,8 @@ namespace {
 
 using PartChoice = AllocatedPart::Choice;
 
-constexpr double kSigmasOfCpk = 3.0;  // by definition, Cpk = 1 means three standard deviations
-// An upper bound that keeps a tolerance over it far above rounding.
+constexpr double kSigmasOfCpk = 3.0;  // by definition, a tolerance at Cpk = 1 is three standard deviations
+// With more standard deviations, a tolerance divided by their number could approach rounding errors.
 constexpr double kMostSigmas = 1e6;
 constexpr double kMostCpk = 1e5;
 
@@ -109,7 +109,7 @@ void read_fixed(const StudyValue& value, const StudySection&, Dimension dimensio
   part.lo = value.positive_quantity(dimension);
 }
 
-/// A key that determines from what a tolerance is chosen.
+/// A key that states which tolerances a part may have.
 struct ChoiceKey {
   std::string_view name;
   PartChoice choice;
@@ -122,7 +122,7 @@ constexpr std::array<ChoiceKey, 5> kChoiceKeys{{{"bounds", PartChoice::range, re
                                                 {"processes", PartChoice::processes, read_processes},
                                                 {"tolerance", PartChoice::fixed, read_fixed}}};
 
-/// Throws if no value within these bounds of a tolerance can be had.
+/// Throws InputError if no rounded value is within these bounds.
 void check_rounding(const StudyValue& value, double lo, double hi, const Rounding& round) {
   if (std::isinf(hi) || round.up(lo) <= round.down(hi)) return;
   value.fail("is set, but no such value is within the bounds of the tolerance", "take a finer step, or wider bounds");
@@ -140,7 +140,7 @@ void read_round(const StudySection& block, Dimension dimension, AllocatedPart& p
   for (const StatedProcess& process : part.processes) check_rounding(*value, process.lo, process.hi, *part.round);
 }
 
-/// Reads cost and choice of a block whose errors have this dimension.
+/// Reads the cost and the possible tolerances of a block whose errors have this dimension.
 void read_choice(const StudySection& block, Dimension dimension, AllocatedPart& part) {
   std::optional<StudyValue> chosen;
   for (const ChoiceKey& key : kChoiceKeys) {
@@ -174,8 +174,8 @@ double read_shift(const StudySection& block) {
   value->fail("is " + shortest(shift), "it must be at least 0 and less than 1, a share of the tolerance");
 }
 
-/// The names of two errors of different dimensions, "the length 'delta_1' and the angle 'epsilon_1'"; empty if all have
-/// one dimension.
+/// Names two errors of different dimensions: "the length 'delta_1' and the angle 'epsilon_1'". Empty if all errors have
+/// the same dimension.
 std::string two_dimensions(std::span<const PartMembers> parts, const ModelDescription& model) {
   const Factor& first = model.factors[parts.front().front().value];
   for (const PartMembers& part : parts) {
@@ -189,7 +189,8 @@ std::string two_dimensions(std::span<const PartMembers> parts, const ModelDescri
   return {};
 }
 
-/// Throws if a part has errors of two dimensions, or if parts of two dimensions share a cost or a choice.
+/// Throws InputError if a part has errors of two dimensions, or if parts of two dimensions share a cost or possible
+/// values.
 void check_dimensions(const StudySection& block, std::span<const PartMembers> parts, const ModelDescription& model) {
   constexpr std::string_view kRemedy = "write a block with factors = \"linear\" and another with factors = \"angular\"";
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -213,7 +214,7 @@ double sigmas_of(const StudySection& block, std::optional<double> usual, const s
                    "say how many standard deviations a tolerance is: sigmas = 3 or cpk = 1");
 }
 
-/// Throws if the name of a part of a block with `each`, which is that of its first error, is taken.
+/// Throws InputError if a part's name is taken. In a block with `each`, the name of a part is that of its first error.
 void check_each_name(const StudySection& block, std::span<const std::string_view> taken, const std::string& name) {
   if (const auto value = block.find("name")) {
     static_cast<void>(value->text());
@@ -247,7 +248,7 @@ std::string grades_text(const AllocatedPart& part) {
                      exact_value(part.nominal_size, Dimension::length));
 }
 
-/// The processes as TOML, one a line to keep lines of a study file short.
+/// The processes as TOML, one on each line to keep the lines of a study file short.
 std::string processes_text(const AllocatedPart& part, Dimension dimension) {
   std::string text = "processes = [\n";
   for (const StatedProcess& process : part.processes) {
@@ -284,7 +285,7 @@ std::string round_text(const AllocatedPart& part, Dimension dimension) {
   return part.round ? "round = " + rounding_text(*part.round, dimension) + "\n" : "";
 }
 
-/// Throws at the value if this tolerance is too large for an error of the part.
+/// Throws InputError at the value if this tolerance is too large for an error of the part.
 void check_size(const StudyValue& value, double tolerance, const AllocatedPart& part, const Model& model) {
   for (const FactorIndex factor : part.factors) {
     if (const auto problem = beyond_bound(model, factor, tolerance, "a tolerance")) {

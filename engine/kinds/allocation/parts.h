@@ -9,31 +9,31 @@
 #include "engine/kinds/allocation/result.h"
 #include "engine/study/study_kind.h"
 
-/// Reads and writes the parts of a drawing in study files: [[analysis.parts]].
+/// Reads and writes the parts of a drawing, [[analysis.parts]], in study files.
 namespace poesy {
 
-StudyTables part_tables();  ///< The keys of a part.
+StudyTables part_tables();  ///< The keys of a part and of its cost and processes.
 
-/// The number of standard deviations in a tolerance, by `sigmas` or `cpk` of a section; none if it has neither. Throws
-/// InputError if it has both.
+/// Reads how many standard deviations a tolerance is, from `sigmas` or `cpk` of a section; none if the section has
+/// neither. Throws InputError if it has both.
 std::optional<double> read_sigmas(const StudySection& section);
 
-/// Reads one block: a part, or with `each` several. usual_sigmas: the value of a block that states none. taken: the
-/// names of other parts. The study must already have its errors and the factors that vary. Throws InputError at the
-/// place of what is wrong, but does not compare with the errors of other blocks.
+/// Reads one block: one part, or several with `each`. usual_sigmas: for a block that states neither sigmas nor cpk.
+/// taken: names of other parts. Precondition: the study already has its errors and the factors that vary. Throws
+/// InputError, but does not check whether another block has the same errors.
 std::vector<AllocatedPart> read_part_block(const StudySection& block, const Study& study,
                                            std::optional<double> usual_sigmas, std::span<const std::string_view> taken);
 
-/// The part as a TOML block that lists its factors one by one and reads back to the same part.
+/// The part as a TOML block, which lists its factors one by one and reads back as the same part.
 std::string part_text(const AllocatedPart& part, const ModelDescription& model);
 
-/// Throws InputError at the place for a tolerance of this part that is not smaller than the dimension whose error it is
+/// Throws InputError if a tolerance of this part is not smaller than the dimension that the error changes
 /// (Model::error_bound).
 void check_part_sizes(const StudySection& block, const AllocatedPart& part, const Model& model);
 
-bool has_cost(const AllocatedPart& part);  ///< Whether it, or a process of it, has a cost.
+bool has_cost(const AllocatedPart& part);  ///< Whether the part, or one of its processes, has a cost.
 
-/// The dimension of its errors.
+/// The dimension of the part's errors.
 Dimension dimension_of(const AllocatedPart& part, const ModelDescription& model);
 
 }  // namespace poesy

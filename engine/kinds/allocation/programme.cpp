@@ -16,13 +16,14 @@ namespace poesy {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// The largest tolerance over the size of its part. Four standard deviations of a normal error are then the whole part.
+/// The largest tolerance, as a share of the dimension that the error changes. At a quarter, four standard deviations of
+/// a normal error equal the dimension.
 constexpr double kShareOfPart = 0.25;
 
-/// The standard deviation of a perfect part, m or rad: far below what any solve can distinguish from zero.
+/// The standard deviation that stands in for 0, m or rad. No solve can distinguish it from 0.
 constexpr double kPerfect = 1e-18;
 
-/// The largest tolerance that makes sense, whatever the study says.
+/// The largest tolerance that is physically possible, whatever the study states.
 double largest_of(const AllocatedPart& part, const Model& model) {
   double largest = kInfinity;
   for (const FactorIndex factor : part.factors) {
@@ -63,7 +64,8 @@ std::vector<Process> processes_of(const AllocatedPart& part, const Model& model)
   return {bounded(law, part.lo, part.hi)};
 }
 
-/// Errors with this shape, this standard deviation and a shifted mean, SI. Precondition: the shape is symmetric.
+/// The shape of a distribution, scaled to this standard deviation and shifted by this mean, SI. Precondition: the shape
+/// is symmetric.
 Distribution error_of(const Distribution& shape, double sigma, double shift) {
   const double without_shift =
       std::sqrt(shape.standard_deviation() * shape.standard_deviation() - shape.shift() * shape.shift());
@@ -102,22 +104,22 @@ DrawnPart drawn_part(const AllocatedPart& part, const std::vector<std::size_t>& 
   return {{{errors, mean_square_per_tolerance({part.sigmas, part.shift})}}};
 }
 
-/// Whether all errors of a part have T / sigmas, beside the shift.
+/// Whether all errors of a part have the same standard deviation for a given T.
 bool has_one_spread(const AllocatedPart& part, const ModelDescription& model) {
   return !part.zone || feature_of(part, model).kind == FeatureKind::distance;
 }
 
-/// A zone of orientation this near to the largest that its location allows is as wide as it.
+/// From this share of the largest width on, a zone of orientation counts as not needed.
 constexpr double kVoid = 1.0 - 1e-9;
 
-/// A tolerance and a process that can make it.
+/// A tolerance and the position of a process that can make it.
 struct Held {
   double tolerance;
   std::size_t process;
 };
 
-/// The largest tolerance up to `most` that a process can make, with the cheapest such process; otherwise the lowest
-/// tolerance.
+/// The largest tolerance up to `most` that a process can make, with the cheapest such process. If there is none, the
+/// lowest tolerance of all processes.
 Held held_below(const std::vector<Process>& processes, double most) {
   std::optional<Held> best;
   for (std::size_t k = 0; k < processes.size(); ++k) {
@@ -134,8 +136,8 @@ Held held_below(const std::vector<Process>& processes, double most) {
   return {lowest->lo, static_cast<std::size_t>(lowest - processes.begin())};
 }
 
-/// A tolerance `factor` times as large as far as its process allows, or the next larger single value; none if there is
-/// none.
+/// A coarser tolerance: `factor` times as large, limited by its process, or else the next larger single value. None if
+/// there is neither.
 std::optional<Held> larger_than(const std::vector<Process>& list, const Held& from, double factor) {
   const Process& now = list[from.process];
   if (now.hi > from.tolerance) return Held{std::min(now.hi, factor * from.tolerance), from.process};
@@ -148,7 +150,7 @@ std::optional<Held> larger_than(const std::vector<Process>& list, const Held& fr
   return Held{list[*above].lo, *above};
 }
 
-/// A cost that does not fall with the tolerance asks for the finest one.
+/// If the cost is the same at every tolerance, restricts a process to its finest one.
 Process finest_if_constant(Process process) {
   if (process.cost.is_constant()) process.hi = process.lo;
   return process;
@@ -199,7 +201,7 @@ void ToleranceProgramme::keep_allowed(ToleranceLimits& limits) const {
   }
 }
 
-/// The mean squares of the errors of a pair at these tolerances [N].
+/// The mean squares of the errors of paired zones at these tolerances [parts], SI squared.
 std::vector<ErrorFactor> ToleranceProgramme::squares_of_pair(const Within& pair,
                                                              std::span<const double> tolerance) const {
   std::vector<ErrorFactor> squares;
@@ -279,7 +281,7 @@ std::string ToleranceProgramme::chosen_name(std::size_t part, std::size_t proces
   return name + (name.empty() ? "" : ", ") + rounding_words(*one.round, dimension_of(one, study_.model()));
 }
 
-/// The finest zone on the drawing among features that share it.
+/// The finest of the zones that the drawing gives to the features of a part.
 double ToleranceProgramme::usual_of_zone(const AllocatedPart& part) const {
   const bool turned = is_orientation(part, study_.model());
   double usual = kInfinity;
@@ -338,7 +340,7 @@ TolerancePoint ToleranceProgramme::rounded(const TolerancePoint& point) const {
     const double location = point.tolerance[pair.outer];
     const double before = point.tolerance[pair.inner];
     const double after = next.tolerance[pair.inner];
-    // What the orientation leaves to the middle must not grow.
+    // The mean square of the middle, which grows with location^2 - orientation^2, must not grow.
     const double most = std::sqrt(location * location - (before - after) * (before + after));
     next.tolerance[pair.outer] = down(pair.outer, most);
   }
@@ -443,7 +445,8 @@ ChoiceOfTolerances ToleranceProgramme::least(const ToleranceLimits& limits, cons
   const LeastCost& found = std::get<LeastCost>(outcome);
   ChosenTolerances chosen{{found.best.tolerance, {}, 0.0}, found.lower_bound, found.multiplier};
   if (std::ranges::all_of(chosen.multiplier, [](double one) { return one == 0.0; })) {
-    chosen.multiplier = found.relaxed;  // single values have no multipliers, so those of the relaxation are used
+    // Between single values all multipliers are 0, so those of the relaxation are used.
+    chosen.multiplier = found.relaxed;
   }
   for (std::size_t i = 0; i < size(); ++i) chosen.process.push_back(kept[i][found.best.process[i]]);
   chosen.cost = cost_of(chosen);
@@ -512,7 +515,7 @@ Study ToleranceProgramme::at(std::span<const double> tolerance) const {
     Distribution& error = study.errors.by_factor[factor.value];
     error = error_of(error, std::max(sigma, kPerfect), shift);
   };
-  std::vector<double> squares(study_.analysis.factors.size(), 0.0);  // of errors in zones
+  std::vector<double> squares(study_.analysis.factors.size(), 0.0);  // mean squares of errors in zones
   for (std::size_t i = 0; i < size(); ++i) {
     const AllocatedPart& part = parts()[i];
     if (has_one_spread(part, study_.model())) {

@@ -19,86 +19,94 @@
 
 namespace poesy {
 
-/// Tolerances of all parts, and what they cost.
+/// Tolerances of all N parts, and their cost.
 struct TolerancePoint {
-  std::vector<double> tolerance;     ///< [N] SI
-  std::vector<std::size_t> process;  ///< [N] position among the part's processes
-  double cost = 0.0;                 ///< NaN where no part has a cost
+  std::vector<double> tolerance;     ///< [parts] tolerance of each part, SI
+  std::vector<std::size_t> process;  ///< [parts] position of the process among those of the part
+  double cost = 0.0;                 ///< total cost; NaN if no part has a cost
 };
 
-/// The tolerances that a programme chose under L limits.
+/// The tolerances that a convex programme chose under L limits.
 struct ChosenTolerances : TolerancePoint {
-  double lower_bound = 0.0;        ///< a lower bound on the least cost; NaN for an aim without costs
-  std::vector<double> multiplier;  ///< [L] what one unit more of room would save; empty for an aim without costs
+  double lower_bound = 0.0;        ///< lower bound on the least cost; NaN if the aim has no costs
+  std::vector<double> multiplier;  ///< [limits] cost saved per unit of additional room; empty if the aim has no costs
 };
 
-/// The trust region around the tolerances at which mean squares were found.
+/// The region around the linearisation in which the programme may choose tolerances.
 struct TrustRegion {
-  std::span<const double> centre = {};                      ///< [N] these tolerances; empty: no region
-  double growth = std::numeric_limits<double>::infinity();  ///< tolerances are at most so many times these
+  /// [parts] Tolerances at the linearisation; empty: no trust region.
+  std::span<const double> centre = {};
+  /// A tolerance may be at most this many times that of the centre.
+  double growth = std::numeric_limits<double>::infinity();
 };
 
-/// The result of a programme: tolerances, or why there are none.
+/// The result of a programme: tolerances, or the reason why there are none.
 using ChoiceOfTolerances = std::variant<ChosenTolerances, Infeasible, Unbounded>;
 
 /// The optimisation problem of a study: its parts with their bounds, processes and costs.
 class ToleranceProgramme {
  public:
-  /// Refers to the study. A part without an upper bound may have a quarter of the size that Model::error_bound gives.
+  /// Refers to the study. A part without an upper bound gets one: a quarter of the size that Model::error_bound gives.
   ToleranceProgramme(const Study& study, const Model& model);
 
-  std::size_t size() const { return parts().size(); }  ///< N.
-  const std::vector<AllocatedPart>& parts() const;     ///< [N] The parts as the study states them.
-  /// [N] The processes of each part: one for each value, grade or range.
+  std::size_t size() const { return parts().size(); }  ///< The number of parts, N.
+  const std::vector<AllocatedPart>& parts() const;     ///< The parts as the study states them.
+  /// [parts] The processes of each part. Each of several values, grades or ranges is a process.
   const std::vector<std::vector<Process>>& processes() const { return processes_; }
-  /// The positions of a part's own errors among those of the study. The errors of a zone of location also depend on
-  /// that of orientation.
+  /// The positions, among the study's errors, of the errors that belong to a part. If a feature also has a zone of
+  /// orientation, the errors of its zone of location depend on both.
   std::span<const std::size_t> errors(std::size_t part) const { return errors_[part]; }
   const std::vector<Within>& pairs() const { return pairs_; }  ///< Zones of orientation within zones of location.
-  /// Whether a part is a zone of orientation as wide as the location allows, so that the drawing does not need it.
+  /// Whether a part is a zone of orientation as wide as the zone of location allows. Then the drawing does not need it.
   bool is_void(const TolerancePoint& point, std::size_t part) const;
-  /// How the standard deviations of errors change if this part alone has a tolerance `factor` times as large. A
-  /// negative factor mirrors them, too. Errors of zones in pairs with a standard deviation of 0 are left out.
+  /// The factors on errors that result if only this part's tolerance is multiplied by |factor|. A negative factor also
+  /// mirrors the errors. Errors of paired zones whose standard deviation is 0 are left out.
   Variation variation(const TolerancePoint& point, std::size_t part, double factor) const;
-  /// How parts share out what they add to mean squares among their errors.
+  /// How the effect of a part on a mean square is divided among its errors.
   struct Weights {
-    std::vector<ErrorFactor> errors;  ///< with their variances, up to a factor
-    std::vector<std::size_t> parts;   ///< the part, or both parts of its pair
+    std::vector<ErrorFactor> errors;  ///< the errors; `factor` is a number proportional to the variance of the error
+    std::vector<std::size_t> parts;   ///< the part itself, or both parts of its pair of zones
   };
   Weights weights(const TolerancePoint& point, std::size_t part) const;  ///< The weights of a part's errors.
-  /// The derivative of the logarithm of each standard deviation by that of this part's tolerance; 1 except in pairs.
+  /// The logarithmic derivative of each error's standard deviation with respect to this part's tolerance; 1 if the part
+  /// is not in a pair.
   std::vector<ErrorFactor> growth(const TolerancePoint& point, std::size_t part) const;
-  std::string chosen_name(std::size_t part,
-                          std::size_t process) const;  ///< The name of a process or grade; else empty.
+  /// The name of a process or grade; empty if the part has neither.
+  std::string chosen_name(std::size_t part, std::size_t process) const;
 
-  std::vector<double> usual() const;  ///< [N] The tolerances that [errors] states, moved within bounds.
-  /// Each tolerance [N], or the next lower one that its part can have, or the lowest one.
+  /// [parts] The tolerances that belong to the sizes of errors in [errors] of the study; for zones those of the
+  /// drawing. All are moved within the bounds of the parts.
+  std::vector<double> usual() const;
+  /// For each part, the largest tolerance that it can have up to the one given [parts]; if there is none, its lowest.
   TolerancePoint at_most(std::span<const double> tolerance) const;
   TolerancePoint lowest() const;  ///< The lowest tolerances.
-  /// The point with each tolerance rounded down to what its part asks for. No error has a larger standard deviation:
-  /// where an orientation becomes finer, its location is rounded down from what then leaves the middle as it was.
+  /// The point with each tolerance rounded down as its part asks. No standard deviation grows. A finer orientation
+  /// would leave more of the zone of location to the middle, so the location is made finer as well before it is
+  /// rounded.
   TolerancePoint rounded(const TolerancePoint& point) const;
-  /// The point with one part coarser: its tolerance `factor` times as large, or the next larger value it can have. None
-  /// if its process allows no such value, and for a tolerance of 0. A zone of orientation may also be left out.
+  /// The point with one part coarser: its tolerance multiplied by `factor`, or its next larger value. None if the
+  /// process allows neither, or if the tolerance is 0. A zone of orientation may also be made so wide that the drawing
+  /// does not need it.
   std::optional<TolerancePoint> coarser(const TolerancePoint& point, std::size_t part, double factor) const;
   /// Whether the tolerance of a part is at a bound.
   AtBound at_bound(const TolerancePoint& point, std::size_t part) const;
-  /// The cost of a part; 0 where none is stated, and for what is left out.
+  /// The cost of a part; 0 if it has no cost or the drawing does not need it.
   double cost(const TolerancePoint& point, std::size_t part) const;
-  /// Moves zones of orientation within their locations.
+  /// Reduces each zone of orientation to the widest that its zone of location allows.
   void keep_within(std::span<double> tolerance) const;
-  /// Gives orientations that the point does not need the widths that these locations [N] allow.
+  /// Sets each orientation that the drawing does not need in `point` to the widest that the locations in `tolerance`
+  /// [parts] allow.
   void keep_void(const TolerancePoint& point, std::span<double> tolerance) const;
-  /// Raises negative effects of zones of orientation on limits as far as a programme needs it (Within).
+  /// Raises negative effects of zones of orientation on limits to the smallest value that a programme accepts (Within).
   void keep_allowed(ToleranceLimits& limits) const;
-  /// Limits on the mean square that parts add: room = (share x MeanSquares::room x wider)^2 - contribution of fixed
-  /// errors. at: [N] the tolerances at which the mean squares were measured.
+  /// The limits on the mean squares that parts cause: room = (share x MeanSquares::room x wider)^2 minus the effect of
+  /// fixed errors. at: [parts] tolerances at which the mean squares were measured.
   ToleranceLimits limits(const MeanSquares& squares, std::span<const double> at, double share,
                          double wider = 1.0) const;
-  /// The tolerances that are best for the study's aim.
+  /// Solves the programme of the study's aim under these limits.
   ChoiceOfTolerances choose(const ToleranceLimits& limits, const TrustRegion& region) const;
 
-  /// The study with these tolerances [N].
+  /// The study with these tolerances [parts].
   Study at(std::span<const double> tolerance) const;
 
  private:
@@ -113,9 +121,9 @@ class ToleranceProgramme {
   std::vector<double> proportions(const ToleranceLimits& limits) const;
 
   const Study& study_;
-  std::vector<std::vector<Process>> processes_;   ///< [N]
-  std::vector<DrawnPart> drawn_;                  ///< [N]
-  std::vector<std::vector<std::size_t>> errors_;  ///< [N]
+  std::vector<std::vector<Process>> processes_;   ///< [parts] processes of each part
+  std::vector<DrawnPart> drawn_;                  ///< [parts] effect of each part on its errors
+  std::vector<std::vector<std::size_t>> errors_;  ///< [parts] positions of each part's errors
   std::vector<Within> pairs_;
   bool has_costs_ = false;
 };

@@ -7,7 +7,8 @@
 namespace poesy {
 namespace {
 
-constexpr double kSameMultiple = 1e-12;  // a tolerance this near to a multiple is that multiple
+constexpr double kSameMultiple = 1e-12;  // a tolerance that differs from a multiple by less than this share counts as
+                                         // the multiple
 
 }  // namespace
 

@@ -9,20 +9,24 @@
 
 namespace poesy {
 
-/// The tolerances that a workshop has: multiples of a step, or preferred numbers of a unit.
+/// Tolerances that a workshop prefers: multiples of a step, or preferred numbers of ISO 3 in some unit.
 struct Rounding {
-  double unit;                                 ///< the step, or what 1 of a series is: 1 mm or 1 deg (m or rad)
-  std::optional<PreferredSeries> series = {};  ///< none: multiples
+  double unit;                                 ///< the step, or the unit of the series (1 mm or 1 deg), in m or rad
+  std::optional<PreferredSeries> series = {};  ///< the series of preferred numbers; none: multiples of the step
 
-  double down(double tolerance) const;  ///< The largest of them that is not above the tolerance; 0 if there is none.
-  double up(double tolerance) const;    ///< The smallest of them, above 0, that is not below; 0 for 0 of a series.
-  bool operator==(const Rounding&) const = default;  ///< Same tolerances.
+  double down(double tolerance) const;  ///< The largest preferred tolerance that is not above this one; 0 if there is
+                                        ///< none.
+  double up(double tolerance) const;  ///< The smallest positive preferred tolerance that is not below this one. With a
+                                      ///< series, the result for a tolerance of 0 is 0.
+  bool operator==(const Rounding&) const = default;  ///< Whether both round alike.
 };
 
-/// Reads "0.001 mm" or "R10", for tolerances of this dimension. Throws InputError at the value if it is neither.
+/// Reads "0.001 mm" or "R10" for a tolerance of this dimension. Throws InputError at the value if it is neither.
 Rounding read_rounding(const StudyValue& value, Dimension dimension);
 
-std::string rounding_text(const Rounding& rounding, Dimension dimension);   ///< TOML that reads back to the same.
-std::string rounding_words(const Rounding& rounding, Dimension dimension);  ///< "R10", "steps of 0.001 mm".
+/// The rounding as a TOML value, which reads back as the same rounding.
+std::string rounding_text(const Rounding& rounding, Dimension dimension);
+/// The rounding in words: "R10" or "steps of 0.001 mm".
+std::string rounding_words(const Rounding& rounding, Dimension dimension);
 
 }  // namespace poesy

@@ -10,7 +10,7 @@
 namespace poesy::allocation {
 namespace {
 
-/// Whether all tolerances are above zero.
+/// Whether all tolerances are above zero, so that the parts can be made.
 bool can_be_made(const TolerancePoint& point) {
   return std::ranges::find(point.tolerance, 0.0) == point.tolerance.end();
 }
@@ -19,14 +19,14 @@ std::vector<bool> none_stays(const SearchProblem& problem) {
   return std::vector<bool>(problem.programme.size(), false);
 }
 
-/// A candidate chosen after scaling the limits, or the same one if the scaling changes nothing.
+/// A candidate that was chosen under changed limits on root mean squares, and whether its tolerances changed.
 struct Rescaled {
   Candidate candidate;
   bool moved;
 };
 
-/// Scales the limits on root mean squares by this deciding load and chooses tolerances by them. If the fixed errors
-/// alone break limits this small, uses the smallest limits that can be kept.
+/// Divides the limits on root mean squares by the deciding load and chooses tolerances under them. If no tolerances
+/// keep such small limits, uses the smallest limits that some tolerances keep.
 Rescaled rescale(const SearchProblem& problem, const Linearisation& linearisation, const Candidate& from, double load) {
   const TrustRegion region{from.point.tolerance, kMaxGrowth};
   const double share = from.share / std::clamp(load * (1.0 + 0.25 * kLoadTolerance), 0.25, 4.0);
@@ -38,8 +38,8 @@ Rescaled rescale(const SearchProblem& problem, const Linearisation& linearisatio
   return {*std::move(next), moved};
 }
 
-/// Approaches the yield with a pilot, a part of the machines, and measures effects again after large changes of
-/// tolerances.
+/// Brings the tolerances near the yield with a pilot, which has only a part of the machines. Measures effects again
+/// after large changes of tolerances.
 Linearised approach_yield(const SearchProblem& problem, Linearised from, StageLog& log) {
   auto [linearisation, candidate] = std::move(from);
   const Study& study = problem.run.study;
@@ -75,9 +75,10 @@ struct Tightened {
   bool meets_yield;
 };
 
-/// Tightens tolerances where limits on root mean squares do not lead to the yield. This happens if a few machines
-/// decide whose errors hardly change a mean square, such as an error that has no effect until it is large. Tightens the
-/// parts whose errors are larger in rejected machines than in others, or all parts if there are none.
+/// Tightens tolerances if limits on root mean squares do not lead to the yield. This happens if only few machines
+/// decide and their errors hardly change a mean square, for example if an error has no effect until it is large.
+/// Tightens the parts whose errors are significantly larger in rejected machines; if there are none, tightens all
+/// parts.
 Tightened tighten_rejecting_parts(const SearchProblem& problem, Candidate from, StageLog& log) {
   ToleranceDesign design{std::move(from), problem.run.study.seed, {}, {}};
   for (std::size_t trial = 0; trial < kMaxTrials; ++trial) {
@@ -108,11 +109,11 @@ Tightened tighten_rejecting_parts(const SearchProblem& problem, Candidate from, 
   return {std::move(design), false};
 }
 
-/// Tries the lowest tolerances, the last resort. rejects: those at the smallest tolerances tried before.
+/// Tries the lowest tolerances as the last resort. rejects: number of rejects at the smallest tolerances tried before.
 ToleranceDesign tighten_to_lowest(const SearchProblem& problem, double share, std::uint64_t rejects, StageLog& log) {
   const TolerancePoint lowest = problem.programme.lowest();
-  ToleranceDesign design{
-      {lowest, {lowest, kNaN, {}}, share}, problem.run.study.seed, {}, {}};  // not chosen by a programme
+  // These tolerances are not the solution of a programme, so they have no lower bound and no multipliers.
+  ToleranceDesign design{{lowest, {lowest, kNaN, {}}, share}, problem.run.study.seed, {}, {}};
   design.load = loads_of(problem, design.seed, lowest.tolerance);
   if (rejects_of(design.load) > problem.allowed.design) refuse_lowest(problem, rejects_of(design.load));
   if (!can_be_made(lowest)) refuse_perfect(problem, rejects);

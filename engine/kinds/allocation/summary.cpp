@@ -11,8 +11,8 @@
 namespace poesy {
 namespace {
 
-/// Rounds to this many significant digits, towards zero. A value within rounding of a shorter number becomes that
-/// number.
+/// Rounds down to this many significant digits. A value that differs from a shorter number only by rounding becomes
+/// that number.
 double rounded_down(double value, int digits) {
   constexpr double kRounding = 1e-12;
   if (!(value > 0.0) || std::isinf(value)) return value;

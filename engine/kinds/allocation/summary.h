@@ -10,31 +10,32 @@
 #include "engine/kinds/allocation/result.h"
 #include "engine/report/tables.h"
 
-/// Texts and orders that files, tables and reports of tolerances share.
+/// Texts and orders of an allocation result that its files, tables and reports share.
 namespace poesy {
 
-/// Whether the aim has costs.
+/// Whether the study has costs.
 inline bool has_costs(const AllocationResult& found) { return !std::isnan(found.total_cost); }
 
-/// Positions of the responses that have a limit, in their order.
+/// Positions of the responses that have a limit, ascending.
 std::vector<std::size_t> limited_responses(const AllocationResult& found);
 
-/// The pose at which these numbers of a response are largest; none where none is above zero.
+/// The pose at which a response's number is largest; none if no number is above zero.
 std::optional<std::size_t> worst_pose(std::span<const double> at_poses);
 
-/// The shares by which parts are ordered: of the cost, or of the mean square if the aim has no costs.
+/// The shares by which parts are ordered: shares of the cost, or of the mean square if the study has no costs.
 const AllocationResult::Parts<double>& shown_shares(const AllocationResult& found);
 
-/// The positions of the parts in this order: by shown_shares() descending, by name, or as in the study.
+/// Positions of the parts in this order: by shown_shares() descending, by name, or as in the study.
 std::vector<std::size_t> ordered_parts(const AllocationResult& found, RowOrder order);
 
-/// "certified: at least 99.73 % of the machines are within all limits at all poses, ...", or why it is not.
+/// The certificate in words: "certified: at least 99.73 % of the machines are within all limits at all poses, ...", or
+/// the reason why there is none.
 std::string certificate_text(const AllocationResult& found);
 
-/// A tolerance in the unit in which people read it: four digits, rounded down so that limits are still kept.
+/// A tolerance as a number in its display unit: four digits, rounded down so that the limits still hold.
 std::string drawing_number(double tolerance, const std::string& si_unit);
 
-/// T as a drawing has it, "+-0.0123 mm": four digits, rounded down so that limits are still kept.
+/// A tolerance as a drawing states it, "+-0.0123 mm": four digits, rounded down so that the limits still hold.
 std::string drawing_text(double tolerance, const std::string& si_unit);
 
 }  // namespace poesy

@@ -23,7 +23,7 @@ std::vector<std::size_t> positions_of(std::span<const FactorIndex> errors, std::
   return positions;
 }
 
-/// The mean squares of the middle and of the tilt of a feature by its zone of location, of size 1.
+/// The mean squares of a feature's middle and tilt in a zone of location of size 1.
 struct UnitSquares {
   double middle;
   double tilt;

@@ -12,31 +12,34 @@
 #include "engine/model/model.h"
 #include "engine/optimise/least_cost.h"
 
-/// Zones of a drawing as parts. Mean squares of a feature's errors are linear in the squares of its tolerances: with a
-/// zone of orientation, the middle has (T^2 - T_o^2) / 4 k^2 and the tilt a multiple of T_o^2; without one, the
-/// location shares its zone among both.
+/// Zones of a drawing as parts. The mean squares of a feature's errors are linear in the squares of its tolerances. Let
+/// T be the zone of location, T_o the zone of orientation, and k the number of standard deviations in half a zone. With
+/// a zone of orientation, each error of the middle has the mean square (T^2 - T_o^2) / 4 k^2, and the tilt a multiple
+/// of T_o^2. Without one, middle and tilt share the zone of location.
 namespace poesy {
 
-/// Whether the part is a zone that limits how a feature is turned. Precondition: it is a zone.
+/// Whether the part is a zone of orientation. Precondition: the part is a zone.
 bool is_orientation(const AllocatedPart& part, const ModelDescription& model);
 
-/// The feature of the first limb that has this zone. Precondition: it is a zone.
+/// The feature of a zone, in the first limb that has it. Precondition: the part is a zone.
 const Feature& feature_of(const AllocatedPart& part, const ModelDescription& model);
 
-/// The zone as the drawing states it. Precondition: it is a zone.
+/// The zone as the drawing states it. Precondition: the part is a zone.
 const Zone& zone_of(const AllocatedPart& part, const ModelDescription& model);
 
-/// The features of a zone in words: "1-3", or "1, 3".
+/// The limbs that share a zone, in words: "1-3", or "1, 3".
 std::string limbs_of(const AllocatedPart& part, const ModelDescription& model);
 
-/// "cylinder", "sphere", "planes", or "interval" for a distance. Precondition: it is a zone.
+/// The shape of a zone: "cylinder", "sphere", "planes", or "interval" for a distance. Precondition: the part is a zone.
 std::string_view shape_of(const AllocatedPart& part, const ModelDescription& model);
 
-/// What one unit of T^2 of a zone adds to mean squares. factors: those that vary, of which errors are positions.
+/// The effect of T^2, where T is the tolerance of a zone, on the mean squares of the errors. factors: the errors that
+/// vary; the result refers to positions in this list.
 DrawnPart drawn_zone(const AllocatedPart& part, const ModelDescription& model, std::span<const FactorIndex> factors);
 
-/// The pairs of a zone of orientation and the zone of location of the same features, in the order of the latter. An
-/// orientation whose tolerance is chosen may be left out; a given one is void only where the location is too fine.
+/// The pairs of a zone of orientation and the zone of location of the same features, in the order of the locations. An
+/// orientation whose tolerance is chosen may be left out. An orientation whose tolerance is given is left out only
+/// where the location is so fine that the orientation adds no limit.
 std::vector<Within> zone_pairs(std::span<const AllocatedPart> parts, const ModelDescription& model);
 
 }  // namespace poesy

@@ -9,22 +9,24 @@
 #include "engine/result/csv_table.h"
 
 /// The zones of a drawing in tables and files, as a workshop reads them. Preconditions: AllocationResult::has_zones();
-/// the result outlives what refers to it.
+/// the result outlives the columns and tables that refer to it.
 namespace poesy {
 
-/// Feature, symbol, zone, datums and length of each part; of a part that is not a zone its name and T.
+/// Columns for feature, symbol, zone, datums and length of each part. For a part that is not a zone, its name and T.
 std::vector<FilledColumn> zone_columns(const AllocationResult& found);
 
-/// The share of features inside their zone, and what else a drawing says.
+/// Columns for the share of features inside their zone, and for remarks.
 std::vector<FilledColumn> inside_columns(const AllocationResult& found);
 
-/// The parts of the drawing without the orientations that it does not need, each orientation behind its location.
+/// The parts that the drawing states, each orientation directly after its location. Orientations that the drawing does
+/// not need are left out.
 std::vector<std::size_t> drawn_parts(const AllocationResult& found, const std::vector<std::size_t>& order);
 
-/// How much of a zone is used: "half a zone: 3 standard deviations of a coordinate of an extreme point".
+/// What a zone means for the errors, in words: "half a zone: 3 standard deviations of a coordinate of an extreme
+/// point".
 std::string zones_note(const AllocationResult& found);
 
-/// drawing.csv: a line for each zone or tolerance of the drawing.
+/// The table drawing.csv, with a line for each zone or tolerance of the drawing.
 CsvTable drawing_csv(const AllocationResult& found);
 
 }  // namespace poesy

@@ -10,34 +10,34 @@
 
 namespace poesy {
 
-/// How likely a machine keeps the limits of its study after its calibration: the share of 1000 machines, drawn from
-/// what is known of it and solved exactly, that keep all of them.
+/// The probability that a calibrated machine keeps the limits of its study. It is the share of 1000 machines within all
+/// limits. These are drawn from the estimated distribution of the machine's errors and solved exactly.
 class KeptLimits {
  public:
-  /// Arguments must outlive it.
+  /// Refers to the arguments. known: estimates and covariance of the machine's errors.
   KeptLimits(const Study& study, const Model& model, const calibration::Knowledge& known);
 
-  /// Solves the machines at a pose.
+  /// Solves the machines at a pose, where the controller commands the drives of pose `drive_at`.
   void add(calibration::ExactMachine& machine, std::span<const double> pose, std::span<const double> drive_at,
            const calibration::Corrected& corrected);
 
-  /// The share of the machines that keep all limits that can be judged; NaN if there are none.
+  /// The share of machines that keep all limits that can be judged; NaN if no limit can be judged.
   double share() const;
-  /// A sentence that names limits that cannot be judged, because they are not of the platform's displacement; empty if
-  /// there are none.
+  /// A sentence that names the limits that cannot be judged, because their responses are not displacements of the
+  /// platform; empty if there are none.
   std::string not_judged() const { return not_judged_; }
 
  private:
-  /// A limit with the components of which its response is formed.
+  /// A limit, and the displacement components that form its response.
   struct Judged {
     ValueLimit allowed;
-    std::vector<std::size_t> components;           ///< one, or those of a norm
-    std::vector<std::vector<double>> values = {};  ///< [machines] at the poses
+    std::vector<std::size_t> components;           ///< a single component, or those whose norm is the response
+    std::vector<std::vector<double>> values = {};  ///< [machines] responses at the poses so far
   };
 
   std::vector<Judged> limits_;
-  calibration::Matrix errors_;  ///< [F x machines]
-  calibration::Matrix phi_;     ///< [places x machines]
+  calibration::Matrix errors_;  ///< [all errors x machines] errors, SI
+  calibration::Matrix phi_;     ///< [places x machines] numbers of frame and target
   std::string not_judged_;
 };
 

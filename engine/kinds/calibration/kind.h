@@ -4,7 +4,7 @@
 
 namespace poesy {
 
-/// Stores and reports results of `poesy calibrate`. No study has this kind.
+/// The kind of results that `poesy calibrate` writes. No study has this kind.
 extern const Kind kCalibrationKind;
 
 /// How results of calibrations are stored and reported.

@@ -13,91 +13,98 @@ namespace poesy {
 
 namespace axis {
 using Fitted = Axis<"fitted">;            ///< Fitted errors.
-using OtherFitted = Axis<"with_fitted">;  ///< The same for the columns of a matrix.
-using Direction = Axis<"direction">;      ///< Directions of fitted errors, by their singular values.
+using OtherFitted = Axis<"with_fitted">;  ///< Fitted errors as the second axis of a matrix.
+using Direction = Axis<"direction">;      ///< Directions of fitted errors, ordered by their singular values.
 using Value = Axis<"value">;              ///< Measured values.
-using FramePart = Axis<"frame_part">;     ///< Numbers of the frame and the target.
+using FramePart = Axis<"frame_part">;     ///< Numbers that place the measuring frame and the target.
 using Moved = Axis<"moved">;              ///< Components of the platform's displacement.
 using Drive = Axis<"drive">;              ///< Drives.
-using Next = Axis<"next">;                ///< Poses to measure next.
+using Next = Axis<"next">;                ///< Poses recommended for the next measurement.
 using Coordinate = Axis<"coordinate">;    ///< Coordinates of a pose.
-using Typed = Axis<"typed">;              ///< Numbers to be typed into the controller.
+using Typed = Axis<"typed">;              ///< Parameters for the controller.
 }  // namespace axis
 
-/// The calibration of one machine, SI. NaN where something is not determined or not known.
+/// The calibration of one machine, SI. NaN if a number is not determined or not known. In scaled numbers, each fitted
+/// error is divided by its scale.
 struct CalibrationResult {
-  std::vector<NamedUnit> fitted;                                  ///< fitted errors
-  Array<double, axis::Fitted> estimate;                           ///< estimates
-  Array<double, axis::Fitted> sd;                                 ///< standard deviations
-  Array<double, axis::Fitted> low;                                ///< lower ends of the intervals
-  Array<double, axis::Fitted> high;                               ///< upper ends of the intervals
-  Array<double, axis::Fitted> scale;                              ///< what counts as one: the tolerances
-  std::uint64_t has_tolerances = 0;                               ///< whether `scale` are tolerances
-  Array<double, axis::Fitted, axis::OtherFitted> covariance;      ///< covariance of the estimates
-  Array<double, axis::Fitted, axis::OtherFitted> correlation;     ///< their correlation
-  Array<double, axis::Fitted, axis::OtherFitted> null_projector;  ///< on what is unseen, in scaled numbers
-  Array<double, axis::Direction> singular_values;                 ///< of the scaled matrix, the largest first
-  double conf_level = 0.95;                                       ///< level of the intervals
-  std::uint64_t has_prior = 0;                                    ///< whether tolerances count as knowledge
-  std::uint64_t noise_is_known = 1;                               ///< whether values have standard deviations
-  std::uint64_t sd_is_estimated = 0;                              ///< whether the noise is known up to one factor
+  std::vector<NamedUnit> fitted;         ///< names and units of the fitted errors
+  Array<double, axis::Fitted> estimate;  ///< estimated values of the fitted errors
+  Array<double, axis::Fitted> sd;        ///< standard deviations of the estimates
+  Array<double, axis::Fitted> low;       ///< lower ends of the confidence intervals of the estimates
+  Array<double, axis::Fitted> high;      ///< upper ends of these intervals
+  /// Scale of each fitted error: its tolerance, or a usual size.
+  Array<double, axis::Fitted> scale;
+  std::uint64_t has_tolerances = 0;                            ///< 1 if all scales are tolerances, otherwise 0
+  Array<double, axis::Fitted, axis::OtherFitted> covariance;   ///< covariance of the estimates
+  Array<double, axis::Fitted, axis::OtherFitted> correlation;  ///< correlation of the estimates
+  /// Projector on the directions of fitted errors that the measurement cannot see, in scaled numbers.
+  Array<double, axis::Fitted, axis::OtherFitted> null_projector;
+  Array<double, axis::Direction> singular_values;  ///< singular values of the scaled and weighted matrix of
+                                                   ///< derivatives, largest first
+  double conf_level = 0.95;                        ///< confidence level of the intervals
+  std::uint64_t has_prior = 0;                     ///< 1 if tolerances are used as prior knowledge, otherwise 0
+  std::uint64_t noise_is_known = 1;                ///< 1 if the values have standard deviations, 0 if all noise is 0
+  std::uint64_t sd_is_estimated = 0;               ///< 1 if the noise is known up to one factor, otherwise 0
 
   std::vector<std::string> values;           ///< names of the measured values
-  std::vector<std::string> value_units;      ///< their SI units
+  std::vector<std::string> value_units;      ///< SI units of the measured values
   Array<double, axis::Value> measured;       ///< measured values
-  Array<double, axis::Value> value_sd;       ///< their standard deviations
-  Array<double, axis::Value> residual;       ///< measured less fitted
-  Array<double, axis::Value> leverage;       ///< how far the fit follows each value
-  Array<double, axis::Value> standardised;   ///< residuals over their own standard deviations
+  Array<double, axis::Value> value_sd;       ///< standard deviations of the measured values
+  Array<double, axis::Value> residual;       ///< measured minus fitted values
+  Array<double, axis::Value> leverage;       ///< leverage of each value in the fit, from 0 to 1
+  Array<double, axis::Value> standardised;   ///< each residual divided by its standard deviation
   Array<std::uint8_t, axis::Value> outlier;  ///< 1 for outliers
-  std::uint64_t measured_poses = 0;          ///< number of rows
+  std::uint64_t measured_poses = 0;          ///< number of rows of the table of measurements
   std::uint64_t distances = 0;               ///< number of distances among the values
 
-  double rms = kNaN;              ///< root mean square of residuals over standard deviations
-  double chi_square = kNaN;       ///< sum of squares, with the prior's part
-  std::uint64_t dof = 0;          ///< its degrees of freedom
-  double p = kNaN;                ///< share of larger sums of squares if nothing but noise is left
-  double outlier_limit = kNaN;    ///< magnitude of standardised residuals beyond which a value is an outlier
-  std::uint64_t rank = 0;         ///< directions of fitted errors that are seen
-  std::uint64_t frame_rank = 0;   ///< directions of frame and target that are seen
-  std::uint64_t below_noise = 0;  ///< directions whose signal is below the noise
-  std::uint64_t steps = 0;        ///< steps of the fit
-  double O1 = kNaN;               ///< observability index
-  double O2 = kNaN;               ///< observability index
-  double O3 = kNaN;               ///< observability index
-  double O4 = kNaN;               ///< observability index
-  double O5 = kNaN;               ///< observability index
-  double condition = kNaN;        ///< largest over smallest singular value that is seen
+  double rms = kNaN;              ///< root mean square of residuals divided by the noise
+  double chi_square = kNaN;       ///< weighted sum of squared residuals, including the prior
+  std::uint64_t dof = 0;          ///< degrees of freedom of chi_square
+  double p = kNaN;                ///< p-value: probability of a larger chi_square if only noise remains
+  double outlier_limit = kNaN;    ///< a value is an outlier if the magnitude of its standardised residual is above this
+  std::uint64_t rank = 0;         ///< number of directions of fitted errors that the measurement sees
+  std::uint64_t frame_rank = 0;   ///< number of directions of frame and target that the measurement sees
+  std::uint64_t below_noise = 0;  ///< number of directions whose signal is below the noise
+  std::uint64_t steps = 0;        ///< number of steps of the fit
+  double O1 = kNaN;               ///< observability index of Borm and Menq (calibration/inference.h)
+  double O2 = kNaN;               ///< observability index of Driels and Pathre
+  double O3 = kNaN;               ///< observability index of Nahvi, Hollerbach and Hayward
+  double O4 = kNaN;               ///< observability index of Nahvi and Hollerbach
+  double O5 = kNaN;               ///< observability index of Sun and Hollerbach
+  double condition = kNaN;        ///< ratio of the largest to the smallest singular value that is seen
 
-  std::vector<std::string> frame_parts;  ///< names of the numbers of frame and target
-  Array<double, axis::FramePart> frame;  ///< numbers of the unknown frame and target
+  std::vector<std::string> frame_parts;  ///< names of the numbers that place frame and target
+  Array<double, axis::FramePart> frame;  ///< estimates of these numbers, where they are unknown
 
-  Array<double, axis::Pose, axis::Moved> left_mean;    ///< what the calibrated controller leaves, expected
-  Array<double, axis::Pose, axis::Moved> left_sd;      ///< its standard deviation
-  std::vector<NamedUnit> drives;                       ///< the drives
-  Array<double, axis::Pose, axis::Drive> drive_shift;  ///< by how much the controller moves them
-  std::uint64_t unfitted = 0;                          ///< directions of errors with a tolerance that are not fitted
-  double kept = kNaN;                                  ///< share of machines, as far as known, within all limits
-  std::uint64_t left_in_device_frame = 0;              ///< whether what is left is seen in the device's frame
+  Array<double, axis::Pose, axis::Moved> left_mean;    ///< expected displacement of the platform that remains with the
+                                                       ///< calibrated controller
+  Array<double, axis::Pose, axis::Moved> left_sd;      ///< standard deviation of the remaining displacement
+  std::vector<NamedUnit> drives;                       ///< names and units of the drives
+  Array<double, axis::Pose, axis::Drive> drive_shift;  ///< change of each drive by the calibrated controller
+  std::uint64_t unfitted = 0;                          ///< number of errors with a tolerance minus number of fitted
+                                                       ///< errors; at least 0
+  double kept = kNaN;                                  ///< probability that the machine keeps all limits (KeptLimits)
+  std::uint64_t left_in_device_frame = 0;  ///< 1 if the remaining displacement is in the frame of the measuring device,
+                                           ///< 0 if in the base frame
 
-  Array<double, axis::Next, axis::Coordinate> next_pose;  ///< poses to measure next
-  Array<double, axis::Next> gain;                         ///< bits of each, beyond those before it
-  Array<std::uint64_t, axis::Next> candidate;             ///< their positions among the candidates
+  Array<double, axis::Next, axis::Coordinate> next_pose;  ///< poses recommended for the next measurement
+  Array<double, axis::Next> gain;                         ///< information of each pose beyond those before it, bits
+  Array<std::uint64_t, axis::Next> candidate;             ///< positions of these poses among the candidates
 
-  std::vector<NamedUnit> typed;              ///< numbers for the controller; `description` is the expression
-  Array<double, axis::Typed> typed_nominal;  ///< without errors
-  Array<double, axis::Typed> typed_value;    ///< with the estimates
-  Array<double, axis::Typed> typed_sd;       ///< standard deviation
+  std::vector<NamedUnit> typed;              ///< parameters for the controller; `description` is the expression
+  Array<double, axis::Typed> typed_nominal;  ///< values of the parameters without errors
+  Array<double, axis::Typed> typed_value;    ///< values of the parameters with the estimated errors
+  Array<double, axis::Typed> typed_sd;       ///< standard deviations of the values
 
   std::string file;         ///< name of the table of measurements
-  std::string file_text;    ///< its content
-  std::string file_sha256;  ///< hash of its content
+  std::string file_text;    ///< content of that table
+  std::string file_sha256;  ///< SHA-256 hash of that content
 };
 
-/// The names on the axis `moved`.
+/// The names on the axis `moved`: components of a displacement.
 std::vector<std::string> moved_names();
 
-/// The calibration in a result. Precondition: the result is one.
+/// The calibration in a result. Precondition: the result is of kind `calibration`.
 inline const CalibrationResult& calibration_of(const StoredResult& result) {
   return found_of<CalibrationResult>(result);
 }

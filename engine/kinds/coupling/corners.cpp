@@ -11,11 +11,11 @@
 namespace poesy {
 namespace {
 
-/// The number of samples that are solved together.
+/// The largest number of samples that are solved together.
 constexpr std::size_t kBlock = 256;
 
-/// The largest number of weighted sums of responses that are tried, approximately. The three components of a vector
-/// have 13 of them.
+/// The approximate largest number of weighted sums of responses that are tried. The three components of a vector have
+/// 13.
 constexpr std::size_t kMostSums = 13;
 
 Signs opposite(Signs signs) {

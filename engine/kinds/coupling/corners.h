@@ -15,8 +15,8 @@
 #include "engine/run/result.h"
 #include "engine/study/poses/pose_selection.h"
 
-/// Searches the worst case of error sources whose signs are not known. Each block of errors (error_blocks) has its size
-/// with either sign, and a corner is a choice of signs. R responses, Z sizes, K subsets of the sources.
+/// Searches the worst case of error sources whose signs are unknown. Each block of errors (error_blocks) has its size
+/// with either sign, and a corner is a choice of all signs.
 namespace poesy {
 
 namespace axis {
@@ -26,44 +26,46 @@ using Block = Axis<"block">;  ///< Blocks of errors that move together.
 /// The sign of each block of a subset, '+' or '-'.
 using Signs = std::string;
 
-/// The blocks of each subset, and the errors of each corner.
+/// The blocks of each subset of sources, and the errors at each corner.
 struct CornerTable {
-  CornerTable(const CouplingStudy& study, const ModelDescription& model);  ///< The table of a study of this model.
+  CornerTable(const CouplingStudy& study, const ModelDescription& model);  ///< Lists the blocks of a study's sources.
 
-  std::vector<FactorIndex> factors;                ///< [V] the errors of the study (coupling_factors)
-  std::vector<std::vector<std::size_t>> blocks;    ///< blocks of all sources, as positions among the factors
-  std::vector<std::vector<std::size_t>> subsets;   ///< [K] blocks of each subset, as positions among the blocks
-  std::vector<std::vector<double>> size_of_error;  ///< [Z] the size of each factor, [V], SI
+  std::vector<FactorIndex> factors;                ///< errors of the study (coupling_factors)
+  std::vector<std::vector<std::size_t>> blocks;    ///< blocks of all sources; a block is a list of positions in
+                                                   ///< `factors`
+  std::vector<std::vector<std::size_t>> subsets;   ///< [subsets] blocks of each subset, as positions in `blocks`
+  std::vector<std::vector<double>> size_of_error;  ///< [sizes][errors] size of each error of the study, SI
 
-  /// [V] The sign of each error at a corner of a subset: 1, -1, or 0 for errors outside the subset.
+  /// The sign of each error of the study at a corner of a subset: 1, -1, or 0 for errors outside the subset.
   std::vector<double> signs_of_errors(std::size_t subset, const Signs& signs) const;
 };
 
 /// The worst corners of a subset at one size and pose.
 struct WorstCorners {
-  std::vector<double> value;   ///< [R] largest |response| among the solved corners; NaN if none was solved
-  std::vector<Signs> signs;    ///< [R] the corner of that value; empty if none was solved
-  std::uint64_t tried = 0;     ///< corners that were tried
-  std::uint64_t unsolved = 0;  ///< corners among them that have no solution
-  Signs first_unsolved = {};   ///< one of those; empty if there is none
+  std::vector<double> value;   ///< [responses] largest |response| over the solved corners; NaN if none was solved
+  std::vector<Signs> signs;    ///< [responses] signs at that corner; empty if none was solved
+  std::uint64_t tried = 0;     ///< number of corners that were tried
+  std::uint64_t unsolved = 0;  ///< number of tried corners without a solution
+  Signs first_unsolved = {};   ///< signs at the first corner without a solution; empty if there is none
 };
 
 /// The worst corners of all subsets at one size and pose.
 struct CornersAtPose {
-  std::vector<WorstCorners> subsets;  ///< [K]
-  SolveCounts solves;                 ///< of all corners
+  std::vector<WorstCorners> subsets;  ///< [subsets] worst corners of each subset
+  SolveCounts solves;                 ///< how the solves of all corners ended
 };
 
-/// Searches the worst corners. For each response it tries the signs that add up the effects of the blocks alone (the
-/// first-order sum), and the opposite signs. It does the same for sums and differences of signed responses of one unit
-/// (ModelDescription::signed_headline), because a norm may be largest between its components. It also tries the corner
-/// where all signs are positive. From the worst of these corners it flips each block alone, until no flip is worse by
-/// more than rounding. A corner counts if it is solved (model/status.h); otherwise it cannot be assembled, or its
-/// solution was not found. The result is not a bound: with B blocks, about B corners for each response are tried, of
-/// 2^B. Owns the scratch of one thread. The result depends only on the arguments.
+/// Searches the worst corners. For each response, the search tries the signs with which the effects of single blocks
+/// add up to first order, and the opposite signs. It does the same for sums and differences of responses with a sign
+/// that share a unit (ModelDescription::signed_headline), because a norm may be largest between the axes of its
+/// components. It also tries all signs positive. From the worst corner so far, it flips the sign of each block alone,
+/// until no flip makes the response worse by more than rounding. A corner counts if it is solved (model/status.h);
+/// otherwise it cannot be assembled, or its solution was not found. The result is not a bound: a subset with B blocks
+/// has 2^B corners, of which about B are tried for each response. The result depends only on the arguments. Owns the
+/// scratch memory of one thread.
 class CornerSearch {
  public:
-  /// Refers to all arguments. rounding: see coupling_rounding().
+  /// Refers to all arguments. rounding: [responses x sizes] see coupling_rounding().
   CornerSearch(const Model& model, const SolverOptions& solver, const PoseSet& poses, const CornerTable& table,
                const Array<double, axis::Response, axis::Size>& rounding);
 
@@ -71,17 +73,18 @@ class CornerSearch {
   CornersAtPose operator()(std::size_t pose, std::size_t size);
 
  private:
-  /// The corners of a subset that were tried.
+  /// The corners of a subset that were tried or wait to be tried.
   struct Tried {
-    std::unordered_map<Signs, std::size_t> known;  ///< their numbers
-    std::vector<Signs> signs;                      ///< in the order in which they were tried
-    /// The magnitude of each response at each corner; NaN where the corner is not solved.
+    std::unordered_map<Signs, std::size_t> known;  ///< position of each corner in `signs`
+    std::vector<Signs> signs;                      ///< corners in the order in which they were tried
+    /// [corners][responses] magnitude of each response; NaN if the corner is not solved.
     std::vector<std::vector<double>> magnitude;
 
-    /// The corner with the largest magnitude of a response; differences within rounding do not count.
+    /// The corner at which a response has the largest magnitude. A corner must be larger by more than rounding to
+    /// replace an earlier one.
     std::size_t worst(std::size_t response, double rounding) const;
   };
-  /// A weighted sum of responses.
+  /// A weighted sum of responses, as pairs of response and weight.
   using Direction = std::vector<std::pair<std::size_t, double>>;
   /// A corner that waits to be solved.
   struct Wanted {
@@ -89,7 +92,7 @@ class CornerSearch {
     std::size_t corner;
   };
 
-  /// The effect of each block of errors alone.
+  /// [blocks x responses] The effect of each block of errors alone.
   using BlocksAlone = Array<double, axis::Block, axis::Response>;
 
   static std::vector<Direction> directions(const ModelDescription& model);
@@ -98,9 +101,9 @@ class CornerSearch {
   void want_neighbours(std::size_t subset);
   void solve_wanted(std::size_t pose, std::size_t size, SolveCounts& solves);
   BlocksAlone blocks_alone(std::size_t pose, std::size_t size);
-  /// Returns the errors of the next `count` samples, all set to zero.
+  /// The errors of the next `count` samples, all set to zero, to be filled in.
   ArrayView<double, axis::Factor, axis::Sample> next_samples(std::size_t count);
-  /// Solves these samples.
+  /// Solves the first `count` samples at a pose and returns their responses.
   ArrayView<const double, axis::Response, axis::Sample> solve(std::size_t pose, std::size_t count);
   WorstCorners found(std::size_t subset) const;
 
@@ -110,17 +113,17 @@ class CornerSearch {
   std::size_t responses_;
   std::vector<Direction> directions_;  ///< weighted sums whose first-order signs are tried
   std::unique_ptr<Evaluator> evaluator_;
-  std::vector<double> zeros_;          ///< [F]
-  std::vector<double> at_size_;        ///< [R] rounding at the size
-  std::vector<Tried> tried_;           ///< [K]
-  std::vector<Wanted> wanted_;         ///< in the order in which corners are tried
-  std::vector<double> values_;         ///< of one block of samples
-  std::vector<double> outcomes_;       ///< of one block of samples
-  std::vector<SolveStatus> status_;    ///< [B]
-  std::vector<std::uint32_t> counts_;  ///< [B] iterations
+  std::vector<double> zeros_;          ///< a zero for each error of the model
+  std::vector<double> at_size_;        ///< [responses] rounding of each response at the present size
+  std::vector<Tried> tried_;           ///< [subsets] corners of each subset
+  std::vector<Wanted> wanted_;         ///< corners that wait to be solved, in order
+  std::vector<double> values_;         ///< errors of the samples that are solved together
+  std::vector<double> outcomes_;       ///< responses of these samples
+  std::vector<SolveStatus> status_;    ///< how each of these samples ended
+  std::vector<std::uint32_t> counts_;  ///< iterations of each of these samples
 };
 
-/// About how many corners are tried at each size and pose.
+/// The expected number of corners at each size and pose.
 double expected_corners(const CornerTable& table, std::size_t responses);
 
 }  // namespace poesy

@@ -34,7 +34,8 @@ bool takes(const ErrorPattern& pattern, const Factor& factor) {
   return std::ranges::find(pattern.axes, factor.axis) != pattern.axes.end();
 }
 
-/// The place by which factors belong to one block: limb, frame, dimension and axis.
+/// What the errors of a block have in common: limb, frame, dimension and axis. An element has its default value if the
+/// pattern does not divide a source by it.
 using BlockPlace = std::tuple<std::size_t, std::size_t, Dimension, std::string>;
 
 BlockPlace place_of(const Factor& factor, const ErrorPattern& pattern) {
@@ -62,7 +63,7 @@ void add_errors(const ErrorBlock& more, ErrorBlock& errors) {
   std::ranges::sort(errors);
 }
 
-/// The effects of a subset at one pose. NaN effects make NaN of every number that depends on them.
+/// The effects of a subset at one pose. If an effect is NaN, so is every number that depends on it.
 struct Combination {
   double effect = 0.0;
   double sum = 0.0;
@@ -79,7 +80,7 @@ struct Combination {
   bool is_opposed(double rounding) const { return largest - std::abs(sum) > rounding; }
 };
 
-/// Combines the effects of a subset's rows. effects: [N] of all rows at one size and pose.
+/// Combines the effects of the rows that belong to a subset. effects: [rows] effects of all rows at one size and pose.
 Combination combination(const CouplingRows& rows, std::size_t subset, std::span<const double> effects) {
   Combination found;
   found.effect = effects[subset];
@@ -105,7 +106,7 @@ std::pair<double, std::int64_t> largest_at(std::span<const double> values, std::
   return largest;
 }
 
-/// The names of the sizes: "0.1 mm", or "0.1 mm, 0.1 deg".
+/// The names of the sizes: "0.1 mm", or "0.1 mm, 0.1 deg" with lengths and angles.
 std::vector<std::string> size_names(const CouplingStudy& study) {
   std::vector<std::string> names;
   for (std::size_t z = 0; z < study.sizes(); ++z) {
@@ -117,12 +118,12 @@ std::vector<std::string> size_names(const CouplingStudy& study) {
   return names;
 }
 
-/// The sizes of errors of one dimension; NaN if no error has it.
+/// The sizes of errors of one dimension; NaN if no error has this dimension.
 Array<double, axis::Size> sizes_or_nan(const std::vector<double>& sizes, std::size_t count) {
   return {{count}, sizes.empty() ? std::vector<double>(count, kNaN) : sizes};
 }
 
-/// A result with the names of its axes and arrays of the right lengths.
+/// A result with the names of its axes and with arrays of the right lengths.
 CouplingResult empty_result(const CouplingStudy& study, std::size_t responses, std::size_t poses) {
   CouplingResult found;
   found.size_names = size_names(study);
@@ -141,7 +142,7 @@ CouplingResult empty_result(const CouplingStudy& study, std::size_t responses, s
   return found;
 }
 
-/// Fills a result: the values at the poses of each response, size and subset, then their summary.
+/// Computes a result: the numbers at each pose for each response, size and subset, then their summaries.
 class Composer {
  public:
   Composer(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model, NotConverged policy,
@@ -164,7 +165,7 @@ class Composer {
     for (std::size_t z = 0; z < found_.size_names.size(); ++z) {
       for (std::size_t m = 0; m < evaluation_.poses(); ++m) found_.solves(z, m) = solves_at(z, m);
     }
-    // Last, because sums follow from other curves, and the outcomes need not be in memory together with them.
+    // The interaction is computed last, after the outcomes are freed, so that less memory is needed.
     evaluation_ = {};
     make_room(found_.effect.lengths(), found_.interaction);
     std::ranges::transform(found_.effect, found_.sum, found_.interaction.begin(), std::minus());
@@ -172,13 +173,13 @@ class Composer {
   }
 
  private:
-  /// The effect of each row of errors.
+  /// [poses x rows] The response at each pose to each row of errors.
   using Effects = Array<double, axis::Pose, axis::Sample>;
 
   std::size_t rows() const { return rows_.errors.size(); }
   std::size_t sample(std::size_t z, std::size_t n) const { return z * rows() + n; }
 
-  /// The effects of all rows of a size; NaN if the solve does not count.
+  /// The effects of all rows at a size; NaN if a solve does not count.
   Effects effects_of(std::size_t r, std::size_t z) const {
     Effects effects({evaluation_.poses(), rows()});
     for (std::size_t m = 0; m < evaluation_.poses(); ++m) {
@@ -192,7 +193,7 @@ class Composer {
 
   void add_subset(std::size_t r, std::size_t z, std::size_t k, const Effects& effects) {
     const double rounding = found_.rounding(r, z);
-    std::vector<std::size_t> known;  // poses
+    std::vector<std::size_t> known;  // poses at which all numbers are known
     std::vector<double> interaction;
     std::size_t opposed = 0;
     for (std::size_t m = 0; m < evaluation_.poses(); ++m) {
@@ -232,7 +233,7 @@ class Composer {
   CouplingResult found_;
 };
 
-/// Reports the solves of both stages as one run: first the table of errors, then the corners.
+/// Reports the progress of two stages as that of one run: first the table of errors, then the corners.
 class TwoStages {
  public:
   TwoStages(const StudyRun& run, double expected_corners) : run_(run), expected_(expected_corners) {}
@@ -245,7 +246,7 @@ class TwoStages {
     };
     return options;
   }
-  /// The options of the second stage. If the first stage reports nothing, the continued run has already done it.
+  /// The options of the second stage. If the first stage reported nothing, it was complete in the checkpoint.
   RunOptions of_corners() {
     RunOptions options = run_.options;
     const SolveCounts done = run_.checkpoints().solves();
@@ -287,7 +288,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   return StudyResult{std::move(found), std::nullopt, {}};
 }
 
-/// The work of the corners, at one size and pose after the other.
+/// The work of the corner search, which is proportional to the number of sizes times poses.
 WorkOutlook corner_work(const Study& study, const Model& model, const PoseSet& poses) {
   struct Trial {
     Trial(const Study& study, const Model& model, const PoseSet& poses)
@@ -320,9 +321,8 @@ Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& 
   const bool searches = coupling.worst_case == UnknownSigns::search;
   const std::size_t of_corners = searches ? curve + 2 * sizeof(std::uint64_t) * cells * rows.subsets.size() : 0;
   const std::size_t result = 6 * curve + of_corners + cells * sizeof(SolveCounts);
-  // While the result is composed, the outcomes and all curves but one are in memory. While it is written, its lists are
-  // freed one by one.
-  // one by one.
+  // While the result is computed, the outcomes and all curves except one are in memory. While it is written, its lists
+  // are freed one by one.
   const std::size_t composing = outcomes + 5 * curve + of_corners;
   Outlook expected{.solves = counted_things(coupling.sizes(), "sizes x ") +
                              counted_things(rows.errors.size(), "sets of errors x ") +
@@ -379,7 +379,7 @@ CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& m
       for (const ErrorBlock& block : blocks) add_errors(block, rows.errors[k]);
     }
     std::vector<std::size_t>& own = rows.block_rows.emplace_back();
-    if (blocks.size() == 1) own.push_back(s);  // subset s is this source alone
+    if (blocks.size() == 1) own.push_back(s);  // subset s is this source alone: its only block
     for (const ErrorBlock& block : blocks) {
       if (blocks.size() == 1) break;
       own.push_back(rows.errors.size());

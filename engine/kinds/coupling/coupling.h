@@ -17,93 +17,92 @@
 
 namespace poesy {
 
-/// A set of errors whose effect is judged together.
+/// A source of errors: a set of errors whose effect is judged as one.
 struct ErrorSource {
-  std::string name;                  ///< name in tables, joined to other names by '+'
-  std::vector<FactorIndex> factors;  ///< as the study names them; the pattern may leave out some of them
+  std::string name;                  ///< name in tables; '+' joins it to the names of other sources
+  std::vector<FactorIndex> factors;  ///< errors that the study names; the pattern may exclude some
 };
 
-/// Which errors of a source have its size, and which of these vary together.
+/// Which errors of a source have its size, and which of these have the same sign.
 struct ErrorPattern {
   /// Which limbs or components have errors.
   enum class Choice {
-    all,         ///< all, together
-    some,        ///< those that are named, together
-    independent  ///< all, each on its own
+    all,         ///< all limbs or components, with the same sign
+    some,        ///< only the named limbs or components, with the same sign
+    independent  ///< all limbs or components, each with its own sign
   };
 
-  Choice limbs = Choice::all;       ///< which limbs' errors have the size
-  std::size_t limb = 0;             ///< for `some`: the limb, counted from 1
-  Choice components = Choice::all;  ///< which components of an error have the size
-  std::vector<std::string> axes;    ///< for `some`: "x", "y", "z"; scalars are always included
+  Choice limbs = Choice::all;       ///< which limbs have errors
+  std::size_t limb = 0;             ///< the limb for `some`, counted from 1
+  Choice components = Choice::all;  ///< which components of an error vector are not zero
+  std::vector<std::string> axes;    ///< the components for `some`: "x", "y", "z"; scalar errors are always included
 };
 
-/// What a study computes for errors of unknown sign.
+/// What a study computes for errors whose signs are unknown.
 enum class UnknownSigns {
-  search,  ///< the worst case (coupling/corners.h) and the first-order sum
-  sum      ///< only the first-order sum, which takes no further solves
+  search,  ///< the worst case by search (coupling/corners.h), and the first-order sum
+  sum      ///< only the first-order sum, which needs no additional solves
 };
 
-std::string_view name(UnknownSigns signs);  ///< The word in a study file.
+std::string_view name(UnknownSigns signs);  ///< The word for this choice in study files.
 
 /// The options of a coupling study.
 struct CouplingStudy {
-  std::vector<double> linear;                      ///< [Z] lengths of the runs, m; empty if no error is a length
-  std::vector<double> angular;                     ///< [Z] angles of the runs, rad; empty if no error is an angle
-  ErrorPattern pattern;                            ///< the pattern of every source
-  std::vector<ErrorSource> sources;                ///< the sources; no factor is in two of them
+  std::vector<double> linear;        ///< [sizes] sizes of errors that are lengths, m; empty if there are none
+  std::vector<double> angular;       ///< [sizes] sizes of errors that are angles, rad; empty if there are none
+  ErrorPattern pattern;              ///< the pattern of every source
+  std::vector<ErrorSource> sources;  ///< the sources; an error is in one source only
   UnknownSigns worst_case = UnknownSigns::search;  ///< whether worst cases are searched
 
   /// The sizes of errors of this dimension, a length or an angle.
   const std::vector<double>& sizes_of(Dimension dimension) const {
     return dimension == Dimension::length ? linear : angular;
   }
-  /// The number of sizes, Z.
+  /// The number of sizes.
   std::size_t sizes() const { return linear.empty() ? angular.size() : linear.size(); }
 };
 
 /// The kind of study that computes the effects of error sources of fixed size, alone and together.
 extern const StudyKind kCouplingStudy;
 
-/// Errors that have one size together while all others are zero; in the order of the model.
+/// Errors that have the same size and sign, while all others are zero; in the order of the model.
 using ErrorBlock = std::vector<FactorIndex>;
 
-/// The blocks into which a pattern divides the errors of a source, by limb, then by frame, dimension and axis. There is
-/// one block, unless limbs or components are independent. Then there is one for each limb, one for each component of
-/// each vector and each scalar, or, where both are independent, one for each error. Empty if the pattern leaves no
-/// errors.
+/// The blocks into which a pattern divides the errors of a source, ordered by limb, frame, dimension and axis. A source
+/// is one block, unless limbs or components are independent. Independent limbs give a block for each limb. Independent
+/// components give a block for each component of a vector and for each scalar, the same in all limbs. If both are
+/// independent, each error is a block. Empty if the pattern excludes all errors.
 std::vector<ErrorBlock> error_blocks(const ErrorSource& source, const ErrorPattern& pattern,
                                      const ModelDescription& model);
 
-/// All non-empty subsets of n sources, by the number of sources, then in the order of the sources: 0, 1, 2, 01, 02, 12,
-/// 012.
+/// All non-empty subsets of n sources, ordered by the number of sources, then by the sources: 0, 1, 2, 01, 02, 12, 012.
 std::vector<std::vector<std::size_t>> source_subsets(std::size_t sources);
 
-/// The sets of errors that are solved at each size: the subsets, then the blocks of the sources that have more than
-/// one. No set is there twice.
+/// The sets of errors that are solved at each size. First come the subsets of sources, then the blocks of every source
+/// with more than one block. No set is solved twice.
 struct CouplingRows {
-  std::vector<std::vector<std::size_t>> subsets;     ///< [K] the sources in each; row k is subset k
-  std::vector<std::vector<std::size_t>> block_rows;  ///< [sources] the rows of each source's blocks
-  std::vector<ErrorBlock> errors;                    ///< [N] the errors of each row
+  std::vector<std::vector<std::size_t>> subsets;     ///< [subsets] sources of each subset; row k is subset k
+  std::vector<std::vector<std::size_t>> block_rows;  ///< [sources] rows of each source's blocks
+  std::vector<ErrorBlock> errors;                    ///< [rows] errors of each row
 };
 
 /// The rows of a study. Precondition: no factor is in two sources.
 CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& model);
 
-/// The errors of all sources that the pattern leaves, in the order of the model.
+/// The errors of all sources that the pattern does not exclude, in the order of the model.
 std::vector<FactorIndex> coupling_factors(const CouplingStudy& study, const ModelDescription& model);
 
-/// The table of errors that is solved at every pose: row z * N + n has the errors of row n at size z, all positive; the
-/// columns are coupling_factors().
+/// The table of errors that is solved at every pose. Its rows are all rows of CouplingRows at the first size, then all
+/// at the second size, and so on; all errors are positive. The columns are coupling_factors().
 ErrorTable coupling_table(const CouplingStudy& study, const ModelDescription& model);
 
 namespace axis {
 using Size = Axis<"size">;      ///< Sizes of the errors.
 using Source = Axis<"source">;  ///< Sources of errors.
-using Subset = Axis<"subset">;  ///< Sets of sources that act together.
+using Subset = Axis<"subset">;  ///< Subsets of the sources, whose errors act together.
 }  // namespace axis
 
-/// The effects of error sources alone and together, SI; coupling_result() defines each number. NaN where a number
+/// The effects of error sources alone and together, SI. coupling_result() defines each number. A number is NaN if it
 /// depends on a solve that does not count.
 struct CouplingResult {
   /// A number for each response, size, subset of the sources and pose.
@@ -112,59 +111,58 @@ struct CouplingResult {
   template <class T>
   using Summary = Array<T, axis::Response, axis::Size, axis::Subset>;
 
-  std::vector<std::string> size_names;  ///< "0.1 mm"
+  std::vector<std::string> size_names;  ///< names of the sizes: "0.1 mm"
   std::vector<std::string> sources;     ///< names of the sources
   std::vector<std::string> subsets;     ///< names of the subsets: "FS+T"
-  Array<double, axis::Size> linear;     ///< size of lengths, m; NaN if no error is a length
-  Array<double, axis::Size> angular;    ///< size of angles, rad; NaN if no error is an angle
+  Array<double, axis::Size> linear;     ///< size of errors that are lengths, m; NaN if no error is a length
+  Array<double, axis::Size> angular;    ///< size of errors that are angles, rad; NaN if no error is an angle
 
-  Curves effect;           ///< all errors of the subset at once
-  Curves sum;              ///< sum of the effects of each source alone
+  Curves effect;           ///< response to all errors of the subset at once
+  Curves sum;              ///< sum of the responses to each source alone
   Curves interaction;      ///< effect - sum
   Curves first_order_sum;  ///< sum of |effect of each block alone|
-  Curves worst_case;       ///< NaN where no corner is solved
-  Curves root_sum_square;  ///< root of the sum of squares of the effects of each block alone
-  Curves cancellation;     ///< from 0 to 1
-  Array<double, axis::Response, axis::Size>
-      rounding;  ///< a response to errors of this size that is no larger is rounding
+  Curves worst_case;       ///< largest |response| over the tried corners; NaN if no corner is solved
+  Curves root_sum_square;  ///< root of the sum of squares of the responses to each block alone
+  Curves cancellation;     ///< cancellation between sources, from 0 to 1
+  Array<double, axis::Response, axis::Size> rounding;  ///< responses up to this magnitude are rounding
 
-  // Over the poses where all of these numbers are known; NaN and pose -1 if there is none.
-  Summary<std::uint64_t> count;                 ///< number of these poses
+  // Summaries over the poses at which all numbers above are known; NaN and pose -1 if there is no such pose.
+  Summary<std::uint64_t> count;                 ///< number of poses at which all numbers are known
   Summary<double> effect_max;                   ///< largest |effect|
-  Summary<std::int64_t> effect_max_pose;        ///< the first pose of that value
+  Summary<std::int64_t> effect_max_pose;        ///< first pose with the largest |effect|
   Summary<double> interaction_max;              ///< largest |interaction|
   Summary<double> first_order_sum_max;          ///< largest first-order sum
   Summary<double> root_sum_square_max;          ///< largest root sum square
   Summary<double> opposed_share;                ///< share of the poses where sources oppose each other
   Summary<double> cancellation_max;             ///< largest cancellation
-  Summary<std::int64_t> cancellation_max_pose;  ///< the first pose of that value
+  Summary<std::int64_t> cancellation_max_pose;  ///< first pose with the largest cancellation
 
-  // The search for worst cases. Maxima are over all poses; NaN, pose -1 and signs 0 if there is none.
-  Array<std::uint64_t, axis::Size, axis::Subset, axis::Pose> corners;  ///< corners that were tried for the worst cases
-  Array<std::uint64_t, axis::Size, axis::Subset, axis::Pose>
-      unsolved_corners;                       ///< corners among them without a solution
+  // The search for worst cases. Maxima are over all poses; NaN, pose -1 and signs 0 if no corner is solved.
+  Array<std::uint64_t, axis::Size, axis::Subset, axis::Pose> corners;  ///< number of corners that were tried
+  /// Number of tried corners without a solution.
+  Array<std::uint64_t, axis::Size, axis::Subset, axis::Pose> unsolved_corners;
   Summary<double> worst_case_max;             ///< largest worst case
-  Summary<std::int64_t> worst_case_max_pose;  ///< the first pose of that value
-  /// The sign of each error there: 1, -1, or 0 where an error is zero.
+  Summary<std::int64_t> worst_case_max_pose;  ///< first pose with the largest worst case
+  /// The sign of each error at that worst case: 1, -1, or 0 if the error is zero.
   Array<std::int64_t, axis::Response, axis::Size, axis::Subset, axis::Factor> worst_case_signs;
-  Array<std::int64_t, axis::Size, axis::Subset>
-      unsolved_pose;  ///< the first pose with a corner that is not solved; -1 if there is none
-  Array<std::int64_t, axis::Size, axis::Subset, axis::Factor>
-      unsolved_signs;                                 ///< the sign of each error at such a corner; 0 if there is none
-  Array<SolveCounts, axis::Size, axis::Pose> solves;  ///< solves of all sets of errors and all corners
+  /// First pose with a corner that is not solved; -1 if there is none.
+  Array<std::int64_t, axis::Size, axis::Subset> unsolved_pose;
+  /// Sign of each error at such a corner; 0 if there is none.
+  Array<std::int64_t, axis::Size, axis::Subset, axis::Factor> unsolved_signs;
+  Array<SolveCounts, axis::Size, axis::Pose> solves;  ///< how the solves of all sets of errors and all corners ended
 
   /// The number of poses of the study.
   std::size_t poses() const { return effect.length<axis::Pose>(); }
-  /// The solves at all sizes and poses.
+  /// How the solves ended, summed over sizes and poses.
   SolveCounts total() const { return total_of(solves.all()); }
 };
 
-/// Whether worst cases were searched. Results of version 0.2.0 have only first-order sums too.
+/// Whether worst cases were searched. Results of version 0.2.0 have no worst cases, only first-order sums.
 inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_case.empty(); }
 
-/// The effects of error sources alone and together (San et al. 2023, Sections 5.2.1 and 5.2.2), at each size and pose,
-/// for each subset S of the sources. A response serves as the effect of the errors it is solved with, so it must be
-/// zero if all errors are zero.
+/// Computes the effects of error sources alone and together (San et al. 2023, Sections 5.2.1 and 5.2.2), at each size
+/// and pose, for each subset S of the sources. The effect of errors is the response itself, so a response must be zero
+/// if all errors are zero.
 ///
 ///     effect           all errors of S at once: the curve of a single source, or the coupled one
 ///     sum              sum over the sources in S of the effect of each alone
@@ -175,39 +173,39 @@ inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_c
 ///     cancellation     1 - |sum| / (sum over the sources of |effect of each|): 0 where no source opposes another or
 ///                      where no more than rounding is cancelled, 1 where they cancel
 ///
-/// To first order, first_order_sum is the largest effect of the blocks together if their signs are not known, and
-/// root_sum_square is the root mean square if both signs of each are equally likely. Neither first_order_sum nor
-/// worst_case is a bound. If a response is a norm, which has no sign, sources cannot be seen to oppose each other: to
-/// first order sum and first_order_sum are then upper bounds and interaction is at most zero, and cancellation is 0.
+/// To first order, first_order_sum is the largest effect of the blocks if their signs are unknown, and root_sum_square
+/// is the root mean square effect if both signs of each block are equally likely. Neither first_order_sum nor
+/// worst_case is a bound. A norm has no sign, so it cannot show that sources oppose each other. For a norm, to first
+/// order, sum and first_order_sum are upper bounds, interaction is at most zero, and cancellation is 0.
 ///
-/// Summaries are over the poses where all of these are known. Sources oppose each other (opposed_share) where |sum| is
-/// below the largest |effect of a source in S| by more than rounding: together they have less effect than one of them.
+/// Summaries are over the poses at which all these numbers are known. Sources oppose each other (opposed_share) at a
+/// pose if together they have less effect than one of them alone: |sum| is below the largest |effect of a source in S|
+/// by more than rounding.
 ///
-/// evaluation: what run_evaluation() found for the study's coupling_table(). A solve that does not count (see counts())
-/// makes NaN of everything that depends on it, and is counted in `solves`. rounding: see coupling_rounding(). Worst
-/// cases are left empty; add_worst_cases() fills them in.
+/// evaluation: result of run_evaluation() for coupling_table() of the study. A solve that does not count (see counts())
+/// makes every number that depends on it NaN, and is counted in `solves`. rounding: see coupling_rounding(). Worst
+/// cases are empty until add_worst_cases() adds them.
 CouplingResult coupling_result(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model,
                                NotConverged policy, Array<double, axis::Response, axis::Size> rounding);
 
-/// For each response and size, the magnitude up to which a response to errors of that size is rounding
-/// (stats/indices.h).
+/// [responses x sizes] For each response and size, the magnitude up to which a response to errors of this size is
+/// rounding (stats/indices.h).
 Array<double, axis::Response, axis::Size> coupling_rounding(const CouplingStudy& study, const Model& model);
 
 /// The names of the sources in each subset, joined: "FS", "T", "FS+T".
 std::vector<std::string> subset_names(std::span<const ErrorSource> sources);
 
-/// Positions of the responses on which the sources have no more effect than rounding, at all sizes and poses where
-/// effects are known. An effect of at least one source must be known.
+/// Positions of the responses on which the sources have no effect larger than rounding, at all sizes and poses at which
+/// the effects are known. Precondition: the effect of some source is known.
 std::vector<std::size_t> responses_without_effect(const CouplingResult& found);
 
-/// The coupling result in a stored result. Precondition: the result is of that kind.
+/// The coupling result in a stored result. Precondition: the result is of kind `coupling`.
 inline const CouplingResult& coupling_of(const StoredResult& result) { return found_of<CouplingResult>(result); }
 
-/// For each size and each response that a summary shows: a table with a row for each subset of
-/// the sources. Columns: the largest |effect| over the poses and the pose where it is, by number and coordinates, the
-/// largest root sum square, first-order sum, worst case and |interaction|, and where sources oppose each other: at
-/// which share of the poses, and the pose where they cancel most, with the cancellation there. What the words mean is
-/// below the last one.
+/// A table for each size and each response that a summary shows, with a row for each subset of the sources. Its columns
+/// are: the largest |effect| over the poses, with its pose; the largest root sum square, first-order sum, worst case
+/// and |interaction|; the share of the poses at which sources oppose each other; and the largest cancellation, with its
+/// pose. Notes below the last table explain the words.
 std::vector<Table> coupling_tables(const StoredResult& result, const TableOptions& options = {});
 
 }  // namespace poesy

@@ -65,7 +65,7 @@ const Fields<CouplingResult> kSizes{
     {"size_linear", &CouplingResult::linear, "m", "Size of errors that are lengths; NaN where there is none"},
     {"size_angular", &CouplingResult::angular, "rad", "Size of errors that are angles; NaN where there is none"}};
 
-/// Subset by subset, 1 for each source in the subset and 0 for the others.
+/// For each subset in turn, a list over the sources: 1 if the source is in the subset, otherwise 0.
 std::vector<std::uint8_t> members(std::size_t sources) {
   std::vector<std::uint8_t> list;
   for (const std::vector<std::size_t>& subset : source_subsets(sources)) {
@@ -74,7 +74,8 @@ std::vector<std::uint8_t> members(std::size_t sources) {
   return list;
 }
 
-/// Adds the source of each factor, and its block in that source, as positions.
+/// Writes to the result file, for each error, the position of its source and of its block. The errors of a source are
+/// divided into blocks; those of a block move together.
 void add_membership(ResultBuilder& result, const Study& study) {
   const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   std::map<FactorIndex, std::pair<std::size_t, std::size_t>> places;
@@ -94,7 +95,7 @@ void add_membership(ResultBuilder& result, const Study& study) {
              {"1", "Block of its source that the error belongs to, from 0; errors of a block move together"});
 }
 
-/// Adds the sizes, the subsets, and the source of each error.
+/// Writes to the result file the sizes of the errors, the sources in each subset, and the source of each error.
 void add_choices(ResultBuilder& result, const Study& study, const CouplingResult& found) {
   write_fields(result, "/coupling", kSizes, found);
   result.add("/coupling/subset_sources", {"subset", "source"}, members(found.sources.size()),
@@ -103,10 +104,10 @@ void add_choices(ResultBuilder& result, const Study& study, const CouplingResult
   result.show_axes("/coupling", {"source", "factor"});
 }
 
-/// The lines of a table: for each size and subset a number of poses or errors.
+/// The lines of a table: one line for each size, subset and pose, or for each size, subset and error.
 using SubsetLines = AxisLayout<axis::Size, axis::Subset, axis::Pose>;
 
-/// Adds columns with the sizes of the errors.
+/// Gives the table further columns with the sizes of the errors.
 void append_size_columns(CsvTable& table, const CouplingResult& found, const SubsetLines& lines) {
   const auto append = [&](std::string heading, const Array<double, axis::Size>& sizes) {
     table.columns.push_back(
@@ -127,7 +128,7 @@ CsvTable subset_table(const StoredResult& result, const std::string& name, std::
   return table;
 }
 
-/// Adds a column for each response and each row of this member that is not redundant.
+/// Adds to the table a column for each response and each field whose values do not follow from other columns.
 template <class AnArray>
 void append_response_columns(CsvTable& table, const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
@@ -160,7 +161,7 @@ CsvTable curve_table(const StoredResult& result) {
   return table;
 }
 
-/// The sign of each error at the worst cases, and at the first corner that is not solved.
+/// A table with the sign of each error at the worst cases, and at the first corner that is not solved.
 CsvTable corner_table(const StoredResult& result) {
   const std::size_t errors = result.factors.size();
   CsvTable table = subset_table(result, "coupling_corners", errors);
@@ -195,8 +196,8 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   add_solver(result, found.solves);
 }
 
-/// In files of version 0.2.0 `worst_case` is the first-order sum, there are no corners, and rounding is that of printed
-/// digits.
+/// Completes a result of version 0.2.0. In its files, `worst_case` is the first-order sum, corners are missing, and
+/// rounding is computed from printed digits.
 void read_older(CouplingResult& found) {
   if (!found.first_order_sum.empty()) {
     const bool searched = has_worst_cases(found);

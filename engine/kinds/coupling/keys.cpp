@@ -62,7 +62,7 @@ void read_components(const StudyValue& value, Study& study, const Reading&) {
   if (pattern.axes.empty()) value.fail("is empty", "name components, e.g. [\"x\", \"z\"], or write \"all\"");
 }
 
-/// Throws if an earlier source has one of these factors.
+/// Throws InputError if an earlier source has one of these factors.
 void require_own_factors(const StudyValue& factors, const ErrorSource& source, std::span<const ErrorSource> others,
                          const ModelDescription& model) {
   for (const ErrorSource& other : others) {
@@ -99,7 +99,7 @@ ErrorSource read_source(const StudySection& section, std::span<const ErrorSource
   return source;
 }
 
-/// The sources of the literature. Throws at the section if the model has none.
+/// The sources that the model lists from the literature. Throws InputError at the section if it lists none.
 std::vector<ErrorSource> usual_sources(const StudySection& analysis, const ModelDescription& model,
                                        const ErrorPattern& pattern) {
   constexpr std::string_view kNameThem =
@@ -145,7 +145,7 @@ std::string sources_lines(const Study& study) {
 
 using Sizes = std::vector<double>;
 
-/// A key with the sizes of errors of this dimension.
+/// The key for the sizes of errors of this dimension.
 KeyValue<Study> sizes_at(Dimension dimension, Sizes CouplingStudy::*member) {
   const auto read = [=](const StudyValue& value, Study& study) {
     Sizes& sizes = asked_of<CouplingStudy>(study.analysis).*member;
@@ -164,7 +164,7 @@ std::string sizes_line(const Study& study) {
   return sizes.empty() ? "" : fmt::format("{} = {}\n", error_kind(kDimension), list_text(sizes));
 }
 
-/// Whether a source of the literature has an error of this dimension.
+/// Whether a listed source of the model has an error of this dimension.
 bool has_source_of(const ModelDescription& model, Dimension dimension) {
   return std::ranges::any_of(model.sources, [&](const SourceSet& source) {
     return std::ranges::any_of(model.find_set(source.set)->factors,
@@ -224,7 +224,7 @@ void require_sizes(const StudySection& analysis, Dimension dimension, const Coup
                    "write sizes, e.g. " + key + " = [\"0.1 " + std::string(display_unit(dimension).name) + "\"]");
 }
 
-/// Refuses sizes of a dimension that no error of the sources has, even without a pattern.
+/// Refuses sizes of a dimension that no error of the sources has, whatever the pattern.
 void refuse_idle_sizes(const StudySection& analysis, Dimension dimension, const CouplingStudy& study,
                        const ModelDescription& model) {
   const auto value = analysis.find(error_kind(dimension));
@@ -245,7 +245,7 @@ void require_equal_numbers(const StudyValue& angular, const CouplingStudy& study
                "a run takes one of each, so write as many");
 }
 
-/// Throws if two runs have the same sizes. value: the linear or the angular sizes.
+/// Throws InputError if two runs have the same sizes. value: the linear or the angular sizes.
 void require_different_runs(const StudyValue& value, const CouplingStudy& study) {
   const auto same = [](const std::vector<double>& sizes, std::size_t a, std::size_t b) {
     return sizes.empty() || sizes[a] == sizes[b];
@@ -259,7 +259,7 @@ void require_different_runs(const StudyValue& value, const CouplingStudy& study)
   }
 }
 
-/// Fills in the sources of the literature, and requires a size for each of their errors.
+/// Sets the sources from the model if the study lists none. Throws InputError if an error of a source has no size.
 void complete_sources(const StudySection& analysis, const ModelDescription& model, CouplingStudy& study) {
   if (!analysis.find("sources")) study.sources = usual_sources(analysis, model, study.pattern);
   for (const Dimension dimension : {Dimension::length, Dimension::angle}) {

@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// Reads or writes the signs of so many blocks, or none.
+/// Reads or writes the signs of this number of blocks, or none.
 void signs_state(Archive& archive, Signs& signs, std::size_t blocks) {
   archive.text(signs);
   const auto is_sign = [](char sign) { return sign == '+' || sign == '-'; };
@@ -29,7 +29,7 @@ void place_state(Archive& archive, WorstCases::Place& place, std::size_t poses, 
   archive.expect((place.pose < 0) == place.signs.empty(), "has a corner without a pose");
 }
 
-/// Keeps the larger value; the place of the earlier pose if they are equal.
+/// Keeps the place with the larger value; of equal values, the earlier one.
 void take_worse(WorstCases::Place& worst, WorstCases::Place later) {
   if (later.signs.empty() || (worst.pose >= 0 && !(later.value > worst.value))) return;
   worst = std::move(later);
@@ -38,12 +38,12 @@ void take_first(WorstCases::Place& first, WorstCases::Place later) {
   if (first.pose < 0 && !later.signs.empty()) first = std::move(later);
 }
 
-/// The size and the pose of the n-th unit.
+/// The size and the pose of a unit of work.
 std::pair<std::size_t, std::size_t> size_and_pose(const CornerTable& table, std::size_t n) {
   return {n % table.size_of_error.size(), n / table.size_of_error.size()};
 }
 
-/// The result at one size and pose, as ranks send it to rank 0.
+/// The result of a unit of work, one size at one pose, in the form that ranks send to rank 0.
 struct CornerUnit : CornersAtPose {
   const CornerTable* table = nullptr;
 
@@ -61,7 +61,7 @@ struct CornerUnit : CornersAtPose {
   }
 };
 
-/// The results of all sizes at all poses, pose by pose: R responses, Z sizes, K subsets, M poses.
+/// The worst cases for all responses, sizes of the errors, subsets of sources and poses, as they are collected.
 struct CornerSums : WorstCases {
   const CornerTable* table;
 
@@ -113,7 +113,8 @@ struct CornerSums : WorstCases {
       for (std::size_t r = 0; r < value.length<axis::Response>(); ++r) archive.real(value(r, z, k, m));
     }
   }
-  /// Reads or writes places; take(place, later) merges a read place of later units into the present one.
+  /// Reads or writes a place. When it reads, take(place, read) merges the read place, which belongs to later units,
+  /// into the present one.
   template <class Take>
   void places_state(Archive& archive, std::size_t subset, Place& place, const Take& take) {
     Place read = archive.reads() ? Place() : place;
@@ -122,7 +123,8 @@ struct CornerSums : WorstCases {
   }
 };
 
-/// The job of UnitFold. A unit is one size at one pose; units are in the order of poses, then sizes.
+/// The job of a UnitFold (run/unit_fold.h). A unit is one size at one pose; units are in the order of poses, then
+/// sizes.
 struct CornerJob {
   const StudyRun& run;
   const CornerTable& table;
@@ -152,7 +154,7 @@ struct CornerJob {
   CornerSums sums() const { return {table, responses(), run.poses.size()}; }
 };
 
-/// Fills in the signs of the errors at this corner.
+/// Sets the signs of the errors at this corner.
 void fill_signs(const WorstCases::Place& place, std::size_t subset, const CornerTable& table,
                 std::span<std::int64_t> signs) {
   std::ranges::transform(table.signs_of_errors(subset, place.signs), signs.begin(),

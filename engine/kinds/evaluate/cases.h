@@ -19,15 +19,15 @@ namespace poesy {
 /// A fixed set of errors with a name.
 struct ErrorCase {
   std::string name;            ///< name in tables
-  std::vector<double> errors;  ///< [F], SI
+  std::vector<double> errors;  ///< [all errors] values of all errors, SI
 };
 
-/// The options of a study of cases.
+/// The options of a study of kind `evaluate`.
 struct CaseOptions {
-  std::vector<ErrorCase> cases;  ///< in the order of the study
+  std::vector<ErrorCase> cases;  ///< the cases, in the order of the study
 };
 
-/// The kind of study of named cases of fixed errors.
+/// The kind of study that solves named cases of fixed errors, `evaluate`.
 extern const StudyKind kEvaluateStudy;
 
 namespace axis {
@@ -35,70 +35,74 @@ using Case = Axis<"case">;  ///< Named cases of errors.
 using Row = Axis<"row">;    ///< Rows of a table of errors.
 }  // namespace axis
 
-/// The responses to given errors: named cases, or the rows of a table. StoredResult has the verdicts on limits.
+/// The responses to given errors: named cases, or rows of a table. The verdicts on limits are in StoredResult.
 struct Evaluation {
-  /// A number for each response and case, over the poses that count; empty if there are no cases.
+  /// A number for each response and case, computed over the poses whose solves count (see counts()). Empty if the
+  /// errors are rows of a table.
   template <class T>
   using OverPoses = Array<T, axis::Response, axis::Case>;
 
-  EvaluationResult solves;          ///< solves, with cases or rows of the table as samples
-  std::vector<Detail> details;      ///< details of the model; solves.detail has their components one after the other
-  std::vector<std::string> joints;  ///< names of the joints
+  EvaluationResult solves;  ///< outcomes of solves; a sample is a case, or a row of the error table
+  /// The model's additional outputs; solves.detail has their components, one after another.
+  std::vector<Detail> details;
+  std::vector<std::string> joints;                       ///< names of the joints whose displacements `solves` has
   Pairing pairing = Pairing::every_pose_with_every_row;  ///< how poses and rows of errors are paired
-  Array<double, axis::Row, axis::Factor> errors;         ///< errors that were given, SI
-  RowLabels labels;                                      ///< labels of the rows of errors; empty if they have none
-  std::vector<std::string> cases;                        ///< names of the cases; empty for rows of a table
-  OverPoses<double> mean;                                ///< mean response; NaN if no pose counts
-  OverPoses<double> max;                                 ///< largest response; NaN if no pose counts
-  OverPoses<std::uint64_t> count;                        ///< number of poses that count
+  Array<double, axis::Row, axis::Factor> errors;         ///< [rows x all errors] errors that were given, SI
+  RowLabels labels;                                      ///< labels of the rows; empty if the rows have none
+  std::vector<std::string> cases;                        ///< names of the cases; empty if the errors are rows of a
+                                                         ///< table
+  OverPoses<double> mean;  ///< mean of a response over the poses whose solves count; NaN if there are none
+  OverPoses<double> max;   ///< largest value of a response over the poses whose solves count; NaN if there are none
+  OverPoses<std::uint64_t> count;  ///< number of poses whose solves count
 };
 
 /// The errors of named cases as a table: a row for each case, a column for each of the model's factors.
 ErrorTable case_table(std::span<const ErrorCase> cases);
 
-/// The evaluation of rows of errors from what run_evaluation() found.
+/// Joins the outcomes of run_evaluation() with the rows of errors that were solved.
 Evaluation evaluation(EvaluationResult solves, const ErrorTable& errors, Pairing pairing,
                       const ModelDescription& model);
 
-/// The evaluation of the rows of case_table(), with sums over the poses whose solves count (see counts()).
+/// Joins the outcomes with the cases of case_table(), and computes summaries over the poses whose solves count (see
+/// counts()).
 Evaluation evaluation_of_cases(EvaluationResult solves, std::span<const ErrorCase> cases, const ModelDescription& model,
                                NotConverged policy);
 
-/// The evaluation in a stored result. Precondition: the result is an evaluation.
+/// The evaluation in a stored result. Precondition: the result is of kind `evaluate`.
 inline const Evaluation& evaluation_of(const StoredResult& result) { return found_of<Evaluation>(result); }
 
-/// The errors of the solves of an evaluation.
+/// The given errors of an evaluation, with the addresses of its solves.
 GivenErrors evaluated_errors(const StoredResult& result);
 
-/// Names of the rows of errors for a limit: "part 17" for rows with labels, "sample 3" if each pose was solved with all
-/// rows.
+/// Names of the rows of errors, for verdicts: "part 17" if the rows have labels, "sample 3" if each pose was solved
+/// with all rows.
 std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std::size_t rows);
 
 /// Writes the result of `poesy evaluate`, whose poses and errors come from tables; see write_result(). factors: the
-/// errors that the table gives.
+/// errors in the columns of the table.
 void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses,
                       std::span<const FactorIndex> factors, const Evaluation& found, const RunFacts& facts);
 
-/// The mean and the extremes of each response over all solved samples. If the rows of errors have labels, notes name
-/// the worst row.
+/// A table with the mean and the extremes of each response over all solved samples. If the rows of errors have labels,
+/// a note names the worst row.
 Table evaluation_table(const StoredResult& result);
 
-/// The response to one row of errors over the poses where it was solved; NaN if it was solved at none.
+/// A response to one row of errors, over the poses at which it was solved; NaN if there is none.
 struct RowOutcome {
   std::size_t solved = 0;  ///< number of solved poses
-  double mean = kNaN;      ///< SI
-  double extreme = kNaN;   ///< the value of the largest magnitude, SI
-  std::size_t pose = 0;    ///< the first pose of that value
+  double mean = kNaN;      ///< mean over the solved poses, SI
+  double extreme = kNaN;   ///< value with the largest magnitude, SI
+  std::size_t pose = 0;    ///< first pose with that value
 };
 
-/// The outcome of each row, in their order. Precondition: the rows of the evaluation have labels.
+/// The outcome of each row of errors, in order. Precondition: the rows of the evaluation have labels.
 std::vector<RowOutcome> row_outcomes(const Evaluation& found, std::size_t response);
 
-/// The position of the row whose extreme has the largest magnitude, the first of equals; the number of rows if none was
-/// solved.
+/// The position of the row whose extreme has the largest magnitude, the first of equal ones. Returns the number of rows
+/// if no row was solved.
 std::size_t worst_row(const std::vector<RowOutcome>& outcomes);
 
-/// The row of errors of a solve.
+/// The row of errors that a solve used.
 inline std::size_t row_of_solve(const Evaluation& found, std::size_t pose, std::size_t sample) {
   return found.pairing == Pairing::row_by_row ? pose : sample;
 }

@@ -18,7 +18,7 @@ constexpr double kReduced = 0.1;
 /// Errors of one frame that are tried together, as positions among the factors.
 using FrameErrors = std::vector<std::size_t>;
 
-/// The deformations at all poses with one set of errors; NaN if not solved.
+/// [poses] The deformation at each pose with one set of errors; NaN if it is not solved.
 using Deformations = std::vector<double>;
 
 class Identification {
@@ -47,7 +47,7 @@ class Identification {
   }
 
  private:
-  /// The set of errors in which these members have the size of the group and all others are zero.
+  /// A set of errors: the members have the size of the group, all other errors are zero.
   struct ErrorSet {
     std::size_t group;
     FrameErrors members;
@@ -58,7 +58,8 @@ class Identification {
     return is_length ? asked_->groups[group].linear : asked_->groups[group].angular;
   }
 
-  /// Solves all trials at all poses and returns the deformations of each. Empty when stopped.
+  /// Solves all sets of errors at all poses and returns the deformations of each. Returns nothing if the run was
+  /// stopped.
   std::optional<std::vector<Deformations>> solve(const std::vector<ErrorSet>& trials) {
     ErrorTable table{analysis_->factors, {}, trials.size()};
     table.values.resize(trials.size() * found_.factors());
@@ -103,7 +104,7 @@ class Identification {
       double largest = kNaN;
       std::uint64_t missing = 0;
       for (const double value : values) {
-        largest = std::fmax(largest, value);  // ignores NaN
+        largest = std::fmax(largest, value);  // fmax ignores NaN
         missing += std::isnan(value) ? 1 : 0;
       }
       found_.single_below(g, p) = below(values);
@@ -115,7 +116,8 @@ class Identification {
     return true;
   }
 
-  /// The errors of each frame that do not deform alone in this group. Frames with fewer than two are left out.
+  /// For each frame, the errors that do not deform alone in this group. Frames with fewer than two such errors are left
+  /// out.
   std::vector<FrameErrors> frames(std::size_t group) const {
     std::map<std::pair<std::size_t, std::size_t>, FrameErrors> by_frame;
     for (std::size_t p = 0; p < found_.factors(); ++p) {
@@ -146,7 +148,7 @@ class Identification {
     return true;
   }
 
-  /// Finds which errors of a set that deforms take part, and which pairs deform. Returns whether the run goes on.
+  /// For a set that deforms, finds which errors take part and which pairs deform. Returns false if the run was stopped.
   bool split(const ErrorSet& whole, const Deformations& with_all) {
     std::vector<ErrorSet> trials;
     for (const std::size_t p : whole.members) {
@@ -189,7 +191,7 @@ class Identification {
       name_members(whole.group, pair[0], pair[1]);
     }
     if (found_.couplings.size() > known) return true;
-    // No pair deforms: more than two errors are needed.
+    // If no pair deforms, more than two errors are needed.
     for (const std::size_t p : taking_part) found_.coupled_by_group(whole.group, p) = 1;
     return true;
   }
@@ -210,7 +212,7 @@ class Identification {
   IdentificationResult found_;
 };
 
-/// Identifies which of the study's errors deform the mechanism. Empty when stopped.
+/// Identifies which errors of the study deform the mechanism. Returns nothing if the run was stopped.
 std::optional<IdentificationResult> run_identification(const Study& study, const Model& model, const PoseSet& poses,
                                                        const RunOptions& options) {
   return identify(study.analysis, model.description(), [&](const ErrorTable& errors) {

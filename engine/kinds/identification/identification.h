@@ -12,16 +12,16 @@
 
 namespace poesy {
 
-/// The sizes at which identification sets errors.
+/// A pair of sizes at which identification tries errors.
 struct ErrorSize {
   std::string name;  ///< name in tables
-  double linear;     ///< size of lengths, m
-  double angular;    ///< size of angles, rad
+  double linear;     ///< size of errors that are lengths, m
+  double angular;    ///< size of errors that are angles, rad
 };
 
 /// The options of an identification study.
 struct IdentificationOptions {
-  std::vector<ErrorSize> groups;  ///< sizes; each has its own verdicts
+  std::vector<ErrorSize> groups;  ///< pairs of sizes; each has its own verdicts
   double pose_share = 0.95;       ///< share of the poses at which a verdict must hold
 };
 
@@ -30,17 +30,17 @@ extern const StudyKind kIdentificationStudy;
 
 /// Two errors of one frame that deform together but not alone.
 struct Coupling {
-  std::size_t group;              ///< position among the groups
-  std::size_t first;              ///< position among the factors
-  std::size_t second;             ///< position among the factors
-  std::uint64_t deforming_poses;  ///< poses where both together deform, but neither alone
+  std::size_t group;              ///< position of the pair of sizes
+  std::size_t first;              ///< position of the first error among the factors
+  std::size_t second;             ///< position of the second error among the factors
+  std::uint64_t deforming_poses;  ///< number of poses at which the two together deform
 };
 
 namespace axis {
-using SizeGroup = Axis<"group">;  ///< Groups of sizes.
+using SizeGroup = Axis<"group">;  ///< Pairs of sizes.
 }  // namespace axis
 
-/// Which errors deform the mechanism, at groups of sizes and at poses.
+/// Which errors deform the mechanism, for each group (a pair of sizes) and over the poses.
 struct IdentificationResult {
   /// A number for each group and error.
   template <class T>
@@ -48,47 +48,53 @@ struct IdentificationResult {
 
   std::vector<ErrorSize> sizes;      ///< [groups] sizes of the errors
   std::size_t poses = 0;             ///< number of poses that were tried
-  double rounding = 0.0;             ///< deformations up to this cannot be told from zero
+  double rounding = 0.0;             ///< deformations up to this magnitude are rounding
   std::uint64_t required_poses = 0;  ///< number of poses at which a verdict must hold
 
-  ByGroup<std::uint64_t> single_below;  ///< poses where the error alone deforms by no more than rounding
-  ByGroup<double> single_max;           ///< largest deformation over the solved poses; NaN if none is solved
-  ByGroup<std::uint64_t> not_solved;    ///< poses without a solution in the single stage
-  ByGroup<std::uint64_t>
-      coupled_below;  ///< the same as single_below for all errors of its frame that are tried together
-  ByGroup<std::uint64_t>
-      coupled_reduced;  ///< poses where setting the error to zero removes nine tenths of the deformation
-  ByGroup<std::uint8_t> single_by_group;      ///< verdict of the single stage, 0 or 1
-  ByGroup<std::uint8_t> coupled_by_group;     ///< verdict of both stages
-  Array<std::uint8_t, axis::Factor> single;   ///< verdict of the single stage in any group
-  Array<std::uint8_t, axis::Factor> coupled;  ///< verdict of both stages in any group
-  std::vector<Coupling> couplings;            ///< pairs that deform only together, by group and position
-  SolveCounts solves;                         ///< of all solves of both stages
+  ByGroup<std::uint64_t> single_below;   ///< number of poses at which the error alone deforms by no more than rounding
+  ByGroup<double> single_max;            ///< largest deformation by the error alone over the solved poses; NaN if none
+                                         ///< is solved
+  ByGroup<std::uint64_t> not_solved;     ///< number of poses without a solution for the error alone
+  ByGroup<std::uint64_t> coupled_below;  ///< number of poses at which all errors of its frame, tried together, deform
+                                         ///< by no more than rounding
+  /// Number of poses at which setting the error to zero removes nine tenths of the deformation.
+  ByGroup<std::uint64_t> coupled_reduced;
+  /// 1 if the single stage finds that the error deforms the mechanism, otherwise 0.
+  ByGroup<std::uint8_t> single_by_group;
+  /// 1 if either stage finds that the error deforms the mechanism, otherwise 0.
+  ByGroup<std::uint8_t> coupled_by_group;
+  /// 1 if the single stage finds in some group that the error deforms the mechanism, otherwise 0.
+  Array<std::uint8_t, axis::Factor> single;
+  /// 1 if either stage finds in some group that the error deforms the mechanism, otherwise 0.
+  Array<std::uint8_t, axis::Factor> coupled;
+  std::vector<Coupling> couplings;  ///< pairs that deform only together, ordered by group and position
+  SolveCounts solves;               ///< how the solves of both stages ended
 
   std::size_t groups() const { return single_by_group.length<axis::SizeGroup>(); }  ///< The number of groups.
   std::size_t factors() const { return single.length<axis::Factor>(); }             ///< The number of errors.
 };
 
-/// Solves every row of a table of errors at every pose of the study. Empty when stopped.
+/// A function that solves every row of a table of errors at every pose of the study. Returns nothing if the run was
+/// stopped.
 using SolveTable = std::function<std::optional<EvaluationResult>(const ErrorTable&)>;
 
-/// Identifies the errors that deform the mechanism (Du et al. 2022, Section 5.1), for each group of sizes.
+/// Identifies which errors deform the mechanism (Du et al. 2022, Section 5.1), for each group of sizes.
 ///
-/// Single stage: each error is tried alone. It is harmless if the model's measure of deformation is no more than
-/// rounding at pose_share of the poses, rounded to whole poses, at least one (657 of 692 at 0.95, as in the paper).
-/// Otherwise it deforms. A pose that was not solved counts as deformed, because it did not show the absence of
-/// deformation.
+/// Single stage: each error is tried alone. An error does not deform if the model's measure of deformation is at most
+/// rounding at a sufficient number of poses: pose_share of them, rounded to whole poses, at least one (657 of 692 at
+/// 0.95, as in the paper). A pose that was not solved counts as deformed, because it does not show that deformation is
+/// absent.
 ///
-/// Coupled stage: for each frame of a limb, all of its errors that do not deform alone are tried together. If they
-/// deform, two that deform as a pair are a coupling, and the verdict names its angular member, or both if they have the
-/// same dimension. An error takes part if setting it to zero removes nine tenths of the deformation at pose_share of
-/// the poses; if no pair deforms, all errors that take part are named.
+/// Coupled stage: for each frame of a limb, all errors that do not deform alone are tried together. If they deform, all
+/// pairs of them are tried. A pair that deforms is a coupling, and the verdict names its angular error, or both errors
+/// if they have the same dimension. If no pair deforms, the verdict names all errors that take part. An error takes
+/// part if setting it to zero removes nine tenths of the deformation at pose_share of the poses.
 ///
 /// Precondition: the model has a measure of deformation.
 std::optional<IdentificationResult> identify(const Analysis& analysis, const ModelDescription& model,
                                              const SolveTable& solve);
 
-/// The identification in a stored result. Precondition: the result is an identification.
+/// The identification in a stored result. Precondition: the result is of kind `identification`.
 inline const IdentificationResult& identification_of(const StoredResult& result) {
   return found_of<IdentificationResult>(result);
 }

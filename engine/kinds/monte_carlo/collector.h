@@ -17,64 +17,66 @@
 
 namespace poesy {
 
-/// One response in some samples.
+/// The statistics of one response over some samples.
 struct ResponseSamples {
-  Moments moments;        ///< exact
-  QuantileSketch sketch;  ///< for quantiles
+  Moments moments;        ///< mean and spread, without the approximation of the sketch
+  QuantileSketch sketch;  ///< approximate distribution, for quantiles
 
-  void state(Archive& archive) { archive.objects(moments, sketch); }  ///< Reads or writes both.
+  void state(Archive& archive) { archive.objects(moments, sketch); }  ///< Reads or writes the statistics.
 };
 
-/// Some of the samples at one pose, or all.
+/// The statistics of some or all samples at one pose.
 struct PoseSamples {
-  std::vector<ResponseSamples> responses;  ///< [R] each response
-  SolveCounts solves;                      ///< how their solves ended
-  FailedSamples failed;                    ///< the first failed samples
-  std::optional<MainEffectSums> effects;   ///< main effects, at the poses where they are summed
+  std::vector<ResponseSamples> responses;  ///< [responses] statistics of each response
+  SolveCounts solves;                      ///< how the solves ended
+  FailedSamples failed;                    ///< the first samples that failed
+  std::optional<MainEffectSums> effects;   ///< sums for main effects; only at the poses where main effects are computed
 
-  /// Without samples. errors: the number of errors that vary.
+  /// Empty statistics. errors: the number of errors that vary.
   PoseSamples(std::size_t response_count, std::size_t error_count) : responses(response_count), errors_(error_count) {}
   /// Adds a unit. Precondition: its samples come after those already added.
   void add(const PoseUnit& unit);
-  void state(Archive& archive);  ///< Reads or writes every bit.
+  void state(Archive& archive);  ///< Reads or writes the statistics, bit for bit.
 
  private:
   std::size_t errors_;
 };
 
-/// Merges units, pose by pose: the sums of a PoseFold. It holds the samples of one pose as sketches, and one sketch for
-/// each response of all finished poses. Memory is independent of the number of samples; only the result grows with the
-/// poses. If a study with more samples may continue it, it also keeps packed sketches of finished poses, up to
-/// kMostKeptBytes. The result does not depend on the order in which poses are finished.
+/// Merges units of samples, pose by pose: the sums of a PoseFold (run/pose_fold.h). In memory are the sketches of the
+/// pose that is being merged, and one sketch for each response over all finished poses. So memory does not depend on
+/// the number of samples; only the result grows with the number of poses. For a later study with more samples, packed
+/// sketches of finished poses are kept as well, up to kMostKeptBytes. The result does not depend on the order in which
+/// poses are finished.
 class MonteCarloCollector {
  public:
-  /// Bytes of packed sketches that are kept; other poses are solved again when more samples are wanted.
+  /// Limit on the bytes of packed sketches. A pose that exceeds it is solved again if more samples are wanted.
   static constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20U;
-  static constexpr bool kOfRound = true;  ///< Finished poses are opened again when more samples are wanted.
+  static constexpr bool kOfRound = true;  ///< True: in adaptive sampling, the sums are made anew for each round,
+                                          ///< because a finished pose takes no more samples (PoseFold).
 
-  /// keep_checkpoint: whether to keep the sketches of finished poses.
+  /// keep_checkpoint: whether to keep packed sketches of finished poses.
   MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis, bool keep_checkpoint = true);
 
-  /// Adds a unit. Units of a pose must follow each other.
+  /// Adds a unit. All units of a pose must be added before those of another pose.
   void add(const WorkUnit& unit, const PoseUnit& found);
-  /// The number of units of this pose that were added.
+  /// The number of units at this pose that were added.
   std::size_t units_done(std::size_t pose) const;
-  /// The solves of all units that were added.
+  /// How the solves of all added units ended.
   SolveCounts total() const;
-  /// The result at the finished poses, without the overall numbers.
+  /// The result at the finished poses. The numbers over all poses are not set.
   const MonteCarloResult& finished() const { return columns_.result(); }
   /// The result. Precondition: every unit was added.
   MonteCarloResult result() &&;
 
-  /// Writes all poses, or reads those of a plan with this many samples and adds them. If these are fewer than this
-  /// plan's samples, all poses are open again, and start from what was kept of them.
+  /// Writes all poses, or reads the poses of a plan with this many samples and adds them. If this plan has more
+  /// samples, all read poses are unfinished and continue from their packed sketches.
   void state(Archive& archive, std::size_t samples);
 
  private:
-  /// The packed samples of whole units at a pose.
+  /// The packed statistics of whole units at a pose.
   struct Kept {
     SolveCounts solves;
-    Bytes bytes;  ///< their state
+    Bytes bytes;  ///< state of a PoseSamples
   };
 
   bool is_finished(std::size_t pose) const { return columns_.result().solves[pose].total() > 0; }
@@ -82,11 +84,11 @@ class MonteCarloCollector {
   void finish_pose();
   /// Sets the numbers that depend on the moments of a response at a pose.
   void set_moments(std::size_t response, std::size_t pose, const Moments& moments);
-  /// Keeps the samples of the open pose if they are whole units and there is room for them.
+  /// Packs the samples of the open pose, if they are whole units and the limit on bytes allows it.
   void keep();
   void set_kept(std::size_t pose, Kept kept);
   void finished_state(Archive& archive, std::size_t pose, std::size_t samples);
-  /// First-order indices and main effects from poses whose draws are independent.
+  /// First-order indices and main effects. Draws at different poses are independent.
   EffectResult effects() const;
   PoseSamples no_samples() const { return {responses_, plan_->factors().size()}; }
   void open_state(Archive& archive, std::size_t samples);
@@ -97,15 +99,16 @@ class MonteCarloCollector {
   std::vector<ResponseLimit> limits_;
   MonteCarloOptions asked_;
   bool keep_checkpoint_;
-  PoseIndex open_;                                      ///< the open pose, if there is one
-  PoseSamples at_pose_;                                 ///< the samples of the open pose
-  std::vector<QuantileSketch> sketches_;                ///< [R] all finished poses together
-  Array<Moments, axis::Pose, axis::Response> moments_;  ///< of the finished poses
-  MonteCarloColumns columns_;                           ///< of the finished poses
-  std::vector<std::optional<MainEffectSums>> effects_;  ///< main effects of each finished pose that has them
-  std::vector<FailedSamples> failed_;                   ///< of each finished pose
-  std::vector<Kept>
-      kept_;  ///< kept samples of each pose: finished ones for a longer study, others from a shorter study
+  PoseIndex open_;                                      ///< pose whose units are being added
+  PoseSamples at_pose_;                                 ///< statistics of this pose
+  std::vector<QuantileSketch> sketches_;                ///< [responses] sketch over all finished poses
+  Array<Moments, axis::Pose, axis::Response> moments_;  ///< moments at the finished poses
+  MonteCarloColumns columns_;                           ///< result at the finished poses
+  std::vector<std::optional<MainEffectSums>> effects_;  ///< sums for main effects of each finished pose at which they
+                                                        ///< are computed
+  std::vector<FailedSamples> failed_;                   ///< failed samples of each finished pose
+  /// Packed statistics of each pose: of finished poses for a longer study, of others from a shorter study.
+  std::vector<Kept> kept_;
   std::size_t kept_bytes_ = 0;
 };
 

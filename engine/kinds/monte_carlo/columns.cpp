@@ -11,10 +11,10 @@
 namespace poesy {
 namespace {
 
-/// The mean, or NaN if no samples count.
+/// The mean, or NaN without samples.
 double mean_of(const Moments& moments) { return moments.count() == 0 ? kNaN : moments.mean(); }
 
-/// Converts ranks among `trials` values to ranks among `count` values, in proportion.
+/// Converts ranks among `trials` values to ranks among `count` values, in proportion, rounded outwards.
 RankInterval among(const RankInterval& ranks, std::uint64_t trials, std::uint64_t count) {
   if (trials == count || trials == 0) return ranks;
   const double each = static_cast<double>(count) / static_cast<double>(trials);
@@ -23,7 +23,7 @@ RankInterval among(const RankInterval& ranks, std::uint64_t trials, std::uint64_
   return {static_cast<std::uint64_t>(low), ranks.high > trials ? count + 1 : static_cast<std::uint64_t>(high)};
 }
 
-/// The number of samples that a limit allows. A bucket that the limit divides counts by its middle.
+/// The number of samples within a limit. All samples of a bucket count as the middle of the bucket.
 std::uint64_t count_within(const QuantileSketch& samples, const ValueLimit& limit) {
   std::uint64_t within = 0;
   for (const Bucket& bucket : samples.buckets()) {
@@ -33,7 +33,7 @@ std::uint64_t count_within(const QuantileSketch& samples, const ValueLimit& limi
   return within;
 }
 
-/// Sets `value` and `pose` of the verdict by the pose with the worst share_magnitude.
+/// Sets `value` and `pose` of the verdict to the worst share_magnitude over the poses, and its pose.
 void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
   const std::span at_poses = found.share_magnitude.row(verdict.response);
   const auto worst = std::ranges::max_element(at_poses, {}, [&](double value) { return verdict.limit.badness(value); });
@@ -118,7 +118,7 @@ void MonteCarloColumns::set_quantiles(std::size_t response, std::size_t pose, co
 double value_at_rank(const QuantileSketch& values, const ValueLimit& limit, std::uint64_t rank) {
   if (rank > values.count()) return limit.is_magnitude() ? std::numeric_limits<double>::infinity() : kNaN;
   if (limit.is_magnitude()) return values.magnitudes().order_statistic(rank);
-  std::vector<std::pair<double, std::uint64_t>> middles;  // of the buckets, with their counts
+  std::vector<std::pair<double, std::uint64_t>> middles;  // middle of each bucket, with the bucket's count
   for (const Bucket& bucket : values.buckets()) {
     middles.emplace_back(0.5 * bucket.lower + 0.5 * bucket.upper, bucket.count);
   }

@@ -20,7 +20,7 @@ const std::string kEndOfInterval =
 const std::string kLowerEnd = "Lower" + kEndOfInterval;
 const std::string kUpperEnd = "Upper" + kEndOfInterval;
 
-/// Numbers at each pose, and those over all poses, in the order of the columns of CSV.
+/// Numbers at each pose and over all poses, in the order of the CSV columns.
 const Group<MonteCarlo> kMonteCarlo{
     "/monte_carlo",
     "Each response with all errors varying together, at each pose and over all poses",
@@ -75,10 +75,12 @@ const Group<MonteCarlo> kMonteCarlo{
       "and no main effects; left out where all vary",
       Presence::where_computed}}};
 
-/// The numbers of a CSV table: arrays whose last axis, apart from the quantiles, is that of the lines.
+/// The numbers of a CSV table. They are arrays whose last axis is that of the table's lines; quantiles have the axis of
+/// quantiles after it.
 template <class Numbers, class Quantiles, class Counts>
 struct ShownNumbers {
-  std::vector<std::pair<std::string, const Numbers*>> first;  ///< with their names
+  /// Numbers in the columns before the count, each with the heading of its column.
+  std::vector<std::pair<std::string, const Numbers*>> first;
   const Counts& count;
   const Numbers& rms;
   const Quantiles& quantiles;
@@ -87,7 +89,7 @@ struct ShownNumbers {
   const Numbers& quantile_error;
 };
 
-/// Appends columns of numbers and quantiles at these positions on the axes before that of the lines.
+/// Appends columns of numbers and quantiles. at: positions on the axes before that of the lines.
 template <class Numbers, class Quantiles, class Counts, class... Positions>
 void append_number_columns(CsvTable& table, const std::string& unit, const std::vector<double>& levels,
                            const ShownNumbers<Numbers, Quantiles, Counts>& shown, Positions... at) {
@@ -106,7 +108,7 @@ void append_number_columns(CsvTable& table, const std::string& unit, const std::
     append_quantile(q, "_ci_low", shown.quantiles_ci_low);
     append_quantile(q, "_ci_high", shown.quantiles_ci_high);
   }
-  if (!shown.quantile_error.empty()) append("quantile_error", shown.quantile_error);  // version 0.2 has none
+  if (!shown.quantile_error.empty()) append("quantile_error", shown.quantile_error);  // files of version 0.2 have none
 }
 
 CsvTable response_table(const StoredResult& result, std::size_t r) {
@@ -130,7 +132,7 @@ CsvTable response_table(const StoredResult& result, std::size_t r) {
   return table;
 }
 
-/// Responses have different units, so each line ends with its unit.
+/// A table of the numbers over all poses. Each line ends with its unit, because responses have different units.
 CsvTable overall_table(const StoredResult& result) {
   const MonteCarlo& found = monte_carlo_of(result);
   CsvTable table{"overall",
@@ -152,7 +154,7 @@ CsvTable overall_table(const StoredResult& result) {
   return table;
 }
 
-/// Leaves out bins of zero width, which fill up unused places of the result's table.
+/// A table of a histogram. Bins of zero width are left out, because they only fill unused places of the result.
 CsvTable histogram_table(const StoredResult& result, std::size_t r) {
   const MonteCarlo& found = monte_carlo_of(result);
   const NamedUnit& response = result.responses[r];

@@ -7,41 +7,41 @@
 #include "engine/random/smoothed_values.h"
 #include "engine/study/plan.h"
 
-/// The weight of each measured part in the density of a machine's errors. Derivation: theory.md, "What few parts leave
-/// open".
+/// How the density of a machine's errors depends on the weight of each measured part. Derivation: theory.md, "What few
+/// parts leave open".
 namespace poesy {
 
-/// Errors that were measured on the same n parts: one error, or a block of k correlated errors. Row i of each error's
-/// values belongs to part i.
+/// Errors that were measured on the same n parts: a single error, or a block of k correlated errors. Value i of each
+/// error belongs to part i.
 struct PartGroup {
-  std::vector<std::size_t> errors;    ///< [k] positions among all errors
-  std::vector<SmoothedValues> parts;  ///< [k] the values of each error, n each
-  /// [k x k] Inverse of the correlation matrix of their normal scores; empty for one error.
+  std::vector<std::size_t> errors;    ///< [errors] positions of the errors among all errors
+  std::vector<SmoothedValues> parts;  ///< [errors] measured values of each error, one for each part
+  /// [errors x errors] Inverse of the correlation matrix of the errors' normal scores; empty for a single error.
   std::vector<double> inverse;
-  /// [k (k - 1) / 2 x n] Derivatives of the correlation of each pair (1 0, 2 0, 2 1, ...) by the weight of each part,
-  /// if the correlation is computed from the parts; else empty.
+  /// [k (k - 1) / 2 x n] Derivative of the correlation of each pair (1 0, 2 0, 2 1, ...) with respect to the weight of
+  /// each part. Empty if correlations are stated and not computed from the parts.
   std::vector<double> moves = {};
 
   std::size_t size() const { return parts.front().values().size(); }  ///< The number of parts, n.
 };
 
-/// All such groups of a study.
+/// All groups of measured errors of a study.
 struct PartGroups {
-  /// False if a measured error is correlated with one that is not measured, or that is measured on other parts.
+  /// False if a measured error is correlated with an error that is not measured, or is measured on other parts.
   bool known = true;
-  std::vector<PartGroup> each = {};  ///< no error is in two of them
+  std::vector<PartGroup> each = {};  ///< the groups; an error is in one group only
 };
 
-/// The groups of a study; none if no error is measured.
+/// The groups of a study; empty if no error is measured.
 PartGroups part_groups(const Plan& plan);
 
-/// A group of one error, or of correlated errors. correlation: [k x k] of their normal scores; unused for one error.
-/// Precondition: all errors have the same number of values.
+/// The group of a single error, or of correlated errors. correlation: [errors x errors] correlation of the normal
+/// scores; unused for a single error. Precondition: all errors have the same number of values.
 PartGroup part_group(std::vector<std::size_t> errors, std::vector<SmoothedValues> parts,
                      std::span<const double> correlation);
 
-/// Adds the influence d ln f / dw_i of the weight of each of the n parts, w_i = 1/n, on the density f of the group's
-/// errors. influence: [n], sums to 0. x: [k] the errors of a machine, SI.
+/// Adds to `influence` [parts] that of each of the n parts on the density f of the group's errors: the derivative d ln
+/// f / dw_i by the part's weight w_i = 1/n. These numbers sum to 0. x: [errors] errors of a machine, SI.
 void add_influence(const PartGroup& group, std::span<const double> x, std::span<double> influence);
 
 }  // namespace poesy

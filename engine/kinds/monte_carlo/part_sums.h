@@ -10,34 +10,35 @@
 
 namespace poesy {
 
-/// Sums the influence of each part's weight on the probability p of a reject. If the density f of all errors is made of
-/// parts of weight w_i = 1/n, then dp/dw_i = E[1_reject d ln f / dw_i], so only rejects are added.
+/// Sums the influence of each measured part on the probability p that a machine is rejected. Let f be the density of
+/// all errors, in which part i has the weight w_i = 1/n. Then dp/dw_i = E[1_reject d ln f / dw_i], so only rejected
+/// machines are added.
 class PartSums {
  public:
   /// Empty sums. Refers to the groups.
   explicit PartSums(const PartGroups& groups);
 
-  /// Adds machines. errors: [errors x machines], SI. rejected: [machines] 1 or 0.
+  /// Adds machines. errors: [errors x machines], SI. rejected: [machines] 1 if rejected, otherwise 0.
   void add(std::span<const double> errors, std::span<const std::uint8_t> rejected);
   /// Adds the sums of later machines. Merging in the same order gives the same bits.
   void merge(const PartSums& later);
 
-  /// With fewer rejects, or fewer good machines, the influence of a part is unknown.
+  /// The smallest number of rejects, and of good machines, from which the influence of parts is estimated.
   static constexpr std::uint64_t kLeast = 10;
 
-  /// The interval of the yield that includes the uncertainty from few machines and from few parts: Student's on the
-  /// scale of normal scores. NaN at both ends with fewer than kLeast rejects or good machines, and if the groups are
-  /// not known. Precondition: 0 < conf_level < 1.
+  /// The confidence interval of the yield with the uncertainty from few machines and from few parts: Student's interval
+  /// on the scale of normal scores. Both ends are NaN with fewer than kLeast rejects or good machines, or if the groups
+  /// are not known. Precondition: 0 < conf_level < 1.
   Interval interval(double conf_level) const;
 
-  void state(Archive& archive);  ///< Reads or writes every bit.
+  void state(Archive& archive);  ///< Reads or writes the sums, bit for bit.
 
  private:
   const PartGroups* groups_;
   std::uint64_t machines_ = 0;
   std::uint64_t rejects_ = 0;
-  std::vector<std::vector<double>> sums_;  ///< [groups] [n] sums of A
-  std::vector<double> squares_;            ///< [groups] sum of A^2 over all parts
+  std::vector<std::vector<double>> sums_;  ///< [groups][parts] sum of each part's influence over rejected machines
+  std::vector<double> squares_;            ///< [groups] sum of squared influences over parts and rejected machines
 };
 
 }  // namespace poesy

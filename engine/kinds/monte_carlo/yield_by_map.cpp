@@ -17,7 +17,7 @@
 namespace poesy {
 namespace {
 
-/// The rows of the fit with a vector's components at all poses.
+/// The positions in the fit of a vector's components at all poses.
 std::vector<std::size_t> rows_of(const MachineTable& table, const LimitedVector& vector) {
   std::vector<std::size_t> rows;
   for (std::size_t m = 0; m < table.plan().poses().size(); ++m) {
@@ -31,7 +31,7 @@ std::vector<ErrorEffect> effects_on(const MachineTable& table, std::size_t respo
   std::vector<ErrorEffect> errors;
   for (const Distribution& error : plan.distributions()) {
     const double sigma = error.standard_deviation();
-    const double offset = (error.mean() - error.centre()) / sigma;  // a stated mean is not scatter
+    const double offset = (error.mean() - error.centre()) / sigma;  // a stated mean does not count as scatter
     errors.push_back({.mean_square = 1.0 + offset * offset,
                       .block = 0,
                       .rounding = sigma * index_rounding(table.rounding()[response], sigma)});
@@ -42,7 +42,7 @@ std::vector<ErrorEffect> effects_on(const MachineTable& table, std::size_t respo
   return errors;
 }
 
-/// A limited vector at one pose, as a function of the errors themselves.
+/// A limited vector at one pose, as a linear function of the errors in SI.
 LinearLimit limit_at(const MachineTable& table, const LinearFit& fit, const LimitedVector& vector, std::size_t pose) {
   const std::size_t rows = table.vectors().rows();
   const ArrayView<const double, axis::Pose, axis::VectorRow, axis::Factor> slopes(
@@ -74,7 +74,7 @@ LinearLimits limits_of(const MachineTable& table, const LinearFit& fit) {
 }
 
 std::vector<std::optional<MappedError>> mapped_errors(const MachineTable& table) {
-  constexpr std::size_t kDegree = 2;  // degree of the polynomial for the few machines that the map judges wrongly
+  constexpr std::size_t kDegree = 2;  // degree of the polynomial that corrects for machines that the map judges wrongly
   std::vector<std::optional<MappedError>> errors;
   for (std::size_t p = 0; p < table.errors(); ++p) {
     errors.emplace_back();
@@ -89,7 +89,7 @@ std::vector<std::optional<MappedError>> mapped_errors(const MachineTable& table)
   return errors;
 }
 
-/// Draws the errors of consecutive machines again.
+/// Draws the errors of consecutive machines again, as the study drew them.
 Array<double, axis::Factor, axis::Sample> errors_of(const Plan& plan, std::size_t first, std::size_t count) {
   Array<double, axis::Factor, axis::Sample> values({plan.factors().size(), count});
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {
@@ -111,9 +111,9 @@ void set_shares(const MachineTable& table, const LinearFit& fit, double conf_lev
   }
 }
 
-/// Whether the map judges only few machines wrongly. With many, the parabola would leave out too much.
+/// Whether the map judges only few machines wrongly. If there are many, the polynomial does not correct well enough.
 bool judges_well(const MappedGradient& gradient, std::span<const std::uint8_t> rejected) {
-  constexpr double kMost = 0.3;  // share of the rejects, or of the good machines if these are fewer
+  constexpr double kMost = 0.3;  // share of the rejects, or of the good machines if there are fewer of these
   constexpr double kAnyway = 4.0;
   const auto rejects = static_cast<double>(std::ranges::count(rejected, 1));
   const double fewer = std::min(rejects, static_cast<double>(rejected.size()) - rejects);

@@ -10,11 +10,12 @@
 
 namespace poesy {
 
-/// Sets what the linear map of the limited vectors says about the yield. The map is fitted to the study's first
-/// machines (fit; it may be none):
-/// - the shares of the mean square of each limited response, for all errors; NaN without a fit;
-/// - the gradient and the change by errors whose score is a polynomial, by MappedGradient instead of the present
-/// numbers, if the map judges few machines wrongly. rejected: [first machines] 1 or 0; their errors are drawn again.
+/// Sets the numbers of the yield that follow from the linear map of the limited vectors. fit: the map, fitted to the
+/// first machines of the study; it may be none. The numbers are
+/// - the shares of all errors in the mean square of each limited response; NaN without a fit;
+/// - the gradient and the change of the yield by errors whose score is a polynomial. These replace the present numbers
+/// if the map judges only few machines wrongly.
+/// rejected: [first machines] 1 if rejected, otherwise 0; the function draws the errors of these machines again.
 void set_first_order(const MachineTable& table, const std::optional<LinearFit>& fit,
                      std::span<const std::uint8_t> rejected, double conf_level, YieldResult& yield);
 

@@ -24,15 +24,15 @@ namespace {
 
 /// The errors that make most of the mean square, and those that together make hardly any of it.
 struct FewMatter {
-  std::vector<std::string> names;   ///< errors that make most of it, the largest first
-  double sum = 0.0;                 ///< their share
-  std::vector<std::string> hardly;  ///< errors that together make less than kHardly
+  std::vector<std::string> names;   ///< errors that together make the share kMost of the mean square, largest first
+  double sum = 0.0;                 ///< share of these errors
+  std::vector<std::string> hardly;  ///< errors that together make less than the share kHardly of the mean square
 };
 
 constexpr double kMost = 0.8;
 constexpr double kHardly = 0.01;
 
-/// None if not all effects are known, or no error has one.
+/// Finds the errors of FewMatter; none if an effect is not known, or if no error has an effect.
 std::optional<FewMatter> few_matter(const StoredResult& result) {
   const std::size_t response = response_named(result, default_ranking(result));
   const MeanSquare found =
@@ -56,7 +56,8 @@ std::optional<FewMatter> few_matter(const StoredResult& result) {
   return few;
 }
 
-/// The error with the largest effect on the response that ranks, with its interval.
+/// A sentence on the error with the largest effect on the response by which errors are ranked, with the interval of the
+/// effect.
 std::string largest_text(const StoredResult& result, const RankedErrors& ranked) {
   const std::size_t p = ranked.rows.front();
   const std::size_t r = ranked.response;
@@ -70,7 +71,7 @@ std::string largest_text(const StoredResult& result, const RankedErrors& ranked)
                      response_text(response, shown.high(r, p) * sigma));
 }
 
-/// How wide the intervals of the errors that matter are, and for which sizes the indices hold.
+/// A sentence on how wide the intervals of errors with an effect are, and whether the indices hold at other sizes.
 std::string sure_text(const StoredResult& result, const RankedErrors& ranked) {
   const GlobalIndices shown = shown_indices(result);
   double widest = 0.0;
@@ -123,7 +124,9 @@ std::string worst_place_text(const StoredResult& result) {
     if (effects[m] > effects[worst]) worst = m;
   }
   const double ratio = effects.empty() ? 0.0 : effects[worst] * static_cast<double>(effects.size()) / sum;
-  if (!(ratio >= kHardlyDiffers)) return {};  // also if an effect is not known
+  if (!(ratio >= kHardlyDiffers))
+    return {};  // this also covers an unknown effect, because a comparison with NaN is
+                // false
   return fmt::format("The effect of {} on {} is largest at {}, {:.1f} times its mean over the poses.",
                      result.factors[error].name, result.responses[ranked.response].name, place_text(result, worst),
                      ratio);

@@ -7,14 +7,15 @@
 
 namespace poesy {
 
-/// The errors that make most of the mean square, and those that together make hardly any of it, in two sentences. Empty
-/// if not all effects are known, or no error has one.
+/// Two sentences that name the errors which make most of the mean square, and those which together make hardly any of
+/// it. Empty if an effect is not known, or if no error has an effect.
 std::string few_matter_text(const StoredResult& result);
 
-/// The pose where the most important error has its largest effect; empty if poses hardly differ.
+/// A sentence on the pose at which the most important error has its largest effect; empty if the effect hardly differs
+/// between poses.
 std::string worst_place_text(const StoredResult& result);
 
-/// The first lines of the report of a sensitivity result.
+/// The answer at the top of the report of a sensitivity result.
 Answer sensitivity_answer(const StoredResult& result);
 
 }  // namespace poesy

@@ -10,12 +10,12 @@
 
 namespace poesy {
 
-/// Statistics of the samples of consecutive cells, for R responses. Each response has a list of its own, so that its
-/// memory can be freed separately.
+/// Statistics of the samples in consecutive cells, for R responses. A cell is one error at one pose. Each response has
+/// its own list, so that its memory can be freed separately.
 struct CellStats {
-  std::vector<std::vector<Moments>> responses;  ///< [R][cells] over the samples that count
-  std::vector<SolveCounts> solves;              ///< [cells]
-  std::vector<FailedSamples> failed;            ///< [cells]
+  std::vector<std::vector<Moments>> responses;  ///< [responses][cells] moments of the samples that count
+  std::vector<SolveCounts> solves;              ///< [cells] how the solves ended
+  std::vector<FailedSamples> failed;            ///< [cells] first samples that failed
 
   /// No cells.
   CellStats() = default;
@@ -27,9 +27,9 @@ struct CellStats {
   UnitStats at(std::size_t cell) const;               ///< The statistics of one cell.
   /// Reads or writes one cell, whose samples begin at `first`.
   void state(Archive& archive, std::size_t cell, std::uint64_t first);
-  CellStats part(const NumberRange& cells) const;  ///< The statistics of some of the cells.
-  void merge(std::size_t cell,
-             const UnitStats& unit);  ///< Adds a unit to a cell. Precondition: see UnitStats::merge().
+  CellStats part(const NumberRange& cells) const;  ///< The statistics of a range of cells.
+  /// Adds a unit to a cell. Precondition: see UnitStats::merge().
+  void merge(std::size_t cell, const UnitStats& unit);
   /// Adds later samples of the same cells. Frees the memory of `later` step by step. Precondition: the samples of
   /// `later` come after those of this object.
   void merge(CellStats later);

@@ -16,51 +16,55 @@
 
 namespace poesy {
 
-/// Collects the global indices of a sensitivity study at its history points (engine/run/evaluate_unit.h) while units
-/// are merged. When all poses of a slot have reached a point, it computes the indices there and drops the data of the
-/// poses. Cells are solved slot by slot, so the data of one slot are in memory at a time: 16 bytes for each response,
-/// pose and point. A continued run or a shard also holds those of the slots that it divides.
+/// Computes the global indices of a sensitivity study after fewer samples, at its history points
+/// (engine/run/evaluate_unit.h), while units are merged. When all poses of a slot have reached a point, the indices
+/// there are computed and the data of the poses are dropped. Because cells are solved slot by slot, only the data of
+/// one slot are in memory: 16 bytes for each response, pose and point. A continued run or a shard may also hold the
+/// data of slots that it has only in part.
 class HistoryCollector {
  public:
   /// Refers to the plan.
   HistoryCollector(const Plan& plan, std::size_t responses, double conf_level);
 
-  /// Adds the next unit of its cell. cell: the statistics of the cell's samples including this unit. It is needed only
-  /// if the unit ends at a history point; a smaller last unit does so only if it is the first of its cell.
+  /// Adds the next unit of its cell. within: [points x responses] indices at the history points inside the unit. cell:
+  /// statistics of all samples of the cell up to this unit; only used if the unit ends at a history point. A smaller
+  /// last unit ends at a history point only if it is also the first unit of its cell.
   void add(const WorkUnit& unit, std::span<const LocalIndex> within, const UnitStats& cell);
-  /// The indices at all points. Precondition: all units of all cells were added. end: the final result.
+  /// The course of the indices over all points. Precondition: all units of all cells were added. end: the final result.
   EstimateCourse history(const SensitivityResult& end) const;
 
-  /// Writes the points, or reads those of a plan with this many samples (at most those of this plan) and of other
-  /// cells, and adds them. units_done: the number of units in each cell.
+  /// Writes the indices at all points, or reads and adds those of other cells, from a plan with this many samples (at
+  /// most those of this plan). units_done: [cells] number of units of each cell.
   void state(Archive& archive, std::span<const std::size_t> units_done, std::size_t samples);
 
  private:
-  /// One slot at one point.
+  /// The indices of one slot at one history point.
   struct Look {
-    std::size_t reached = 0;                                   ///< number of poses that have reached the point
-    Array<LocalIndex, axis::Response, axis::Pose> local = {};  ///< kept while some poses have not reached the point
-    std::vector<Estimate> global = {};                         ///< [R] set when all poses have reached the point
+    std::size_t reached = 0;  ///< number of poses that have reached the point
+    /// Local indices, until all poses have reached the point.
+    Array<LocalIndex, axis::Response, axis::Pose> local = {};
+    /// [responses] Global indices, when all poses have reached the point.
+    std::vector<Estimate> global = {};
   };
   struct Point {
     static constexpr std::string_view kName = "samples";
   };
 
   std::size_t poses() const { return plan_->poses().size(); }
-  /// indices: [R]
+  /// Adds the local indices [responses] of a cell at a point.
   void add(std::size_t cell, std::size_t point, std::span<const LocalIndex> indices);
-  /// The poses of the slot whose units include this point; units_done: [cells].
+  /// The poses of the slot that have reached this point. units_done: [cells] number of units of each cell.
   std::vector<std::size_t> poses_at(std::size_t slot, std::size_t point, std::span<const std::size_t> units_done) const;
 
   const Plan* plan_;
   std::size_t responses_;
   double conf_level_;
-  std::vector<std::size_t> points_;  ///< [K]
+  std::vector<std::size_t> points_;  ///< [points] numbers of samples of the history points
   Array<Look, axis::Factor, Point> looks_;
 };
 
-/// Merges the units of a sensitivity study, cell by cell: the sums of a PoseFold. The result of a cell depends only on
-/// the order of its own units.
+/// Merges the units of a sensitivity study, cell by cell: the sums of a PoseFold (run/pose_fold.h). The result of a
+/// cell depends only on the order of its own units.
 class SensitivityCollector : public CellSums<CellStats> {
  public:
   /// Collects the cells of this shard of the plan. Refers to the plan.
@@ -68,10 +72,10 @@ class SensitivityCollector : public CellSums<CellStats> {
 
   /// Adds a unit. Precondition: it is the next unit of its cell.
   void add(const WorkUnit& unit, const CellUnit& found);
-  /// The course of the indices, which ends with those of `end`. Precondition: all units of all cells were added, and
-  /// the study has a fixed number of samples.
+  /// The course of the indices over the history points, which ends with the indices of `end`. Precondition: all units
+  /// of all cells were added, and the study has a fixed number of samples.
   EstimateCourse history(const SensitivityResult& end) const { return history_.history(end); }
-  /// Writes all cells, or reads those of a plan with this many samples and adds them.
+  /// Writes all cells, or reads and adds the cells of a plan with this many samples.
   void state(Archive& archive, std::size_t samples);
 
  private:

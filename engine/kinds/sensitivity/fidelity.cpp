@@ -15,10 +15,10 @@
 namespace poesy {
 namespace {
 
-/// The spread, SI, that the rounding of solvers leaves where there is none: kIndexRounding with errors of 1e-3.
+/// The largest spread, SI, that may be the rounding of a solver: kIndexRounding with errors of 1e-3.
 constexpr double kSpreadRounding = 1e-13;
 
-/// Two results and what belongs to both.
+/// The results at two fidelities, with the dimensions and sigmas of both.
 struct BothFidelities {
   const SensitivityResult& first;
   const SensitivityResult& second;
@@ -29,7 +29,7 @@ struct BothFidelities {
     return index < kIndexRounding || index * sigma[factor] < kSpreadRounding;
   }
 
-  /// The error's largest index on any response of the same dimension; NaN if one is not known.
+  /// The effect of an error: its largest index over all responses of the same dimension. NaN if an index is unknown.
   double effect(const SensitivityResult& result, std::size_t response, std::size_t factor) const {
     double largest = 0.0;
     for (std::size_t r = 0; r < result.responses(); ++r) {
@@ -41,12 +41,12 @@ struct BothFidelities {
     return largest;
   }
 
-  /// The increase of the mean above the response to the background alone.
+  /// The mean of a response minus the response to the background alone.
   static double growth(const SensitivityResult& result, std::size_t response, std::size_t factor, std::size_t pose) {
     return result.mean(response, factor, pose) - result.background(response, pose);
   }
 
-  /// Root mean square over the poses of the change of mean and spread, over sigma.
+  /// The root mean square over the poses of the change of mean and spread, divided by sigma.
   double change(std::size_t response, std::size_t factor) const {
     double sum = 0.0;
     for (std::size_t m = 0; m < first.poses(); ++m) {
@@ -66,8 +66,8 @@ struct BothFidelities {
   }
 };
 
-/// The denominator of the ratios of one error and response: NaN if neither fidelity has an effect, 0 if only the second
-/// one has.
+/// The denominator of the ratios for one error and response. NaN if the effect at both fidelities is rounding, 0 if
+/// only the effect at the first fidelity is rounding.
 double ratio_base(const BothFidelities& both, std::size_t response, std::size_t factor) {
   const double effect = both.effect(both.first, response, factor);
   if (!both.is_rounding(factor, effect)) return effect;
@@ -97,7 +97,7 @@ const Group<Fidelity> kFidelity{
 
 using Measure = FidelityResult::Indices;
 
-/// The response with the largest magnitude of an error's measure; none if no value is known.
+/// The response for which the measure of an error has the largest magnitude; none if no value is known.
 std::optional<std::size_t> largest(const Measure& measure, std::size_t factor) {
   std::optional<std::size_t> found;
   for (std::size_t r = 0; r < measure.length<axis::Response>(); ++r) {
@@ -107,7 +107,8 @@ std::optional<std::size_t> largest(const Measure& measure, std::size_t factor) {
   return found;
 }
 
-/// Adds columns with the largest value in percent, and its response. Refers to the result and the measure.
+/// Extends the list `columns` by columns with each error's largest value in percent, and with the response that has it.
+/// Refers to the result and the measure.
 void add_largest(std::vector<FilledColumn>& columns, const StoredResult& result, const Measure& measure,
                  const std::string& name, int dispensable) {
   const auto value = [&measure](std::size_t p) {
@@ -145,7 +146,7 @@ std::vector<std::string> fidelity_notes(const FidelityResult& found) {
   return list;
 }
 
-/// The largest magnitude over the responses, for each error; NaN if none is known.
+/// The largest magnitude of the measure over the responses, for each error; NaN if no value is known.
 std::vector<double> largest_magnitudes(const Measure& measure) {
   std::vector<double> list;
   for (std::size_t p = 0; p < measure.length<axis::Factor>(); ++p) {

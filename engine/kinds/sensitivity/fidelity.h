@@ -10,31 +10,33 @@
 
 namespace poesy {
 
-/// Compares two sensitivity results of the same draws at two fidelities of a model. dimensions: [R] of the responses.
-/// sigma: [P] standard deviations of the errors, SI. linearity: between 0 and 1.
+/// Compares two sensitivity results of the same draws at two fidelities of a model. dimensions: [responses] dimension
+/// of each response. sigma: [errors] standard deviation of each error, SI. linearity: a limit between 0 and 1.
 ///
-/// All ratios have the error's effect as denominator: its largest global index by the first fidelity, on any response
-/// of the same dimension. So an error is not called nonlinear because of a component on which it hardly acts.
+/// The denominator of all ratios is the error's effect: its largest global index at the first fidelity, over all
+/// responses of the same dimension. Therefore an error is not called nonlinear because of a component on which it
+/// hardly acts.
 ///
 ///     discrepancy           global of the second - global of the first
 ///     relative_discrepancy  discrepancy / effect
 ///     nonlinearity          root mean square over the poses of hypot(m1 - m2, s1 - s2) / sigma, over effect
 ///
-/// with m the mean, less the response to the background alone, and s the standard deviation of the response.
-/// Nonlinearity includes a shift of the mean, where a second-order effect shows that hardly changes the spread. It is
-/// at most the root mean square difference of the samples themselves.
+/// Here m is the mean of the response minus the response to the background alone, s is its standard deviation, and 1
+/// and 2 are the fidelities. Nonlinearity includes the shift of the mean, because a second-order effect shifts the mean
+/// but hardly changes the spread. It is at most the root mean square difference of the samples themselves.
 ///
-/// An error is linear if no response has a nonlinearity or a magnitude of relative discrepancy above `linearity`. An
-/// effect below 1e-10 in SI, or one with a spread below 1e-13 in SI, is rounding. If the first fidelity has only
-/// rounding, the ratios are NaN if the second has only rounding too, and infinite otherwise. An error is also called
-/// nonlinear if an index is not known, or if the two fidelities solved different numbers of samples, because linearity
-/// was not shown. A verdict holds for errors of the study's size; larger ones may be nonlinear. The names of the
-/// fidelities are left empty.
+/// An error is linear if its nonlinearity and the magnitude of its relative discrepancy are at most `linearity` for all
+/// responses. An effect below 1e-10 in SI, or with a spread below 1e-13 in SI, is rounding. If the effect at the first
+/// fidelity is rounding, the ratios are NaN if the effect at the second is rounding too, otherwise infinite. An error
+/// is not called linear if an index is unknown, or if the two fidelities solved different numbers of samples, because
+/// linearity was not shown. A verdict holds for errors of the study's size; larger errors may be nonlinear. The names
+/// of the fidelities are left empty.
 FidelityResult compare_fidelities(const SensitivityResult& first, const SensitivityResult& second,
                                   std::span<const Dimension> dimensions, std::span<const double> sigma,
                                   double linearity);
 
-/// Writes the second fidelity of a result, /fidelity; nothing if the study compares none.
+/// Writes and reads the second fidelity of a result in the group /fidelity. Writes nothing if the study compares no
+/// fidelities.
 /// @{
 void write_fidelity(ResultBuilder& result, const std::optional<FidelityResult>& found);
 std::optional<FidelityResult> read_fidelity(const h5::File& file);
@@ -42,10 +44,10 @@ std::optional<FidelityResult> read_fidelity(const h5::File& file);
 /// Adds fidelity.csv and fidelity_not_converged.csv.
 void append_fidelity_tables(CsvTables& tables, const StoredResult& result);
 
-/// The table of the largest discrepancy of the two fidelities and the verdict, with the errors in this order.
-/// Precondition: the study compares two.
+/// The table of each error's largest discrepancy between the two fidelities, and the verdict, in the order of `ranked`.
+/// Precondition: the study compares two fidelities.
 Table fidelity_table(const StoredResult& result, const RankedErrors& ranked);
-/// Adds the section of a report if the study compares two fidelities.
+/// Adds to the page the section on fidelities, if the study compares two.
 void add_fidelity_section(const StoredResult& result, std::span<const Table> tables, Page& page);
 
 }  // namespace poesy

@@ -24,7 +24,7 @@ bool same_poses(const StoredResult& a, const StoredResult& b) {
   return true;
 }
 
-/// The local index x sigma of B less that of A, for the errors that both have.
+/// The local index x sigma of result B minus that of result A, for the errors that both results have.
 ErrorCells local_differences(const StoredResult& a, const StoredResult& b, const Common& factors,
                              std::pair<std::size_t, std::size_t> response) {
   const ErrorCells in_a = local_effects(a, response.first);
@@ -41,7 +41,7 @@ ErrorCells local_differences(const StoredResult& a, const StoredResult& b, const
   return differences;
 }
 
-/// The errors that both have, in the order of importance in A.
+/// The errors that both results have, in the order of their importance in A.
 Common ranked_common(const StoredResult& a, const StoredResult& b) {
   Common factors = common(names_of(a.factors), names_of(b.factors));
   const std::vector<std::size_t> ranks = ranked_errors(a, default_ranking(a)).ranks;
@@ -49,7 +49,8 @@ Common ranked_common(const StoredResult& a, const StoredResult& b) {
   return factors;
 }
 
-/// Shows where indices differ, for results at the same poses.
+/// Appends to the page the section that shows at which poses the indices of two results, a and b, differ. Only for
+/// results at the same poses.
 void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
   if (!same_poses(a, b)) {
     page.add_section("where", "Where in the workspace they differ")
@@ -81,7 +82,7 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
   figures.add_workspace(section, std::move(fields), "Each dot is a pose, coloured by what is chosen.");
 }
 
-/// Shows the two rankings side by side.
+/// Appends to the page the section that shows the rankings of errors by two results, a and b, side by side.
 void add_rankings(const ReportedResult& a, const ReportedResult& b, Page& page) {
   const auto ranked = [](const ReportedResult& one) {
     return RankedResult{one.stored, one.path, default_ranking(one.stored), sensitivity_tally(one.stored).total()};
@@ -99,7 +100,8 @@ void add_rankings(const ReportedResult& a, const ReportedResult& b, Page& page) 
   }
 }
 
-/// The root mean square predicted from the errors one by one (stats/tolerance.h), in the unit shown.
+/// The root mean square of the response, predicted from the effects of single errors (stats/tolerance.h), in the
+/// display unit.
 double total_rms(const StoredResult& result, std::size_t response) {
   const MeanSquare squares =
       mean_square(response_study(sensitivity_of(result), result.factor_sigma, result.factor_mean, response));

@@ -19,13 +19,14 @@ std::vector<LocalIndex> local_indices(std::span<const Moments> at_poses, double 
   return indices;
 }
 
-/// The corrected index of one response of one factor, if it can be distinguished from rounding.
+/// The corrected index of one error for one response; NaN if it is too small to be distinguished from rounding.
 Estimate told_index(std::span<const LocalIndex> poses, double rounding, double conf_level) {
   const Estimate index = corrected_global_index(poses, conf_level);
   return is_too_small_to_tell(index.value, rounding) ? Estimate{kNaN, {kNaN, kNaN}} : index;
 }
 
-/// The numbers of all cells, appended cell by cell; those that are not yet computed take no memory.
+/// The numbers of all cells, which are appended cell by cell. Memory that is reserved but not yet written takes no
+/// space.
 class CellNumbers {
  public:
   explicit CellNumbers(std::size_t cells) {
@@ -53,7 +54,7 @@ class CellNumbers {
   std::vector<std::uint64_t> count_;
 };
 
-/// Sets the indices of one error over the poses.
+/// Sets the global indices of one error for one response.
 void set_global(std::span<const Moments> at_poses, std::size_t r, std::size_t p, double sigma,
                 SensitivityResult& result) {
   const auto set = [&](const Estimate& index, auto& value, auto& low, auto& high) {

@@ -10,13 +10,14 @@
 namespace poesy {
 
 /// Runs a sensitivity study at one fidelity on a pool of threads. Units are merged in the order of the plan, so the
-/// result has the same bits for any number of threads, and also if it is continued from checkpoints, even those of a
-/// plan with fewer samples. Memory does not grow with the number of samples. Empty when stopped, and for a shard.
+/// result has the same bits for any number of threads, and also if it continues from checkpoints, even from those of a
+/// plan with fewer samples. Memory does not grow with the number of samples. Returns nothing if the run was stopped,
+/// and for a shard.
 std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
                                                  const RunOptions& options);
 
-/// Bytes of the responses' and errors' numbers in a result with axes of these lengths (/sensitivity), in memory and in
-/// a file alike.
+/// Bytes of the numbers of responses and errors in the group /sensitivity, if axes have these lengths. The same in
+/// memory and in a file.
 std::size_t sensitivity_bytes(const AxisLengths& lengths);
 
 /// Runs and reports sensitivity studies: the effect of each error alone.

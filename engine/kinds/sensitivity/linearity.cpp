@@ -25,7 +25,7 @@
 namespace poesy {
 namespace {
 
-/// The number of sizes: the study's, and a tenth of it.
+/// The number of sizes at which draws are solved: the study's, and a tenth of it.
 constexpr std::size_t kSizes = 2;
 constexpr std::size_t kSigns = 2;
 constexpr std::array kScales{1.0, -1.0, kSmallerSize, -kSmallerSize};
@@ -33,7 +33,8 @@ constexpr std::array kScales{1.0, -1.0, kSmallerSize, -kSmallerSize};
 /// The number of poses at which draws are solved at both sizes.
 std::size_t chosen_poses(const Plan& plan) { return some_poses(plan.poses().size()); }
 
-/// The first draws of a cell at a chosen pose. chosen_cell: counts the cells at the chosen poses, slot by slot, from 0.
+/// The first draws of a cell at a chosen pose. chosen_cell: number of the cell among those at chosen poses, slot by
+/// slot.
 WorkUnit first_draws(const Plan& plan, std::size_t chosen_cell) {
   const std::size_t poses = chosen_poses(plan);
   return {chosen_cell / poses, some_pose(chosen_cell % poses, plan.poses().size()), SampleIndex(0),
@@ -44,10 +45,10 @@ struct ErrorSize {
   static constexpr std::string_view kName = "size";
 };
 
-/// The local indices of one cell.
+/// [sizes x responses] The local indices of one cell, which is one error at one pose.
 using CellIndices = Array<LocalIndex, ErrorSize, axis::Response>;
 
-/// Solves the first draws of a cell and their mirror images at both sizes. Owns the scratch of one thread.
+/// Solves the first draws of a cell and their mirror images at both sizes. Owns the scratch memory of one thread.
 class CellEvaluator {
  public:
   CellEvaluator(const Plan& plan, const Model& model)
@@ -55,7 +56,8 @@ class CellEvaluator {
 
   CellIndices operator()(std::size_t cell) {
     const WorkUnit unit = first_draws(*plan_, cell);
-    const UnitOutcomes found = solve_.solve(unit, kScales);  // together, because a model prepares for a pose
+    const UnitOutcomes found = solve_.solve(unit, kScales);  // both sizes together, because a model prepares for a pose
+                                                             // only once
     const std::size_t draws = kSigns * unit.count;
     const ArrayView<const double, axis::Response, ErrorSize, axis::Sample> responses(found.responses,
                                                                                      {responses_, kSizes, draws});
@@ -83,11 +85,11 @@ class CellEvaluator {
   UnitEvaluator solve_;
 };
 
-/// Collects cells, pose by pose, and computes an error's changes when all its poses are there.
+/// Collects the indices of cells, slot by slot, and computes the changes of an error when all its poses are there.
 struct ChangeSums {
   const Plan* plan;
-  std::vector<double> rounding;  ///< [R]
-  /// The indices of the error that is being collected.
+  std::vector<double> rounding;  ///< [responses] rounding of each response
+  /// The local indices of the error that is being collected, at the poses collected so far.
   Array<std::vector<LocalIndex>, ErrorSize, axis::Response> at_poses;
   SensitivityResult::Indices changes;
 
@@ -105,7 +107,7 @@ struct ChangeSums {
     for (std::size_t r = 0; r < rounding.size(); ++r) changes(r, slot) = change(r, slot);
     for (std::vector<LocalIndex>& poses_of_one : at_poses) poses_of_one.clear();
   }
-  /// Reads or writes all changes; there are no checkpoints between the cells.
+  /// Reads or writes all changes. There is no checkpoint before the last cell.
   void state(Archive& archive, const NumberRange&) { archive.reals(changes.all()); }
 
  private:
@@ -120,7 +122,8 @@ struct ChangeSums {
   }
 };
 
-/// The job of UnitFold, whose units are the cells. Its solves are not counted.
+/// The job of a UnitFold (run/unit_fold.h); a unit is a cell, one error at one pose. Its solves are not counted in the
+/// result.
 struct ChangeJob {
   const Plan& plan;
   const Model& model;
@@ -142,20 +145,20 @@ std::span<const double> changes_of(const StoredResult& result, std::size_t respo
   return sensitivity_of(result).index_change.row(response);
 }
 
-/// A known change as text: "-99.1 %".
+/// A change as text: "-99.1 %".
 std::string change_text(double change) { return fmt::format("{:+.1f} %", 100.0 * change); }
 
-/// The size to study, as a multiple of the size studied. If the index grows with a power of the size, the tolerance
-/// from the index at this size is the size itself. ratio: tolerance over size studied; change: of the index at a tenth
-/// of the size.
+/// The size at which to study an error, as a multiple of the studied size. If the index grows with a power of the size,
+/// a study at the returned size gives about this size as tolerance. ratio: tolerance divided by studied size; change:
+/// relative change of the index at a tenth of the size.
 double corrected_ratio(double ratio, double change) {
   constexpr double kFallsTooFast = -0.9;
   const double power = -std::log10(1.0 + change);
   return std::isfinite(power) && power > kFallsTooFast ? std::pow(ratio, 1.0 / (1.0 + power)) : ratio;
 }
 
-/// The size to study for the first of the error's tolerances that is far from the size studied; none if all are near
-/// it.
+/// The size at which to study an error, from the first of its tolerances that is of another size than studied; none if
+/// all tolerances are near the studied size.
 std::optional<double> size_to_study(const ResponseTolerances& tolerances, std::size_t factor, double studied,
                                     double change) {
   for (const std::span<const double> proposed : proposed_tolerances(tolerances)) {
@@ -186,7 +189,7 @@ double index_change_solves(const Plan& plan) {
 
 Cell change_cell(double change) {
   if (std::isnan(change)) return text_cell("");
-  // Removes the sign of changes that round to zero.
+  // Removes the sign of a change that is shown as zero.
   const double percent = std::abs(change) < 5e-4 ? 0.0 : 100.0 * change;
   return {fmt::format("{:.1f}", percent), std::isfinite(change) ? std::optional(100.0 * change) : std::nullopt};
 }

@@ -13,66 +13,70 @@
 #include "engine/run/run_options.h"
 #include "engine/study/plan.h"
 
-/// Whether the indices of a sensitivity study hold for errors of other sizes. Each run finds this and its result says
-/// it.
+/// Computes whether the indices of a sensitivity study hold for errors of other sizes. Each run computes this, and its
+/// result contains it.
 namespace poesy {
 
-/// The number of draws of a cell, the first of the study or all if it has fewer, that are solved at both sizes. As many
-/// draws with opposite signs are solved too.
+/// The number of draws of a cell that are solved at both sizes: the first draws of the study, or all if there are
+/// fewer. Their mirror images, with opposite signs, are solved as well.
 inline constexpr std::size_t kLinearityDraws = 16;
 
-/// The second size, as a multiple of the study's.
+/// The second size, as a multiple of the study's sizes.
 inline constexpr double kSmallerSize = 0.1;
 
-/// How the global indices of a sensitivity study change if its errors are a tenth as large: the index at a tenth over
-/// the index at the study's sizes, less 1. Both are of the same draws, the first of the study and their mirror images,
-/// over the same poses (run/evaluate_unit.h), and by the published estimator. The change is 0 to rounding if a response
-/// is linear in the error or the norm of a linear function, and -0.9 if it is quadratic. Without mirror images, a term
-/// of second order beside one of first order would change the index of a few draws by chance; errors are symmetric
-/// (random/distribution.h). The errors of the background keep their sizes. A draw that does not count at one size
-/// counts at neither. An index that is rounding (stats/indices.h) is 0; the change is NaN if both are, or if one is not
-/// known.
+/// The relative change of each global index if the errors are a tenth as large: the index at a tenth of the size,
+/// divided by the index at the study's size, minus 1. Both indices are by the published estimator, over the same poses
+/// (run/evaluate_unit.h), and from the same draws: the first of the study and their mirror images. Mirror images are
+/// used because errors are symmetric (random/distribution.h); without them, a second-order term beside a first-order
+/// one would change the index of a few draws by chance. The change is 0 up to rounding if the response is linear in the
+/// error, or the norm of a linear function. It is -0.9 if the response is quadratic. Errors of the background keep
+/// their sizes. A draw that does not count at one size counts at neither. An index that is rounding (stats/indices.h)
+/// counts as 0. The change is NaN if both indices are rounding, or if one is unknown.
 ///
-/// All ranks run it and have the same result, with the same bits for any number of threads. It keeps no checkpoint, so
-/// a run that was stopped here begins it again. Empty when stopped. Precondition: a plan of a sensitivity study.
+/// All ranks run this function and have the same result, with the same bits for any number of threads. It has no
+/// checkpoint, so a run that is stopped here begins it again. Returns nothing if the run was stopped. Precondition: a
+/// plan of a sensitivity study.
 std::optional<SensitivityResult::Indices> index_changes(const Plan& plan, const Model& model,
                                                         const RunOptions& options);
 
 /// The number of solves that index_changes() makes.
 double index_change_solves(const Plan& plan);
 
-/// The relative change of the index if the error is a tenth as large, for a percent_column().
+/// A table cell with the relative change of an index at a tenth of the size, for a percent_column().
 Cell change_cell(double change);
 
-/// The errors that have an effect on the response and an index that changes with size, the largest change first.
+/// The errors that have an effect on the response and whose index changes with size, the largest change first.
 std::vector<std::size_t> changing_errors(const StoredResult& result, std::size_t response);
 
-/// For how many of the errors with an effect the response's index holds, and for which it does not, the largest change
-/// first: "the index on gap holds at a tenth of the size, within 2 %: 15 of 25 errors with an effect; not for
-/// epsilon_3_4_z (-99.1 %), ...". unnamed: errors that are counted but not named.
+/// A text that states for how many errors with an effect the index on the response holds at a tenth of the size, and
+/// names the errors for which it does not hold, the largest change first: "the index on gap holds at a tenth of the
+/// size, within 2 %: 15 of 25 errors with an effect; not for epsilon_3_4_z (-99.1 %), ...". unnamed: errors that are
+/// counted but not named.
 std::string index_change_text(const StoredResult& result, std::size_t response,
                               std::span<const std::size_t> unnamed = {});
 
-/// The largest share of a mean square that all negligible errors together may add.
+/// The largest share of a mean square that all negligible errors together may make.
 inline constexpr double kNegligible = 1e-3;
 
-/// The errors whose index on the response changes with size but is negligible: at the size studied each adds at most
-/// kNegligible / P of `added` to the response's mean square, where P is the number of all errors. So their tolerance
-/// may be the size studied, and their index at other sizes is not needed.
+/// The errors whose index on the response changes with size, but whose effect is negligible. Such an error adds at the
+/// studied size at most kNegligible / P of `added` to the response's mean square, where P is the number of all errors.
+/// Its tolerance can be the studied size, so its index at other sizes is not needed.
 std::vector<std::size_t> negligible_errors(const StoredResult& result, std::size_t response,
                                            const MeanSquare& mean_square, double added);
 
-/// A note that names the negligible errors, which have the size studied; empty if there are none.
+/// A note that names the negligible errors, whose tolerance is the studied size; empty if there are none.
 std::string negligible_text(const StoredResult& result, const ResponseTolerances& tolerances);
 
-/// A tolerance whose ratio to the size studied is larger than this, or smaller than its inverse, is of another size.
+/// A tolerance is of another size than studied if the tolerance divided by the studied size is above this ratio, or
+/// below its inverse.
 inline constexpr double kSameSize = 2.0;
 
-/// The errors whose index changes with size and whose tolerance is of another size than was studied, by either way to
-/// share a limit, and at which size to study them: "2 errors have an index on gap that changes with size, by so much at
-/// a tenth of it, and a tolerance of another size than was studied: epsilon_3_4_z (-99.1 %; study it at 0.02 deg),
-/// ...". At most ten, the largest change first. At the named size the tolerance will be about that size, if the index
-/// grows with a power of it. Empty if there are none.
+/// A text on the errors whose index changes with size and of which some tolerance is of another size than studied. With
+/// a limit, an error has two tolerances, one for each way to share the limit. The text names for each error the size at
+/// which to study it: "2 errors have an index on gap that changes with size, by so much at a tenth of it, and a
+/// tolerance of another size than was studied: epsilon_3_4_z (-99.1 %; study it at 0.02 deg), ...". At most ten errors
+/// are named, the largest change first. If the index is a power of the size, a study at the named size gives about this
+/// size as tolerance. Empty if there are no such errors.
 std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerances& tolerances);
 
 }  // namespace poesy

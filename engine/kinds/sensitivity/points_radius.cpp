@@ -15,7 +15,7 @@
 namespace poesy {
 namespace {
 
-/// Moves the points to this multiple of their distance from their middle.
+/// The points at this multiple of their distance from their middle.
 std::vector<PlatformPoint> at_radius(std::vector<PlatformPoint> points, double multiple) {
   PlatformPoint middle{};
   for (const PlatformPoint& point : points) {
@@ -27,7 +27,7 @@ std::vector<PlatformPoint> at_radius(std::vector<PlatformPoint> points, double m
   return points;
 }
 
-/// The study's mechanism to first order; none if it has no first order.
+/// The study's mechanism at the fidelity "first-order"; none if it does not have this fidelity.
 std::optional<MechanismChoice> to_first_order(MechanismChoice mechanism) {
   const std::vector<std::string>& fidelities = mechanism.entry->description.fidelities;
   const auto found = std::ranges::find(fidelities, "first-order");
@@ -37,7 +37,7 @@ std::optional<MechanismChoice> to_first_order(MechanismChoice mechanism) {
   return mechanism;
 }
 
-/// The mechanism with these points; null if it refuses them.
+/// The model of the mechanism with these points; null if it refuses them.
 std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<PlatformPoint> points) {
   mechanism.points = std::move(points);
   try {
@@ -47,12 +47,13 @@ std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<Platfor
   }
 }
 
-/// Effects of all errors on all responses by the published estimator. Poses without a first order are left out.
+/// The effects of all errors on all responses, by the published estimator. Poses at which the model has no solution are
+/// left out.
 SensitivityResult::Indices effects_of(const Plan& plan, const Model& model) {
   const std::vector<double> no_background(model.description().factors.size(), 0.0);
   std::vector<double> responses(model.description().responses.size());
   Array<std::vector<LocalIndex>, axis::Response, axis::Factor> local(
-      {responses.size(), plan.slots()});  // indices at each pose
+      {responses.size(), plan.slots()});  // local indices at each pose
   const auto evaluator = model.evaluator(plan.solver());
   for (std::size_t n = 0; n < some_poses(plan.poses().size()); ++n) {
     const std::span<const double> pose = plan.poses()[some_pose(n, plan.poses().size())];

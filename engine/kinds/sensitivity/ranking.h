@@ -12,67 +12,68 @@
 
 namespace poesy {
 
-/// The errors of a sensitivity result in the order of one response. Equal errors keep the order of the study, and
-/// unknown ones come last.
+/// The errors of a sensitivity result, ordered for one response. Errors with equal values keep the order of the study,
+/// and errors with an unknown value come last.
 struct RankedErrors {
-  std::size_t response;            ///< position among the result's
+  std::size_t response;            ///< position of the response
   std::vector<std::size_t> rows;   ///< positions of the errors in the chosen order
   std::vector<std::size_t> ranks;  ///< rank of each error by its effect, from 1
 };
 
-/// Orders the errors. Precondition: the result has the response.
+/// Orders the errors of a result for a response. Precondition: the result has the response.
 RankedErrors ranked_errors(const StoredResult& result, std::string_view response, RowOrder order = RowOrder::effect);
 
-/// Global indices with their intervals, by one estimator. Refers to the result.
+/// Global indices by one estimator, with their intervals. Refers to the result.
 struct GlobalIndices {
-  const SensitivityResult::Indices& value;  ///< SI
-  const SensitivityResult::Indices& low;    ///< lower end of the interval
-  const SensitivityResult::Indices& high;   ///< upper end
+  const SensitivityResult::Indices& value;  ///< indices, SI
+  const SensitivityResult::Indices& low;    ///< lower ends of the intervals
+  const SensitivityResult::Indices& high;   ///< upper ends of the intervals
 };
 
-/// The indices that are shown and that rank: the corrected ones.
+/// The indices that are shown and by which errors are ranked: the corrected ones.
 GlobalIndices shown_indices(const StoredResult& result);
 
-/// The distance of the farther end of an interval from its index, over the index.
+/// The distance of the farther end of an interval from its index, divided by the index.
 double relative_reach(const GlobalIndices& indices, std::size_t response, std::size_t factor);
 
-/// The magnitude below which a global or local index of the response and the error is rounding.
+/// A global or local index of this response and error is rounding if its magnitude is below this.
 double index_rounding(const StoredResult& result, std::size_t response, std::size_t factor);
 
-/// An index, global or local, or an end of its interval, SI, with rounding removed: 0 if the error has no effect, NaN
-/// if it is too small to tell.
+/// An index, or an end of its interval, SI, with rounding removed: 0 if the error has no effect, NaN if the index is
+/// too small to be distinguished from rounding.
 double without_rounding(const StoredResult& result, double index, std::size_t response, std::size_t factor);
 
-/// Whether the index shown is more than rounding.
+/// Whether the shown index is more than rounding.
 bool has_effect(const StoredResult& result, std::size_t response, std::size_t factor);
 
-/// Positions of the responses on which no error has an effect; at least one of its indices must be known.
+/// Positions of the responses on which no error has an effect. A response is listed only if some index on it is known.
 std::vector<std::size_t> responses_without_effect(const StoredResult& result);
 
-/// index x sigma(error), SI. Indices alone cannot be compared, because some are per m and some per rad.
+/// The effect of an error, index x sigma, SI. Indices alone cannot be compared, because some are per m and some per
+/// rad.
 double effect(const StoredResult& result, std::size_t response, std::size_t factor);
 
-/// A column of global indices per unit of the error, or of ends of their intervals. values: SI. Refers to the result
-/// and the values.
+/// A column with global indices per unit of the error, or with ends of their intervals. values: SI. Refers to the
+/// result and the values.
 FilledColumn index_column(const StoredResult& result, const SensitivityResult::Indices& values, std::size_t response,
                           std::string name, std::string heading, int dispensable = 0);
 
-/// The rank of each error; none if the response does not vary. Refers to both arguments.
+/// A column with the rank of each error; empty if the response does not vary. Refers to both arguments.
 FilledColumn rank_column(const StoredResult& result, const RankedErrors& ranked, int dispensable);
 
 /// Tables with the errors in the chosen order:
-/// - ranked: the errors with the effect on the response that ranks (global index x sigma), its index and interval,
-///   those of the headline's other responses, the share of samples not converged, and the published index where that
-///   is not the one shown, in mm and deg;
+/// - ranked: for each error, its effect on the response by which errors are ranked (global index x sigma), the index
+/// and its interval, the indices for the other responses of the headline, the share of samples that did not converge,
+/// and the published index where it differs from the shown one; in mm and deg;
 /// - separation and fidelity, if the result has them.
 std::vector<Table> sensitivity_tables(const StoredResult& result, const TableOptions& options);
 
-/// Share of an error's samples that were not solved.
+/// The share of an error's samples that were not solved.
 double share_not_converged(const SensitivityResult& result, std::size_t factor);
 
-/// Compares the rankings of two results for the errors that both have. Errors without effect share the last rank; those
-/// whose effect cannot be distinguished from rounding have no rank and do not count for the tau. Throws InputError if
-/// the results are of two kinds, or have no error in common. Precondition: sensitivity results.
+/// Compares the rankings of two results for the errors that both have. Errors without an effect share the last rank.
+/// Errors whose effect cannot be distinguished from rounding have no rank and are left out of Kendall's tau. Throws
+/// InputError if the results are of two kinds, or have no error in common. Precondition: sensitivity results.
 TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder order = RowOrder::effect);
 
 }  // namespace poesy

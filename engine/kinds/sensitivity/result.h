@@ -15,64 +15,68 @@
 
 namespace poesy {
 
-/// The error relative to which equal-effect tolerances are set, and its own tolerance.
+/// The error relative to which tolerances of equal effect are set, with its own tolerance.
 struct ToleranceReference {
-  FactorIndex factor;  ///< one of the errors that vary
-  double tolerance;    ///< SI
+  FactorIndex factor;  ///< the error, which varies in the study
+  double tolerance;    ///< its tolerance, SI
 };
 
 /// The options of a sensitivity study.
 struct SensitivityOptions {
-  std::optional<ToleranceReference> reference;  ///< empty: the error of smallest effect is the reference
-  double linearity = 0.01;                      ///< with two fidelities: the largest measure of a linear error
+  std::optional<ToleranceReference> reference;  ///< reference error; none: the error with the smallest effect
+  /// Largest measure of nonlinearity of an error that counts as linear; only with two fidelities.
+  double linearity = 0.01;
 };
 
-/// The kind of study that finds the effect of each error alone.
+/// The kind of study that computes the effect of each error alone, `sensitivity`.
 extern const StudyKind kSensitivityStudy;
 
 namespace axis {
-using RadiusMultiple = Axis<"radius_multiple">;  ///< Multiples of the points' radius.
+using RadiusMultiple = Axis<"radius_multiple">;  ///< Multiples of the distance of the metric's points from their
+                                                 ///< middle.
 }  // namespace axis
 
-/// The part of each error's effect that the actuators can remove, to first order. Effects are those of model/model.h,
-/// in m per SI unit of the error. NaN if an error has no effect.
+/// How much of each error's effect the actuators can remove, to first order. Effects are those of model/model.h, in m
+/// per SI unit of the error. NaN if an error has no effect.
 struct SeparationResult {
   /// A number for each error and pose.
   using Cells = Array<double, axis::Factor, axis::Pose>;
 
-  std::string measure;                      ///< name of the length that effects are
-  Cells drive;                              ///< part that enters through the actuated directions
-  Cells constraint;                         ///< part that enters through the constrained directions
-  Cells effect;                             ///< both parts together
-  Cells residual;                           ///< effect that remains after the best correction of the actuators
-  Cells removable_local;                    ///< 1 - residual / effect
-  Array<double, axis::Factor> drive_share;  ///< D / (D + C), root mean squares over the poses
-  Array<double, axis::Factor> removable;    ///< 1 - residual / effect, both as root mean squares over the poses
-  double removable_together =
-      0.0;  ///< the same for all errors together, with their standard deviations and independent
-  Array<std::string, axis::Factor> published;  ///< class of each error in the literature; empty if there is none
+  std::string measure;    ///< name of the length in which effects are measured
+  Cells drive;            ///< part of the effect that enters through the actuated directions
+  Cells constraint;       ///< part of the effect that enters through the constrained directions
+  Cells effect;           ///< effect of both parts together
+  Cells residual;         ///< effect that remains after the best correction by the actuators
+  Cells removable_local;  ///< 1 - residual / effect
+  /// D / (D + C), with the root mean squares D of `drive` and C of `constraint` over the poses.
+  Array<double, axis::Factor> drive_share;
+  Array<double, axis::Factor> removable;  ///< 1 - residual / effect, each as a root mean square over the poses
+  /// 1 - residual / effect for all errors together, which are independent and have their standard deviations.
+  double removable_together = 0.0;
+  Array<std::string, axis::Factor> published;  ///< class of each error in the literature; empty if it gives none
 };
 
-/// The result of a second fidelity of the model with the same draws, compared with the first; SI. See
+/// The result at a second fidelity of the model, from the same draws, and its comparison with the first; SI. See
 /// kinds/sensitivity/fidelity.h.
 struct FidelityResult {
   /// A number for each response and error.
   using Indices = Array<double, axis::Response, axis::Factor>;
 
-  std::vector<std::string> fidelities;       ///< names of the first and the second
-  double linearity = 0.01;                   ///< largest discrepancy and nonlinearity of a linear error
-  Indices global;                            ///< SensitivityResult::global by the second fidelity
-  Indices discrepancy;                       ///< global of the second - global of the first
-  Indices relative_discrepancy;              ///< over the error's largest index
-  Indices nonlinearity;                      ///< change of mean and spread over the error's largest effect
-  Array<std::uint8_t, axis::Factor> linear;  ///< verdict, 0 or 1
-  Array<std::uint64_t, axis::Factor, axis::Pose> not_converged;  ///< samples that the second fidelity did not solve
+  std::vector<std::string> fidelities;       ///< names of the two fidelities, the first one first
+  double linearity = 0.01;                   ///< largest magnitude of relative discrepancy and nonlinearity of a linear
+                                             ///< error
+  Indices global;                            ///< SensitivityResult::global at the second fidelity
+  Indices discrepancy;                       ///< global at the second fidelity minus global at the first
+  Indices relative_discrepancy;              ///< discrepancy divided by the error's effect
+  Indices nonlinearity;                      ///< change of mean and spread, divided by the error's effect
+  Array<std::uint8_t, axis::Factor> linear;  ///< 1 if the error is linear, otherwise 0
+  /// Number of samples that the second fidelity did not solve.
+  Array<std::uint64_t, axis::Factor, axis::Pose> not_converged;
 };
 
-/// The result of a sensitivity study for its responses, varied errors and poses; SI; NaN where undefined. `global` is
-/// the published estimator. `global_corrected` is what tables and figures call the index: it is free of the bias of
-/// sampling noise, and NaN if the error is too small for its effect to be distinguished from rounding
-/// (stats/indices.h).
+/// The result of a sensitivity study; SI; NaN where undefined. `global` is the published estimator of the global index.
+/// `global_corrected` is the index that tables and figures show: it has no bias from sampling noise. It is NaN if the
+/// error is too small for its effect to be distinguished from rounding (stats/indices.h).
 struct SensitivityResult {
   /// A number for each response, error and pose.
   template <class T>
@@ -80,52 +84,53 @@ struct SensitivityResult {
   /// A number for each response and error, over the poses.
   using Indices = FidelityResult::Indices;
 
-  double conf_level = 0.95;  ///< of all intervals
+  double conf_level = 0.95;  ///< confidence level of all intervals
 
-  Cells<double> local;                     ///< Du et al. 2022, Eqs. 51-52
-  Cells<double> local_ci_low;              ///< lower end of its interval
-  Cells<double> local_ci_high;             ///< upper end of its interval
+  Cells<double> local;                     ///< local index: Du et al. 2022, Eqs. 51-52
+  Cells<double> local_ci_low;              ///< lower ends of the intervals of `local`
+  Cells<double> local_ci_high;             ///< upper ends of the intervals of `local`
   Cells<std::uint64_t> count;              ///< number of samples
   Cells<double> mean;                      ///< mean of the response over the samples
   Cells<double> std;                       ///< standard deviation of the response over the samples
-  Indices global;                          ///< Eqs. 53-54
-  Indices global_ci_low;                   ///< lower end of its interval
-  Indices global_ci_high;                  ///< upper end of its interval
-  Indices global_corrected;                ///< without sampling noise
-  Indices global_corrected_ci_low;         ///< lower end of its interval
-  Indices global_corrected_ci_high;        ///< upper end of its interval
-  Array<double, axis::Response> rounding;  ///< largest standard deviation of the response that may be rounding
-  /// The index at a tenth of the study's sizes over the index at these sizes, less 1 (kinds/sensitivity/linearity.h);
-  /// NaN if not known.
+  Indices global;                          ///< global index as published: Du et al. 2022, Eqs. 53-54
+  Indices global_ci_low;                   ///< lower ends of the intervals of `global`
+  Indices global_ci_high;                  ///< upper ends of the intervals of `global`
+  Indices global_corrected;                ///< global index without the bias from sampling noise
+  Indices global_corrected_ci_low;         ///< lower ends of the intervals of `global_corrected`
+  Indices global_corrected_ci_high;        ///< upper ends of the intervals of `global_corrected`
+  Array<double, axis::Response> rounding;  ///< largest standard deviation of the response that counts as rounding
+  /// Index at a tenth of the study's sizes, divided by the index at these sizes, minus 1
+  /// (kinds/sensitivity/linearity.h). NaN if not known.
   Indices index_change;
-  /// Kendall's tau with the ranking for points of the metric at kPointsRadii (kinds/sensitivity/points_radius.h). Empty
-  /// if the mechanism has no such metric.
+  /// Kendall's tau between the rankings with the metric's points at kPointsRadii and with the study's points
+  /// (kinds/sensitivity/points_radius.h). Empty if the mechanism has no such metric.
   Array<double, axis::RadiusMultiple, axis::Response> radius_tau;
-  Array<double, axis::Response, axis::Pose> background;  ///< response with all varied errors zero; NaN if not solved
-  Array<SolveCounts, axis::Factor, axis::Pose> solves;   ///< solves of the samples, without those of the background
-  Array<std::uint64_t, axis::Factor> limb;               ///< limb of each error, from 1
+  Array<double, axis::Response, axis::Pose> background;  ///< response with all varied errors at zero; NaN if not solved
+  Array<SolveCounts, axis::Factor, axis::Pose> solves;   ///< how the solves of the samples ended, without those of the
+                                                         ///< background
+  Array<std::uint64_t, axis::Factor> limb;               ///< limb of each error, counted from 1
   /// The error relative to which tolerances of equal effect are set; none if no error has an effect.
   Array<std::optional<ReferenceError>, axis::Response> reference;
   Array<double, axis::Response> mean_square_bound;  ///< Response::mean_square_bound
   std::optional<SeparationResult> separation;       ///< set if the model separates its errors
   std::optional<FidelityResult> fidelity;           ///< set if the study compares two fidelities
-  /// The global indices after fewer samples, with intervals, if the study has a fixed number of samples. Each is what a
-  /// study with exactly that many samples at each pose (engine/run/evaluate_unit.h) would find, bit by bit. The last
-  /// one is the result's.
+  /// The course of the global indices with fewer samples, and their intervals, for a study with a fixed number of
+  /// samples. Each entry has the same bits as the result of a study with exactly this number of samples at each pose
+  /// (engine/run/evaluate_unit.h). The last entry is the result itself.
   std::optional<EstimateCourse> history;
 
-  // Set only by a run; when a file is read, StoredResult has these.
-  std::vector<Failure> failures;                 ///< the first, in the order of factors, poses, samples
-  std::optional<ConvergenceResult> convergence;  ///< set if the study has adaptive samples
+  // Set by a run only. For a result from a file, StoredResult has these.
+  std::vector<Failure> failures;                 ///< first failed samples, ordered by error, pose and sample
+  std::optional<ConvergenceResult> convergence;  ///< course of adaptive samples; set if the study has adaptive samples
 
   std::size_t responses() const { return global.length<axis::Response>(); }  ///< The number of responses.
   std::size_t factors() const { return global.length<axis::Factor>(); }      ///< The number of errors that vary.
   std::size_t poses() const { return local.length<axis::Pose>(); }           ///< The number of poses.
-  /// The solves of all cells.
+  /// How the solves of all cells ended.
   SolveCounts total() const { return total_of(solves.all()); }
 };
 
-/// The sensitivity result in a stored result. Precondition: the result is of that kind.
+/// The sensitivity result in a stored result. Precondition: the result is of kind `sensitivity`.
 inline const SensitivityResult& sensitivity_of(const StoredResult& result) {
   return found_of<SensitivityResult>(result);
 }

@@ -16,20 +16,21 @@
 namespace poesy {
 namespace {
 
-/// 1 - residual / effect, at least zero; NaN if that is not finite.
+/// 1 - residual / effect, but at least zero; NaN if the ratio is not finite.
 double removable_part(double residual, double effect) {
   const double left = residual / effect;
   return std::isfinite(left) ? std::max(0.0, 1.0 - left) : kNaN;
 }
 
-/// The same for one error; NaN if its effect is rounding.
+/// The removable part of one error; NaN if its effect is rounding.
 double removable_share(double residual, double effect) {
   return has_effect(effect) ? removable_part(residual, effect) : kNaN;
 }
 
 using Cells = SeparationResult::Cells;
 
-/// Fills in the separated errors at all poses.
+/// Sets, for each error at each pose, the two parts of its effect (drive and constraint), the effect, the residual
+/// after the best correction of the actuators, and the share that this correction removes.
 void fill_cells(const Model& model, const PoseSet& poses, std::span<const FactorIndex> factors,
                 SeparationResult& result) {
   for (Cells* cells : {&result.drive, &result.constraint, &result.effect, &result.residual, &result.removable_local}) {
@@ -72,7 +73,7 @@ const Group<SeparationResult> kSeparation{
      {"published", &SeparationResult::published, "1",
       "Class of the error in the literature; empty where it gives none"}}};
 
-/// The published classes of these errors, in the order of their first errors.
+/// The published classes of these errors, in the order in which they first appear.
 std::vector<std::string> classes_of(std::span<const std::string> of_errors) {
   std::vector<std::string> classes;
   for (const std::string& published : of_errors) {

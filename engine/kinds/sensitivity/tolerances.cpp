@@ -17,9 +17,9 @@ namespace {
 
 using Indices = SensitivityResult::Indices;
 
-/// Data that other groups have too, for programs that read only /tolerances.
+/// Data that are also in other groups, for programs that read only /tolerances.
 struct ToleranceGroup {
-  Array<std::string, axis::Factor> kind;  ///< "linear" or "angular"
+  Array<std::string, axis::Factor> kind;  ///< dimension of the error: "linear" or "angular"
   Array<std::string, axis::Factor> unit;
   Indices equal_effect;
   Indices mean_square_share;
@@ -48,7 +48,7 @@ const Group<ToleranceGroup> kToleranceGroup{
 
 const std::vector<Attribute<SensitivityResult>> kIndexLevel{{"conf_level", &SensitivityResult::conf_level}};
 
-/// The indices, which other groups have too.
+/// The fields of the indices, which other groups of a result file contain as well.
 const Fields<SensitivityResult> kIndexFields{
     {"index", &SensitivityResult::global, kIndexUnit,
      "Global sensitivity index as published, /sensitivity/global: tolerances are counted from it"},
@@ -57,17 +57,17 @@ const Fields<SensitivityResult> kIndexFields{
     {"index_ci_high", &SensitivityResult::global_ci_high, kIndexUnit, "Upper end of the interval of index",
      Presence::always, kIndexLevel}};
 
-/// Facts of the study. Only they and the references are read back.
+/// The fields of numbers that follow from the study. Of the group /tolerances, only these and the references are read.
 const Fields<SensitivityResult> kStudyFields{
     {"limb", &SensitivityResult::limb, "1", "Limb of the error, from 1"},
     {"mean_square_bound", &SensitivityResult::mean_square_bound, "1",
      "To first order, the mean square of all errors together is at most this times the sum of those of each error "
      "alone; 1: they add exactly"}};
 
-/// The references of all responses.
+/// The reference error of each response.
 struct ReferenceColumns {
   Array<std::string, axis::Response> factor;  ///< name of the reference; empty if there is none
-  Array<double, axis::Response> tolerance;    ///< NaN if there is none
+  Array<double, axis::Response> tolerance;    ///< its tolerance; NaN if there is none
 };
 
 const Fields<ReferenceColumns> kReferenceFields{
@@ -88,8 +88,8 @@ std::optional<ReferenceError> reference_for(const Study& study, const Sensitivit
   return ReferenceError{*smallest, display_unit(study.model().factors[factors[*smallest].value].dimension).si};
 }
 
-/// Adds the numbers of each error. heading(name, unit, suffix) gives the heading of a column; the suffix is "_display"
-/// for the units that people read.
+/// Gives the table further columns with the numbers of each error. heading(name, unit, suffix): the heading of a
+/// column; the suffix is "_display" for columns in display units.
 template <class Heading>
 void append_tolerance_columns(CsvTable& table, const StoredResult& result, const ResponseTolerances& tolerances,
                               const Heading& heading) {
@@ -157,7 +157,8 @@ void add_limit_notes(std::vector<std::string>& notes, const StoredResult& result
       "allocation");
 }
 
-/// Says how far the limit may be exceeded, because the study was made with small errors.
+/// Adds a note on how far the limit could be exceeded even if every effect is linear. For a response that combines
+/// several norms, mean squares do not add exactly.
 void add_bound_note(std::vector<std::string>& notes, const StoredResult& result, const ResponseTolerances& tolerances) {
   if (!tolerances.limit) return;
   const double bound = std::sqrt(sensitivity_of(result).mean_square_bound(tolerances.response));
@@ -171,7 +172,7 @@ void add_bound_note(std::vector<std::string>& notes, const StoredResult& result,
                   response_text(response, tolerances.limit->limit / bound)));
 }
 
-/// Says that a tolerance is for a normal error if the study's errors have another distribution.
+/// If the study's errors are not normal, adds a note that a tolerance is for a normal error.
 void add_distribution_note(std::vector<std::string>& notes, const StoredResult& result) {
   std::vector<std::string> shapes;
   std::size_t count = 0;
@@ -197,8 +198,8 @@ void add_distribution_note(std::vector<std::string>& notes, const StoredResult& 
       "here, and means of several errors do not add as scatter does. Confirm by a Monte Carlo study");
 }
 
-/// Says how many errors have a tolerance larger than the size at which they were studied, by either way to share the
-/// limit.
+/// Adds a note on how many errors get a tolerance that is larger than their size in the study, by at least one way to
+/// share the limit among the errors.
 void add_extrapolation_note(std::vector<std::string>& notes, const StoredResult& result,
                             const ResponseTolerances& tolerances) {
   const std::vector<std::span<const double>> lists = proposed_tolerances(tolerances);
@@ -233,7 +234,7 @@ std::vector<std::string> notes(const StoredResult& result, const ResponseToleran
   return list;
 }
 
-/// The columns of the table. Refers to both arguments.
+/// The columns of the table of tolerances. Refers to both arguments.
 std::vector<FilledColumn> columns(const StoredResult& result, const ResponseTolerances& tolerances) {
   const std::size_t r = tolerances.response;
   const SensitivityResult& found = sensitivity_of(result);

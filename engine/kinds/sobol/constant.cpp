@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// The dimension of each component of all details.
+/// The dimension of each component of the model's additional outputs (Detail in model/model.h).
 std::vector<Dimension> detail_dimensions(const ModelDescription& model) {
   std::vector<Dimension> list;
   for (const Detail& detail : model.details) {
@@ -19,21 +19,21 @@ std::vector<Dimension> detail_dimensions(const ModelDescription& model) {
   return list;
 }
 
-/// The standard deviations of a row at all poses.
+/// The standard deviation of a row of the panel at each pose.
 std::vector<double> deviations(const PanelSums& sums, std::size_t row) {
   std::vector<double> list;
   for (const Moments& moments : sums.moments.row(row)) list.push_back(moments.standard_deviation());
   return list;
 }
 
-/// Sets both indices at these positions to NaN.
+/// Sets the first-order and total indices at these positions to NaN.
 template <class Indices, class... Positions>
 void leave_out(Indices& indices, Positions... at) {
   indices.S1.leave_out(at...);
   indices.ST.leave_out(at...);
 }
 
-/// Copies flags into a result, which has none if all are 1.
+/// Copies flags into a result. The result has no flags if all are 1.
 template <class Flags>
 void keep_flags(std::span<const std::uint8_t> from, Flags& flags) {
   const bool any = std::ranges::find(from, 0) != from.end();

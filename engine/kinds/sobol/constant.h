@@ -7,20 +7,21 @@
 #include "engine/kinds/sobol/result.h"
 #include "engine/study/plan.h"
 
-/// Finds the quantities of a panel that do not vary (stats/indices.h) and so have no variance to divide.
+/// Finds the quantities of a panel that do not vary (stats/indices.h), so that there is no variance to divide.
 namespace poesy {
 
-/// [rows] The standard deviation up to which each row of a panel is rounding. A component of a detail has the rounding
-/// of the responses of its unit.
+/// [rows] The standard deviation up to which each row of the panel varies only by rounding. A row (axis::PanelRow) is a
+/// response, or a component of an additional output of the model (Detail in model/model.h). Such a component has the
+/// largest of these standard deviations among the responses with the same unit; the smallest of all if there are none.
 std::vector<double> row_rounding(const IndexPanel& panel, const Plan& plan, const Model& model);
 
-/// Whether each quantity varies over all poses together, 0 or 1. A vector varies if one of its components does.
-/// rounding: see row_rounding().
+/// [quantities] Whether each quantity varies over all poses together, 1 or 0. A vector varies if one of its components
+/// does. rounding: see row_rounding().
 std::vector<std::uint8_t> varying_quantities(const IndexPanel& panel, const PanelSums& sums,
                                              std::span<const double> rounding);
 
-/// Sets all shares of quantities that do not vary to NaN, at a pose or over the poses. Records which responses and
-/// vectors do not vary, if there are some. rounding: see row_rounding().
+/// Sets all shares of quantities that do not vary to NaN, at a pose or over the poses. If some responses or vectors do
+/// not vary, records which. rounding: see row_rounding().
 void leave_out_constant(const IndexPanel& panel, const PanelSums& sums, std::span<const double> rounding,
                         SobolResult& found);
 

@@ -11,17 +11,17 @@
 namespace poesy {
 namespace {
 
-/// The axis of the indices: the errors, or the groups into which the study joins them.
+/// The name of the axis along which indices are listed: errors, or the groups into which the study joins them.
 std::string axis_of(bool joined) { return joined ? "group" : "factor"; }
 
-/// The same fields along that axis.
+/// The fields, with their axis "group" renamed by axis_of().
 template <class Found>
 Fields<Found> along(bool joined, Fields<Found> rows) {
   for (FieldRow<Found>& row : rows) std::ranges::replace(row.axes, std::string("group"), axis_of(joined));
   return rows;
 }
 
-/// The fields of shares and the ends of their intervals.
+/// The fields of shares, and of the ends of their intervals.
 template <class Shares>
 Fields<Shares> share_rows(bool joined, const std::string& name, std::string meaning) {
   return along<Shares>(joined, {{name, &Shares::value, "1", std::move(meaning)},
@@ -29,7 +29,7 @@ Fields<Shares> share_rows(bool joined, const std::string& name, std::string mean
                                 {name + "_ci_high", &Shares::ci_high, "1", "Upper end of the interval of " + name}});
 }
 
-/// The fields of the indices of some quantities, as a group.
+/// The fields of first-order and total indices, as a group of the file.
 template <NamedAxis... Axes>
 struct IndexRows {
   IndexRows(bool joined, std::string path, std::string description)
@@ -69,7 +69,7 @@ const std::string kVaries =
     "0 where it does not vary: what its samples scatter at any pose is rounding, so nothing has a share of it; "
     "left out where all vary";
 
-/// The datasets of a result, whose axis depends on whether errors are joined.
+/// The datasets of a result. The name of their axis depends on whether errors are joined.
 struct Layout {
   explicit Layout(bool joined)
       : at_poses(joined, "/sobol", "Sobol' indices of each response at each pose"),
@@ -112,7 +112,7 @@ const CourseWords kConvergence = convergence_words(kByResponse, "ST", "1", "Larg
                                                    "largest ST, for each response of the headline, or max was there",
                                                    "errors");
 
-/// The layout for joined errors, or for single ones.
+/// The layout for joined errors or for single errors.
 const Layout& layout(bool joined) {
   static const Layout kOfErrors(false);
   static const Layout kOfGroups(true);
@@ -182,7 +182,7 @@ void read(const h5::File& file, StoredResult& result) {
   result.constant = constant_responses(found.varies);
   found.solves = read_solver(file, kByPose);
   result.convergence = read_convergence(file, kConvergence);
-  // Only random draws have addresses, so only their samples can be replayed.
+  // Only random draws have addresses, so only they can be replayed.
   if (study_setting(result.study_text, "analysis", "design") == "\"random\"")
     result.varied = {std::string(kAllFactors)};
   result.failures = read_failures(file, result);
@@ -195,7 +195,8 @@ CsvTable lines_of_groups(const SobolResult& found, std::string name) {
       std::move(name), {axis_of(found.joined), [&](std::size_t g) { return found.group_names[g]; }}, found.groups()};
 }
 
-/// Adds the index NAME and half its interval, NAME_conf, as SALib names them. row: position of the quantity.
+/// Adds to the table an index NAME, and half the width of its interval as NAME_conf, as SALib names them. row: position
+/// of the quantity.
 template <class Shares>
 void append_salib_columns(CsvTable& table, const std::string& name, const Shares& shares, std::size_t row) {
   table.columns.push_back(list_column(name, shares.value.row(row)));
@@ -220,7 +221,7 @@ CsvTable indices_table(const SobolResult& result, std::string name, const Indice
   return table;
 }
 
-/// A table for each index at the poses and each end of its interval, with a column for each pose.
+/// Adds to `tables` a table for each index at the poses and for each end of its interval, with a column for each pose.
 template <class Shares>
 void append_pose_tables(CsvTables& tables, const StoredResult& result, const Fields<Shares>& rows,
                         const Shares& shares) {

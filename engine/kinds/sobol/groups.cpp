@@ -17,7 +17,7 @@ const Factor& factor_at(const Analysis& analysis, const ModelDescription& model,
   return model.factors[analysis.factors[position].value];
 }
 
-/// Joins errors with equal texts, in the order in which the texts first appear.
+/// Joins errors with equal texts into groups, in the order in which the texts first appear.
 std::vector<ErrorGroup> joined_by(const Analysis& analysis, const std::function<std::string(std::size_t)>& text) {
   std::vector<ErrorGroup> groups;
   for (std::size_t p = 0; p < analysis.factors.size(); ++p) {
@@ -37,7 +37,8 @@ std::string named_group(const std::vector<NamedGroup>& groups, std::string_view 
   return std::string(kOtherErrors);
 }
 
-/// Joins errors as the study names them, in its order. Errors of no named group come last.
+/// Joins errors into the groups that the study names, in the order of the study. Errors that no named group contains
+/// come last.
 std::vector<ErrorGroup> joined_by_name(const Analysis& analysis, const ModelDescription& model) {
   const std::vector<NamedGroup>& named = asked_of<SobolOptions>(analysis).named_groups;
   std::vector<ErrorGroup> groups =
@@ -47,14 +48,14 @@ std::vector<ErrorGroup> joined_by_name(const Analysis& analysis, const ModelDesc
   return groups;
 }
 
-/// The response NAME_AXIS, or AXIS if the name is empty.
+/// The position of the response with this name; none if there is none.
 std::optional<std::size_t> find_response(const ModelDescription& model, const std::string& name) {
   const auto found = std::ranges::find(model.responses, name, &Response::name);
   if (found == model.responses.end()) return std::nullopt;
   return static_cast<std::size_t>(found - model.responses.begin());
 }
 
-/// The vector whose x component is this response; empty if there is none.
+/// The vector whose x component is this response; none if there is no such vector.
 std::optional<SignedVector> vector_of(const ModelDescription& model, std::size_t x) {
   const std::string& name = model.responses[x].name;
   if (name != "x" && !name.ends_with("_x")) return std::nullopt;
@@ -81,10 +82,11 @@ std::vector<std::string> split(const std::string& text) {
   return parts;
 }
 
-/// The name without the component: "omega" of "omega_x".
+/// The name of a component without its axis: "omega" of "omega_x".
 std::string stem_of(const std::string& component) { return component.substr(0, component.find_last_of('_')); }
 
-/// Adds a vector for each run of components with one unit. first: position of the detail's first component.
+/// Adds to `vectors` one vector for each sequence of components of this additional output with the same unit. first:
+/// position of its first component.
 void append_parts(const Detail& detail, std::size_t first, std::vector<SignedVector>& vectors) {
   const std::vector<std::string> units = component_units(detail);
   const bool alone = units == std::vector(units.size(), detail.unit);

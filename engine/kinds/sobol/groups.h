@@ -14,19 +14,20 @@
 
 namespace poesy {
 
-/// Errors that vary together in a pair of samples.
+/// Errors that vary together in a pair of samples: either all or none are exchanged.
 struct ErrorGroup {
-  std::string name;                  ///< name of the group; for a single error, that of the error
+  std::string name;                  ///< name of the group; a single error has its own name
   std::vector<std::size_t> members;  ///< positions among the study's errors, ascending
 };
 
-/// The group of the errors that no named group has.
+/// The name of the group of errors that no named group contains.
 inline constexpr std::string_view kOtherErrors = "others";
 
-/// The groups of a study; each error is in exactly one. Errors of no named group come last, as "others".
+/// The groups of a study. Each error is in exactly one group. The group "others", with the errors that no named group
+/// contains, comes last.
 std::vector<ErrorGroup> error_groups(const Analysis& analysis, const ModelDescription& model);
 
-/// Whether an error of each group is correlated with an error of another group, 0 or 1.
+/// For each group, 1 if one of its errors is correlated with an error of another group, otherwise 0.
 std::vector<std::uint8_t> split_groups(std::span<const ErrorGroup> groups, const Study& study);
 
 /// Positions of two groups.
@@ -35,17 +36,19 @@ using GroupPair = std::pair<std::size_t, std::size_t>;
 /// All pairs of groups, with the smaller position first.
 std::vector<GroupPair> group_pairs(std::size_t groups);
 
-/// A vector with a sign and with components of one unit, so that its mean square does not depend on the axes.
+/// A vector whose components have a sign and the same unit, so that its mean square does not depend on the axes.
 struct SignedVector {
-  std::string name;                     ///< "position", "delta_mu_21_v"
-  std::vector<std::size_t> components;  ///< positions: r for a response, R + d for a component of a detail
+  std::string name;                     ///< name of the vector: "position", "delta_mu_21_v"
+  std::vector<std::size_t> components;  ///< positions of the components: r for response r; R + d for component d of the
+                                        ///< additional outputs of a model with R responses
 };
 
-/// The SI unit of each component of a detail.
+/// The SI unit of each component of an additional output.
 std::vector<std::string> component_units(const Detail& detail);
 
-/// The signed vectors of a model: responses NAME_x, NAME_y and NAME_z (x, y and z alone are "displacement", theta_x
-/// etc. are "theta"), and the parts of each detail that have one unit.
+/// The signed vectors of a model. The responses NAME_x, NAME_y and NAME_z are one vector; x, y and z alone are the
+/// vector "displacement", and theta_x, theta_y and theta_z the vector "theta". Neighbouring components of an additional
+/// output (Detail in model/model.h) with the same unit are one vector as well.
 std::vector<SignedVector> signed_vectors(const ModelDescription& model);
 
 }  // namespace poesy

@@ -5,7 +5,7 @@
 
 namespace poesy {
 
-/// Runs and reports studies of Sobol' indices, which divide the variance of each response among errors and
+/// Runs and reports studies of Sobol' indices, which divide the variance of each response among the errors and their
 /// interactions.
 extern const Kind kSobolKind;
 

@@ -21,48 +21,51 @@
 namespace poesy {
 
 namespace axis {
-using PanelQuantity = Axis<"quantity">;  ///< Quantities with indices: the responses, then the vectors with a sign.
-using PanelRow = Axis<"row">;            ///< Values that are solved: the responses, then the components of all details.
+using PanelQuantity = Axis<"quantity">;  ///< Quantities with indices: first the responses, then the signed vectors.
+using PanelRow = Axis<"row">;  ///< Numbers that a solve gives: first the responses, then the components of the model's
+                               ///< additional outputs (Detail in model/model.h).
 using GroupPair = Axis<"pair">;          ///< Pairs of groups.
 using GroupSubset = Axis<"subset">;      ///< Subsets of the groups, as numbers whose bit g is set for group g.
-using BlockError = Axis<"block_error">;  ///< Errors of a block.
+using BlockError = Axis<"block_error">;  ///< Errors of a block of correlated errors.
 }  // namespace axis
 
-/// The dimensions of a panel.
+/// What a study of Sobol' indices computes: its groups, quantities and poses. A panel is a set of samples: two
+/// independent samples A and B of all errors, and mixtures, which have the errors of some groups from B and all others
+/// from A.
 struct IndexPanel {
   /// The panel of a study. Precondition: the study is of Sobol' indices.
   IndexPanel(const Study& study, std::size_t pose_count);
 
   std::vector<ErrorGroup> groups;     ///< groups of errors
   std::vector<SignedVector> vectors;  ///< signed vectors of the model
-  std::size_t samples;                ///< samples of the study
-  std::vector<GroupPair> pairs;       ///< see group_pairs(); empty without second-order indices
+  std::size_t samples;                ///< number of samples in the study
+  std::vector<GroupPair> pairs;       ///< pairs of groups, see group_pairs(); empty without second-order indices
   std::size_t responses;              ///< number of responses
-  std::size_t details;                ///< components of all details; 0 if none are needed
-  std::size_t poses;                  ///< number of poses
-  std::vector<std::uint8_t> split;    ///< see split_groups(); a group with 1 has no S1 and ST
-  bool shapley;                       ///< whether Shapley effects are wanted
+  std::size_t details;  ///< number of components of the model's additional outputs; 0 if no vector needs them
+  std::size_t poses;    ///< number of poses
+  std::vector<std::uint8_t> split;  ///< [groups] see split_groups(); a group with 1 has neither S1 nor ST
+  bool shapley;                     ///< whether Shapley effects are wanted
 
   std::size_t quantities() const { return responses + vectors.size(); }  ///< The length of axis::PanelQuantity.
   std::size_t rows() const { return responses + details; }               ///< The length of axis::PanelRow.
-  std::span<const std::size_t> components(
-      std::size_t quantity) const;  ///< The rows that are the quantity's components.
-  /// The solves of one sample at each pose.
+  /// The rows that are the components of a quantity.
+  std::span<const std::size_t> components(std::size_t quantity) const;
+  /// The number of solves of one sample at each pose.
   std::size_t solves_of_sample() const { return (shapley ? subsets() : 2 + groups.size()) + pairs.size(); }
   /// The length of axis::GroupSubset. Precondition: shapley.
   std::size_t subsets() const { return std::size_t{1} << groups.size(); }
 
  private:
-  std::vector<std::vector<std::size_t>> components_;  ///< [quantities]
+  std::vector<std::vector<std::size_t>> components_;  ///< [quantities] rows of each quantity's components
 };
 
-/// Sums for both indices of one group.
+/// Sums for the two indices of one group.
 struct IndexSums {
-  RatioSums total;  ///< ST
-  RatioSums first;  ///< S1
+  RatioSums total;  ///< sums for the total index ST
+  RatioSums first;  ///< sums for the first-order index S1
 
-  void merge(const IndexSums& later);  ///< Adds later sums.
-  void state(Archive& archive);        ///< Reads or writes every bit.
+  void merge(const IndexSums& later);  ///< Adds the sums over later samples.
+  void state(Archive& archive);        ///< Reads or writes the sums, bit for bit.
 };
 
 /// Sums over some samples of a panel.
@@ -70,81 +73,88 @@ struct PanelSums {
   PanelSums() = default;
   explicit PanelSums(const IndexPanel& panel);  ///< Empty sums.
 
-  Array<IndexSums, axis::Response, axis::ErrorGroup, axis::Pose> at_poses;  ///< for each pose alone
-  Array<IndexSums, axis::PanelQuantity, axis::ErrorGroup> aggregated;       ///< for all poses together
-  Array<RatioSums, axis::Response, axis::GroupPair> pairs;                  ///< second-order indices
-  Array<RatioSums, axis::Response, axis::ErrorGroup> shapley;               ///< Shapley effects; empty if not wanted
-  Array<Moments, axis::PanelRow, axis::Pose> moments;                       ///< of the samples A and B
-  Array<double, axis::Response> least;  ///< smallest response in A and B; infinite without samples
-  std::vector<SolveCounts> solves;      ///< [M]
-  std::vector<FailedSamples> failed;    ///< [M] the first samples of A that were not solved
-  std::vector<std::uint64_t> failures;  ///< [M] number of samples of A that were not solved
-  std::uint64_t end = 0;                ///< larger than the number of every sample
+  Array<IndexSums, axis::Response, axis::ErrorGroup, axis::Pose> at_poses;  ///< sums for the indices at each pose
+  Array<IndexSums, axis::PanelQuantity, axis::ErrorGroup> aggregated;  ///< sums for the indices over all poses together
+  Array<RatioSums, axis::Response, axis::GroupPair> pairs;             ///< sums for second-order indices over all poses
+  Array<RatioSums, axis::Response, axis::ErrorGroup> shapley;  ///< sums for Shapley effects; empty if not wanted
+  Array<Moments, axis::PanelRow, axis::Pose> moments;          ///< moments over the two independent samples A and B
+  Array<double, axis::Response> least;  ///< smallest response in the two samples A and B; infinity without samples
+  std::vector<SolveCounts> solves;      ///< [poses] how the solves at each pose ended
+  std::vector<FailedSamples> failed;    ///< [poses] first samples of A that were not solved
+  std::vector<std::uint64_t> failures;  ///< [poses] number of samples of A that were not solved
+  std::uint64_t end = 0;                ///< one more than the largest number of a sample, or larger
 
-  /// Adds later samples. Precondition: the samples of `later` come after those of this object, and are of the same
-  /// panel.
+  /// Adds later samples of the same panel. Precondition: the samples of `later` come after those of this object.
   void merge(const PanelSums& later);
-  /// The sums of one sample that is the mean of all, for a design whose samples depend on each other.
+  /// The sums of a single sample whose values are the means over all samples of these sums. Used for a replicate of a
+  /// design: its samples depend on each other, so only their mean counts as an independent sample.
   PanelSums as_one() const;
 
-  void state(Archive& archive);  ///< Reads or writes every bit.
+  void state(Archive& archive);  ///< Reads or writes the sums, bit for bit.
 };
 
-/// A block of correlated errors that are not all in one group.
+/// A block of correlated errors that belong to several groups.
 struct SplitBlock {
-  std::vector<std::size_t> slots;   ///< [block] slots of the errors
-  std::vector<std::size_t> groups;  ///< [block] groups of the errors
-  const NormalCopula* copula;       ///< copula of the errors
+  std::vector<std::size_t> slots;   ///< [block] slot of each error
+  std::vector<std::size_t> groups;  ///< [block] group of each error
+  const NormalCopula* copula;       ///< joint distribution of the errors
 };
 
-/// The draws of a split block for Shapley effects. A mixture has a bit for each group that is not shared with A; the
-/// bits determine which errors of the block are drawn conditional on which others.
+/// The draws of a split block for Shapley effects. A mixture takes the errors of some groups from A and draws the
+/// others. Its number has bit g set if group g is drawn. The mixture determines which errors of the block are drawn
+/// conditional on which others.
 struct SplitDraws {
   /// The errors of a block in one mixture.
   struct Mixture {
-    std::vector<std::size_t> shared;          ///< errors shared with A, as positions in the block
-    std::vector<std::size_t> drawn;           ///< errors drawn from B, as positions in the block
-    std::optional<ConditionalScores> scores;  ///< empty if all or no errors are shared
+    std::vector<std::size_t> shared;          ///< errors taken from sample A, as positions in the block
+    std::vector<std::size_t> drawn;           ///< other errors, drawn from sample B, as positions in the block
+    std::optional<ConditionalScores> scores;  ///< distribution of the drawn errors given the shared ones; empty if all
+                                              ///< or no errors are shared
   };
 
-  SplitDraws(SplitBlock split, std::size_t subsets);  ///< Prepares mixtures of this many subsets of groups.
+  SplitDraws(SplitBlock split, std::size_t subsets);  ///< Prepares the mixtures of all subsets of groups. subsets:
+                                                      ///< their number.
 
-  SplitBlock block;                                       ///< the block
-  std::vector<Mixture> mixtures;                          ///< [subsets] by the groups that are not shared
-  Array<double, axis::BlockError, axis::Sample> scores;   ///< normal scores of A
-  Array<double, axis::BlockError, axis::Sample> normals;  ///< normals from which the scores of B are made
+  SplitBlock block;                                       ///< the block of correlated errors
+  std::vector<Mixture> mixtures;                          ///< [subsets] mixtures, by the number of the subset that is
+                                                          ///< drawn
+  Array<double, axis::BlockError, axis::Sample> scores;   ///< [block errors x samples] normal scores of A
+  Array<double, axis::BlockError, axis::Sample> normals;  ///< [block errors x samples] independent normals from which
+                                                          ///< the scores of B are computed
 };
 
-/// Solves the samples A and B, and A with the errors of each group, and of each pair of groups, from B; at all poses
-/// with the same errors. For Shapley effects also A with each other subset of groups from B. Errors taken from B that
-/// are correlated with errors of A are drawn conditional on these, from the normals of B. Owns the scratch of one
-/// thread. The result of a unit depends only on the study and the unit.
+/// Solves the samples A and B, and mixtures of the two: A with the errors of one group, or of a pair of groups, from B.
+/// For Shapley effects, it also solves A with every other subset of groups from B. A mixture has the same errors at all
+/// poses. If errors from B are correlated with errors from A, they are drawn conditional on these, from the normals of
+/// B. The result of a unit depends only on the study and the unit. Owns the scratch memory of one thread.
 class PanelEvaluator {
  public:
   /// Refers to all arguments.
   PanelEvaluator(const Plan& plan, const Model& model, const IndexPanel& panel, const PanelDesign& design);
 
-  PanelSums operator()(const PanelUnit& unit);  ///< Solves the whole unit.
-  /// Solves the unit at some poses from `pose` on, for an outlook. Returns the number of solves.
+  PanelSums operator()(const PanelUnit& unit);  ///< Solves a unit at all poses.
+  /// Solves a unit at some poses, beginning with `pose`, to measure the time. Returns the number of solves.
   std::uint64_t try_pose(const PanelUnit& unit, PoseIndex pose);
 
  private:
-  /// A number for each sample of the unit, and along other axes.
+  /// Numbers along some axes and for each sample of the unit.
   template <NamedAxis... Axes>
   using OfSamples = Array<double, Axes..., axis::Sample>;
-  /// Flags, 0 or 1.
+  /// [samples] 1 or 0 for each sample.
   using Flags = std::vector<std::uint8_t>;
-  /// The outcomes of samples.
+  /// The outcomes of samples at a pose.
   struct Outcomes {
     OfSamples<axis::PanelRow> values;
-    Flags counts;  ///< whether the sample counts
+    Flags counts;  ///< whether each sample counts
   };
-  /// Numbers for each quantity, group and sample.
+  /// Numbers for each quantity, group and sample. A and B are the two independent samples; the mixture C is A with the
+  /// errors of the group from B.
   struct GroupRows {
-    OfSamples<axis::PanelQuantity, axis::ErrorGroup> total;  ///< squared difference of A and C
-    /// The product that B and C share: the squared difference of A and B, less that of B and C.
+    OfSamples<axis::PanelQuantity, axis::ErrorGroup> total;  ///< squared difference of the outcomes of A and C
+    /// The part of the variance that B and C share: the squared difference of A and B minus that of B and C.
     OfSamples<axis::PanelQuantity, axis::ErrorGroup> first;
-    OfSamples<axis::PanelQuantity, axis::ErrorGroup> between;  ///< squared difference of A and B, where all three count
+    /// Squared difference of the outcomes of A and B; 0 unless A, B and C all count.
+    OfSamples<axis::PanelQuantity, axis::ErrorGroup> between;
   };
 
   void begin(const PanelUnit& unit);
@@ -157,7 +167,7 @@ class PanelEvaluator {
   void add_pair(PoseIndex pose, std::size_t pair);
   void add_over_poses();
   void solve(PoseIndex pose, const OfSamples<axis::Factor>& errors, Outcomes& outcomes);
-  /// Sets mixed_ to A with these groups from B; to A if there are none.
+  /// Sets mixed_ to A with the errors of these groups from B. Without groups, sets it to A.
   void mix(std::span<const std::size_t> groups);
   void unmix(std::span<const std::size_t> groups);
   void draw_given(std::span<const std::size_t> groups);
@@ -165,9 +175,10 @@ class PanelEvaluator {
   void keep_differences(std::size_t subset);
   void add_shapley(PoseIndex pose);
   void take(std::size_t group, const OfSamples<axis::Factor>& from);
-  /// Sets samples of C to A where they differ only by rounding, which thus does not count as an effect.
+  /// Sets responses of the mixture to those of A if they differ only by rounding, so that rounding does not count as an
+  /// effect.
   void absorb();
-  /// Adds the squared differences of a quantity's components.
+  /// Adds to `sum` [samples] the squared difference of a quantity between two outcomes, summed over its components.
   void add_squared_differences(std::size_t quantity, const Outcomes& one, const Outcomes& other,
                                std::span<double> sum) const;
 
@@ -175,7 +186,7 @@ class PanelEvaluator {
   const IndexPanel* panel_;
   const PanelDesign* design_;
   std::unique_ptr<Evaluator> evaluator_;
-  std::vector<double> rounding_;  ///< [R] see Model::rounding
+  std::vector<double> rounding_;  ///< [responses] rounding of each response, see Model::rounding
   PanelUnit unit_{};
   OfSamples<axis::Factor> a_;
   OfSamples<axis::Factor> b_;
@@ -183,18 +194,25 @@ class PanelEvaluator {
   Outcomes of_a_;
   Outcomes of_b_;
   Outcomes of_mixed_;
-  OfSamples<axis::PanelQuantity> between_;                   ///< squared difference of A and B at this pose
-  GroupRows at_pose_;                                        ///< sums at this pose
-  GroupRows over_poses_;                                     ///< sums over the poses
-  OfSamples<axis::Response, axis::GroupPair> pair_first_;    ///< sums over the poses
-  OfSamples<axis::Response, axis::GroupPair> pair_between_;  ///< sums over the poses
-  std::vector<SplitDraws> split_;                            ///< blocks that groups split, for Shapley effects
-  OfSamples<axis::GroupSubset, axis::Response>
-      differences_;  ///< squared difference of A and the sample that shares the subset with it, at this pose
-  Flags all_count_;  ///< whether all mixtures count at this pose
-  OfSamples<axis::Response, axis::ErrorGroup> shapley_;               ///< sums over the poses
-  OfSamples<axis::Response> shapley_between_;                         ///< sums over the poses
-  Array<std::uint8_t, axis::ErrorGroup, axis::Sample> group_counts_;  ///< whether A, B and C count at this pose
+  /// Squared difference of the outcomes of samples A and B at the present pose.
+  OfSamples<axis::PanelQuantity> between_;
+  GroupRows at_pose_;     ///< numbers at the present pose
+  GroupRows over_poses_;  ///< numbers summed over the poses
+  /// GroupRows::first for each pair of groups, summed over the poses.
+  OfSamples<axis::Response, axis::GroupPair> pair_first_;
+  /// Squared difference of the outcomes of samples A and B for each pair of groups, summed over the poses.
+  OfSamples<axis::Response, axis::GroupPair> pair_between_;
+  /// Blocks whose errors belong to several groups, for Shapley effects.
+  std::vector<SplitDraws> split_;
+  /// Squared difference of A and the mixture that has this subset of groups in common with A, at the present pose.
+  OfSamples<axis::GroupSubset, axis::Response> differences_;
+  Flags all_count_;  ///< whether all mixtures of each sample count at the present pose
+  /// Shapley effects times variance, summed over the poses.
+  OfSamples<axis::Response, axis::ErrorGroup> shapley_;
+  /// Squared difference of the outcomes of samples A and B for Shapley effects, summed over the poses.
+  OfSamples<axis::Response> shapley_between_;
+  /// Whether samples A and B and the mixture C of the group (GroupRows) count at the present pose.
+  Array<std::uint8_t, axis::ErrorGroup, axis::Sample> group_counts_;
   std::vector<SolveStatus> status_;
   std::vector<std::uint32_t> iterations_;
   PanelSums sums_;

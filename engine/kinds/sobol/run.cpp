@@ -22,14 +22,15 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// ST of the group, or its Shapley effect if it has no ST.
+/// The index by which sampling is judged: ST of the group, or its Shapley effect if it has no ST.
 Estimate headline_index(const IndexPanel& panel, const PanelSums& sums, std::size_t r, std::size_t g,
                         double conf_level) {
   return (panel.split[g] != 0 ? sums.shapley(r, g) : sums.aggregated(r, g).total).estimate(conf_level);
 }
 
-/// For each response the largest ST, and the largest half-width of any interval: how certain the indices of a panel
-/// are. Zero if the response does not vary, so that it causes no further samples. rounding: [rows].
+/// For each response: the largest ST, with the largest half-width of an interval over all groups. It shows how certain
+/// the indices of a panel are. Zero for a response that does not vary, so that it causes no more samples. rounding:
+/// [rows] see row_rounding().
 std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelSums& sums,
                                            std::span<const double> rounding, double conf_level) {
   const std::vector<std::uint8_t> varies = varying_quantities(panel, sums, rounding);
@@ -52,13 +53,13 @@ std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelS
   return list;
 }
 
-/// Merges the units of a panel in their order. For random draws each unit is a leaf of the tree. A replicate of another
-/// design is merged unit by unit and then is one leaf.
+/// Merges the units of a panel in their order. With random draws, each unit is a leaf of the merge tree. In other
+/// designs a replicate is a leaf; its units are merged first.
 struct PanelTree {
   const IndexPanel* panel;
   const PanelDesign* design;
   MergeTree<PanelSums> leaves = {};
-  PanelSums open = {};  ///< the replicate that is not complete
+  PanelSums open = {};  ///< sums of the replicate that is not complete
 
   std::size_t units_per_leaf() const { return design->independent() ? 1 : design->units_per_replicate(); }
   void add(std::size_t n, PanelSums&& found) {
@@ -70,7 +71,8 @@ struct PanelTree {
     }
     if ((n + 1) % units_per_leaf() == 0) leaves.add(n / units_per_leaf(), open.as_one());
   }
-  /// The samples of a design that is not random depend on their number, so a longer study cannot continue them.
+  /// In a design that is not random, a sample depends on the number of samples, so a longer study cannot continue the
+  /// state.
   void state(Archive& archive, const NumberRange& units) {
     archive.known(design->independent() ? 0 : panel->samples, "is of a design with other samples");
     leaves.state(archive, design->units() / units_per_leaf(), PanelSums(*panel));
@@ -82,20 +84,20 @@ struct PanelTree {
   }
 };
 
-/// The job of UnitFold, whose units are those of a panel.
+/// The job of a UnitFold (run/unit_fold.h); its units are those of the panel.
 struct PanelJob {
   const Plan& plan;
   const Model& model;
   const Study& study;
   IndexPanel panel{study, plan.poses().size()};
-  std::vector<double> rounding = row_rounding(panel, plan, model);  ///< [rows]
+  std::vector<double> rounding = row_rounding(panel, plan, model);  ///< [rows] rounding of each row, see row_rounding()
   PanelDesign design{plan, asked_of<SobolOptions>(study.analysis)};
 
   static constexpr std::string_view kName = "panel";
   std::vector<std::uint64_t> sizes() const {
     return {panel.quantities(), panel.groups.size(), panel.poses, panel.pairs.size(), panel.shapley ? 1U : 0U};
   }
-  /// The units of a shard; for a design, whole replicates.
+  /// The units of a shard. In a design that is not random, a shard has whole replicates.
   NumberRange units(const Shard& shard) const {
     const std::size_t each = sums().units_per_leaf();
     const NumberRange leaves = shard.of(design.units() / each);
@@ -138,7 +140,7 @@ void set(Indices& indices, const IndexSums& sums, Positions... at) {
   indices.ST.set(sums.total.estimate(indices.conf_level), at...);
 }
 
-/// Sets the result of one response.
+/// Sets the numbers of one response.
 void set_response(const IndexPanel& panel, const PanelSums& sums, std::size_t r, SobolResult& found) {
   const double level = found.aggregated.conf_level;
   for (std::size_t g = 0; g < panel.groups.size(); ++g) {
@@ -163,7 +165,7 @@ void set_response(const IndexPanel& panel, const PanelSums& sums, std::size_t r,
   found.without_sign(r) = sums.least(r) >= 0.0 ? 1 : 0;
 }
 
-/// An empty result with room for all numbers.
+/// A result with arrays of the right lengths, in which nothing is set.
 SobolResult room_for(const IndexPanel& panel, double level) {
   const std::size_t responses = panel.responses;
   const std::size_t groups = panel.groups.size();
@@ -205,7 +207,7 @@ SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSu
   leave_out_constant(panel, sums, rounding, found);
   found.solves = sums.solves;
   if (asked_of<SobolOptions>(study.analysis).design != Design::random)
-    return found;  // samples of other designs have no addresses
+    return found;  // the samples of other designs have no addresses
   for (std::size_t m = 0; m < panel.poses; ++m) {
     append_failures(0, PoseIndex(m), sums.failed[m], found.failures);
     found.failed_samples += sums.failures[m];
@@ -224,7 +226,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   return StudyResult{std::move(found), std::nullopt, {}};
 }
 
-/// The panel of an outlook, which is timed pose by pose.
+/// A panel that is solved at some poses to measure the time.
 struct Trial {
   Trial(const Study& study, const Model& model, const PoseSet& poses)
       : plan(study, poses),
@@ -269,7 +271,7 @@ Outlook sobol_outlook(const Study& study, const Model& model, const PoseSet& pos
           .least = least_share(trial->plan)};
 }
 
-/// A shard takes whole replicates of a design, or units of random draws.
+/// The largest number of shards: the number of replicates of a design, or of units of random draws.
 std::size_t most_shards(const Study& study, std::size_t) {
   const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
   if (asked.design != Design::random) return asked.replicates;

@@ -14,7 +14,7 @@ namespace {
 
 using Shape = std::vector<std::size_t>;
 
-/// The shape as Python writes it: "(71,)", "(71, 1000)".
+/// A shape as Python writes it: "(71,)", "(71, 1000)".
 std::string text_of(const Shape& shape) {
   return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
 }
@@ -23,7 +23,7 @@ Shape shape_of(const py::array& array) { return {array.shape(), array.shape() + 
 
 bool has_order(const py::array& array, int order) { return (array.flags() & order) != 0; }
 
-/// Throws TypeError unless it is an array of Numbers in this machine's byte order.
+/// Throws TypeError unless the object is an array of this type of number in this machine's byte order.
 template <class Number>
 py::array_t<Number> array_of(const py::object& given, const std::string& name, const std::string& type) {
   if (py::isinstance<py::array_t<Number>>(given)) return py::reinterpret_borrow<py::array_t<Number>>(given);
@@ -36,7 +36,7 @@ py::array_t<Number> array_of(const py::object& given, const std::string& name, c
                   name, is, type, type));
 }
 
-/// Throws ValueError unless the elements are aligned.
+/// Throws ValueError unless the elements of the array are aligned in memory.
 void check_aligned(const py::array& array, const std::string& name, std::size_t size) {
   if (reinterpret_cast<std::uintptr_t>(array.data()) % size == 0) return;
   throw py::value_error(name + " does not begin at a multiple of its elements' size in memory; copy it");
@@ -49,7 +49,7 @@ void check_aligned(const py::array& array, const std::string& name, std::size_t 
       fmt::format("{} has shape {} in {}; needed: {}", name, text_of(shape_of(array)), order, wanted));
 }
 
-/// Throws ValueError unless the array has this shape and order.
+/// Throws ValueError unless the array has this shape and this order (C or Fortran).
 void check_shape(const py::array& array, const std::string& name, const Shape& shape, int order,
                  const std::string& meaning = "") {
   if (shape_of(array) == shape && has_order(array, order)) return;

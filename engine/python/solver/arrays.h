@@ -10,57 +10,61 @@
 #include "engine/model/model.h"
 #include "engine/model/status.h"
 
-/// Checks of NumPy arrays, which are used in place: an array that does not fit is refused, never converted.
+/// Checks of NumPy arrays that the solver uses directly. An array that does not fit is refused, never converted.
 namespace poesy::python {
 
-/// The layout of an array of errors at one pose; in each, all samples of the first error come first.
+/// The layout of an array of P errors and B samples at one pose. In each layout all samples of the first error come
+/// first in memory.
 enum class Layout {
-  one_sample,  ///< (P,)
-  rows,        ///< (P, B), C order
-  columns      ///< (B, P), Fortran order
+  one_sample,  ///< shape (P,)
+  rows,        ///< shape (P, B) in C order
+  columns      ///< shape (B, P) in Fortran order
 };
 
-/// The errors at one pose.
+/// A checked array of errors at one pose.
 struct ErrorArray {
-  const double* data;   ///< [P x B]
-  std::size_t samples;  ///< B
-  Layout layout;        ///< layout of this array, and of the responses
+  const double* data;   ///< [P x B] errors, in the caller's memory
+  std::size_t samples;  ///< number of samples, B
+  Layout layout;        ///< layout of this array, which the responses share
 };
 
-/// Throws TypeError unless it is an array of float64, ValueError unless it has one of the layouts for this many errors.
+/// Checks an array of errors. Throws TypeError unless it is an array of float64. Throws ValueError unless it has one of
+/// the layouts. errors: the number of errors, P.
 ErrorArray error_array(const pybind11::object& given, std::size_t errors);
 
-/// The same for errors shared by many poses, which are one sample or rows.
+/// Checks an array of errors that many poses share. It must have the layout one_sample or rows. Throws as error_array()
+/// does.
 ErrorArray shared_error_array(const pybind11::object& given, std::size_t errors);
 
-/// Errors (M, P) in C order; row m belongs to pose m. Throws as error_array().
+/// Checks an array of errors (M, P) in C order, whose row m belongs to pose m. Throws as error_array() does.
 const double* paired_error_array(const pybind11::object& given, std::size_t poses, std::size_t errors);
 
-/// Responses to errors in this layout: a new array for None, otherwise the given one. Throws TypeError unless it is of
-/// float64, ValueError unless it is writable and has that shape and layout.
+/// The array for responses to errors of one pose: a new one if None is given, otherwise the given one after a check.
+/// Throws TypeError unless it is an array of float64. Throws ValueError unless it is writable and has the shape and
+/// layout that the errors require. responses: the number of responses, R.
 pybind11::array_t<double> response_array(const pybind11::object& given, std::size_t responses,
                                          const ErrorArray& errors);
 
-/// Responses of this shape in C order; see response_array().
+/// The array for responses of this shape in C order, as response_array() gives it.
 pybind11::array_t<double> response_block(const pybind11::object& given, const std::vector<std::size_t>& shape);
 
-/// The statuses; null for None. Throws TypeError unless it is an array of uint8, ValueError unless it is writable and
-/// has this shape in C order.
+/// The memory for statuses of this shape; null if None is given. Throws TypeError unless it is an array of uint8.
+/// Throws ValueError unless it is writable and has this shape in C order.
 SolveStatus* status_array(const pybind11::object& given, const std::vector<std::size_t>& shape);
 
-/// The memory of an array.
+/// The memory of an array, to find arrays that overlap.
 struct Memory {
   const char* name;   ///< name of the array, for messages
-  const void* begin;  ///< null: there is no array
-  std::size_t bytes;  ///< length in bytes
+  const void* begin;  ///< first byte; null: there is no array
+  std::size_t bytes;  ///< number of bytes
 };
 
 /// Throws ValueError if two arrays share memory.
 void check_apart(std::span<const Memory> arrays);
 
-/// The numbers of a pose (C,), or of poses (M, C) one after the other, from an array or anything that NumPy converts to
-/// one. Throws TypeError if it cannot be converted, ValueError unless it has this many axes and the last one has the
-/// pose's coordinates.
+/// The numbers of one pose (C,), or of poses (M, C) one after the other, SI, from an array or anything that NumPy
+/// converts to one. axes: 1 or 2. Throws TypeError if the conversion fails. Throws ValueError unless the array has this
+/// number of axes, and its last axis has the length C, the number of pose coordinates.
 std::vector<double> pose_numbers(const pybind11::object& given, std::size_t axes, const ModelDescription& model);
 
 }  // namespace poesy::python

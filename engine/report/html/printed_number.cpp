@@ -13,8 +13,8 @@
 namespace poesy {
 namespace {
 
-constexpr int kLargest = 6;    ///< largest exponent whose digits are grouped
-constexpr int kSmallest = -6;  ///< smallest exponent of a decimal number
+constexpr int kLargest = 6;    ///< largest power of ten of a number that is printed with grouped digits
+constexpr int kSmallest = -6;  ///< smallest power of ten of a number that is printed as a decimal number
 
 /// The number of significant digits in a text; 0 if the text is not a plain number ("75 000", "inf").
 int digits_of(std::string_view text) {
@@ -29,10 +29,11 @@ int digits_of(std::string_view text) {
   return digits;
 }
 
-/// The number with this many significant digits, including trailing zeros.
+/// A number with this many significant digits, including trailing zeros.
 std::string with_digits(double value, int digits) { return fmt::format("{:#.{}g}", value, digits); }
 
-/// The number of digits, at most `most`, to which the text can be padded with zeros and still be correctly rounded.
+/// The largest number of digits, up to `most`, to which the cell's text can be padded with zeros and still be correctly
+/// rounded.
 int full_digits(const Cell& cell, int most) {
   const int shown = digits_of(cell.text);
   const double as_shown = std::strtod(cell.text.c_str(), nullptr);
@@ -42,7 +43,7 @@ int full_digits(const Cell& cell, int most) {
   return shown;
 }
 
-/// 10^-7 with a superscript exponent.
+/// A power of ten with a superscript exponent.
 std::string power_of_ten(int exponent) {
   constexpr std::string_view kRaised[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                           "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
@@ -51,7 +52,7 @@ std::string power_of_ten(int exponent) {
   return text;
 }
 
-/// Groups the digits of a whole number by three.
+/// The digits of a whole number in groups of three.
 std::string grouped(std::string digits) {
   for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, " ");
   return digits;
@@ -82,7 +83,7 @@ PrintedNumber printed(double shown, int digits) {
 
 std::vector<PrintedNumber> printed_numbers(std::span<const Cell> column, int digits) {
   int most = digits;
-  for (const Cell& cell : column) {  // only those with a fraction, because whole numbers are counts, or exact
+  for (const Cell& cell : column) {  // only cells with a fraction matter, because whole numbers are counts or exact
     if (digits == 0 && cell.value && cell.text.find_first_of(".e") != std::string::npos)
       most = std::max(most, digits_of(cell.text));
   }

@@ -19,24 +19,25 @@
 namespace poesy {
 namespace {
 
-/// The number of work units that a rank has in advance for each of its threads: at first, and at most. It grows if the
-/// rank solves them faster than messages are exchanged.
+/// The number of work units that are handed to a rank in advance for each of its threads: kAhead at first, kMostAhead
+/// at most. It grows if the rank solves units faster than messages are exchanged.
 constexpr std::size_t kAhead = 4;
 constexpr std::size_t kMostAhead = 128;
 constexpr std::chrono::milliseconds kQuick{3};
-/// The largest number of units that are handed out beyond the last one merged. Ranks that need more would be limited by
-/// the single writer anyway.
+/// The largest number of units that are handed out but not yet merged. If ranks could use more, merging on rank 0 would
+/// be the bottleneck anyway.
 constexpr std::size_t kMostSlots = 65536;
-/// The largest number of bytes of outputs that wait for their turn.
+/// The largest number of bytes of outputs that wait on rank 0 to be merged in order.
 constexpr std::size_t kMostWaitingBytes = std::size_t{256} << 20U;
-/// Outputs are sent together: when they have this many bytes, or after this time.
+/// Outputs are collected in a message, which is sent when it has this many bytes or after this time.
 constexpr std::size_t kSendBytes = std::size_t{16} << 10U;
 constexpr std::chrono::microseconds kSendEvery{500};
 
-/// A pool of threads (run_in_slots) that works beside the calling thread, on numbers that arrive in parts.
+/// A pool of threads (run_in_slots) that works while the calling thread exchanges messages. It receives the numbers of
+/// the pieces of work range by range.
 class RankPool {
-  /// Wraps a function so that the pool closes if it throws, because oneTBB does not end a thread that waits for a
-  /// number.
+  /// Wraps a function that oneTBB calls, so that the pool closes if the function throws. Otherwise a thread that waits
+  /// for a number would wait forever, because oneTBB does not end it.
   template <class Function>
   auto closing(Function function) {
     return [this, function = std::move(function)](auto... arguments) {
@@ -50,10 +51,10 @@ class RankPool {
   }
 
  public:
-  /// Returns the slot of the next number n. Called from one thread at a time.
+  /// A function that returns the slot for the number n, which is the next one. Called from one thread at a time.
   using SlotOf = std::function<std::size_t(std::size_t n)>;
 
-  /// Calls deliver(n, slot) after each piece of work, one at a time, on threads of the pool.
+  /// Calls deliver(n, slot) after each piece of work n, one at a time, on threads of the pool.
   RankPool(const RunOptions& options, std::function<SlotJob()> make_work, SlotOf slot_of, SlotJob deliver)
       : slot_of_(std::move(slot_of)), low_(resolved_threads(options.threads)) {
     const auto make_closing = closing([this, make = std::move(make_work)] { return SlotJob(closing(make())); });
@@ -76,7 +77,7 @@ class RankPool {
   RankPool& operator=(const RankPool&) = delete;
   ~RankPool() { join(); }
 
-  /// Adds work with the numbers first, first + 1, ...
+  /// Adds the pieces of work with the numbers first .. first + count - 1.
   void give(std::size_t first, std::size_t count) {
     const std::lock_guard lock(mutex_);
     ranges_.push_back({first, first + count});
@@ -84,14 +85,14 @@ class RankPool {
     given_.notify_one();
   }
 
-  /// Returns after this time, or when few numbers are left.
+  /// Waits until few numbers are left to work on, but at most this long.
   void wait(std::chrono::microseconds at_most) {
     std::unique_lock lock(mutex_);
     hungry_.wait_for(lock, at_most, [&] { return hungry_now_; });
     hungry_now_ = false;
   }
 
-  /// Whether an exception was thrown.
+  /// Returns true if an exception was thrown.
   bool failed() const { return failed_; }
 
   /// Ends the pool: work that began is delivered, and no more begins. Throws the exception that was thrown in the pool.
@@ -128,7 +129,7 @@ class RankPool {
   }
 
   SlotOf slot_of_;
-  std::size_t low_;  ///< this many numbers, or fewer, are few
+  std::size_t low_;  ///< the pool asks for more work if this many numbers or fewer wait
   std::mutex mutex_;
   std::condition_variable given_;
   std::condition_variable hungry_;
@@ -141,7 +142,7 @@ class RankPool {
   std::thread thread_;  ///< last, because its thread uses all other members
 };
 
-/// The part of rank 0.
+/// What rank 0 does in a stage.
 class Leader {
  public:
   Leader(std::size_t count, const RunOptions& options, const SlotWork& work)
@@ -177,8 +178,8 @@ class Leader {
 
  private:
   struct Rank {
-    std::size_t threads = 0;  ///< 0 until the rank is ready
-    std::size_t given = 0;    ///< numbers assigned and not yet returned
+    std::size_t threads = 0;  ///< 0 until the rank has said that it is ready
+    std::size_t given = 0;    ///< numbers that were handed out to the rank and whose outputs it has not returned
     std::size_t ahead = kAhead;
     std::chrono::steady_clock::time_point given_at;  ///< time of the last assignment
   };
@@ -253,7 +254,8 @@ class Leader {
     }
   }
 
-  /// Hands out numbers. Towards the end a rank gets smaller parts, so that all ranks end at about the same time.
+  /// Hands out numbers of work units to a rank. Towards the end each rank gets fewer at a time, so that all ranks end
+  /// at about the same time.
   void hand_out(std::size_t to) {
     Rank& rank = ranks_[to];
     const std::size_t left = count_ - next_to_give_;
@@ -287,15 +289,15 @@ class Leader {
   std::size_t threads_ = 0;  ///< threads of the ranks that are ready
   std::size_t next_to_give_ = 0;
   std::size_t next_to_merge_ = 0;
-  std::vector<std::uint8_t> done_;  ///< [slots] 1 if there is an output
-  std::vector<std::size_t> bytes_;  ///< [slots] bytes of an output that was sent
+  std::vector<std::uint8_t> done_;  ///< [slots] 1 if the slot has an output
+  std::vector<std::size_t> bytes_;  ///< [slots] bytes of an output that another rank sent
   std::size_t waiting_bytes_ = 0;
   std::mutex mutex_;
   std::vector<std::size_t> delivered_;  ///< numbers that the pool delivered
   RankPool pool_;                       ///< last, because its threads use all other members
 };
 
-/// The part of the other ranks.
+/// What every other rank does in a stage.
 class Follower {
  public:
   Follower(const RunOptions& options, const SlotWork& work)
@@ -366,7 +368,7 @@ class Follower {
     {
       const std::lock_guard lock(mutex_);
       const auto now = std::chrono::steady_clock::now();
-      // Rank 0 may be waiting for just these outputs.
+      // Near the end, rank 0 may be waiting for exactly these outputs.
       const bool few_left = 2 * (given_ - delivered_) <= resolved_threads(options_->threads);
       if (waiting_ == 0 || (waiting_bytes_ < kSendBytes && now < last_sent_ + kSendEvery && !few_left)) return;
       outputs = std::exchange(outputs_, Team::message(RankMessage::outputs));
@@ -380,12 +382,13 @@ class Follower {
   Team* team_;
   const RunOptions* options_;
   const SlotWork* work_;
-  std::size_t taken_ = 0;         ///< numbers that the pool has taken
-  std::optional<bool> complete_;  ///< content of the end message
-  std::size_t given_ = 0;         ///< numbers received from rank 0
+  std::size_t taken_ = 0;  ///< numbers that the pool has taken
+  /// True if the stage is complete, as the end message says; none before that message.
+  std::optional<bool> complete_;
+  std::size_t given_ = 0;  ///< numbers received from rank 0
   std::mutex mutex_;
   ByteWriter outputs_;
-  std::size_t waiting_ = 0;  ///< number of outputs in the message
+  std::size_t waiting_ = 0;  ///< number of outputs in the unsent message
   std::size_t waiting_bytes_ = 0;
   std::size_t delivered_ = 0;
   std::chrono::steady_clock::time_point last_sent_;

@@ -126,7 +126,7 @@ void Team::pass_over_messages() {
     while (try_receive()) {
     }
   } catch (const std::bad_alloc&) {
-    // Only messages of a stage are long.
+    // A message that does not fit into memory is dropped. Only messages of a stage are so long, and the stage is over.
   }
 }
 

@@ -14,10 +14,10 @@
 namespace poesy {
 namespace {
 
-/// Scaled coordinates that differ by less are equal up to rounding.
+/// Scaled coordinates are equal up to rounding if they differ by less than this.
 constexpr double kRounding = 1e-12;
 
-/// The number of steps along a line in which feasibility may change.
+/// The number of intervals of a line in which the search looks for a change of feasibility.
 constexpr std::size_t kScanIntervals = 32;
 
 constexpr double kGoldenRatio = 0.6180339887498949;
@@ -28,11 +28,11 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// The number of uniforms that unit_vector() needs in n dimensions.
+/// The number of uniforms that unit_vector() needs for a vector with n entries.
 std::size_t uniforms_for(std::size_t n) { return n <= 3 ? n - 1 : n; }
 
-/// A uniform vector on the unit sphere, [n], from uniforms [uniforms_for(n)]; in one dimension always 1. It uses few
-/// uniforms if there is a closed form, because a low-discrepancy sequence is more even in fewer dimensions.
+/// Computes a vector that is uniform on the unit sphere, [n], from uniforms [uniforms_for(n)]; for n = 1 it is always
+/// 1. For n <= 3 a closed form needs fewer uniforms, and a low-discrepancy sequence is more even in fewer dimensions.
 void unit_vector(std::span<const double> uniforms, std::span<double> vector) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   if (vector.size() == 1) {
@@ -53,8 +53,8 @@ void unit_vector(std::span<const double> uniforms, std::span<double> vector) {
   }
 }
 
-/// Rotates a vector perpendicular to the last axis into one perpendicular to this unit vector, by the reflection that
-/// exchanges both directions. Precondition: the vector's last entry is 0.
+/// Maps a vector perpendicular to the last axis to a vector perpendicular to `unit`, by the reflection that exchanges
+/// the last axis and `unit` up to sign. Precondition: the vector's last entry is 0.
 void reflect_last_axis_to(std::span<const double> unit, std::span<double> vector) {
   const double last = unit.back();
   const double factor = dot(unit, vector) / (1.0 + std::abs(last));
@@ -62,20 +62,20 @@ void reflect_last_axis_to(std::span<const double> unit, std::span<double> vector
   vector.back() -= (last < 0.0 ? -factor : factor);
 }
 
-/// A line: a point of it, and a unit vector along it.
+/// A line in scaled coordinates.
 struct Line {
   Vector point;
   Vector direction;
 };
 
-/// A line with the kinematic measure, from a point of the sequence. Its direction is uniform, and its point nearest to
-/// the cube's centre is uniform in a ball perpendicular to the direction that covers the cube.
+/// A line distributed by the kinematic measure, from a point of the Sobol' sequence. Its direction is uniform. Its
+/// point nearest to the cube's centre is uniform in a ball that covers the cube and is perpendicular to the direction.
 Line line_of(Vector uniforms, std::size_t coordinates) {
-  // Adds a fixed irrational step in each dimension, modulo 1, because the first points of the sequence are symmetric
-  // about the middle, and their lines would meet edges and corners.
+  // A fixed irrational step is added in each dimension, modulo 1. Without it, the first points of the sequence are
+  // symmetric about the middle, and their lines meet edges and corners.
   const auto fraction = [](double value) { return value - std::floor(value); };
   double step = 0.0;
-  double share = 0.5;  // half of the sphere in the first dimension, because a line has no sign
+  double share = 0.5;  // the first dimension covers half of the sphere, because a line has no sign
   for (double& u : uniforms) {
     step = fraction(step + kGoldenRatio);
     u = share * fraction(u + step);
@@ -104,7 +104,7 @@ struct Chord {
   std::size_t enter_face = 0;  ///< coordinate of the face through which the line enters
   std::size_t leave_face = 0;  ///< coordinate of the face through which the line leaves
 
-  /// The point at this position; at enter and leave exactly on the face.
+  /// The point at this position along the line. At `enter` and `leave` the point is exactly on a face.
   void at(double position, Vector& point) const {
     for (std::size_t c = 0; c < point.size(); ++c) {
       point[c] = std::clamp(line.point[c] + position * line.direction[c], 0.0, 1.0);
@@ -114,7 +114,7 @@ struct Chord {
   }
 };
 
-/// The chord; none if the line misses the cube.
+/// The part of the line in the unit cube; none if the line misses it.
 std::optional<Chord> chord_of(const Line& line) {
   Chord chord{line};
   for (std::size_t c = 0; c < line.point.size(); ++c) {
@@ -129,7 +129,8 @@ std::optional<Chord> chord_of(const Line& line) {
   return chord.enter < chord.leave ? std::optional(chord) : std::nullopt;
 }
 
-/// Keeps every crossing of the feasible set's boundary along the chord: both ends of each feasible piece.
+/// Keeps every point at which the chord crosses the boundary of the feasible set. These are the two ends of each
+/// feasible piece of the chord.
 void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollector& collector) {
   Vector scaled(workspace.coordinates());
   Vector pose(workspace.coordinates());
@@ -137,7 +138,7 @@ void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollecto
     chord.at(position, scaled);
     workspace.unscale(scaled, pose);
   };
-  // Bisects between a feasible and an infeasible position, and returns the last feasible one.
+  // Bisects between a feasible and an infeasible position, and returns the last feasible position.
   const auto refined = [&](double feasible, double infeasible) {
     while (std::abs(infeasible - feasible) > std::numeric_limits<double>::epsilon()) {
       const double middle = std::midpoint(feasible, infeasible);
@@ -155,8 +156,8 @@ void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollecto
     }
   };
   double before = chord.enter;
-  bool inside = false;         // whether a feasible piece is open
-  double entry = chord.enter;  // its beginning
+  bool inside = false;         // true if the position is in a feasible piece
+  double entry = chord.enter;  // position where the piece begins
   for (std::size_t k = 0; k <= kScanIntervals; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(kScanIntervals);
     const double position = std::lerp(chord.enter, chord.leave, share);
@@ -170,8 +171,8 @@ void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollecto
   if (inside) keep_piece(entry, chord.leave);
 }
 
-/// Whether two poses are equal up to rounding in every scaled coordinate. Poses are sorted along a direction that is
-/// not parallel to a face, so only near neighbours need to be compared.
+/// Returns true if two of the poses are equal up to rounding in every scaled coordinate. Poses are sorted along a
+/// direction that is not parallel to a face, so only near neighbours need to be compared.
 bool some_coincide(const Workspace& workspace, const PoseCollector& collector) {
   const std::size_t count = collector.kept();
   const std::size_t coordinates = workspace.coordinates();

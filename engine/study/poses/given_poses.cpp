@@ -13,7 +13,8 @@ constexpr const char* kSi = " (numbers in the file are SI: metres and radians, u
 
 using Function = std::function<double(double time)>;
 
-/// A modified Akima spline, or straight lines if there are only two or three points.
+/// Interpolates values over time, by a modified Akima spline or, if there are only two or three points, by straight
+/// lines.
 Function interpolated(std::vector<double> time, std::vector<double> values) {
   constexpr std::size_t kSplinePoints = 4;
   if (time.size() >= kSplinePoints) {
@@ -26,7 +27,7 @@ Function interpolated(std::vector<double> time, std::vector<double> values) {
   };
 }
 
-/// The points of a trajectory as a function of time, [coordinates], SI.
+/// The point of a trajectory as a function of time, [coordinates], SI.
 std::function<std::vector<double>(double time)> path_of(const Trajectory& trajectory, const ModelDescription& model) {
   if (trajectory.curve) {
     return [&at = model.curves[*trajectory.curve].at, &origin = trajectory.origin](double time) {
@@ -49,8 +50,8 @@ std::function<std::vector<double>(double time)> path_of(const Trajectory& trajec
   };
 }
 
-/// A point as text: "z = 0.5 m, beta = 20 rad = 1145.92 deg" with the units of a file, or only in the units that people
-/// read.
+/// A point as text: "z = 0.5 m, beta = 20 rad = 1145.92 deg". as_in_file: whether each value also has the SI unit of
+/// the file.
 std::string point_text(std::span<const double> point, const std::vector<PoseCoordinate>& coordinates, bool as_in_file) {
   std::string text;
   for (std::size_t c = 0; c < point.size(); ++c) {
@@ -63,17 +64,17 @@ std::string point_text(std::span<const double> point, const std::vector<PoseCoor
   return text;
 }
 
-/// The message that refuses a point.
+/// The words of a message that refuses a point of a table.
 struct PointRefusal {
-  std::function<Place(std::size_t m)> place;        ///< of point m
+  std::function<Place(std::size_t m)> place;        ///< place of point m
   std::function<std::string(std::size_t m)> point;  ///< name of point m in messages, such as "pose 1 (...)"
   std::string if_unreachable;                       ///< advice for a point out of reach
   std::string if_singular;                          ///< advice for a singular point
-  std::string note;                                 ///< text after the advice
+  std::string note;                                 ///< text behind the advice
 };
 
-/// The poses of all points of a table. Throws InputError for the first point that the mechanism cannot reach or that is
-/// singular, and SearchStopped.
+/// The poses of all points of a table. Throws InputError for the first point that is singular or out of reach, and
+/// SearchStopped if watch stops.
 SelectedPoses poses_of(const PoseTable& table, const PointRefusal& refusal, const Model& model, double max_condition,
                        const WatchSearch& watch) {
   SelectedPoses selected;

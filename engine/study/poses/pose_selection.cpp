@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// The largest number of candidates that are tried for this many poses.
+/// The largest number of candidates that a search for this many poses examines.
 std::size_t most_candidates(std::size_t count) { return std::max<std::size_t>(100'000, 100 * count); }
 
 SelectedPoses interior_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch) {
@@ -29,7 +29,7 @@ SelectedPoses interior_poses(const PoseSelection& selection, const Model& model,
   return std::move(collector).result();
 }
 
-/// Collects all feasible points of a grid, the last coordinate fastest. collector: an empty one.
+/// Adds all feasible points of a grid to an empty collector; the last coordinate changes fastest.
 PoseCollector grid_points(PoseCollector collector, std::span<const std::size_t> counts, const Workspace& workspace) {
   std::vector<double> scaled(counts.size());
   std::vector<double> pose(counts.size());
@@ -46,7 +46,8 @@ PoseCollector grid_points(PoseCollector collector, std::span<const std::size_t> 
   return collector;
 }
 
-/// The number of points of a grid with `number` points for each coordinate; more than `most` if it exceeds that.
+/// The number of points of a grid with `number` points along each coordinate. If it exceeds `most`, the function
+/// returns only some number above `most`, to avoid overflow.
 std::size_t grid_size(std::size_t number, std::size_t coordinates, std::size_t most) {
   std::size_t size = 1;
   for (std::size_t c = 0; c < coordinates && size <= most; ++c) size *= number;
@@ -64,7 +65,7 @@ SelectedPoses grid_poses(const PoseSelection& selection, const Model& model, con
   const std::size_t most = most_candidates(selection.count);
   std::size_t number = 1;
   while (grid_size(number, workspace.coordinates(), most) < selection.count) ++number;
-  std::size_t tested = 0;  // candidates in all grids so far
+  std::size_t tested = 0;  // candidates in all grids so far, for the feasible share
   std::size_t feasible = 0;
   for (;; ++number) {
     PoseCollector points = grid_points(PoseCollector(workspace, selection.count, watch, tested),

@@ -10,15 +10,15 @@ namespace poesy::extremes {
 namespace {
 
 const std::vector<std::string> kEnds{"smallest", "largest"};
-/// An axis of results: kEnds.
+/// The axis for the smallest and the largest value; its entries are kEnds.
 using End = Axis<"end">;
 
-/// What the samples of some poses came to: of a unit one pose, of the study all of them.
+/// The extreme values of the samples at some poses: at one pose for a unit, at all poses for a study.
 struct Extremes {
-  Array<double, axis::Response, End, axis::Pose> value;          ///< SI; NaN where no sample counts
-  Array<std::uint64_t, axis::Response, End, axis::Pose> sample;  ///< the first that has it
-  std::vector<SolveCounts> solves;                               ///< of each pose
-  std::vector<FailedSamples> failed;                             ///< of each pose
+  Array<double, axis::Response, End, axis::Pose> value;          ///< SI; NaN if no sample counts
+  Array<std::uint64_t, axis::Response, End, axis::Pose> sample;  ///< the first sample with this value
+  std::vector<SolveCounts> solves;                               ///< [poses] how solves ended
+  std::vector<FailedSamples> failed;                             ///< [poses] the first failed samples
 
   Extremes() = default;
   Extremes(std::size_t responses, std::size_t poses)
@@ -32,7 +32,7 @@ struct Extremes {
       sample(r, end, m) = of;
     }
   }
-  /// Later samples of a pose, which is `from` of those.
+  /// Adds later samples of pose m. from: position of this pose in `later`.
   void merge(std::size_t m, const Extremes& later, std::size_t from = 0) {
     for (std::size_t r = 0; r < value.length<axis::Response>(); ++r) {
       for (const std::size_t end : {0U, 1U}) add(r, m, later.value(r, end, from), later.sample(r, end, from));
@@ -80,7 +80,7 @@ struct Job {
     found.state(archive, 0, unit.first.value);
   }
   CellSums<Extremes> sums(const Plan& of, const Shard& shard) const { return {of, responses(), shard}; }
-  /// Never sure, so adaptive samples go on to their max.
+  /// Unknown intervals, so adaptive samples go on to their max.
   auto estimates(const auto&, std::size_t) const { return std::vector(responses(), Estimate{kNaN, {kNaN, kNaN}}); }
 };
 
