@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "bench/instruction_sets.h"
-#include "models/assembly/model.h"
-#include "models/file/branched_model.h"
+#include "models/chain/block_solver.h"
 #include "models/registry.h"
 
 namespace {
@@ -20,6 +19,12 @@ using namespace poesy;
 
 constexpr std::size_t kSamples = 1000;
 
+/// Positions among the fidelities of mechanisms from files.
+/// @{
+constexpr std::size_t kExact = static_cast<std::size_t>(chain::Fidelity::exact);
+constexpr std::size_t kFirstOrder = static_cast<std::size_t>(chain::Fidelity::first_order);
+/// @}
+
 /// A mechanism of tests/data/mechanisms at a pose.
 struct Mechanism {
   std::string file;          ///< its name, without ".toml"
@@ -27,20 +32,13 @@ struct Mechanism {
   std::vector<double> pose;  ///< SI; empty: the middle of the workspace
 };
 
-/// By which code.
-enum class Code {
-  product,     ///< that which a study takes
-  assembly,    ///< limbs against bodies, also where the product compares limbs in pairs
-  first_order  ///< limbs against bodies, to first order
-};
-
 /// What is measured.
 struct Case {
   Mechanism mechanism;
-  Code code;
-  double size;       ///< standard deviation of errors, mm and deg
-  std::string isa;   ///< instruction set
-  bool one = false;  ///< whether errors vary one after the other, in ranges that are known, and not all at once
+  std::size_t fidelity;  ///< position among the model's fidelities
+  double size;           ///< standard deviation of errors, mm and deg
+  std::string isa;       ///< instruction set
+  bool one = false;      ///< whether errors vary one after the other, in ranges that are known, and not all at once
 };
 
 std::string text_of(const Mechanism& mechanism) {
@@ -50,27 +48,16 @@ std::string text_of(const Mechanism& mechanism) {
   return text.str();
 }
 
-/// The product's model.
-std::unique_ptr<Model> built(const Mechanism& mechanism) {
+std::unique_ptr<Model> built(const Mechanism& mechanism, std::size_t fidelity) {
   const CatalogEntry entry = registry().from_text(text_of(mechanism), mechanism.file);
   std::vector<double> geometry;
   for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
-  return by_metric(entry, mechanism.metric).build(geometry, 0);
-}
-
-assembly::AssemblyModel assembly_of(const Mechanism& mechanism) {
-  const file::MechanismFile read = file::read_mechanism_file(text_of(mechanism), mechanism.file);
-  const file::Checked found =
-      file::checked(file::mechanism(read, file::default_geometry(read)), file::Workspace::as_it_is);
-  return file::assembly_model(
-      found.mechanism, std::make_shared<const file::Tracker>(found.mechanism), found.home,
-      mechanism.metric == "stiffness" ? assembly::Metric::stiffness : assembly::Metric::platform);
+  return by_metric(entry, mechanism.metric).build(geometry, fidelity);
 }
 
 /// A block of normal errors at one pose, solved again and again.
 void solves(benchmark::State& state, const Case& which) {
-  const std::unique_ptr<Model> model = built(which.mechanism);
-  const assembly::AssemblyModel limbs = assembly_of(which.mechanism);
+  const std::unique_ptr<Model> model = built(which.mechanism, which.fidelity);
   std::vector<double> pose = which.mechanism.pose;
   for (std::size_t k = pose.size(); k < model->description().pose_lower.size(); ++k) {
     pose.push_back(0.5 * (model->description().pose_lower[k] + model->description().pose_upper[k]));
@@ -87,15 +74,11 @@ void solves(benchmark::State& state, const Case& which) {
     for (std::size_t b = 0; b < kSamples; ++b) values.push_back(which.size * unit * normal(engine));
   }
   const std::vector<double> none(errors, 0.0);
-  const bool of_product = which.code == Code::product;
-  const std::size_t rows = of_product ? model->description().responses.size() : assembly::responses_of(limbs).size();
-  std::vector<double> responses(rows * kSamples);
+  std::vector<double> responses(model->description().responses.size() * kSamples);
   std::vector<SolveStatus> status(kSamples);
   std::vector<std::uint32_t> iterations(kSamples);
   bench::choose_instruction_set(which.isa);
-  const auto fidelity = which.code == Code::first_order ? chain::Fidelity::first_order : chain::Fidelity::exact;
-  const std::unique_ptr<Evaluator> evaluator =
-      of_product ? model->evaluator(options) : assembly::assembly_evaluator(limbs, options, fidelity);
+  const std::unique_ptr<Evaluator> evaluator = model->evaluator(options);
   std::size_t n = 0;
   for (auto _ : state) {
     SampleBlock block{pose, none, varied, values, kSamples};
@@ -123,12 +106,6 @@ const std::vector<Mechanism> kMechanisms{{"linear-delta", "platform", {0.03, -0.
                                          {"rps3", "platform", {}},
                                          {"rrr3", "platform", {}}};
 
-/// Whether the product compares limbs in pairs, or with one platform where they can meet.
-bool is_unbranched(const Mechanism& mechanism) {
-  return mechanism.file == "upr2-rpu" || mechanism.file == "tripteron" || mechanism.file == "ups6" ||
-         mechanism.file == "rps3" || mechanism.file == "rrr3";
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -138,14 +115,10 @@ int main(int argc, char** argv) {
   };
   for (const Mechanism& mechanism : kMechanisms) {
     for (const std::string& isa : bench::instruction_sets()) {
-      add({mechanism, Code::assembly, 0.1, isa}, "0.1");
-      add({mechanism, Code::assembly, 1.0, isa}, "1");
-      add({mechanism, Code::assembly, 1.0, isa, true}, "one");
-      add({mechanism, Code::first_order, 0.1, isa}, "first-order");
-      if (!is_unbranched(mechanism)) continue;
-      add({mechanism, Code::product, 0.1, isa}, "0.1/pairs");
-      add({mechanism, Code::product, 1.0, isa}, "1/pairs");
-      add({mechanism, Code::product, 1.0, isa, true}, "one/pairs");
+      add({mechanism, kExact, 0.1, isa}, "0.1");
+      add({mechanism, kExact, 1.0, isa}, "1");
+      add({mechanism, kExact, 1.0, isa, true}, "one");
+      add({mechanism, kFirstOrder, 0.1, isa}, "first-order");
     }
   }
   benchmark::Initialize(&argc, argv);

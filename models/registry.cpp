@@ -10,7 +10,7 @@ const Catalog& registry() {
   static const Catalog catalog = [] {
     Catalog all{two_upr_rpu::catalog_entry(), three_prs::catalog_entry(), three_prs::machine_catalog_entry()};
     all.from_text = file::catalog_entry;
-    all.file_reference = file::reference;
+    all.file_reference = file::key_reference;
     return all;
   }();
   return catalog;

@@ -23,6 +23,7 @@
 #include "engine/kinds/calibration/words.h"
 #include "engine/kinds/study_file.h"
 #include "engine/report/table.h"
+#include "engine/result/described.h"
 #include "engine/result/result_file.h"
 #include "engine/storage/checkpoint.h"
 #include "engine/storage/content_hash.h"
@@ -38,7 +39,7 @@
 namespace poesy::app {
 namespace {
 
-constexpr std::size_t kMostBytes = 64U << 20U;  // of a table of measurements
+constexpr std::size_t kMostBytes = 64U << 20U;  // largest size of a table of measurements
 
 struct CalibrateOptions {
   std::string study;
@@ -46,7 +47,7 @@ struct CalibrateOptions {
   std::string result;
 };
 
-/// Opens the file of poses that a selection names, because a study that is not run has not opened it.
+/// Reads the file of poses that a selection names. A study that is read for a calibration has not opened it.
 void open_poses(PoseSelection& selection, const std::string& study_path, const ModelDescription& model) {
   if (selection.select != PoseSelection::Select::file || selection.file.empty()) return;
   const std::string path = (std::filesystem::path(study_path).parent_path() / selection.file).string();
@@ -54,7 +55,7 @@ void open_poses(PoseSelection& selection, const std::string& study_path, const M
   selection.place = {path, 2, 1};
 }
 
-/// The poses of a selection; none if it selects nothing.
+/// The poses that a selection selects; none if there is no selection to make.
 std::optional<SelectedPoses> selected(PoseSelection selection, const std::string& study_path, const Model& model) {
   using Select = PoseSelection::Select;
   if (selection.select == Select::file && selection.file.empty()) return std::nullopt;
@@ -67,7 +68,7 @@ std::optional<SelectedPoses> selected(PoseSelection selection, const std::string
   return select_poses(selection, model);
 }
 
-/// The poses of the rows of a table of measurements.
+/// The poses at which the rows of a table of measurements were taken.
 SelectedPoses measured_poses(const std::string& path, const MachineFile& file, const Model& model) {
   PoseSelection selection;
   selection.select = PoseSelection::Select::file;
@@ -80,7 +81,7 @@ SelectedPoses measured_poses(const std::string& path, const MachineFile& file, c
   return poses;
 }
 
-/// The poses without those that are there a second time.
+/// The given poses without repetitions.
 SelectedPoses without_repetition(const SelectedPoses& poses) {
   std::vector<double> values;
   SelectedPoses once;
@@ -98,7 +99,7 @@ SelectedPoses without_repetition(const SelectedPoses& poses) {
   return once;
 }
 
-/// The names that expressions for the controller may use: parameters of the geometry, then fitted errors.
+/// The names that expressions for the controller may use: geometry parameters, then fitted errors.
 std::vector<GeometryParameter> names_in_expressions(const Study& study) {
   std::vector<GeometryParameter> list = study.model().geometry;
   for (const FittedErrors& fitted : study.analysis.calibration->fit) {
@@ -112,7 +113,7 @@ std::vector<GeometryParameter> names_in_expressions(const Study& study) {
   return list;
 }
 
-/// The dimension of an expression's value. Throws if it is none that poesy prints.
+/// The dimension of an expression's value. Throws InputError unless it is a length, an angle or a number.
 Dimension typed_dimension(const file::Value& value, const ControllerNumber& number) {
   for (const Dimension dimension : {Dimension::length, Dimension::angle, Dimension::number}) {
     if (file::of_dimension(0.0, dimension).like(value)) return dimension;
@@ -153,14 +154,6 @@ Study study_to_calibrate(const std::string& path) {
   return study;
 }
 
-/// The result as `poesy show` reads it.
-StoredResult shown(const Study& study, const SelectedPoses& poses, CalibrationResult found) {
-  StoredResult result = with_verdicts(study, poses, std::nullopt, {});
-  result.kind = kCalibrationKind.study.name;
-  result.found = std::move(found);
-  return result;
-}
-
 int calibrate_machine(const CalibrateOptions& options) {
   const Study study = study_to_calibrate(options.study);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
@@ -170,6 +163,8 @@ int calibrate_machine(const CalibrateOptions& options) {
   const auto& asked = study.analysis.calibration->candidates;
   const auto candidates = asked ? selected(*asked, options.study, *model) : std::nullopt;
   const std::vector<TypedNumber> typed = typed_numbers(study);
+  const std::string doubt = bare_measurement_text(options.measured, file, study);
+  if (!doubt.empty()) say(Message::warning, doubt);
   std::string path;
   std::optional<RunLock> lock;
   if (!options.result.empty()) {
@@ -188,13 +183,20 @@ int calibrate_machine(const CalibrateOptions& options) {
   made.result.file = std::filesystem::path(options.measured).filename().string();
   made.result.file_text = read_text(options.measured, "table of measurements", kMostBytes);
   made.result.file_sha256 = hex(sha256(std::as_bytes(std::span(made.result.file_text))));
+  if (model->description().deformation) {
+    say(Message::note,
+        "limbs over-constrain each other, so where a fitted error deforms them, the platform is where [solver] metric "
+        "puts it: such an estimate is under that assumption");
+  }
   for (const std::string& warning : made.warnings) say(Message::warning, warning);
   for (const std::string& warning : calibration_warnings(made.result)) say(Message::warning, warning);
-  const StoredResult result = shown(study, predicted, std::move(made.result));
+  StoredResult result = described(study, *model, predicted);
+  result.kind = kCalibrationKind.study.name;
+  result.found = std::move(made.result);
   print(text_of(kCalibrationReport.tables(result, {}), output_width()));
   if (!path.empty()) {
     write_result(path, kCalibrationKind.study.name, kCalibrationFile, study, predicted, result.found,
-                 run_facts(seconds_since(start), 1, 0));
+                 run_facts(seconds_since(start), 1, made.solves));
   }
   if (made.converged) return kDone;
   return complain(options.measured +

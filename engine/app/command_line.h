@@ -14,28 +14,30 @@ namespace poesy::app {
 
 /// Reads a text that has only digits; none for anything else.
 std::optional<std::uint64_t> whole_number(std::string_view text);
-/// Reads a whole number. Throws InputError, which names the option and the bounds, if it is not one within them.
+/// Reads a whole number from least to most. Throws InputError, which names the option and the bounds, for any other
+/// text.
 std::uint64_t parse_whole_number(const std::string& text, const std::string& option, std::uint64_t least,
                                  std::uint64_t most);
 
-/// A command line and what it shows.
+/// An example of a command line in help, and what it shows.
 struct Example {
   std::string about;
   std::string line;
 };
 
-/// The program or one of its commands: a CLI11 app with the notes and examples of its help.
+/// The program or one of its commands: a CLI11 app, together with the notes and examples of its help.
 class Command : public CLI::App {
  public:
   /// program: the program to which the command belongs; null for the program itself.
   Command(const std::string& name, const std::string& about, Command* program = nullptr)
       : CLI::App(about, name, program) {}
 
-  std::vector<std::string> notes;  ///< paragraphs of the help
+  std::vector<std::string> notes;  ///< paragraphs at the end of the help
   std::vector<Example> examples;
-  std::function<int()> action;  ///< runs the command after the command line is read; returns the exit code
+  std::function<int()> action;  ///< runs the command after the command line was read; returns the exit code
 
-  /// Adds a command to this program. Returns it with the options that its command line sets.
+  /// Adds a command to this program. run: called with the options that the command line set. Returns the command and
+  /// its options, to which the caller binds the command line.
   template <class Options>
   std::pair<Command&, Options&> add_command(const std::string& name, const std::string& about,
                                             int (*run)(const Options&)) {
@@ -44,18 +46,20 @@ class Command : public CLI::App {
     command.action = [options, run] { return run(*options); };
     return {command, *options};
   }
-  /// Adds a command without action.
+  /// Adds a command without an action.
   Command& add_command(const std::string& name, const std::string& about);
   /// The commands of this program, in the order in which they were added.
   std::vector<const Command*> commands() const;
 
-  /// Adds an option ("-o,--output") or a positional argument ("study"), whose value has this name in help.
+  /// Adds an option ("-o,--output") or a positional argument ("study") that has a value. value: the name of the value
+  /// in help.
   template <class Variable>
   CLI::Option* add_value(const std::string& name, Variable& variable, const std::string& value,
                          const std::string& about) {
     return add_option(name, variable, about)->type_name(value);
   }
-  /// The same for a whole number from `least` to `most`.
+  /// Adds an option or a positional argument that is a whole number from `least` to `most`. value: the name of the
+  /// number in help.
   template <class Number>
   CLI::Option* add_whole_number(const std::string& name, Number& number, const std::string& value,
                                 const std::string& about, std::uint64_t least, std::uint64_t most) {
@@ -67,11 +71,13 @@ class Command : public CLI::App {
 
 // Each of these functions adds one command to the program.
 Command& add_run(Command& program);
+Command& add_sweep(Command& program);
 Command& add_check(Command& program);
 Command& add_evaluate(Command& program);
 Command& add_calibrate(Command& program);
 Command& add_show(Command& program);
 Command& add_report(Command& program);
+Command& add_figure(Command& program);
 Command& add_replay(Command& program);
 Command& add_export(Command& program);
 Command& add_merge(Command& program);
@@ -83,42 +89,43 @@ Command& add_completion(Command& program);
 Command& add_help(Command& program);
 Command& add_version(Command& program);
 
-/// The names of an option: "-o", "--output"; empty for a positional argument.
+/// The names of an option: "-o", "--output". Empty for a positional argument.
 std::vector<std::string> names_of(const CLI::Option& option);
 
 /// The names of all options of a command.
 std::vector<std::string> option_names(const CLI::App& command);
 
-/// The name of its value: "RESULT.h5"; empty for a flag.
+/// The name of an option's value in help: "RESULT.h5". Empty for a flag.
 std::string value_of(const CLI::Option& option);
 
-/// Whether the option takes several values.
+/// Returns true if an option takes several values.
 bool is_repeated(const CLI::Option& option);
 
-/// The heading of an option in help: "-o, --output RESULT.h5", "SHARD.h5 ..."
+/// The heading of an option or an argument in help: "-o, --output RESULT.h5", "SHARD.h5 ...".
 std::string heading(const CLI::Option& option);
 
-/// "poesy run", or "poesy".
+/// The words with which a command is called: "poesy run". For the program itself: "poesy".
 std::string title(const CLI::App& command);
 
-/// "poesy evaluate STUDY.toml --poses P.csv --errors E.csv [options]"
+/// The synopsis of a command: "poesy evaluate STUDY.toml --poses P.csv --errors E.csv [options]".
 std::string synopsis(const CLI::App& command);
 
-/// Prints help of the program and of its commands, in as many columns as stdout has.
+/// Makes the help of the program and of its commands, in as many columns as stdout has.
 std::shared_ptr<CLI::FormatterBase> help_formatter();
 
-/// What is wrong with a command line that CLI11 refused, and what to do: "problem; remedy". Names the most similar
-/// command or option.
+/// The message about a command line that CLI11 refused: what is wrong, and what to do, "problem; remedy". It suggests
+/// the most similar command or option.
 std::string command_line_problem(const Command& program, const CLI::ParseError& error);
 
-/// "no command 'rn'; did you mean 'run'? see poesy --help".
+/// The message for a word that is not a command: "no command 'rn'; did you mean 'run'? see poesy --help".
 std::string unknown_command(const std::string& word, const Command& program);
 
-/// What is wrong if an option or an argument has an empty text, as in a script whose variable is not set, or if an
-/// option has another option as its value; none if neither is so. Precondition: CLI11 accepted the command line.
+/// The message that a value of a command line is impossible; none if all values are possible. A value is impossible if
+/// it is empty, as in a script whose variable is not set, or if an option has another option as its value.
+/// Precondition: CLI11 accepted the command line.
 std::optional<std::string> impossible_value(const Command& program);
 
-/// Whether the command line begins with a command that does not exist.
+/// Returns true if the command line begins with a command that does not exist.
 bool has_unknown_command(const Command& program);
 
 }  // namespace poesy::app

@@ -8,6 +8,7 @@
 #include <new>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "engine/app/command_line.h"
 #include "engine/app/progress.h"
@@ -20,6 +21,7 @@
 #include "engine/report/frames_table.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
+#include "engine/result/described.h"
 #include "engine/result/result_file.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/outlook.h"
@@ -38,17 +40,19 @@ constexpr std::array<std::string_view, 3> kForms{"text", "json", "csv"};
 
 struct EvaluateOptions {
   std::string study;
-  std::string poses;
+  std::string poses;  ///< empty: those of the study
   std::string errors;
-  std::string frames;  ///< one of kForms; empty: solve the errors
+  /// Form in which the frames of the mechanism are printed as a table, one of kForms; empty: the command solves errors
+  /// instead.
+  std::string frames;
   std::string result;
   std::size_t threads = 0;
   bool paired = false;
   bool quiet = false;
 };
 
-/// Warns of poses that are nearly singular. They are not refused here, because the status of their samples tells what
-/// happened.
+/// Warns of poses that are nearly singular. This command does not refuse them, because the status of each sample tells
+/// how its solve ended.
 void warn_of_singular_poses(const std::string& path, const SelectedPoses& poses, double max_condition) {
   for (std::size_t m = 0; m < poses.condition.size(); ++m) {
     if (poses.condition[m] <= max_condition) continue;
@@ -57,11 +61,12 @@ void warn_of_singular_poses(const std::string& path, const SelectedPoses& poses,
   }
 }
 
-/// Warns of a doubt if the line is not empty.
+/// Prints a warning, unless it is empty.
 void warn_of(const std::string& doubt) {
   if (!doubt.empty()) say(Message::warning, doubt);
 }
 
+/// The poses of a table.
 SelectedPoses read_reachable_poses(const std::string& path, const Model& model) {
   PoseSelection selection;
   const double max_condition = std::exchange(selection.max_condition, std::numeric_limits<double>::infinity());
@@ -75,10 +80,25 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
   return poses;
 }
 
+/// The poses of the file that the user gave, or those that the study selects; none if the search for them was stopped.
+std::optional<SelectedPoses> poses_of(const EvaluateOptions& options, const Study& study, const Model& model) {
+  if (!options.poses.empty()) return read_reachable_poses(options.poses, model);
+  auto poses = find_poses(study, model, {.quiet = options.quiet, .stop = &catch_interrupts()});
+  if (!poses) return std::nullopt;
+  for (const std::string& doubt : doubts_of(study, *poses)) warn_of(doubt);
+  return poses;
+}
+
+/// Tells that the command was stopped.
+int interrupted() {
+  say(Message::note, "interrupted; nothing was written");
+  return kInterrupted;
+}
+
 /// Prints the poses of joints and frames without errors, and solves nothing.
 int print_frames(const EvaluateOptions& options, const Model& model, const PoseSet& poses) {
   if (std::ranges::find(kForms, options.frames) == kForms.end()) {
-    throw InputError({}, "--frames: '" + printable(options.frames) + "' is no form of a table",
+    throw InputError({}, "--frames: '" + printable(options.frames) + "' is not a form of a table",
                      suggestion(options.frames, kForms));
   }
   const std::optional<Table> table = frames_table(model, poses);
@@ -91,9 +111,9 @@ int print_frames(const EvaluateOptions& options, const Model& model, const PoseS
   return kDone;
 }
 
-/// Throws if there are more outcomes than a result may have (study_kind.h).
+/// Throws InputError if there are more outcomes than a result may have (study_kind.h).
 void check_size(const EvaluateOptions& options, const PoseSet& poses, const ErrorTable& errors) {
-  if (options.paired) return;  // the tables have as many rows as were read
+  if (options.paired) return;  // each row is solved at one pose, so there are no more solves than rows
   const double solves = static_cast<double>(poses.size()) * static_cast<double>(errors.rows);
   if (solves <= static_cast<double>(kMostCells)) return;
   throw InputError({options.errors},
@@ -102,7 +122,7 @@ void check_size(const EvaluateOptions& options, const PoseSet& poses, const Erro
                    "give fewer rows or poses, or --paired for row by row");
 }
 
-/// The input of an evaluation. Refers to all members.
+/// The input of an evaluation. Refers to its parts, which must outlive it.
 struct Evaluated {
   const Study& study;
   const Model& model;
@@ -111,14 +131,14 @@ struct Evaluated {
   Pairing pairing;
 };
 
-/// Bytes of the outcomes and of the errors.
+/// The memory for the outcomes and the errors, bytes.
 std::size_t memory_of(const Evaluated& all) {
   const std::size_t rows = all.pairing == Pairing::row_by_row ? 1 : all.errors.rows;
   const std::size_t outcomes = outcome_bytes(all.model.description(), Outcomes::with_details);
   return all.poses.poses.size() * rows * outcomes + all.errors.values.size() * sizeof(double);
 }
 
-/// path: path of the result; empty: none is written.
+/// Solves the errors, and prints or writes the outcomes. path: path of the result; empty: none is written.
 int solve(const EvaluateOptions& options, const Evaluated& all, const std::string& path) {
   const auto& [study, model, poses, errors, pairing] = all;
   const auto start = std::chrono::steady_clock::now();
@@ -132,18 +152,16 @@ int solve(const EvaluateOptions& options, const Evaluated& all, const std::strin
                              .stop = &catch_interrupts()});
   }
   const double seconds = seconds_since(start);
-  if (!result) {
-    say(Message::note, "interrupted; nothing was written");
-    return kInterrupted;
-  }
+  if (!result) return interrupted();
   const SolveCounts total = result->total();
   if (const auto& limits = study.analysis.limits; !limits.empty()) {
     result->verdicts = judge_rows(limits, *result, pairing, study.not_converged);
   }
   Evaluation found = evaluation(*std::move(result), errors, pairing, model.description());
-  StoredResult shown =
-      with_verdicts(study, poses, found.solves.verdicts, row_names(errors.labels, pairing, errors.rows));
-  for (std::size_t r = 0; r < shown.responses.size(); ++r) shown.headline.push_back(r);
+  StoredResult shown = described(study, model, poses);
+  shown.verdicts = found.solves.verdicts;
+  shown.row_names = row_names(errors.labels, pairing, errors.rows);
+  shown.headline = chosen_or_all({}, shown.responses.size());
   if (!path.empty()) {
     write_evaluation(path, study, poses, errors.factors, found, run_facts(seconds, threads, total.total()));
   }
@@ -158,7 +176,8 @@ int solve(const EvaluateOptions& options, const Evaluated& all, const std::strin
                {"the result is kept; see /limits in " + path, "the result is kept: see /evaluate/status in " + path});
 }
 
-/// Throws if a response is relative to the pose before, where the errors are those of another row.
+/// Throws InputError if a response is relative to the previous pose, because the previous pose is solved with other
+/// errors.
 void refuse_pose_before(const Study& study) {
   for (const OwnResponse& own : study.mechanism.responses) {
     if (!own.relative_to || !own.relative_to->is_previous()) continue;
@@ -169,34 +188,39 @@ void refuse_pose_before(const Study& study) {
 }
 
 int evaluate(const EvaluateOptions& options) {
-  const Study study = read_study(options.study, registry(), StudyUse::evaluate);
+  const StudyUse use = options.poses.empty() ? StudyUse::evaluate_at_poses : StudyUse::evaluate;
+  const Study study = read_study(options.study, registry(), use);
   if (study.mechanism.compared) {
     throw InputError(study.mechanism.place, "mechanism.fidelity is \"both\", but an evaluation solves at one fidelity",
                      fmt::format("write \"{}\"", fmt::join(study.model().fidelities, "\" or \"")));
   }
   if (options.paired) refuse_pose_before(study);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  const SelectedPoses poses = read_reachable_poses(options.poses, *model);
-  if (!options.frames.empty()) return print_frames(options, *model, poses.poses);
+  const std::optional<SelectedPoses> poses = poses_of(options, study, *model);
+  if (!poses) return interrupted();
+  if (!options.frames.empty()) return print_frames(options, *model, poses->poses);
   const ErrorTable errors = read_errors(options.errors, *model);
   warn_of(bare_error_text(options.errors, errors, study));
-  if (options.paired && poses.poses.size() != errors.rows) {
-    throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.poses.size()),
+  if (options.paired && poses->poses.size() != errors.rows) {
+    throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses->poses.size()),
                      "--paired needs one row of errors for each pose");
   }
   if (options.paired && any_over_poses(study.analysis.limits)) {
     throw InputError({options.study}, "a limit is over the poses of a machine, but --paired has each row at one pose",
                      "leave out --paired, or write a limit at each pose");
   }
-  check_size(options, poses.poses, errors);
+  check_size(options, poses->poses, errors);
   std::string path;
   std::optional<RunLock> lock;
   if (!options.result.empty()) {
-    path = check_result_path(options.result, std::array{options.study, options.poses, options.errors});
+    std::vector<std::string> inputs = inputs_of(options.study, study);
+    inputs.push_back(options.errors);
+    if (!options.poses.empty()) inputs.push_back(options.poses);
+    path = check_result_path(options.result, inputs);
     lock.emplace(path);
   }
   const Pairing pairing = options.paired ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
-  const Evaluated all{study, *model, poses, errors, pairing};
+  const Evaluated all{study, *model, *poses, errors, pairing};
   try {
     return solve(options, all, path);
   } catch (const std::bad_alloc&) {
@@ -208,12 +232,13 @@ int evaluate(const EvaluateOptions& options) {
 
 Command& add_evaluate(Command& program) {
   const auto [command, options] = program.add_command("evaluate", "solve errors that somebody else sampled", evaluate);
-  command.add_value("study", options.study, "STUDY.toml", "study file; its [mechanism] and [solver] are used")
-      ->required();
   command
-      .add_value("--poses", options.poses, "P.csv",
-                 "poses; the first line names the pose coordinates, with units (\"z [mm]\") or SI")
+      .add_value("study", options.study, "STUDY.toml",
+                 "study file; its [mechanism] and [solver] are used, and [poses] without --poses")
       ->required();
+  command.add_value("--poses", options.poses, "P.csv",
+                    "poses; the first line names the pose coordinates, with units (\"z [mm]\") or SI; default: those "
+                    "of the study");
   CLI::Option* errors = command.add_value(
       "--errors", options.errors, "E.csv",
       "errors, a row is a sample; the first line names the factors, with units or SI; a column \"part\" "
@@ -230,6 +255,7 @@ Command& add_evaluate(Command& program) {
   command.add_whole_number("--threads", options.threads, "N", "number of threads; default: one per processor", 1, 1024);
   command.add_flag("--quiet", options.quiet, "no progress");
   command.examples = {
+      {"every pose of the study with every row of errors", "poesy evaluate study.toml --errors e.csv"},
       {"every pose with every row of errors; prints the summary",
        "poesy evaluate study.toml --poses p.csv --errors e.csv"},
       {"the first pose with the first row, and so on; keeps every outcome",

@@ -1,9 +1,17 @@
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "engine/app/command_line.h"
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/kinds/registry.h"
 #include "engine/kinds/result_file.h"
+#include "engine/report/latex.h"
+#include "engine/report/report_kind.h"
+#include "engine/report/tables.h"
 
 namespace poesy::app {
 namespace {
@@ -11,11 +19,23 @@ namespace {
 struct ExportOptions {
   std::string result;
   std::string folder;
+  bool latex = false;
 };
+
+/// The tables that `poesy show` prints, with all columns, and the tables that explain names.
+std::vector<Table> printed_tables(const StoredResult& result) {
+  std::vector<Table> tables = result_tables(kind_of(result).report, result, {default_ranking(result)});
+  for (Table& table : name_tables(result)) {
+    if (!table.rows.empty()) tables.push_back(std::move(table));
+  }
+  return tables;
+}
 
 int export_result(const ExportOptions& options) {
   const StoredResult result = read_result_with_warning(options.result);
-  for (const std::string& file : export_tables(result, options.folder)) print(printable_line(file) + "\n");
+  const std::vector<std::string> files = options.latex ? write_latex(result, printed_tables(result), options.folder)
+                                                       : export_tables(result, options.folder);
+  for (const std::string& file : files) print(printable_line(file) + "\n");
   return kDone;
 }
 
@@ -35,7 +55,9 @@ Command& add_export(Command& program) {
   const auto [command, options] = program.add_command("export", "write every table of a result as CSV", export_result);
   command.add_value("result", options.result, "RESULT.h5", "result file")->required();
   command.add_value("-d,--directory", options.folder, "DIR", "folder for the tables, made if missing")->required();
-  command.examples = {{"tables/global.csv and others", "poesy export result.h5 -d tables"}};
+  command.add_flag("--latex", options.latex, "the tables of poesy show as LaTeX (booktabs) instead");
+  command.examples = {{"tables/global.csv and others", "poesy export result.h5 -d tables"},
+                      {"tables/ranking.tex and others", "poesy export result.h5 -d tables --latex"}};
   return command;
 }
 

@@ -35,19 +35,19 @@ void describe_program(Command& program) {
 
 constexpr const char* kAboutTheProgram = "About the program";
 
-/// Adds the commands, grouped as in the program's help.
+/// Adds all commands to the program, in the groups in which its help shows them.
 void add_commands(Command& program) {
   const auto group = [&](const char* title, std::initializer_list<Command& (*)(Command&)> commands) {
     for (const auto add : commands) add(program).group(title);
   };
   group("Prepare a study", {add_models, add_template, add_check});
-  group("Compute", {add_run, add_merge, add_evaluate, add_calibrate});
-  group("Look at results", {add_show, add_report, add_tolerances, add_replay, add_export, add_verify});
+  group("Compute", {add_run, add_sweep, add_merge, add_evaluate, add_calibrate});
+  group("Look at results", {add_show, add_report, add_figure, add_tolerances, add_replay, add_export, add_verify});
   group(kAboutTheProgram, {add_help, add_version, add_completion});
   program.set_help_all_flag("--help-all", "print the help of all commands");
 }
 
-/// Some versions of HDF5 (1.10) crash if they have no memory to start.
+/// Throws if there is too little memory to start, because some versions of HDF5 (1.10) then crash.
 void expect_memory() {
   constexpr std::size_t kLeast = std::size_t{24} << 20U;
   constexpr std::uintmax_t kMega = 1'000'000;
@@ -57,12 +57,12 @@ void expect_memory() {
                             " MB of memory at least, and this process may have " +
                             std::to_string(most_address_space() / kMega) + " MB",
                         "raise the limit (ulimit -v)");
-  // The rank is not yet connected, so the first process cannot report its error.
+  // The ranks are not connected yet, so this rank's error cannot be reported by the first process.
   if (!is_first_process()) say(Message::error, "rank " + std::to_string(find_launch()->rank) + ": " + error.what());
   throw error;
 }
 
-/// Tells of a limit on open files that is too low, which libraries do not report.
+/// Throws if the limit on open files is too low, because libraries do not report this.
 void expect_open_files() {
   constexpr std::size_t kLeast = 16;
   std::vector<int> files;
@@ -107,7 +107,7 @@ int parse_and_run(int argc, char** argv) {
   return called.action();
 }
 
-/// Returns the exit code, or an error if standard output could not be written.
+/// Returns the exit code of the command, or an error if standard output could not be written.
 int flushed(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   say(Message::error, "what was to be printed cannot be written; see whether there is room where it goes");
@@ -120,6 +120,6 @@ int flushed(int code) {
 int main(int argc, char** argv) {
   poesy::save_address_space();
   poesy::return_large_lists();
-  std::signal(SIGXFSZ, SIG_IGN);  // a file above the size limit then fails to be written, as on a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit on file sizes then fails as on a full disk
   return poesy::app::flushed(poesy::app::exit_code_of([=] { return poesy::app::parse_and_run(argc, argv); }));
 }

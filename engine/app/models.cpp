@@ -21,10 +21,10 @@
 namespace poesy::app {
 namespace {
 
-/// A larger file is not a mechanism file.
+/// The largest size of a mechanism file, bytes.
 constexpr std::size_t kMostBytes = 1 << 20;
 
-/// The mechanism of that name, in upper or lower case, or of the file at this path. Throws InputError, which lists the
+/// The mechanism of this name, in upper or lower case, or of the file at this path. Throws InputError, which lists the
 /// known names.
 CatalogEntry find_model(const std::string& name) {
   if (const CatalogEntry* entry = find(registry(), name)) return *entry;
@@ -69,7 +69,7 @@ int print_template(const TemplateOptions& options) {
 
 void write_picture(const CatalogEntry& entry, const std::string& path) {
   if (!path.ends_with(".svg"))
-    throw InputError({path}, "is no name of a picture", "pictures are SVG: name it PICTURE.svg");
+    throw InputError({path}, "is not a name of a picture", "pictures are SVG: name it PICTURE.svg");
   std::vector<double> geometry;
   for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
   const std::optional<Sketch> sketch = entry.build(geometry, 0)->sketch({});
@@ -81,8 +81,8 @@ void write_picture(const CatalogEntry& entry, const std::string& path) {
   write_text(output, mechanism_picture(*sketch, entry.description.title));
 }
 
-/// The folder of the installed mechanism files; empty if there is none, as for a program in its build folder or on
-/// systems without /proc.
+/// The folder of the installed mechanism files. Empty if there is none, as for a program in its build folder, or on a
+/// system without /proc.
 std::filesystem::path installed_mechanisms() {
   std::error_code none;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", none);
@@ -90,7 +90,7 @@ std::filesystem::path installed_mechanisms() {
   return std::filesystem::is_directory(folder, none) ? folder : std::filesystem::path();
 }
 
-/// The mechanism files in a folder, one a line: NAME/NAME.toml for each folder NAME. Empty for an empty path.
+/// The mechanism files in a folder, NAME/NAME.toml for each folder NAME, each on a line. Empty for an empty path.
 std::string files_text(const std::filesystem::path& folder) {
   if (folder.empty()) return "";
   std::vector<std::string> files;

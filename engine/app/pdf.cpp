@@ -8,20 +8,18 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <optional>
 
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
-#include "engine/base/plain_file.h"
 #include "engine/storage/file_writer.h"
 
 namespace poesy::app {
 namespace {
 
-constexpr std::string_view kPdfMark = "% poesy report\n";  ///< appended to the PDF as a comment
+constexpr std::string_view kPdfMark = "% poesy report\n";  ///< a comment that is appended to the PDF
 constexpr const char* kOtherWay = "write the report as REPORT.html, open it in a browser and print it to a PDF there";
-/// A shell script that prints the page in a folder; its exit code is 127 if no browser is on PATH.
+/// A shell script that prints the page in a folder. Its exit code is 127 if PATH has no browser.
 constexpr const char* kPrint = R"sh(
   cd "$POESY_PRINTED" && exec 2>&1 </dev/null || exit 1
   [ "$(id -u)" = 0 ] && sandbox=--no-sandbox  # Chromium refuses to have one as root
@@ -41,15 +39,9 @@ struct TemporaryFolder {
   }
 };
 
-/// The content of a file; empty if it cannot be read.
-std::string contents(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-/// Whether a PDF is complete, from its first line to its last.
+/// Returns true if a PDF is complete, from its first line to its last one.
 bool is_whole(const std::string& pdf) {
-  constexpr std::size_t kEnd = 1024;  // readers of a PDF look for its end in this many bytes
+  constexpr std::size_t kEnd = 1024;  // readers of a PDF look for its end in this number of last bytes
   return pdf.starts_with("%PDF-") && pdf.find("%%EOF", std::max(pdf.size(), kEnd) - kEnd) != std::string::npos;
 }
 
@@ -58,9 +50,8 @@ bool is_whole(const std::string& pdf) {
 bool is_pdf(const std::string& path) { return path.ends_with(".pdf") || path.ends_with(".PDF"); }
 
 bool is_pdf_report(const std::string& path) {
-  if (!PlainFile(path).is_open()) return false;
-  const std::string file = contents(path);
-  return file.empty() || (is_whole(file) && file.ends_with(kPdfMark));
+  const std::optional<std::string> file = content_of(path);
+  return file && (file->empty() || (is_whole(*file) && file->ends_with(kPdfMark)));
 }
 
 bool write_pdf(const std::string& path, std::string_view page) {
@@ -78,7 +69,7 @@ bool write_pdf(const std::string& path, std::string_view page) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
     throw InputError({.file = path}, "cannot be printed: neither Chromium nor Chrome is on PATH", kOtherWay);
   }
-  const std::string pdf = contents(folder.path + "/report.pdf");
+  const std::string pdf = content_of(folder.path + "/report.pdf").value_or("");
   if (status != 0 || !is_whole(pdf)) {
     throw FileError(path, "was not printed: the browser said: " + said.substr(0, said.find('\n')), kOtherWay);
   }

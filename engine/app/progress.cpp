@@ -19,7 +19,7 @@
 namespace poesy::app {
 namespace {
 
-/// "2 h 10 min"; without the smaller part if it is zero.
+/// A duration in two units: "2 h 10 min". The smaller part is left out if it is zero.
 std::string two_parts(double count, double per_large, const char* large, const char* small) {
   const double whole = std::floor(count / per_large);
   const double rest = count - whole * per_large;
@@ -40,7 +40,7 @@ double share_done(const Progress& progress) {
   return std::min(1.0, static_cast<double>(progress.solves) / static_cast<double>(progress.total));
 }
 
-/// Percent done, rounded down so that 100 % appears only at the end.
+/// The percentage of solves that are done, rounded down so that 100 % appears only at the end.
 double percent_done(const Progress& progress) { return std::floor(1000.0 * share_done(progress)) / 10.0; }
 
 /// A rate with its unit: "720 solves/s", "7.21 M solves/s".
@@ -52,6 +52,11 @@ std::string rate_text(double rate) {
     ++prefix;
   }
   return fmt::format("{:.3g} {}solves/s", rate, kPrefixes[prefix]);
+}
+
+/// The rate with a comma behind it; empty until there is one.
+std::string rate_part(const ProgressFacts& facts) {
+  return facts.rate > 0.0 ? rate_text(facts.rate) + ", " : std::string();
 }
 
 std::string count_text(const Progress& progress) { return fmt::format("{} not converged", progress.not_converged); }
@@ -78,13 +83,13 @@ std::string bar(double share, std::size_t length) {
   return "[" + std::string(filled, '#') + std::string(length - filled, '.') + "]";
 }
 
-/// The line, or an empty one if it is too long.
+/// The line, or an empty text if the line is longer than `width`.
 std::string within(std::size_t width, std::string line) {
   return line.size() <= width ? std::move(line) : std::string();
 }
 
-/// The share done, the details, a bar and the time left. The bar is as long as the rest allows, and leaves some columns
-/// for a longer time. Empty if there is too little room.
+/// A line with the percentage, a bar, the details and the time left. The bar takes the columns that are free, except
+/// for a few, because the time left may become longer. Empty if there is too little room.
 std::string with_bar(const ProgressFacts& facts, const std::string& details, std::size_t width) {
   const std::string begin = stage_text(facts) + fmt::format("{:5.1f} % ", percent_done(facts.progress));
   const std::string left = left_text(facts);
@@ -97,7 +102,7 @@ std::string with_bar(const ProgressFacts& facts, const std::string& details, std
 constexpr std::chrono::milliseconds kLive{100};
 constexpr std::chrono::seconds kPlain{5};
 
-/// The number of columns that a line may have. A line as wide as the terminal would wrap on some.
+/// The number of columns that a line may have. Some terminals wrap a line that is as wide as they are.
 std::size_t room() {
   const std::size_t width = terminal_width(STDERR_FILENO);
   return (width != 0 ? width : kUsualWidth) - 1;
@@ -111,7 +116,7 @@ double parse_duration(const std::string& text, const std::string& option) {
     const Quantity quantity = parse_quantity(text);
     if (quantity.dimension == Dimension::time && quantity.si > 0.0) return quantity.si;
   } catch (const QuantityError&) {
-    // One message for every text that is not a time.
+    // Every text that is not a duration gets the same message.
   }
   throw InputError({}, option + " is '" + printable(text) + "'", kRemedy);
 }
@@ -144,12 +149,12 @@ double RecentRate::per_second() const {
 }
 
 std::string plain_line(const ProgressFacts& facts) {
-  return fmt::format("{}{:.1f} % done, {}, {}, {}", stage_text(facts), percent_done(facts.progress),
-                     rate_text(facts.rate), failures_text(facts.progress), left_text(facts));
+  return fmt::format("{}{:.1f} % done, {}{}, {}", stage_text(facts), percent_done(facts.progress), rate_part(facts),
+                     failures_text(facts.progress), left_text(facts));
 }
 
 std::string live_line(const ProgressFacts& facts, std::size_t width) {
-  const std::string rate = fmt::format("{}{:>15}", kGap, rate_text(facts.rate));
+  const std::string rate = facts.rate > 0.0 ? fmt::format("{}{:>15}", kGap, rate_text(facts.rate)) : std::string();
   const std::string count = std::string(kGap) + count_text(facts.progress);
   const std::string failures = std::string(kGap) + failures_text(facts.progress);
   const std::string left = left_text(facts);
@@ -198,7 +203,7 @@ void ProgressLine::write(const std::function<std::string()>& plain,
 void ProgressPrinter::operator()(const Progress& progress) {
   const RecentRate::Clock::time_point now = RecentRate::Clock::now();
   const std::uint64_t done = progress.solves - progress.before;
-  if (done < done_) {  // a new count began
+  if (done < done_) {  // a new stage began, so its solves are counted anew
     rate_ = RecentRate(now);
     ++stage_;
   }

@@ -21,7 +21,7 @@
 namespace poesy::app {
 namespace {
 
-constexpr std::uint64_t kMostNumber = 0x7fffffffffffffff;  ///< largest number of a pose or sample on the command line
+constexpr std::uint64_t kMostNumber = 0x7fffffffffffffff;  ///< largest number of a pose or a sample on the command line
 
 struct ReplayOptions {
   std::string result;
@@ -34,14 +34,14 @@ struct ReplayOptions {
   throw InputError({.file = options.result}, problem, remedy);
 }
 
-/// Throws unless `number` is in [0, count).
+/// Throws InputError unless `number` is in [0, count). what: "pose" or "sample".
 void check_number(const ReplayOptions& options, const std::string& what, std::size_t number, std::size_t count) {
   if (number < count) return;
   refuse(options, fmt::format("{} {}: there are {} {}s", what, number, count, what),
          count == 1 ? "the only number is 0" : fmt::format("give a number from 0 to {}", count - 1));
 }
 
-/// The position of the name on the command line in this list.
+/// The index, in a list of known names, of the name that the command line gives. Throws InputError if it is unknown.
 std::size_t position_of(const ReplayOptions& options, const std::string& what, const std::vector<std::string>& known) {
   const auto found = std::ranges::find(known, options.factor);
   if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
@@ -59,7 +59,7 @@ std::size_t required_sample(const ReplayOptions& options, std::size_t count) {
   return *options.sample;
 }
 
-/// Replays one of the samples that the study drew.
+/// Draws and solves one of the study's samples again.
 ReplayedSample replay_drawn(const ReplayOptions& options, const StoredResult& result, const StoredStudy& stored,
                             const Model& model) {
   const Analysis& analysis = stored.study.analysis;
@@ -72,7 +72,7 @@ ReplayedSample replay_drawn(const ReplayOptions& options, const StoredResult& re
   return replay_sample(stored.study, model, stored.poses.poses, slot, PoseIndex(options.pose), sample);
 }
 
-/// The row of given errors that the command line names.
+/// The index of the row of given errors that the command line names.
 std::size_t row_of(const ReplayOptions& options, const GivenErrors& given) {
   if (given.samples == 0) refuse_sample(options, fmt::format("a {} has no samples", given.word));
   const std::size_t position = position_of(options, std::string(given.word), given.names);
@@ -81,7 +81,7 @@ std::size_t row_of(const ReplayOptions& options, const GivenErrors& given) {
   return given.pairing == Pairing::row_by_row ? options.pose : sample;
 }
 
-/// Replays a named case, or a row of the errors of `poesy evaluate`.
+/// Solves a named case, or a row of errors of `poesy evaluate`, again.
 ReplayedSample replay_given(const ReplayOptions& options, const StoredResult& result, const GivenErrors& given,
                             const StoredStudy& stored, const Model& model) {
   const std::size_t row = row_of(options, given);
@@ -114,7 +114,7 @@ void warn_of_other_program(const ReplayOptions& options, const StoredResult& res
                   options.result, result.poesy_version, result.git_commit, poesy_version(), git_commit()));
 }
 
-/// Warns if the result lists this sample as another kind of failure, or as solved although it is not.
+/// Warns if the result lists this sample with another status than the replay found.
 void warn_of_difference(const ReplayOptions& options, const StoredResult& result, const ReplayedSample& replayed) {
   for (const Failure& failure : result.failures) {
     if (result.varied[failure.slot] != options.factor || failure.pose.value != options.pose ||
@@ -126,7 +126,7 @@ void warn_of_difference(const ReplayOptions& options, const StoredResult& result
   }
 }
 
-/// A value with its SI unit and the unit that people read: "-0.25 m = -250 mm".
+/// A value in its SI unit and in the unit that results show: "-0.25 m = -250 mm".
 std::string value_text(double si, Dimension dimension) {
   const Unit& unit = display_unit(dimension);
   std::string text = shortest(si);
@@ -179,7 +179,8 @@ std::string iterations_text(const SolveTrace& trace) {
   return text + "\n";
 }
 
-/// Whether both solvers agree. If one did not converge, responses are last iterates and may differ.
+/// Lines that say whether the two solvers agree: the run's and the reference solver. If one did not converge, its
+/// responses are those of its last iterate, which may differ.
 std::string agreement_text(const ModelDescription& model, const ReplayedSample& sample, const SolveTrace& trace) {
   std::string text = fmt::format("status: {}\n", sample.status == trace.status ? "the same" : "not the same");
   for (std::size_t r = 0; r < model.responses.size(); ++r) {
@@ -209,6 +210,11 @@ int replay(const ReplayOptions& options) {
   warn_of_other_program(options, result);
   check_number(options, "pose", options.pose, result.poses.size());
   const StoredStudy stored = stored_study(result, options.result, registry());
+  if (!kind_of(result).report.words(result).from_tables && !calibration_text(stored.study).empty() &&
+      !stored.study.mechanism.calibrated) {
+    refuse(options, "its machines are calibrated, and a replay solves a machine as it is made",
+           "take [analysis.calibration] out of the study, run it, and replay that result");
+  }
   const std::unique_ptr<Model> model = build_model(stored.study.mechanism);
   const auto pose = stored.poses.poses[PoseIndex(options.pose)];
   if (const auto reason = model->unreachable(pose)) {

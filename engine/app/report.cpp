@@ -1,6 +1,9 @@
 #include <cstdio>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/app/command_line.h"
@@ -22,8 +25,8 @@ struct ReportOptions {
   std::string report;
 };
 
-/// The default path: result.h5 gives result.html beside it; before.h5, ..., after.h5 give before-after.html beside the
-/// first.
+/// The default path of a report. For one result, result.h5, it is result.html in the same folder. For before.h5 to
+/// after.h5 it is before-after.html in the folder of the first.
 std::string default_path(const std::vector<std::string>& results) {
   const std::filesystem::path first(results.front());
   std::string name = first.stem().string();
@@ -33,11 +36,12 @@ std::string default_path(const std::vector<std::string>& results) {
 
 bool may_be_replaced(const std::string& path) { return is_marked(path, kReportMark); }
 
-/// Reads what a report needs from a result's file.
+/// Reads a result file, and the model and the study that a report needs in addition to it.
 ReportedResult reported(const std::string& path) {
   ReportedResult result{read_result_with_warning(path), path};
-  if (const std::optional<Study> study = study_in(result.stored, registry())) {
+  if (std::optional<Study> study = study_in(result.stored, registry())) {
     result.model = build_model(study->mechanism);
+    result.study = std::make_shared<const Study>(*std::move(study));
   }
   return result;
 }

@@ -23,9 +23,10 @@
 #include "engine/report/solves.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
-#include "engine/result/result_parts.h"
+#include "engine/result/described.h"
 #include "engine/result/shard_file.h"
 #include "engine/storage/file_writer.h"
+#include "engine/study/calibration.h"
 #include "engine/study/limit_keys.h"
 #include "engine/study/study_kind.h"
 #include "models/registry.h"
@@ -48,19 +49,22 @@ std::string cpu_name() {
   return "unknown";
 }
 
-/// Options that may solve more samples than these.
-std::string advice(const SolverOptions& solver, const SolveCounts& solves) {
+/// Advice on options that may solve more samples than `solves` shows. It names the solver's method only for the
+/// published metric, and for mechanisms without a choice of metrics, because the method matters only there.
+std::string advice(const Study& study, const SolveCounts& solves) {
   if (mostly_impossible(solves)) return std::string(kAssemblyAdvice);
-  if (solver.method == SolverOptions::Method::gauss_newton) {
+  const std::string& metric = study.model().metric;
+  const bool newton_may_help = metric.empty() || metric == "published";
+  if (study.solver.method == SolverOptions::Method::gauss_newton && newton_may_help) {
     return "take method = \"newton\", or raise solver.max_iterations";
   }
-  return fmt::format("study smaller errors, or raise solver.max_iterations above {}", solver.max_iterations);
+  return fmt::format("study smaller errors, or raise solver.max_iterations above {}", study.solver.max_iterations);
 }
 
 std::string warning_text(const Study& study, const SolveCounts& solves) {
   const double share = share_not_converged(solves);
   const bool many = share > kManyNotConverged;
-  const std::string advised = advice(study.solver, solves);
+  const std::string advised = advice(study, solves);
   const std::uint64_t impossible = solves.not_assembled();
   if (impossible == 0) {
     return fmt::format("{:.3g} % of the samples did not converge and are left out; {}{}", 100.0 * share,
@@ -94,7 +98,8 @@ ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std
   return kTooManyNotConverged;
 }
 
-/// certificate: whether the study found tolerances and tried these machines only to certify them.
+/// Judges a yield, and returns the exit code. certificate: true if the study found tolerances and tried these machines
+/// only to certify the tolerances.
 ExitCode judge_yield(const YieldVerdict& yield, bool certificate, const std::string& study_path,
                      const std::string& remedy) {
   using enum YieldVerdict::Decision;
@@ -131,7 +136,8 @@ ExitCode judge_limits(const Study& study, const StoredResult& result, const std:
   print("\n" + text_of(*table, output_width()));
   const LimitVerdicts& verdicts = *result.verdicts;
   if (verdicts.yield) {
-    // A study whose yield can be asked for judges machines; any other one certifies its own result.
+    // A kind that can be asked for a yield judges machines itself. Any other kind whose result has a yield certifies
+    // its own result by it.
     const bool certificate = study.analysis.kind != nullptr && study.analysis.kind->ask_yield == nullptr;
     return judge_yield(*verdicts.yield, certificate, study_path, remedy);
   }
@@ -146,7 +152,7 @@ ExitCode judge_limits(const Study& study, const StoredResult& result, const std:
   return verdicts.passed() ? kDone : kLimitNotKept;
 }
 
-/// The outcome after all solves.
+/// The outcome of a run, after all solves are done.
 RunOutcome outcome_of(const Job& job) {
   const RunTime time = job.time();
   const SolveCounts solves = job.checkpoints().solves();
@@ -180,6 +186,20 @@ std::optional<SelectedPoses> find_poses(const Study& study, const Model& model, 
   });
 }
 
+std::vector<std::string> inputs_of(const std::string& study_path, const Study& study) {
+  std::vector<std::string> inputs{study_path};
+  const auto add = [&](const std::string& name) {
+    if (!name.empty()) inputs.push_back((std::filesystem::path(study_path).parent_path() / name).string());
+  };
+  add(study.poses.file);
+  if (study.poses.trajectory) add(study.poses.trajectory->file);
+  if (const auto& calibration = study.analysis.calibration; calibration != nullptr && calibration->poses) {
+    add(calibration->poses->file);
+  }
+  if (study.mechanism.file) add(study.mechanism.file->name);
+  return inputs;
+}
+
 ExitCode judge(const Study& study, const SolveCounts& solves, const StoredResult& result, const std::string& study_path,
                const Remedies& remedies) {
   const ExitCode limits = judge_limits(study, result, study_path, remedies.limits);
@@ -187,40 +207,23 @@ ExitCode judge(const Study& study, const SolveCounts& solves, const StoredResult
   return failures != kDone ? failures : limits;
 }
 
-StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const std::optional<LimitVerdicts>& verdicts,
-                           const std::vector<std::string>& row_names) {
-  StoredResult result;
-  for (const PoseCoordinate& coordinate : study.model().pose_coordinates) {
-    result.pose_coordinates.push_back({coordinate.name, std::string(si_unit(coordinate.dimension))});
-  }
-  result.poses = poses.poses;
-  result.time = poses.time;
-  for (const Response& response : study.model().responses) {
-    result.responses.push_back({response.name, std::string(si_unit(response.dimension))});
-  }
-  result.row_names = row_names;
-  result.verdicts = verdicts;
-  result.measured = measured_errors(study);
-  return result;
-}
-
 namespace {
 
-/// The stem of the files beside a result: RESULT_certificate.
+/// The stem of the names of files beside a result: RESULT_certificate.
 std::string stem_beside(const std::filesystem::path& result) { return result.stem().string() + "_certificate"; }
 
 /// The endings of the study that confirms the result, and of the files that it may name.
-constexpr std::array<std::string_view, 3> kBeside{".toml", "_mechanism.toml", "_poses.csv"};
+constexpr std::array<std::string_view, 4> kBeside{".toml", "_mechanism.toml", "_poses.csv", "_measured.csv"};
 
-/// The beginning of that study's comment, which the result's name follows.
+/// The beginning of the comment in the study that confirms a result. The name of the result follows it.
 constexpr std::string_view kRepeats = "repeats the certificate of ";
 
-/// The path of a file beside the result, by its ending.
+/// The path of a file beside the result. end: ending of the file's name.
 std::string path_beside(const std::filesystem::path& result, std::string_view end) {
   return (result.parent_path() / (stem_beside(result) + std::string(end))).string();
 }
 
-/// Whether the study beside the result repeats an earlier certificate and names this file beside it.
+/// Returns true if a file beside the result belongs to an earlier run: the confirming study of that run names it.
 bool is_of_earlier_study(const std::filesystem::path& result, const std::string& file) {
   const std::string study = path_beside(result, kBeside.front());
   std::error_code ignored;
@@ -228,10 +231,10 @@ bool is_of_earlier_study(const std::filesystem::path& result, const std::string&
          std::filesystem::is_regular_file(file, ignored);
 }
 
-/// Writes the study and the files that it names beside the result. Returns the path of the study,
-/// RESULT_certificate.toml. Files that only an earlier study named are removed, and the study is written before the
-/// files that it names: the next run refuses to replace files that no study names (check_files_beside), so neither this
-/// run nor a killed one may leave such files.
+/// Writes the confirming study, RESULT_certificate.toml, and the files that it names, beside the result. Returns the
+/// path of the study. The next run refuses to replace files that no study names (check_files_beside()), so neither this
+/// run nor a killed run may leave such files. Therefore two rules hold: files that only an earlier study named are
+/// removed first, and the study is written before the files that it names.
 std::string write_beside(const Job& job, Study confirming) {
   const std::filesystem::path result(job.path);
   const std::string folder = result.has_parent_path() ? result.parent_path().string() : ".";
@@ -253,14 +256,14 @@ std::string write_beside(const Job& job, Study confirming) {
 
 void check_files_beside(const std::string& result, std::span<const std::string> inputs) {
   const std::filesystem::path path(result);
-  // An earlier study of this kind, or a file that it names.
+  // Returns true if the file is a confirming study of an earlier run, or a file that such a study names.
   const auto is_ours = [&](std::string_view end, const std::string& file) {
     return end == kBeside.front() ? is_marked(file, kRepeats) : is_of_earlier_study(path, file);
   };
   for (const std::string_view end : kBeside) {
     const std::string file = path_beside(path, end);
     check_name_length(file);
-    std::error_code ignored;  // a path that cannot be examined is neither
+    std::error_code ignored;  // a path that cannot be examined is neither a file nor a folder
     for (const std::string& input : inputs) {
       if (!std::filesystem::equivalent(file, input, ignored)) continue;
       throw InputError({input}, "would be replaced by the study that confirms the result, " + file,
@@ -301,10 +304,12 @@ int report_outcome(const Job& job, const std::string& study_path, const RunOutco
   if (!outcome.confirming.empty()) {
     print(fmt::format("{}: the study that repeats the certificate\n", printable_line(outcome.confirming)));
   }
-  if (job.options.shard) return kDone;  // only the whole study is judged
+  if (job.options.shard) return kDone;  // only the result of the whole study is judged
   const std::string remedy = fmt::format("the result is kept; see 'poesy show {}'", job.path);
-  return judge(job.study, outcome.solves, with_verdicts(job.study, job.poses, outcome.verdicts, outcome.row_names),
-               study_path, {remedy, remedy});
+  StoredResult result = described(job.study, job.model, job.poses);
+  result.verdicts = outcome.verdicts;
+  result.row_names = outcome.row_names;
+  return judge(job.study, outcome.solves, result, study_path, {remedy, remedy});
 }
 
 std::string memory_text(std::size_t bytes) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/app/command_line.h"
 #include "engine/app/progress.h"
@@ -17,12 +18,12 @@
 
 namespace poesy::app {
 
-/// The options of the command line for checkpoints and for ending a run early.
+/// The options of the command line about checkpoints and about ending a run early.
 struct ResumeOptions {
   bool resume = false;
-  bool keep_checkpoint = false;  ///< whether the last checkpoint stays beside a finished result
+  bool keep_checkpoint = false;  ///< true if the last checkpoint stays after the result was written
   std::string every = "10 s";
-  std::string max_wall;  ///< empty: no limit
+  std::string max_wall;  ///< time after which the run ends; empty: no limit
 
   void add_to(Command& command) {
     const auto group = [](CLI::Option* option) { option->group("Long runs"); };
@@ -33,14 +34,21 @@ struct ResumeOptions {
     group(command.add_flag("--keep-checkpoint", keep_checkpoint,
                            "keep RESULT.h5.part when done, so that --resume can add samples"));
   }
+  /// Adds the options that differ from their defaults, except --resume, to the words of a command line.
+  void add_words(std::vector<std::string>& words) const {
+    if (every != ResumeOptions().every) words.insert(words.end(), {"--checkpoint-every", every});
+    if (!max_wall.empty()) words.insert(words.end(), {"--max-wall", max_wall});
+    if (keep_checkpoint) words.emplace_back("--keep-checkpoint");
+  }
 };
 
-/// The checkpoints of one run of the program. Without --resume, a run refuses to start if there are checkpoints,
-/// because they may be hours of work. With --resume, it refuses to start if there is a complete result and no
-/// checkpoint.
+/// Handles the checkpoints of one run of the program. Without --resume, the run refuses to start if there are
+/// checkpoints, because these may hold hours of work. With --resume, it refuses to start if there is a complete result
+/// and no checkpoint.
 class ResumableRun {
  public:
-  /// Throws InputError or FileError if the run must not start. resume_command: the command line shown in messages.
+  /// Throws InputError or FileError if the run must not start. resume_command: command line that messages show for
+  /// continuing the run.
   ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string resume_command)
       : lock_(result_path),
         keep_checkpoint_(options.keep_checkpoint),
@@ -65,8 +73,8 @@ class ResumableRun {
   ResumableRun(const ResumableRun&) = delete;
   ResumableRun& operator=(const ResumableRun&) = delete;
 
-  /// Restores the checkpoint if the run resumes. Throws InputError if it belongs to another run. Unless quiet it
-  /// reports the checkpoint on stderr; if it is not the newest one it always does.
+  /// Restores the checkpoint if the run resumes. Throws InputError if the checkpoint belongs to another run. Names the
+  /// checkpoint on stderr, unless `quiet` is set and the newest checkpoint could be used.
   void start(const CheckpointIdentity& run, bool quiet) {
     identity_ = run;
     std::vector<Bytes> stages;
@@ -92,21 +100,22 @@ class ResumableRun {
   /// The checkpoints of the run. Precondition: start() was called.
   Checkpoints& checkpoints() { return *checkpoints_; }
 
-  /// The time of all parts of the run, including those before a resume.
+  /// The time that the run took so far, including that of the earlier runs that it continues.
   RunTime time() const { return {before_.wall + seconds_since(start_), before_.checkpoints + checkpoint_seconds_}; }
 
-  /// Whether there is a checkpoint of an earlier run.
+  /// Returns true if an earlier run left a checkpoint.
   bool continues() const { return files_.exist(); }
 
-  /// Whether the run ends by itself within this many seconds.
+  /// Returns true if the time limit ends the run within this number of seconds.
   bool ends_within(double seconds) const { return end_ && *end_ <= Clock::now() + duration_of(seconds); }
 
-  /// Interrupts the run if its time is over.
+  /// Interrupts the run if its time limit is reached.
   void check_time() const {
     if (end_ && Clock::now() >= *end_) interrupt();
   }
 
-  /// After the result is written: removes the checkpoints, or keeps the last one.
+  /// To be called after the result was written. Removes the checkpoints, or keeps the last one if the user asked for it
+  /// (keep_checkpoint).
   void finish() {
     if (keep_checkpoint_) {
       checkpoints_->save();
@@ -115,17 +124,19 @@ class ResumableRun {
     }
   }
 
-  /// After the study has failed for good: removes the checkpoints, because no run can continue them to a result.
+  /// To be called after the study failed for good. Removes the checkpoints, because continuing them cannot lead to a
+  /// result.
   void discard() { files_.remove(); }
 
-  /// After the result could not be written: keeps the last state if possible, and says what to do.
+  /// To be called after the result could not be written. Keeps the last state if possible, and tells the user what to
+  /// do.
   void rescue() {
     try {
       if (!no_room_ && checkpoints_) checkpoints_->save();
     } catch (const FileError&) {
-      // The message of the first problem counts.
+      // Reports the first problem, and not that there is no room for a checkpoint.
     } catch (const std::bad_alloc&) {
-      // There is not enough memory for a checkpoint either.
+      // There is not enough memory for a checkpoint, either.
     }
     if (files_.exist()) {
       say(Message::note, "the work up to the last checkpoint is kept in " + files_.newer() +
@@ -133,14 +144,14 @@ class ResumableRun {
     }
   }
 
-  /// After an interruption: says what to do.
+  /// To be called after an interruption. Tells the user what to do.
   void explain_interruption() const {
     say(Message::note,
         files_.exist() ? "interrupted; the work so far is kept in " + files_.newer() + ", continue with: " + command_
                        : "interrupted before anything was solved, start again with: " + command_);
   }
 
-  /// Refuses a checkpoint whose state cannot be read.
+  /// Throws FileError for a checkpoint whose state cannot be read.
   [[noreturn]] void refuse_state(const BytesError& error) const {
     throw FileError(taken_, error.what(), "restore a copy, or move it away to start afresh");
   }
@@ -148,7 +159,7 @@ class ResumableRun {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// A duration, clamped because longer waits mean "never".
+  /// Converts seconds to a clock duration. Durations of more than a century are cut, so that they do not overflow.
   static Clock::duration duration_of(double seconds) {
     constexpr double kCentury = 3.2e9;
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, kCentury)));
@@ -162,8 +173,8 @@ class ResumableRun {
   }
 
   void save(std::span<const ByteSource> stages) {
-    // A checkpoint waits until this many times the duration of the last one has passed. So checkpoints take less than 1
-    // % of the time, even if the last one is much the longest.
+    // The next checkpoint is written after at least kLeastRatio times the duration of the last one. So checkpoints take
+    // less than 1 % of the time, even if the last one took by far the longest.
     constexpr double kLeastRatio = 200.0;
     const Clock::time_point before = std::exchange(due_since_, std::nullopt).value_or(Clock::now());
     no_room_ = true;
@@ -179,16 +190,36 @@ class ResumableRun {
   std::string command_;
   CheckpointFiles files_;
   CheckpointIdentity identity_;
-  std::string taken_;  ///< path of the checkpoint that was restored
+  std::string taken_;  ///< path of the checkpoint from which the run was restored
   Clock::duration every_;
   std::optional<Clock::time_point> end_;
   Clock::time_point start_;
-  RunTime before_;  ///< time of earlier parts of the run
+  RunTime before_;  ///< time of the earlier runs that this run continues
   double checkpoint_seconds_ = 0.0;
   Clock::time_point next_;
-  std::optional<Clock::time_point> due_since_;  ///< when the checkpoint that is being made was due
-  bool no_room_ = false;                        ///< the last checkpoint could not be written
+  std::optional<Clock::time_point> due_since_;  ///< time at which the checkpoint that is being written was due
+  bool no_room_ = false;                        ///< true if the last checkpoint could not be written
   std::optional<Checkpoints> checkpoints_;
 };
+
+/// Calls act(), which does the run. If it fails, the function says what happens to the checkpoints. too_little(): makes
+/// the error that the run needs more memory than there is.
+template <class Act, class TooLittle>
+auto run_to_end(ResumableRun& resumable, const Act& act, const TooLittle& too_little) -> decltype(act()) {
+  try {
+    return act();
+  } catch (const BytesError& error) {
+    resumable.refuse_state(error);
+  } catch (const InputError&) {
+    resumable.discard();
+    throw;
+  } catch (const FileError&) {
+    resumable.rescue();
+    throw;
+  } catch (const std::bad_alloc&) {
+    resumable.rescue();
+    throw too_little();
+  }
+}
 
 }  // namespace poesy::app

@@ -10,6 +10,7 @@
 
 #include "engine/app/command_line.h"
 #include "engine/app/expected_time.h"
+#include "engine/app/long_run.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/app/progress.h"
 #include "engine/app/results.h"
@@ -32,7 +33,8 @@
 namespace poesy::app {
 namespace {
 
-/// The number of processors for this process: those that the launcher assigned to it, or its share of the machine's.
+/// The number of processors for this process: those that the launcher assigned to it. If it assigned none, this process
+/// takes an equal share of the machine's processors.
 std::size_t processors_of_rank(std::size_t ranks_on_this_machine) {
   const auto all = static_cast<std::size_t>(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));
   cpu_set_t allowed;
@@ -41,10 +43,10 @@ std::size_t processors_of_rank(std::size_t ranks_on_this_machine) {
   return bound < all ? bound : std::max<std::size_t>(1, all / ranks_on_this_machine);
 }
 
-/// Says why a rank left, if one did, and returns the run's exit code. Precondition: the run was interrupted.
+/// Says why a rank left the run, if one did, and returns the exit code. Precondition: the run was interrupted.
 int say_why_a_rank_left(const Team& team) {
   if (!team.left()) return kInterrupted;
-  constexpr std::array kCodes{kInterrupted, kBadInput, kFileTrouble, kInternalError};  // by LeaveReason
+  constexpr std::array kCodes{kInterrupted, kBadInput, kFileTrouble, kInternalError};  // exit code for each LeaveReason
   return complain(team.left()->text, kCodes[static_cast<std::size_t>(team.left()->reason)]);
 }
 
@@ -55,12 +57,12 @@ struct RunCommandOptions {
   std::optional<std::uint64_t> seed;
   std::optional<Shard> shard;
   bool quiet = false;
-  bool yes = false;  ///< whether to start a long run without asking
+  bool yes = false;  ///< true to start a long run without asking
   ResumeOptions resume;
-  std::string program;  ///< name by which the program was called
+  std::string program;  ///< name with which the program was called
 };
 
-/// The command line that continues this run.
+/// The command line that continues this run. team: the ranks of the run; null for one process.
 std::string resume_command(const RunCommandOptions& options, const Team* team) {
   std::vector<std::string> words;
   if (team != nullptr) words = {"mpirun", "-n", std::to_string(team->ranks().size())};
@@ -70,23 +72,22 @@ std::string resume_command(const RunCommandOptions& options, const Team* team) {
   if (options.shard) add("--shard", to_string(*options.shard));
   if (options.threads != 0) add("--threads", std::to_string(options.threads));
   if (options.seed) add("--seed", std::to_string(*options.seed));
-  if (options.resume.every != ResumeOptions().every) add("--checkpoint-every", options.resume.every);
-  if (!options.resume.max_wall.empty()) add("--max-wall", options.resume.max_wall);
-  if (options.resume.keep_checkpoint) words.emplace_back("--keep-checkpoint");
+  options.resume.add_words(words);
   if (options.quiet) words.emplace_back("--quiet");
   if (options.yes) words.emplace_back("--yes");
   words.emplace_back("--resume");
   return shell_command(words);
 }
 
-/// The default path of a result in the current folder: study.h5 for study.toml, study.2-of-5.h5 for its second shard.
+/// The default path of a result in the current folder: study.h5 for study.toml, or study.2-of-5.h5 for its second shard
+/// of five.
 std::string default_result(const RunCommandOptions& options) {
   const std::filesystem::path stem = std::filesystem::path(options.study).filename().stem();
   if (!options.shard) return stem.string() + ".h5";
   return fmt::format("{}.{}-of-{}.h5", stem.string(), options.shard->index + 1, options.shard->count);
 }
 
-/// Reads "2/5".
+/// Reads the value of --shard, such as "2/5".
 Shard parse_shard(const std::string& text) {
   const std::size_t slash = std::min(text.find('/'), text.size());
   const auto shard = whole_number(std::string_view(text).substr(0, slash));
@@ -95,32 +96,23 @@ Shard parse_shard(const std::string& text) {
   throw InputError({}, "--shard is '" + printable(text) + "'", "write K/N with K from 1 to N, e.g. 2/5");
 }
 
-/// The error of a run that needs more memory than there is.
+/// The error that a run needs more memory than there is.
 FileError too_little_for_run(const std::string& path, const Study& study, const Model& model, const PoseSet& poses) {
   return too_little_memory(path, "this run", memory_text(outlook(study, model, poses).memory.peak()));
 }
 
-/// Runs the study with progress; on failure also says what happens to its checkpoints.
-std::optional<RunOutcome> run_to_end(Job& job, ResumableRun& resumable, bool quiet) {
-  try {
+/// Runs the study and shows its progress. On failure, also says what happens to the checkpoints.
+std::optional<RunOutcome> run_with_progress(Job& job, ResumableRun& resumable, bool quiet) {
+  const auto act = [&] {
     ProgressPrinter printer(quiet);
     job.options.progress = [&](const Progress& progress) {
       printer(progress);
       resumable.check_time();
     };
     return run_to_file(job);
-  } catch (const BytesError& error) {
-    resumable.refuse_state(error);
-  } catch (const InputError&) {
-    resumable.discard();
-    throw;
-  } catch (const FileError&) {
-    resumable.rescue();
-    throw;
-  } catch (const std::bad_alloc&) {
-    resumable.rescue();
-    throw too_little_for_run(job.path, job.study, job.model, job.poses.poses);
-  }
+  };
+  return run_to_end(resumable, act,
+                    [&] { return too_little_for_run(job.path, job.study, job.model, job.poses.poses); });
 }
 
 Study study_of(const RunCommandOptions& options) {
@@ -129,13 +121,13 @@ Study study_of(const RunCommandOptions& options) {
   return study;
 }
 
-/// A text that must be equal on all ranks.
+/// A text that identifies the run, and must be equal on all ranks.
 std::string text_of(const CheckpointIdentity& identity) {
   return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", identity.poesy_version, identity.git_commit, identity.model,
                      identity.seed, identity.samples, identity.shard, identity.poses, identity.study);
 }
 
-/// Runs the ranks after rank 0.
+/// Runs the study on a rank other than rank 0.
 void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
@@ -161,8 +153,8 @@ void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   }
 }
 
-/// The ranks did not begin. A checkpoint of an earlier run is kept; otherwise an empty checkpoint is written, from
-/// which the run can be resumed.
+/// Ends a run whose ranks did not begin their work. A checkpoint of an earlier run is kept. If there is none, an empty
+/// checkpoint is written, from which the run can be resumed.
 int leave_before_the_start(const Team& team, ResumableRun& resumable) {
   const int code = say_why_a_rank_left(team);
   if (code != kInterrupted) return code;
@@ -171,62 +163,20 @@ int leave_before_the_start(const Team& team, ResumableRun& resumable) {
   return code;
 }
 
-/// The study file and the files that it names.
-std::vector<std::string> inputs_of(const RunCommandOptions& options, const Study& study) {
-  std::vector<std::string> inputs{options.study};
-  const auto add = [&](const std::string& name) {
-    if (!name.empty()) inputs.push_back((std::filesystem::path(options.study).parent_path() / name).string());
-  };
-  add(study.poses.file);
-  if (study.poses.trajectory) add(study.poses.trajectory->file);
-  if (study.mechanism.file) add(study.mechanism.file->name);
-  return inputs;
-}
-
 int explained_interruption(const ResumableRun& resumable) {
   resumable.explain_interruption();
   return kInterrupted;
 }
 
-/// The least number of seconds that the run takes with these threads; 0 if it is clearly short, as most are.
-double seconds_of_long_run(const RunCommandOptions& options, const Study& study, const Model& model,
-                           const PoseSet& poses, std::size_t threads) {
-  // Few enough draws for a short run, because a solve takes far less than a second and nearly all solves are draws.
-  constexpr double kFewDraws = 1e7;
-  constexpr double kShort = kLongRun / 4.0;  // less than kLongRun, because one piece is a rough measure
-  constexpr double kTrial = 0.25;            // s
-  const double draws = static_cast<double>(study.analysis.samples) * static_cast<double>(poses.size()) *
-                       static_cast<double>(study.analysis.factors.size());
-  if (draws < kFewDraws) return 0.0;
-  try {
-    const Outlook expected = outlook(study, model, poses);
-    const double shards = options.shard ? static_cast<double>(options.shard->count) : 1.0;
-    const auto seconds = [&](double trial) { return expected_time(expected, threads, trial).least / shards; };
-    return seconds(0.0) < kShort ? 0.0 : seconds(kTrial);
-  } catch (const std::bad_alloc&) {
-    return 0.0;  // the run itself reports how much memory it needs
-  }
-}
-
-/// Asks on a terminal whether a run of this many seconds is wanted. Throws InputError unless the answer is yes; returns
-/// on an interrupt.
-void ask_about(double seconds, const RunCommandOptions& options, std::size_t threads, const std::atomic<bool>& stop) {
-  if (seconds <= kLongRun) return;
-  const std::string text =
-      fmt::format("this run takes about {} on {} threads of this machine", readable_duration(seconds), threads);
-  if (asked(text + "; start it?").value_or(false) || stop) return;
-  throw InputError({options.study}, text, "give --yes to start it all the same, or ask for fewer samples or poses");
-}
-
-/// Runs in one process, or as rank 0 of a team.
+/// Runs the study in one process, or as rank 0 of a team. team: null for one process.
 int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
   const std::string named = options.result.empty() ? default_result(options) : options.result;
-  const std::vector<std::string> inputs = inputs_of(options, study);
+  const std::vector<std::string> inputs = inputs_of(options.study, study);
   const std::string path = check_result_path(named, inputs);
   if (kind_of(study).run.confirms) check_files_beside(path, inputs);
-  start_threads(threads);  // before any checkpoint is written
+  start_threads(threads);  // Threads start before any checkpoint is written.
   ResumableRun resumable(options.resume, path, resume_command(options, team));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   auto poses = find_poses(study, *model, {.quiet = options.quiet, .stop = &stop});
@@ -235,7 +185,9 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const CheckpointIdentity identity = identity_of(study, poses->poses, options.shard);
   if (!options.yes && !resumable.continues() && !resumable.ends_within(kLongRun)) {
     const std::size_t all_threads = threads * (team != nullptr ? team->ranks().size() : 1);
-    ask_about(seconds_of_long_run(options, study, *model, poses->poses, all_threads), options, all_threads, stop);
+    const double shards = options.shard ? static_cast<double>(options.shard->count) : 1.0;
+    const double seconds = seconds_of_long_run(study, *model, poses->poses, all_threads) / shards;
+    ask_about(seconds, options.study, all_threads, stop);
     if (stop) return explained_interruption(resumable);
   }
   resumable.start(identity, options.quiet);
@@ -258,7 +210,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
           .time = [&] { return resumable.time(); },
           .threads = team != nullptr ? team->threads() : threads,
           .ranks = team != nullptr ? team->ranks().size() : 1};
-  const std::optional<RunOutcome> outcome = run_to_end(job, resumable, options.quiet);
+  const std::optional<RunOutcome> outcome = run_with_progress(job, resumable, options.quiet);
   if (!outcome) {
     const int code = team != nullptr ? say_why_a_rank_left(*team) : kInterrupted;
     resumable.explain_interruption();
@@ -268,7 +220,8 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   return report_outcome(job, options.study, *outcome);
 }
 
-/// Returns the exit code, which is the same on all ranks. Only rank 0 prints.
+/// Runs the study on this process alone or on all ranks. Returns the exit code, which is the same on all ranks. Only
+/// rank 0 prints.
 int run_alone_or_on_ranks(const RunCommandOptions& options) {
   const auto launch = find_launch();
   if (!launch || launch->size == 1) return run(options, resolved_threads(options.threads), nullptr);
@@ -278,7 +231,7 @@ int run_alone_or_on_ranks(const RunCommandOptions& options) {
   Team team(*ranks);
   if (!team.leads()) return team.follow([&] { follow(options, threads, team); });
   const int code = exit_code_of([&] { return run(options, threads, &team); });
-  // The other ranks may take long to finish.
+  // The other ranks may take long to finish, so this rank waits only for a limited time.
   if (!team.dismiss(code, std::chrono::seconds(code == kDone ? 60 : 10))) ranks->abort(code);
   return code;
 }

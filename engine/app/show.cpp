@@ -17,6 +17,7 @@
 #include "engine/kinds/study_file.h"
 #include "engine/report/display.h"
 #include "engine/report/merits.h"
+#include "engine/report/method.h"
 #include "engine/report/report_kind.h"
 #include "engine/report/signs.h"
 #include "engine/report/table.h"
@@ -33,15 +34,17 @@ constexpr std::string_view kRemedy = "a wider terminal, --response NAME or --jso
 constexpr std::size_t kMostNumber = 1'000'000;
 
 struct ShowOptions {
-  std::vector<std::string> results;  ///< one result, or several to compare
+  std::vector<std::string> results;  ///< paths of one result, or of several to compare
   std::string response;
   std::optional<std::string> sort;
   std::optional<std::size_t> top;
   std::optional<std::size_t> width;
   bool json = false;
+  bool method = false;  ///< true to show the method in words instead of tables
 };
 
-/// The name of the response. wanted: empty for the one that ranks by default.
+/// The name of the response to show. wanted: the response that the user asks for; if empty, the response is the one by
+/// which errors are ranked by default. Throws InputError if the result lacks it.
 std::string response_of(const std::string& wanted, const std::string& path, const StoredResult& result) {
   if (wanted.empty()) return default_ranking(result);
   const std::vector<std::string> known = names_of(result.responses);
@@ -54,13 +57,14 @@ RowOrder order_of(const ShowOptions& options) {
   if (!options.sort) return RowOrder::effect;
   const auto at = std::ranges::find(kRowOrders, *options.sort);
   if (at != kRowOrders.end()) return static_cast<RowOrder>(at - kRowOrders.begin());
-  throw InputError({}, fmt::format("--sort: '{}' is no order of errors", printable(*options.sort)),
+  throw InputError({}, fmt::format("--sort: '{}' is not an order of errors", printable(*options.sort)),
                    suggestion(*options.sort, kRowOrders));
 }
 
 bool ranks_errors(const StoredResult& result) { return kind_of(result).report.two_rankings != nullptr; }
 
-/// Throws if --sort is given for a kind whose errors have a fixed order, or --top for one without a ranking of errors.
+/// Throws InputError if --sort is given for a kind whose errors have a fixed order, or --top for a result without a
+/// ranking of errors.
 void check_ranks(const ShowOptions& options, const std::string& path, const StoredResult& result,
                  const std::vector<Table>& tables) {
   const auto refuse = [&](std::string_view option, std::string_view what) {
@@ -71,14 +75,14 @@ void check_ranks(const ShowOptions& options, const std::string& path, const Stor
   if (options.top && std::ranges::none_of(tables, &Table::ranked)) refuse("--top", "ranks no errors");
 }
 
-/// Restricts the tables to this response.
+/// Restricts the result to this response, so that tables show it alone.
 void show_alone(const std::string& response, StoredResult& result) {
   const auto at = std::ranges::find(result.responses, response, &NamedUnit::name) - result.responses.begin();
   result.headline = result.signed_headline = {static_cast<std::size_t>(at)};
 }
 
-/// Notes on the mechanism's numbers, whether the study was calibrated, and what was constant. The last two only if a
-/// study was solved rather than a table of errors. Empty if this program cannot read the study.
+/// Notes on the mechanism's numbers, on whether the study was calibrated, and on constant errors. The last two notes
+/// appear only if a study was solved, and not a table of errors. Empty if this program cannot read the study.
 std::string study_lines(const StoredResult& result, std::size_t width) {
   const std::optional<Study> study = study_in(result, registry());
   if (!study) return {};
@@ -115,7 +119,8 @@ int show_one(const ShowOptions& options) {
   return kDone;
 }
 
-/// The responses that --response names for so many results, one for all or A,B for each; the default for none.
+/// The responses for several results. --response gives one for all results, or one for each, separated by commas;
+/// without the option each result has its default.
 std::vector<std::string> responses_of(const ShowOptions& options, std::span<const ReportedResult> results) {
   std::vector<std::string> names;
   for (std::size_t from = 0; from <= options.response.size();) {
@@ -134,7 +139,8 @@ std::vector<std::string> responses_of(const ShowOptions& options, std::span<cons
   return names;
 }
 
-/// Adds the two rankings of errors, or what else two results of this kind are compared by.
+/// Adds to `compared` the comparison of two rankings of errors; for a kind of study without rankings, the tables of its
+/// own comparison.
 void compare_two(const ReportKind& kind, std::span<const ReportedResult> results, std::span<const RankedResult> ranked,
                  RowOrder order, ComparedResults& compared) {
   if (kind.two_rankings == nullptr) {
@@ -151,7 +157,7 @@ void compare_two(const ReportKind& kind, std::span<const ReportedResult> results
   compared.remarks = std::move(rankings.remarks);
 }
 
-/// What the results are compared by: figures of merit, settings that differ, then their errors or other items.
+/// The comparison of results: figures of merit, settings that differ, then errors or other items.
 ComparedResults compare(const ReportKind& kind, std::span<const ReportedResult> results,
                         std::span<const RankedResult> ranked, RowOrder order) {
   ComparedResults compared;
@@ -167,7 +173,7 @@ ComparedResults compare(const ReportKind& kind, std::span<const ReportedResult> 
   return compared;
 }
 
-/// Shows which of several results is better, and what differs between them.
+/// Shows which of several results is better, and how they differ.
 int show_several(const ShowOptions& options) {
   const RowOrder order = order_of(options);
   std::vector<ReportedResult> results;
@@ -198,7 +204,20 @@ int show_several(const ShowOptions& options) {
   return kDone;
 }
 
-int show(const ShowOptions& options) { return options.results.size() == 1 ? show_one(options) : show_several(options); }
+/// Prints the method of one result in words, and what a paper should cite.
+int show_method(const ShowOptions& options) {
+  if (options.results.size() > 1) {
+    throw InputError({}, "--method describes one result, but several are given", "give one");
+  }
+  const StoredResult result = read_result_with_warning(options.results.front());
+  print(prose_of(method_text(kind_of(result).report, result), width_of(options)) + "\n" + method_references(result));
+  return kDone;
+}
+
+int show(const ShowOptions& options) {
+  if (options.method) return show_method(options);
+  return options.results.size() == 1 ? show_one(options) : show_several(options);
+}
 
 }  // namespace
 
@@ -221,7 +240,9 @@ Command& add_show(Command& program) {
   command.add_whole_number("--width", options.width, "N",
                            "characters of a line; default: the terminal's, and where there is none, no limit", 1,
                            kMostNumber);
-  command.add_flag("--json", options.json, "the tables as JSON with all digits, and nothing else");
+  auto* const json = command.add_flag("--json", options.json, "the tables as JSON with all digits, and nothing else");
+  command.add_flag("--method", options.method, "the method in words with this study's numbers, and what to cite")
+      ->excludes(json);
   command.examples = {{"the tables of a result", "poesy show result.h5"},
                       {"the ten errors that matter most to another response",
                        "poesy show result.h5 --response angular_deformation --top 10"},

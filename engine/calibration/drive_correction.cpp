@@ -7,9 +7,10 @@ namespace poesy::calibration {
 namespace {
 
 constexpr int kMostSteps = 30;
-constexpr double kExact = 1e-15;      // m or rad: a smaller error of a coordinate is rounding
-constexpr double kAsExact = 1e-12;    // m or rad: what may remain where steps no longer help
-constexpr double kStepOfPose = 1e-5;  // m or rad, of differences
+constexpr double kExact = 1e-15;  // m or rad: a coordinate error below this is rounding
+// In m or rad: the coordinate error that is accepted if further steps no longer reduce it.
+constexpr double kAsExact = 1e-12;
+constexpr double kStepOfPose = 1e-5;  // m or rad: step of the coordinates for finite differences
 
 const Displacement kNone{Matrix3::Identity(), Vector3::Zero()};
 
@@ -32,39 +33,40 @@ CoordinateError coordinates_of_components(std::vector<std::size_t> positions) {
   };
 }
 
-Vector DriveCorrection::error_at(const Placement& nominal, std::span<const double> other,
-                                 const Displacement& displacement) const {
-  return commanded_(nominal, seen_from(displacement, machine_->nominal(other), nominal));
-}
-
-Matrix DriveCorrection::by_pose(std::span<const double> pose) const {
+CommandedPose DriveCorrection::at(std::span<const double> pose) const {
   const Placement nominal = machine_->nominal(pose);
   const auto n = static_cast<Eigen::Index>(pose.size());
-  Matrix found(n, n);
+  Matrix by_pose(n, n);
+  Matrix motion(6, n);
   for (Eigen::Index c = 0; c < n; ++c) {
     Vector by = Vector::Zero(n);
     by(c) = kStepOfPose;
     const Displacement up = seen_from(kNone, machine_->nominal(moved(pose, by)), nominal);
     const Displacement down = seen_from(kNone, machine_->nominal(moved(pose, -by)), nominal);
-    found.col(c) = (commanded_(nominal, up) - commanded_(nominal, down)) / (2.0 * kStepOfPose);
+    by_pose.col(c) = (commanded_(nominal, up) - commanded_(nominal, down)) / (2.0 * kStepOfPose);
+    motion.col(c) = (components(up, nominal) - components(down, nominal)).head<6>() / (2.0 * kStepOfPose);
   }
-  return found;
+  return {{pose.begin(), pose.end()}, nominal, motion, linalg::inverse(by_pose)};
+}
+
+std::vector<double> DriveCorrection::without(std::span<const double> pose, const CommandedPose& commanded,
+                                             const Vector& error) {
+  return moved(pose, -commanded.per_error * error);
 }
 
 std::optional<std::vector<double>> DriveCorrection::drive_at(std::span<const double> pose, const Vector& errors) const {
-  const Placement nominal = machine_->nominal(pose);
-  const Matrix per_error = linalg::inverse(by_pose(pose));
-  std::vector<double> other(pose.begin(), pose.end());
+  const CommandedPose commanded = at(pose);
+  std::vector<double> other = commanded.pose;
   double before = HUGE_VAL;
   for (int n = 0; n < kMostSteps; ++n) {
     if (machine_->model().unreachable(other)) return std::nullopt;
     const auto displacement = machine_->displaced(other, errors);
     if (!displacement) return std::nullopt;
-    const Vector error = error_at(nominal, other, *displacement);
+    const Vector error = error_of(commanded, machine_->nominal(other), *displacement);
     const double size = error.cwiseAbs().maxCoeff();
     if (size < kExact || (size < kAsExact && size > 0.5 * before)) return other;
     before = size;
-    other = moved(other, -per_error * error);
+    other = without(other, commanded, error);
   }
   return std::nullopt;
 }

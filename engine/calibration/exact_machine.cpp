@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "engine/base/contract.h"
+#include "engine/model/forwarding_model.h"
 #include "models/lie/so3.h"
 
 namespace poesy::calibration {
@@ -11,7 +12,7 @@ namespace {
 
 Vector3 vector_of(const SketchVector& vector) { return {vector[0], vector[1], vector[2]}; }
 
-/// The first limb that ends at the platform and has frames; none if the picture has no such limb.
+/// The first limb that ends at the platform and has frames; none if the sketch has no such limb.
 std::optional<std::size_t> limb_at_platform(const Sketch& sketch) {
   for (std::size_t limb = 0; limb < sketch.frames.size(); ++limb) {
     if (sketch.ends_of(limb).to == 1 && !sketch.frames[limb].empty()) return limb;
@@ -19,7 +20,8 @@ std::optional<std::size_t> limb_at_platform(const Sketch& sketch) {
   return std::nullopt;
 }
 
-/// The axes of the platform's frame in a picture, as columns. Precondition: it has a limb at the platform.
+/// The axes of the platform's frame in a sketch, as columns. Precondition: a limb of the sketch ends at the platform
+/// and has frames.
 Matrix3 axes_of(const Sketch& sketch) {
   const SketchedFrame& frame = sketch.frames[*limb_at_platform(sketch)].back();
   Matrix3 axes;
@@ -27,7 +29,7 @@ Matrix3 axes_of(const Sketch& sketch) {
   return axes;
 }
 
-/// The largest distance between P and joints.
+/// The largest distance between any two of the points P and the joints, m.
 double reach_of(const Sketch& sketch) {
   std::vector<Vector3> points{vector_of(sketch.platform)};
   for (const auto& limb : sketch.limbs) {
@@ -55,8 +57,10 @@ Displacement seen_from(const Displacement& displacement, const Placement& from, 
 }
 
 ExactMachine::ExactMachine(const Model& model, const SolverOptions& solver)
-    : model_(&model), evaluator_(model.evaluator(solver)), no_errors_(model.description().factors.size(), 0.0) {
-  const std::vector<Response>& known = model.description().responses;
+    : model_(&solving_model(model)),
+      evaluator_(model_->evaluator(solver)),
+      no_errors_(model.description().factors.size(), 0.0) {
+  const std::vector<Response>& known = model_->description().responses;
   for (std::size_t c = 0; c < responses_.size(); ++c) {
     const auto found = std::ranges::find(known, kComponents[c], &Response::name);
     if (found == known.end()) throw std::invalid_argument("does not report the displacement of its platform");
@@ -90,6 +94,7 @@ std::vector<std::optional<Displacement>> ExactMachine::displaced(std::span<const
                         .values = {values.data(), static_cast<std::size_t>(values.size())},
                         .count = count},
                        {.responses = responses, .status = status, .iterations = iterations, .details = {}});
+  solves_ += count;
   std::vector<std::optional<Displacement>> list(count);
   for (std::size_t b = 0; b < count; ++b) {
     if (!solved(status[b])) continue;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/StdVector>
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,66 +13,72 @@
 #include "engine/linalg/decompositions.h"
 #include "engine/model/model.h"
 
-/// Exact solves of a machine with errors, as poses of its platform in plain double numbers.
+/// Exact solves of a machine with errors. Results are poses of its platform in double precision.
 namespace poesy::calibration {
 
-using linalg::Matrix;             ///< of any size
-using linalg::Vector;             ///< of any size
-using Matrix3 = Eigen::Matrix3d;  ///< a rotation
-using Vector3 = Eigen::Vector3d;  ///< a point or a displacement (m), or a rotation vector (rad)
+using linalg::Matrix;             ///< a matrix of any size
+using linalg::Vector;             ///< a vector of any size
+using Matrix3 = Eigen::Matrix3d;  ///< a rotation matrix
+using Vector3 = Eigen::Vector3d;  ///< a point or displacement (m), or a rotation vector (rad)
 
-/// Where the platform is, in the base frame.
+/// The placement of the platform in the base frame.
 struct Placement {
-  Matrix3 turn;    ///< rotation from home
-  Vector3 origin;  ///< P, m
-  Vector3 tip;     ///< point of the tool, m; P if there is no tool
+  Matrix3 turn;    ///< rotation from the home pose
+  Vector3 origin;  ///< platform point P, m
+  Vector3 tip;     ///< tool point, m; equal to P if there is no tool
 };
 
-/// What moves the platform from its nominal place at a commanded pose, in the base frame.
+/// The motion of the platform from its nominal placement at a commanded pose, in the base frame.
 struct Displacement {
   Matrix3 turn;   ///< rotation about P
   Vector3 moved;  ///< displacement of P, m
 };
 
-/// The components of a displacement, in this order: rotation vector (rad), displacement of P (m), of the tool's point
-/// (m).
+/// The components of a displacement, in this order: rotation vector (rad), displacement of P (m), displacement of the
+/// tool point (m).
 inline constexpr std::array<std::string_view, 9> kComponents{"theta_x", "theta_y", "theta_z", "x",    "y",
                                                              "z",       "tip_x",   "tip_y",   "tip_z"};
-using Components = Eigen::Matrix<double, 9, 1>;  ///< [kComponents], SI
+using Components = Eigen::Matrix<double, 9, 1>;  ///< values in the order of kComponents, SI
 
-/// The displacement's components. nominal: at the commanded pose.
+/// The components of a displacement. nominal: placement of the perfect mechanism at the commanded pose.
 Components components(const Displacement& displacement, const Placement& nominal);
 
-/// The displacement as seen from another pose: `from` is the nominal placement where it was found, `to` the other.
+/// The displacement with respect to the nominal placement `to`, given with respect to the nominal placement `from`.
 Displacement seen_from(const Displacement& displacement, const Placement& from, const Placement& to);
 
-/// A mechanism whose platform is followed. Owns the scratch of one thread. The model must outlive it.
+/// Computes the displacement of a mechanism's platform under given errors. Owns the scratch memory of one thread. The
+/// model must outlive this object.
 class ExactMachine {
  public:
-  /// Throws std::invalid_argument with a clause if the model does not report the displacement of its platform.
+  /// Throws std::invalid_argument with a clause if the model does not report the displacement of its platform or has no
+  /// sketch of its home pose.
   ExactMachine(const Model& model, const SolverOptions& solver);
 
-  const Model& model() const { return *model_; }            ///< The model.
-  std::size_t errors() const { return no_errors_.size(); }  ///< The number of all errors, F.
+  /// The model that is solved: solving_model() of the given model, without the responses that wrapping models add.
+  const Model& model() const { return *model_; }
+  Evaluator& evaluator() { return *evaluator_; }            ///< The evaluator of the model.
+  std::size_t errors() const { return no_errors_.size(); }  ///< F, the number of all errors of the model.
   double reach() const { return reach_; }                   ///< Largest distance between joints and P at home, m.
+  std::uint64_t solves() const { return solves_; }          ///< The number of sets of errors that were solved so far.
 
-  /// Where the platform is without errors. Precondition: the pose is reachable.
+  /// The nominal placement of the platform, without errors. pose: SI. Precondition: the pose is reachable.
   Placement nominal(std::span<const double> pose) const;
 
-  /// The displacements for B sets of errors at a reachable pose, each solved by itself. errors: [F x B], SI. None where
-  /// a machine is not solved.
+  /// The displacements at a reachable pose for several sets of errors, each solved on its own. errors: [all errors x
+  /// sets], SI. None where a machine is not solved.
   std::vector<std::optional<Displacement>> displaced(std::span<const double> pose, const Matrix& errors);
-  /// The same for one set of errors, [F].
+  /// The displacement for one set of errors (all errors of the model, SI); none if the machine is not solved.
   std::optional<Displacement> displaced(std::span<const double> pose, const Vector& errors);
 
  private:
   const Model* model_;
   std::unique_ptr<Evaluator> evaluator_;
-  std::array<std::size_t, 6> responses_;  ///< positions of the first six components
+  std::array<std::size_t, 6> responses_;  ///< positions of the first six of kComponents among the responses
   std::vector<double> no_errors_;
   std::vector<FactorIndex> all_;
   Matrix3 home_;
   double reach_ = 0.0;
+  std::uint64_t solves_ = 0;
   bool has_tool_ = false;
 };
 

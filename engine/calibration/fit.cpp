@@ -12,18 +12,23 @@ namespace {
 
 constexpr int kMostSteps = 30;
 constexpr int kMostHalvings = 20;
-constexpr double kShortest = 1e-9;  // of the scale
-// A step that changes all values together by less than this share of their noise moves no estimate by more than this
+constexpr double kShortest = 1e-9;  // the iteration ends at a step below this share of the scale
+// A step that changes all values together by less than this share of their noise moves each estimate by at most this
 // share of its standard deviation.
 constexpr double kShortestInNoise = 1e-8;
-constexpr double kRounding = 1e-15;       // m or rad, of an exact solve
-constexpr double kRoundingOfSum = 1e-10;  // a sum that grows by this share of it has not grown
-constexpr double kRankOfFrame = 1e-9;     // of the largest pivot, among columns of norm 1
-constexpr double kStepOfPlace = 1e-4;     // m, rad or a slope
-// Of the reach, or rad: the fourth power of it and the rounding of a solve over it are both below 1e-12.
+// The number that takes the place of kShortestInNoise if derivatives come from an expansion, which is not exact.
+constexpr double kShortestByExpansion = 1e-5;
+constexpr double kRounding = 1e-15;  // m or rad: rounding of an exact solve
+// A sum of squares that grows by less than this share counts as not growing.
+constexpr double kRoundingOfSum = 1e-10;
+constexpr double kGrowthByExpansion = 1e-6;  // takes the place of kRoundingOfSum with an expansion
+constexpr double kRankOfFrame = 1e-9;        // smallest pivot relative to the largest, among columns of norm 1
+constexpr double kStepOfPlace = 1e-4;  // m, rad or a slope: step of the numbers of the places for finite differences
+// Step of finite differences, as a share of the reach or in rad. The errors of truncation (its fourth power) and of
+// rounding (of a solve, over the step) are both below 1e-12.
 constexpr double kStep = 5e-4;
 
-/// The four points of a central difference of fourth order, in steps, and their weights.
+/// The points of a central difference of fourth order, in steps, and their weights.
 /// @{
 constexpr std::array<double, 4> kPoints{-2.0, -1.0, 1.0, 2.0};
 constexpr std::array<double, 4> kWeights{1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0};
@@ -41,10 +46,10 @@ Vector joined(const Vector& top, const Vector& bottom) {
   return all;
 }
 
-/// Each row divided by a number.
+/// Divides each row by its standard deviation.
 Matrix over(const Matrix& rows, const Vector& sd) { return sd.cwiseInverse().asDiagonal() * rows; }
 
-/// The step of theta over the scale.
+/// The Gauss-Newton step of theta, the fitted numbers of the errors, divided by their scale.
 Vector scaled_step(const ScaledFit& at, const Vector& residual, const Matrix& prior, const Vector& prior_residual) {
   if (prior.rows() == 0) {
     const auto r = static_cast<Eigen::Index>(at.rank);
@@ -56,17 +61,18 @@ Vector scaled_step(const ScaledFit& at, const Vector& residual, const Matrix& pr
   return linalg::least_squares(with_rows(at.reduced, prior), Matrix(joined(of_measurements, prior_residual)));
 }
 
-/// The part of a fit that moves.
+/// A point of the iteration: an estimate and its residuals.
 struct Point {
   Vector theta;
   Vector phi;
-  Vector residual;        ///< over sd
-  Vector prior_residual;  ///< of the prior
+  std::vector<Displacement> displacements = {};  ///< displacements at the poses of the measurement
+  Vector residual = {};                          ///< residuals of the measured values over their standard deviations
+  Vector prior_residual = {};                    ///< residuals of the prior
 
   double sum() const { return residual.squaredNorm() + prior_residual.squaredNorm(); }
 };
 
-/// A fit on its way.
+/// The iteration of a fit.
 class Path {
  public:
   explicit Path(const FitProblem& problem)
@@ -74,48 +80,63 @@ class Path {
         function_(problem.measurement, problem.directions),
         measured_(problem.measurement.measured()) {
     const Vector none = Vector::Zero(problem.directions.F.cols());
-    if (auto first = point(none, problem.measurement.start())) here_ = *std::move(first);
-    has_begun_ = here_.theta.size() > 0;
+    auto displacements = problem.expansion == nullptr
+                             ? problem.measurement.displacements(Vector(problem.directions.F * none))
+                             : std::optional(problem.expansion->without_errors());
+    has_begun_ = displacements.has_value();
+    if (has_begun_) here_ = point(none, problem.measurement.start(), *std::move(displacements));
   }
 
   bool has_begun() const { return has_begun_; }
   const Point& here() const { return here_; }
-  std::optional<Derivatives> derivatives() const { return function_.derivatives(here_.theta, here_.phi); }
+  std::optional<Derivatives> derivatives() const {
+    if (problem_->expansion == nullptr) return function_.derivatives(here_.theta, here_.phi);
+    return problem_->expansion->derivatives(problem_->measurement, here_.theta, here_.displacements, here_.phi);
+  }
 
-  /// Makes a step. Returns whether it was so short that nothing remains to be done; none if no part of it lowers the
-  /// sum.
+  /// Makes a step. Returns true if the step was so short that the fit has converged. Returns none if no part of the
+  /// step lowers the sum.
   std::optional<bool> step(const Derivatives& derivatives) {
     const Vector& scale = problem_->directions.scale;
     const ScaledFit at = scaled_fit(derivatives, problem_->sd, scale);
     const Matrix prior = problem_->prior.root * scale.asDiagonal();
     const Vector of_theta = scaled_step(at, here_.residual, prior, here_.prior_residual);
     const Vector of_phi = places_step(derivatives, here_.residual - at.A * of_theta);
+    const double growth = problem_->expansion == nullptr ? kRoundingOfSum : kGrowthByExpansion;
+    const double shortest = problem_->expansion == nullptr ? kShortestInNoise : kShortestByExpansion;
     for (int n = 0; n <= kMostHalvings; ++n) {
       const double share = std::ldexp(1.0, -n);
       auto there = point(here_.theta + share * scale.cwiseProduct(of_theta), here_.phi + share * of_phi);
-      if (!there || !(there->sum() <= here_.sum() * (1.0 + kRoundingOfSum) + 100.0 * least_sum())) continue;
+      if (!there || !(there->sum() <= here_.sum() * (1.0 + growth) + 100.0 * least_sum())) continue;
       here_ = *std::move(there);
       return share * of_theta.cwiseAbs().maxCoeff() < kShortest ||
-             share * (at.reduced * of_theta).norm() < std::max(kShortestInNoise, 10.0 * std::sqrt(least_sum()));
+             share * (at.reduced * of_theta).norm() < std::max(shortest, 10.0 * std::sqrt(least_sum()));
     }
     return std::nullopt;
   }
 
  private:
-  /// A sum of squares that rounding explains.
+  /// The largest sum of squares that rounding alone may cause.
   double least_sum() const { return (kRounding * problem_->sd.cwiseInverse()).squaredNorm(); }
 
-  std::optional<Point> point(Vector theta, Vector phi) const {
-    const auto values = function_.values(theta, phi);
-    if (!values) return std::nullopt;
-    Point found{std::move(theta), std::move(phi), (measured_ - *values).cwiseQuotient(problem_->sd), {}};
+  std::optional<Point> point(const Vector& theta, const Vector& phi) const {
+    auto displacements = problem_->measurement.displacements(Vector(problem_->directions.F * theta));
+    if (!displacements) return std::nullopt;
+    return point(theta, phi, *std::move(displacements));
+  }
+
+  Point point(Vector theta, Vector phi, std::vector<Displacement> displacements) const {
+    Point found{std::move(theta), std::move(phi), std::move(displacements)};
+    found.residual =
+        (measured_ - problem_->measurement.values_of(found.displacements, found.phi)).cwiseQuotient(problem_->sd);
     found.prior_residual = problem_->prior.root.rows() == 0
                                ? Vector()
                                : Vector(problem_->prior.centre - problem_->prior.root * found.theta);
     return found;
   }
 
-  /// The step of phi that fits what the step of theta leaves.
+  /// The step of phi, the numbers of the measuring device's frame and of the target. left: residuals after the step of
+  /// theta, the fitted numbers of the errors.
   Vector places_step(const Derivatives& derivatives, const Vector& left) const {
     if (derivatives.places.cols() == 0) return Vector(0);
     const Matrix columns = over(derivatives.places, problem_->sd);

@@ -3,43 +3,49 @@
 #include <functional>
 #include <optional>
 
+#include "engine/calibration/expansion.h"
 #include "engine/calibration/measurement.h"
 
 namespace poesy::calibration {
 
-/// The errors that are fitted: k numbers theta with the errors e = F theta.
+/// The directions of errors that are fitted. The fitted numbers theta are the coordinates of the errors along these
+/// directions: the errors are F theta.
 struct FittedDirections {
-  Matrix F;      ///< [all errors x k], SI
-  Vector scale;  ///< [k] d: what counts as one of each number, its tolerance, SI
-  Vector step;   ///< [k] step of differences, SI: see difference_steps()
+  Matrix F;      ///< [all errors x numbers] directions as columns, SI
+  Vector scale;  ///< [numbers] unit d of each scaled number, which is its tolerance, SI
+  Vector step;   ///< [numbers] step of each number for finite differences, SI: see difference_steps()
 };
 
-/// What is known of the fitted numbers: |root theta - centre|^2 is added to the sum of squares. Empty: nothing.
+/// Prior knowledge of the fitted numbers theta: the fit adds |root theta - centre|^2 to the sum of squares. Empty if
+/// there is none.
 struct Prior {
-  Matrix root = {};    ///< [p x k]
-  Vector centre = {};  ///< [p]
+  Matrix root = {};    ///< [rows x numbers] square root of the prior's information matrix
+  Vector centre = {};  ///< [rows] root times the prior's mean
 };
 
-/// The steps of differences for columns F: the largest with which no error moves by more than kStep of the machine's
-/// reach, or by kStep rad.
+/// The steps of finite differences for the columns of F. Each is the largest step that moves no length error by more
+/// than kStep of the machine's reach, and no angle error by more than kStep rad.
 Vector difference_steps(const ExactMachine& machine, const Matrix& F);
 
-/// The derivatives of h, by central differences of exact solves with four points.
+/// The derivatives of the measured values h(F theta, phi). theta are the fitted numbers, and F theta the errors of the
+/// machine (FittedDirections). phi are the numbers of the measuring device's frame and of the target (Measurement).
 struct Derivatives {
-  Matrix errors;  ///< [m x k] by theta
-  Matrix places;  ///< [m x places] by phi
+  Matrix errors;  ///< [values x numbers] with respect to theta
+  Matrix places;  ///< [values x places] with respect to phi
 };
 
-/// A measurement as a function of what is fitted.
+/// The measured values as a function of theta, the fitted numbers of the errors, and phi, the numbers of the measuring
+/// device's frame and of the target.
 class FittedMeasurement {
  public:
-  /// All arguments must outlive it. directions.F has a row for each error.
+  /// All arguments must outlive this object. directions.F has a row for each error.
   FittedMeasurement(const Measurement& measurement, const FittedDirections& directions)
       : measurement_(&measurement), directions_(&directions) {}
 
-  /// h(F theta, phi), [m]; none if a machine is not solved.
+  /// [values] The values that a measurement gives at theta and phi, SI; none if a machine is not solved.
   std::optional<Vector> values(const Vector& theta, const Vector& phi) const;
-  /// The derivatives there; none if a machine is not solved.
+  /// The derivatives at theta and phi, by central differences of exact solves at four points. None if a machine is not
+  /// solved.
   std::optional<Derivatives> derivatives(const Vector& theta, const Vector& phi) const;
 
  private:
@@ -47,51 +53,57 @@ class FittedMeasurement {
   const FittedDirections* directions_;
 };
 
-/// Matrices of a fit in units of the noise and of the scale, at one estimate.
+/// The matrices of a fit at one estimate, divided by the noise and multiplied by the scale. theta and phi: see
+/// Derivatives.
 struct ScaledFit {
-  Matrix A;                ///< [m x k] derivatives times scale over standard deviations
-  Matrix frame;            ///< [m x frame_rank] orthonormal basis of the columns of phi over standard deviations
-  Matrix reduced;          ///< [m x k] A less its part in `frame`
-  Vector singular_values;  ///< [min(m, k)] of `reduced`, the largest first
-  Matrix V;                ///< [k x k] right singular vectors of `reduced`
-  std::size_t rank = 0;    ///< singular values above kUnseen times the largest
+  Matrix A;  ///< [values x numbers] derivatives with respect to theta, times scale, over standard deviations
+  /// [values x frame_rank] Orthonormal basis of the derivatives with respect to phi, over standard deviations.
+  Matrix frame;
+  Matrix reduced;          ///< [values x numbers] A minus its projection on `frame`
+  Vector singular_values;  ///< [min(values, numbers)] singular values of `reduced`, largest first
+  Matrix V;                ///< [numbers x numbers] right singular vectors of `reduced`
+  std::size_t rank = 0;    ///< number of singular values above kUnseen times the largest
 
-  std::size_t frame_rank() const {
-    return static_cast<std::size_t>(frame.cols());
-  }  ///< The rank of the columns of phi.
+  /// The rank of the derivatives with respect to phi.
+  std::size_t frame_rank() const { return static_cast<std::size_t>(frame.cols()); }
 };
 
-/// Singular values below this share of the largest belong to what the measurements do not see.
+/// Directions of theta are not determined by the measurements if their singular value is below this share of the
+/// largest.
 inline constexpr double kUnseen = 1e-6;
 
-/// The matrices for these derivatives. sd: [m] standard deviations.
+/// The matrices of a fit for these derivatives. sd: [values] standard deviations, SI. scale: [numbers], SI.
 ScaledFit scaled_fit(const Derivatives& derivatives, const Vector& sd, const Vector& scale);
 
-/// A least-squares problem.
+/// A nonlinear least-squares problem.
 struct FitProblem {
   const Measurement& measurement;      ///< what was measured
-  const FittedDirections& directions;  ///< what is fitted
-  Vector sd;                           ///< [m] standard deviations, or equal weights
-  Prior prior = {};                    ///< what is known before
+  const FittedDirections& directions;  ///< which directions of errors are fitted
+  Vector sd;                           ///< [values] standard deviations of the values, or equal weights
+  Prior prior = {};                    ///< prior knowledge of the fitted numbers
+  /// Source of the derivatives. Null: they come from differences of solves at the estimate, which are exact up to
+  /// rounding.
+  const Expansion* expansion = nullptr;
 };
 
-/// The estimate.
+/// The estimate and its diagnostics.
 struct FitResult {
-  bool converged = false;   ///< whether a step was below 1e-9 of the scale, or 1e-8 of the noise
-  bool solved = true;       ///< whether all machines on the way were solved; otherwise nothing else is valid
-  std::size_t steps = 0;    ///< number of steps
-  Vector theta;             ///< [k] fitted numbers, SI
-  Vector phi;               ///< [places] numbers of the frame and the target
-  Vector residual;          ///< [m] measured less fitted, SI
-  Derivatives derivatives;  ///< at the estimate
-  ScaledFit scaled;         ///< at the estimate
-  double sum = 0.0;         ///< S, with the prior's part
-  double noise_sum = 0.0;   ///< sum of (residual / sd)^2
+  bool converged = false;   ///< whether the last step was below 1e-9 of the scale, or 1e-8 of the noise
+  bool solved = true;       ///< whether all machines on the way were solved; if not, nothing else is valid
+  std::size_t steps = 0;    ///< number of steps made
+  Vector theta;             ///< [numbers] fitted numbers of the errors, SI
+  Vector phi;               ///< [places] fitted numbers of the frame and the target
+  Vector residual;          ///< [values] measured minus fitted values, SI
+  Derivatives derivatives;  ///< derivatives at the estimate
+  ScaledFit scaled;         ///< scaled matrices at the estimate
+  double sum = 0.0;         ///< minimised sum of squares, including the prior
+  double noise_sum = 0.0;   ///< sum of (residual / sd)^2 over the measured values
 };
 
-/// The minimum of the sum of squares by Gauss-Newton steps with the derivatives at the estimate, halved where the sum
-/// would grow, at most 30. A step has no part in what is unseen without a prior: it has the least norm of the scaled
-/// numbers, and what looks like a frame is left to the frame.
+/// Finds the minimum of the sum of squares by at most 30 Gauss-Newton steps. A step is halved until the sum does not
+/// grow. Directions that the measurements do not determine move theta only if there is a prior: without one, each step
+/// has the least norm of the scaled numbers. Residuals that both theta and the frame can explain are attributed to the
+/// frame.
 FitResult fit(const FitProblem& problem);
 
 }  // namespace poesy::calibration

@@ -10,18 +10,12 @@
 namespace poesy::calibration {
 namespace {
 
-constexpr double kUnseenShare = 1e-6;   // of a number in the null space's projector
-constexpr double kLeastFreedom = 1e-6;  // 1 - leverage below which nothing else checks a value
-constexpr double kFalseOutlier = 0.01;  // chance of a false outlier in a file
+// A fitted number is undetermined if its diagonal element of the projector on the null space exceeds this.
+constexpr double kUnseenShare = 1e-6;
+constexpr double kLeastFreedom = 1e-6;  // if 1 - leverage of a value is below this, no other value checks it
+constexpr double kFalseOutlier = 0.01;  // probability of at least one false outlier in a file
 
-/// Projector on the unseen directions of the scaled numbers.
-Matrix null_projector(const ScaledFit& fit) {
-  const Eigen::Index k = fit.V.cols();
-  const Matrix unseen = fit.V.rightCols(k - static_cast<Eigen::Index>(fit.rank));
-  return unseen * unseen.transpose();
-}
-
-/// The covariance of the scaled numbers: of what is seen, or with the prior of all.
+/// The covariance of the scaled numbers. With a prior it covers all directions, without one only the determined ones.
 Matrix scaled_covariance(const ScaledFit& fit, const Matrix& prior) {
   if (prior.rows() == 0) {
     const auto r = static_cast<Eigen::Index>(fit.rank);
@@ -35,7 +29,7 @@ Matrix scaled_covariance(const ScaledFit& fit, const Matrix& prior) {
   return inverse * inverse.transpose();
 }
 
-/// Sets the chi-square test and the factor of the noise.
+/// Sets the results of the chi-square test and the estimated factor of the noise.
 void test(const FitResult& fit, bool has_prior, const InferenceOptions& options, Inference& found) {
   const auto m = static_cast<std::size_t>(fit.residual.size());
   const std::size_t used = fit.scaled.frame_rank() + (has_prior ? 0 : fit.scaled.rank);
@@ -47,7 +41,7 @@ void test(const FitResult& fit, bool has_prior, const InferenceOptions& options,
   if (options.sd_is_estimated) found.sd_factor = std::sqrt(fit.sum / dof);
 }
 
-/// The quantile of the normal, or of Student's t with so many degrees of freedom.
+/// The quantile of the normal distribution, or of Student's t with `dof` degrees of freedom if the noise is estimated.
 double quantile(double share, bool is_estimated, std::size_t dof) {
   if (!is_estimated) return boost::math::quantile(boost::math::normal(), share);
   if (dof == 0) return kNaN;
@@ -72,7 +66,7 @@ void set_intervals(const FitResult& fit, const Vector& scale, bool has_prior, co
   found.high = fit.theta + found.quantile * found.sd;
 }
 
-/// Sets what tells outliers.
+/// Sets standardised residuals, leverages and outliers.
 void set_residuals(const FitResult& fit, const Vector& sd, const Matrix& covariance, const InferenceOptions& options,
                    Inference& found) {
   const Eigen::Index m = sd.size();
@@ -116,6 +110,12 @@ ObservabilityIndices indices_of(const Vector& s, std::size_t poses) {
 }
 
 }  // namespace
+
+Matrix null_projector(const ScaledFit& fit) {
+  const Eigen::Index k = fit.V.cols();
+  const Matrix unseen = fit.V.rightCols(k - static_cast<Eigen::Index>(fit.rank));
+  return unseen * unseen.transpose();
+}
 
 Inference infer(const FitResult& fit, const Vector& sd, const Vector& scale, const Prior& prior,
                 const InferenceOptions& options) {

@@ -9,31 +9,13 @@
 namespace poesy::calibration {
 namespace {
 
-constexpr double kStepOfPlace = 1e-5;  // m, rad or a slope
-// Of the steps of the four-point formula: differences of two points are exact to 1e-10 with it.
+constexpr double kStepOfPlace = 1e-5;  // m, rad or a slope: step of the numbers of the places for finite differences
+// Step of two-point differences, as a share of the step of the four-point formula. The differences are then exact to
+// 1e-10.
 constexpr double kShareOfStep = 0.02;
 
-/// The displacement as the device sees it whose frame is taken for that of `believed`.
-Displacement seen_by_device(const Displacement& displacement, const Placement& nominal, const Vector& actual,
-                            const Vector& believed, Frame frame) {
-  if (frame == Frame::rigid) {
-    const Matrix3 back = lie::exp(Vector3(believed.segment<3>(3))).transpose();
-    const Matrix3 turn = back * lie::exp(Vector3(actual.segment<3>(3)));
-    const Vector3 moved = (turn - Matrix3::Identity()) * nominal.origin + turn * displacement.moved +
-                          back * (actual.head<3>() - believed.head<3>());
-    return {turn * displacement.turn, moved};
-  }
-  Displacement seen = displacement;
-  const Vector3 place = nominal.origin + displacement.moved;
-  if (frame == Frame::height) seen.moved.z() += believed(0) - actual(0);
-  if (frame == Frame::plane) {
-    const Vector3 slopes = believed.head<3>() - actual.head<3>();
-    seen.moved.z() += slopes.x() + slopes.y() * place.x() + slopes.z() * place.y();
-  }
-  return seen;
-}
-
-/// The derivatives of what is left by the errors and places that are known, [9 x (k + places)].
+/// [9 x (numbers + places)] The derivatives of the remaining displacement with respect to the fitted numbers of the
+/// errors, and with respect to the numbers of the places of measuring device and target.
 Matrix left_derivatives(ExactMachine& machine, std::span<const double> pose, std::span<const double> drive_at,
                         const Vector& at, const Corrected& corrected, const Knowledge& known) {
   const Eigen::Index k = known.theta.size();
@@ -59,6 +41,25 @@ Matrix left_derivatives(ExactMachine& machine, std::span<const double> pose, std
 }
 
 }  // namespace
+
+Displacement seen_by_device(const Displacement& displacement, const Placement& nominal, const Vector& actual,
+                            const Vector& believed, Frame frame) {
+  if (frame == Frame::rigid) {
+    const Matrix3 back = lie::exp(Vector3(believed.segment<3>(3))).transpose();
+    const Matrix3 turn = back * lie::exp(Vector3(actual.segment<3>(3)));
+    const Vector3 moved = (turn - Matrix3::Identity()) * nominal.origin + turn * displacement.moved +
+                          back * (actual.head<3>() - believed.head<3>());
+    return {turn * displacement.turn, moved};
+  }
+  Displacement seen = displacement;
+  const Vector3 place = nominal.origin + displacement.moved;
+  if (frame == Frame::height) seen.moved.z() += believed(0) - actual(0);
+  if (frame == Frame::plane) {
+    const Vector3 slopes = believed.head<3>() - actual.head<3>();
+    seen.moved.z() += slopes.x() + slopes.y() * place.x() + slopes.z() * place.y();
+  }
+  return seen;
+}
 
 Knowledge knowledge(const FitResult& fit, const FittedDirections& directions, const Vector& sd, const Prior& prior,
                     double sd_factor) {

@@ -1,5 +1,6 @@
 #include "engine/calibration/measurement.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -9,8 +10,8 @@
 namespace poesy::calibration {
 namespace {
 
-constexpr std::size_t kFirstLength = 3;  ///< among kComponents
-constexpr std::size_t kFirstOfTip = 6;   ///< among kComponents
+constexpr std::size_t kFirstLength = 3;  ///< position in kComponents of the first length
+constexpr std::size_t kFirstOfTip = 6;   ///< position in kComponents of the first coordinate of the tool point
 constexpr Eigen::Index kZ = 2;
 
 /// The axis of a component: 0, 1 or 2.
@@ -18,13 +19,14 @@ Eigen::Index axis_of(std::size_t component) { return static_cast<Eigen::Index>(c
 
 Vector3 three(const Vector& numbers, std::size_t first) { return numbers.segment<3>(static_cast<Eigen::Index>(first)); }
 
-/// The unknown places, apart.
+/// The numbers of the places of the measuring device and of the target (phi) as vectors and matrices; see Measurement
+/// for the symbols.
 struct Places {
-  Vector3 moved = Vector3::Zero();            ///< tau
-  Matrix3 turn = Matrix3::Identity();         ///< E(rho)
-  Vector3 plane = Vector3::Zero();            ///< c, a, b
-  Vector3 offset = Vector3::Zero();           ///< of the target, in the platform's axes
-  Matrix3 target_turn = Matrix3::Identity();  ///< of the target's axes
+  Vector3 moved = Vector3::Zero();            ///< translation tau, m
+  Matrix3 turn = Matrix3::Identity();         ///< rotation matrix E(rho)
+  Vector3 plane = Vector3::Zero();            ///< offset c (m) and slopes a and b
+  Vector3 offset = Vector3::Zero();           ///< offset of the target, in the platform's axes
+  Matrix3 target_turn = Matrix3::Identity();  ///< rotation of the target's axes
 };
 
 Places places_of(const Vector& phi, Frame frame, Target target) {
@@ -41,7 +43,8 @@ Places places_of(const Vector& phi, Frame frame, Target target) {
   return places;
 }
 
-/// The rigid motion (tau, rho) of the points `from` to `to` with the least sum of squares.
+/// The translation tau (m) and the rotation vector rho (rad) of the rigid motion that maps the points `from` to `to`
+/// with the least sum of squares.
 Vector rigid_motion(const std::vector<Vector3>& from, const std::vector<Vector3>& to) {
   Vector3 middle_from = Vector3::Zero();
   Vector3 middle_to = Vector3::Zero();
@@ -60,12 +63,12 @@ Vector rigid_motion(const std::vector<Vector3>& from, const std::vector<Vector3>
   return motion;
 }
 
-/// The value that these displacements give.
+/// The measured value that these displacements give.
 double value_of(const MeasuredValue& value, const std::vector<Placement>& nominals,
                 const std::vector<Displacement>& displacements, const Places& places) {
   const Placement& nominal = nominals[value.row];
   const Displacement& displacement = displacements[value.row];
-  // The displacement of the measured point, of P or of the tool, before the frame is considered.
+  // The displacement of the measured point (P or the tool point) at a pose, before the frame is considered.
   const auto moved = [&](std::size_t row, bool is_tip) -> Vector3 {
     const Displacement& by = displacements[row];
     const Vector3 arm = is_tip ? Vector3(nominals[row].tip - nominals[row].origin) : Vector3(Vector3::Zero());
@@ -116,16 +119,29 @@ Vector Measurement::measured() const {
   return list;
 }
 
-std::optional<std::vector<std::vector<Displacement>>> Measurement::displacements(const Matrix& errors) const {
+void Measurement::set_measured(const Vector& values) {
+  POESY_EXPECTS(static_cast<std::size_t>(values.size()) == values_.size());
+  for (std::size_t i = 0; i < values_.size(); ++i) values_[i].value = values(static_cast<Eigen::Index>(i));
+}
+
+std::vector<std::vector<Displacement>> Measurement::displacements_of_solved(const Matrix& errors) const {
   std::vector<std::vector<Displacement>> list(static_cast<std::size_t>(errors.cols()));
   for (std::size_t row = 0; row < poses_.size(); ++row) {
     const auto found = machine_->displaced(poses_[row].drive_at, errors);
     for (std::size_t b = 0; b < found.size(); ++b) {
-      if (!found[b]) return std::nullopt;
-      list[b].push_back(seen_from(*found[b], drive_at_[row], nominal_[row]));
+      if (found[b] && list[b].size() == row) list[b].push_back(seen_from(*found[b], drive_at_[row], nominal_[row]));
     }
   }
+  for (auto& machine : list) {
+    if (machine.size() < poses_.size()) machine.clear();
+  }
   return list;
+}
+
+std::optional<std::vector<std::vector<Displacement>>> Measurement::displacements(const Matrix& errors) const {
+  auto list = displacements_of_solved(errors);
+  const bool is_solved = std::ranges::none_of(list, [](const auto& machine) { return machine.empty(); });
+  return is_solved ? std::optional(std::move(list)) : std::nullopt;
 }
 
 std::optional<std::vector<Displacement>> Measurement::displacements(const Vector& errors) const {

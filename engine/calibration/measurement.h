@@ -8,65 +8,81 @@
 
 namespace poesy::calibration {
 
-/// What a value is a measurement of.
+/// The kind of quantity that a value measures.
 enum class Measured {
   deviation,  ///< a component of the platform's displacement from its commanded pose
-  actual,     ///< a coordinate of P or of the tool's point itself
-  distance    ///< the distance between the platform's points at two poses
+  actual,     ///< a coordinate of P or of the tool point
+  distance    ///< the distance between the places of the tool point (P if there is no tool) at two poses
 };
 
 /// A measured value.
 struct MeasuredValue {
-  Measured what;              ///< its kind
-  std::size_t row;            ///< position of its pose
+  Measured what;              ///< kind of quantity
+  std::size_t row;            ///< position of the pose among the poses
   std::size_t other = 0;      ///< position of the second pose, for a distance
-  std::size_t component = 0;  ///< position among kComponents, for the others
-  double value = 0.0;         ///< SI
+  std::size_t component = 0;  ///< position in kComponents, for a deviation or an actual coordinate
+  double value = 0.0;         ///< measured value, SI
   double sd = 0.0;            ///< standard deviation, SI
 };
 
-/// The unknown place of the measuring device. Its numbers: `height` c (m); `plane` c (m), a, b (slopes); `rigid` a
-/// translation tau (m) and a rotation vector rho (rad).
+/// What is unknown about the place of the measuring device, and the numbers that describe it. `height`: an offset c (m)
+/// along z. `plane`: an offset c (m) and the slopes a and b. `rigid`: a translation tau (m) and a rotation vector rho
+/// (rad).
 enum class Frame { known, height, plane, rigid };
-/// What is unknown about the measured place of the platform. Its numbers, in the platform's axes: `point` an offset
-/// (m); `rigid` the offset and a rotation vector (rad) of the axes.
+/// What is unknown about the place of the measured target on the platform, and the numbers that describe it in the
+/// platform's axes. `point`: an offset (m). `rigid`: an offset and a rotation vector (rad) of the target's axes.
 enum class Target { known, point, rigid };
 
-std::size_t numbers_of(Frame frame);    ///< How many numbers it has.
-std::size_t numbers_of(Target target);  ///< How many numbers it has.
+std::size_t numbers_of(Frame frame);    ///< The number of unknowns of a frame.
+std::size_t numbers_of(Target target);  ///< The number of unknowns of a target.
 
 /// A pose at which a machine is measured.
 struct MeasuredPose {
-  std::vector<double> pose;      ///< as commanded, SI
-  std::vector<double> drive_at;  ///< pose at which the drives are nominal: `pose`, unless the controller corrects them
+  std::vector<double> pose;  ///< commanded pose, SI
+  /// Pose at which the perfect mechanism has the machine's drive positions, SI: `pose`, unless a controller corrects
+  /// the drives.
+  std::vector<double> drive_at;
 };
 
-/// The values that a machine with errors would give, h(e, phi), where phi are the numbers of the frame and then of the
-/// target. With frame `rigid` the point r is seen at E(rho) r + tau, and axes R at E(rho) R. With `height` and `plane`
-/// heights z are seen at z - (c + a x + b y), with the actual x and y of the same point.
+/// The measured values h(e, phi) as a function of the errors e and of phi, the numbers of the frame followed by those
+/// of the target. With the frame `rigid`, the device sees a point r at E(rho) r + tau and axes R at E(rho) R. Here tau
+/// is a translation, rho a rotation vector and E(rho) its rotation matrix. With `height` and `plane` it sees a height z
+/// as z - (c + a x + b y), with an offset c, slopes a and b (0 for `height`), and the actual coordinates x and y of the
+/// same point.
 class Measurement {
  public:
-  /// machine: must outlive it. poses: reachable. values: their `row` and `other` are positions of poses.
+  /// machine: must outlive this object. poses: reachable. values: `row` and `other` are positions in `poses`.
   Measurement(ExactMachine& machine, std::vector<MeasuredPose> poses, std::vector<MeasuredValue> values, Frame frame,
               Target target);
 
-  std::size_t size() const { return values_.size(); }                              ///< The number of values, m.
-  std::size_t places() const { return numbers_of(frame_) + numbers_of(target_); }  ///< The number of phi.
-  Frame frame() const { return frame_; }                                           ///< The kind of frame.
-  const std::vector<MeasuredValue>& values() const { return values_; }             ///< The values.
-  const std::vector<MeasuredPose>& poses() const { return poses_; }                ///< The poses.
-  const std::vector<Placement>& nominal() const { return nominal_; }               ///< Nominal placements at the poses.
-  Vector measured() const;                                                         ///< [m] The measured values, SI.
+  std::size_t size() const { return values_.size(); }                              ///< The number of measured values.
+  std::size_t places() const { return numbers_of(frame_) + numbers_of(target_); }  ///< The number of entries of phi.
+  /// What is unknown about the device's place.
+  Frame frame() const { return frame_; }
+  /// The measured values with their kinds.
+  const std::vector<MeasuredValue>& values() const { return values_; }
+  const std::vector<MeasuredPose>& poses() const { return poses_; }  ///< The poses of the measurement.
+  /// Nominal placements at the commanded poses.
+  const std::vector<Placement>& nominal() const { return nominal_; }
+  Vector measured() const;  ///< [values] The measured values, SI.
+  /// Replaces the measured values (SI) by those of another machine at the same poses.
+  void set_measured(const Vector& values);
 
-  /// The displacements at all poses with these errors [F]; none if a machine is not solved.
+  /// The displacements at all poses with these errors (all errors of the model, SI); none if a machine is not solved.
   std::optional<std::vector<Displacement>> displacements(const Vector& errors) const;
-  /// The same for each column of errors [F x B]; none if one is not solved.
+  /// The displacements at all poses for each column of errors [all errors x machines], SI. Empty for a machine that is
+  /// not solved at every pose.
+  std::vector<std::vector<Displacement>> displacements_of_solved(const Matrix& errors) const;
+  /// The displacements at all poses for each column of errors [all errors x machines], SI; none if any machine is not
+  /// solved.
   std::optional<std::vector<std::vector<Displacement>>> displacements(const Matrix& errors) const;
-  /// [m] The values that these displacements give, with phi [places()].
+  /// [values] The values that are measured at these displacements [poses], SI. phi: numbers of the places, see the
+  /// class's comment.
   Vector values_of(const std::vector<Displacement>& displacements, const Vector& phi) const;
 
-  /// The frame that places the nominal points best on the measured ones (Kabsch 1976), and a known target: where a fit
-  /// begins. Zero unless the frame is `rigid` and at least three points were measured in all coordinates.
+  /// The numbers phi of the places at which a fit begins: the frame that best maps the nominal points to the measured
+  /// ones (Kabsch 1976), and a known target. Zero unless the frame is `rigid` and at least three points were measured
+  /// in all three coordinates.
   Vector start() const;
 
  private:
@@ -75,8 +91,8 @@ class Measurement {
   std::vector<MeasuredValue> values_;
   Frame frame_;
   Target target_;
-  std::vector<Placement> nominal_;   ///< at `pose`
-  std::vector<Placement> drive_at_;  ///< at `drive_at`
+  std::vector<Placement> nominal_;   ///< nominal placements at MeasuredPose::pose
+  std::vector<Placement> drive_at_;  ///< nominal placements at MeasuredPose::drive_at
 };
 
 }  // namespace poesy::calibration

@@ -8,21 +8,24 @@
 #include <optional>
 
 #include "engine/base/contract.h"
-#include "engine/drawing/zone_scatter.h"
+#include "engine/drawing/zone_moments.h"
 
 namespace poesy::drawing {
 namespace {
 
-constexpr int kStarts = 24;          ///< directions from which the largest length is sought
-constexpr int kMostTurns = 200;      ///< of an ascent
-constexpr double kNearTop = 1e-4;    ///< growth at which an ascent is near its end, to find the best one
-constexpr double kTop = 1e-14;       ///< growth at which it ends
-constexpr int kMostRounds = 1000;    ///< of the search for a point
-constexpr double kRest = 1e-15;      ///< a pull below this share of the weights is rest
-constexpr double kEqual = 1e-14;     ///< costs that differ by this share are equal
-constexpr double kNearRest = 1e-12;  ///< below this share a pull that grows is rounding
+constexpr int kStarts = 24;      ///< number of directions from which the ascent starts
+constexpr int kMostTurns = 200;  ///< largest number of steps of an ascent
+/// An ascent from a starting direction ends when the length grows by less than this share. Only the best ascent is
+/// continued until the length grows by less than kTop.
+constexpr double kNearTop = 1e-4;
+constexpr double kTop = 1e-14;       ///< the final ascent ends when the length grows by less than this share
+constexpr int kMostRounds = 1000;    ///< largest number of rounds of weighted_median()
+constexpr double kRest = 1e-15;      ///< weighted_median() ends when the gradient is below this share of the sum of
+                                     ///< weights
+constexpr double kEqual = 1e-14;     ///< costs that differ by less than this share count as equal
+constexpr double kNearRest = 1e-12;  ///< a gradient that is below this share and grows is rounding
 
-/// A vector across an axis; a zone between planes has its second component 0.
+/// A vector perpendicular to an axis (m). In a zone between two planes, its second component is 0.
 struct Across {
   double x = 0.0;
   double y = 0.0;
@@ -53,7 +56,7 @@ void append(const Across& errors, std::size_t count, OfErrors& list) {
   if (count > 1) list.push_back(errors.y);
 }
 
-/// The point that minimises w0 |q| + w (|q - p1| + |q - p2|).
+/// The point q that minimises w0 |q| + w (|q - p1| + |q - p2|).
 Across weighted_median(const Across& p1, const Across& p2, double w0, double w) {
   const std::array<Across, 3> points{Across{}, p1, p2};
   const std::array<double, 3> weights{w0, w, w};
@@ -73,7 +76,7 @@ Across weighted_median(const Across& p1, const Across& p2, double w0, double w) 
   double last = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kMostRounds; ++round) {
     Across gradient;
-    Across pulled;  // Weiszfeld's step, which is slow and always gets nearer
+    Across pulled;  // step of Weiszfeld's method, which converges slowly but never fails
     double inverse = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
       const Across away = q - points[k];
@@ -101,13 +104,14 @@ Across weighted_median(const Across& p1, const Across& p2, double w0, double w) 
   return q;
 }
 
-/// The two ends of an axis, as displacements across it.
+/// The displacements of the two ends of an axis, perpendicular to it (m).
 struct Ends {
   Across far;
   Across near;
 };
 
-/// The ends in discs of this radius, with a lean of at most `lean`, that make far . a + near . b largest.
+/// The two ends (far and near) of an axis for which the sum of scalar products far . a + near . b is largest. Both ends
+/// are in discs of this radius and differ by at most `lean`.
 Ends extreme_ends(const Across& a, const Across& b, double radius, double lean) {
   const Ends free{radius * unit(a), radius * unit(b)};
   if ((free.far - free.near).length() <= lean) return free;
@@ -173,10 +177,11 @@ double sum_of(const OfErrors& squares, std::size_t first, std::size_t count) {
                          squares.begin() + static_cast<std::ptrdiff_t>(first + count), 0.0);
 }
 
-/// A vector with a number for each component; 0 for those that are not there.
+/// A vector in the space of a response's components. Components that the response does not have are 0.
 using Direction = std::array<double, 3>;
 
-/// Unit vectors from which the ascent starts, spread evenly over half of all directions.
+/// Unit vectors from which the ascent starts, evenly spread over a half-sphere or half-circle. The other half gives the
+/// same lengths.
 std::vector<Direction> starts(std::size_t components) {
   if (components == 1) return {{1.0, 0.0, 0.0}};
   std::vector<Direction> list;
@@ -190,13 +195,14 @@ std::vector<Direction> starts(std::size_t components) {
   return list;
 }
 
-/// The end of an ascent.
+/// A state of the ascent to the largest length of the sum of the features' vectors.
 struct Reached {
   LargestLength top;
-  Direction direction{};  ///< of the sum of vectors there
+  Direction direction{};  ///< direction of the sum of vectors, from which the ascent goes on
 };
 
-/// The sum of vectors with all features at their extremes in a direction of any length, and its length.
+/// The sum of the features' vectors, and its length, if each feature has the errors that are extreme along a direction.
+/// The direction may have any length.
 Reached reached_in(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes,
                    const Direction& direction) {
   const double size = std::hypot(direction[0], direction[1], direction[2]);
@@ -217,7 +223,8 @@ Reached reached_in(const std::vector<Feature>& features, const std::vector<std::
   return found;
 }
 
-/// Turns a direction to the sum of vectors that it makes, until the length grows by no more than this share.
+/// Ascends to a local maximum of the length. Each step replaces the direction by the sum of vectors that is extreme
+/// along it; the ascent ends when the length grows by no more than `share`.
 Reached ascend(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes,
                const Direction& start, double share) {
   Reached best = reached_in(features, slopes, start);
@@ -260,14 +267,15 @@ Extreme extreme(const Feature& feature, const OfErrors& slopes) {
   return found;
 }
 
-ZoneSquares zone_squares(const Feature& feature, double sigmas, const OfErrors& squares) {
-  const FeatureSigmas sigma = feature_sigmas(feature, sigmas);
+ZoneSquares zone_squares(const Feature& feature, const ZoneScatter& scatter, const OfErrors& squares) {
+  const FeatureSigmas sigma = scatter_sigmas(feature, scatter);
   const double middle = sum_of(squares, 0, feature.middle.size());
   const double tilt = sum_of(squares, feature.middle.size(), feature.tilt.size());
   const auto square = [](double value) { return value * value; };
   const double even = middle * square(sigma.middle.value_or(0.0)) + tilt * square(sigma.tilt.value_or(0.0));
   const bool is_divided_freely = feature.location && !feature.orientation && !feature.tilt.empty();
-  if (!is_divided_freely) return {even, even};
+  if (!is_divided_freely || !scatter.has_sigmas()) return {even, even};
+  const double sigmas = sigmas_of(feature, scatter);
   Feature shifted = feature;
   shifted.orientation = Zone{"parallelism", 0.0, {}};
   const double only_middle = middle * square(*feature_sigmas(shifted, sigmas).middle);

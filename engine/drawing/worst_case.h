@@ -3,43 +3,48 @@
 #include <array>
 #include <vector>
 
+#include "engine/drawing/zone_scatter.h"
 #include "engine/model/feature.h"
 
-/// The largest effect that features may have in their zones, to first order.
+/// The largest effect of features within their zones, to first order.
 namespace poesy::drawing {
 
-/// A number for each error of a feature: those of its middle, then those of its tilt, in their order.
+/// A number for each error of a feature: first those of its middle, then those of its tilt, in the order of the
+/// feature.
 using OfErrors = std::vector<double>;
 
 /// The errors of a feature that make a linear effect largest.
 struct Extreme {
   OfErrors errors;     ///< m, in the zone
-  double value = 0.0;  ///< their effect: the support function of the zone
+  double value = 0.0;  ///< sum of slope x error, which is the support function of the zone
 };
 
-/// The largest value of sum over the errors of slope x error in the feature's zones. slopes: of its errors. An error
-/// without a zone is 0. theory.md, features and zones.
+/// The largest sum of slope x error over all errors that keep the feature within its zones. slopes: one for each error.
+/// An error that no zone limits is 0. See theory.md, features and zones.
 Extreme extreme(const Feature& feature, const OfErrors& slopes);
 
-/// Mean squares of a feature's effect.
+/// Mean squares of a feature's effect on a response.
 struct ZoneSquares {
-  double even;   ///< as feature_sigmas() divides its zone of location
-  double worst;  ///< as the worst division of a location without orientation: the middle alone, or the tilt alone
+  double even;  ///< mean square if the zone of location is divided between middle and tilt as in scatter_sigmas()
+  /// Mean square at the worst division of the zone of location, for a feature without a zone of orientation: all to the
+  /// middle or all to the tilt. For a feature that is uniform or on the boundary, this equals `even`. For inspected
+  /// features, it is the value before inspection.
+  double worst;
 };
 
-/// The mean squares if half a zone is so many standard deviations. squares: of each error of the feature, the sum of
+/// The mean squares of a feature's effect under this scatter. squares: for each error of the feature, the sum of
 /// squared slopes over the components of a response.
-ZoneSquares zone_squares(const Feature& feature, double sigmas, const OfErrors& squares);
+ZoneSquares zone_squares(const Feature& feature, const ZoneScatter& scatter, const OfErrors& squares);
 
 /// The largest length of a sum of vectors, one for each feature.
 struct LargestLength {
   double length = 0.0;             ///< the largest that was found
-  std::vector<double> by_feature;  ///< the part of each feature in that direction
+  std::vector<double> by_feature;  ///< component of each feature's vector along the sum; these add up to the length
 };
 
-/// The largest length over all errors in the zones. An error adds its column of slopes times its value. Ascents from
-/// many directions find the largest in practice, and prove no bound. slopes: [features][components] of each feature's
-/// errors; up to three components.
+/// The largest length over all errors within the zones. Each error contributes its column of slopes times its value.
+/// Ascents from many directions find the largest length in practice, but do not prove it. slopes:
+/// [features][components], each with the slopes by a feature's errors; one to three components.
 LargestLength largest_length(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes);
 
 }  // namespace poesy::drawing

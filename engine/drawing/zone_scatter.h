@@ -7,30 +7,46 @@
 /// Tolerance zones of a drawing as standard deviations of a feature's errors.
 namespace poesy::drawing {
 
-/// How the points of features scatter in their zones. A location and an orientation are used independently, and a zone
-/// of location evenly: the errors that move an extreme point of the feature share its variance.
-struct ZoneScatter {
-  double sigmas = 3.0;             ///< half a zone, in standard deviations of a coordinate of an extreme point
-  std::optional<double> within{};  ///< instead: share of the extreme points that are in the zone
-
-  bool operator==(const ZoneScatter&) const = default;  ///< Whether zones give the same standard deviations.
+/// The distribution of features in their zones.
+enum class ScatterShape {
+  normal,    ///< coordinates of extreme points are normal; some features are outside their zones
+  uniform,   ///< all features within the zones are equally likely
+  boundary,  ///< extreme points are on the boundary of the zone, uniformly in direction
+  inspected  ///< normal, but features outside their zones are rejected
 };
 
-/// Half a zone of this feature in standard deviations. With a share it depends on whether its zone is an interval, a
-/// disc or a ball.
+/// How the extreme points of features scatter in their zones. Features use a zone of location and a zone of orientation
+/// independently. Under normal scatter, the errors that displace an extreme point contribute equally to its variance.
+struct ZoneScatter {
+  ScatterShape shape = ScatterShape::normal;  ///< distribution of the extreme points
+  /// Half a zone, in standard deviations of a coordinate of an extreme point. Applies to `normal` and `inspected`.
+  double sigmas = 3.0;
+  std::optional<double> within{};  ///< the share of extreme points inside the zone, from which `sigmas` is computed
+                                   ///< instead
+
+  bool is_normal() const { return shape == ScatterShape::normal; }  ///< Whether errors are independent normals.
+  /// Whether the distribution has normals, which `sigmas` or `within` scale.
+  bool has_sigmas() const { return is_normal() || shape == ScatterShape::inspected; }
+
+  bool operator==(const ZoneScatter&) const = default;  ///< Whether both give errors the same distribution.
+};
+
+/// Half a zone of this feature, in standard deviations of a coordinate. If `within` is set, the result depends on
+/// whether the zone is an interval, a disc or a ball.
 double sigmas_of(const Feature& feature, const ZoneScatter& scatter);
 
 /// Standard deviations of a feature's errors (m).
 struct FeatureSigmas {
-  std::optional<double> middle;  ///< of each error that moves it; none: no zone says it
-  std::optional<double> tilt;    ///< of each error that turns it; none: no zone says it
+  std::optional<double>
+      middle;  ///< standard deviation of each error that displaces the feature; none if no zone limits it
+  std::optional<double> tilt;  ///< standard deviation of each error that turns the feature; none if no zone limits it
 };
 
-/// The standard deviations by the feature's zones, where half a zone is so many of them, or by its clearance: exact in
-/// the mean square.
+/// The standard deviations of a feature's normal errors, if half a zone is `sigmas` standard deviations. For a feature
+/// with a clearance, those that have the mean square of the clearance.
 FeatureSigmas feature_sigmas(const Feature& feature, double sigmas);
 
-/// The largest zone of orientation, as a share of that of location, that limits more than the location alone does.
+/// The largest useful zone of orientation, as a share of the zone of location. A wider one limits nothing more.
 double widest_orientation(FeatureKind kind);
 
 }  // namespace poesy::drawing

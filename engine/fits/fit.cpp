@@ -15,17 +15,17 @@
 namespace poesy {
 namespace {
 
-/// The largest nominal size of the table, mm.
+/// The largest nominal size that kSteps covers, mm.
 constexpr double kLargest = 500.0;
 
-/// The distances of shafts below their nominal size, for sizes up to and including this one. A hole H begins at the
-/// nominal size, a shaft h ends there.
+/// The distances of shaft zones below the nominal size, for sizes up to and including `up_to`. The zone of a hole H
+/// begins at the nominal size; the zone of a shaft h ends there.
 struct DistanceStep {
-  double up_to;                      ///< mm
-  std::array<double, 4> micrometre;  ///< d, e, f, g
+  double up_to;                      ///< largest nominal size, mm
+  std::array<double, 4> micrometre;  ///< distances of the classes d, e, f, g
 };
 
-/// Fundamental deviations of ISO 286-1:2010, Table 4; all are negative.
+/// Fundamental deviations of ISO 286-1:2010, Table 4, without their sign: all are negative.
 constexpr std::array<DistanceStep, 13> kSteps{{{3, {20, 14, 6, 2}},
                                                {6, {30, 20, 10, 4}},
                                                {10, {40, 25, 13, 5}},
@@ -40,12 +40,12 @@ constexpr std::array<DistanceStep, 13> kSteps{{{3, {20, 14, 6, 2}},
                                                {400, {210, 125, 62, 18}},
                                                {500, {230, 135, 68, 20}}}};
 
-/// A text and what is wrong with it.
+/// Throws an exception that quotes the text and says what is wrong with it.
 [[noreturn]] void refuse(std::string_view text, const std::string& problem) {
   throw std::invalid_argument("'" + printable(text) + "' " + problem);
 }
 
-/// A nominal size and the text behind it.
+/// A nominal size and the text that follows it, such as "H7".
 struct NominalSize {
   double metres;
   std::string_view zones;
@@ -85,7 +85,7 @@ std::optional<ItGrade> grade_of(std::string_view digits) {
   return ItGrade{static_cast<int>(ItGrade::it1) + number - 1};
 }
 
-/// How far a shaft of this letter is below its nominal size, m.
+/// The distance of a shaft's zone below the nominal size, m. letter: d to h.
 double distance_of(char letter, double metres) {
   if (letter == 'h') return 0.0;
   const double size = metres * 1e3 * (1.0 - 1e-12);  // a size in metres may be rounded up past a step
@@ -93,7 +93,7 @@ double distance_of(char letter, double metres) {
   return step->micrometre[static_cast<std::size_t>(letter - 'd')] / 1e6;
 }
 
-/// The limits of one zone, "h6". text: the whole text, for messages.
+/// The limits of one tolerance class, such as "h6". text: the whole text, for messages.
 SizeLimits limits_of(std::string_view zone, double metres, std::string_view text) {
   const char letter = zone.empty() ? ' ' : zone.front();
   if (letter != 'H' && (letter < 'd' || letter > 'h')) {
@@ -121,7 +121,7 @@ SizeLimits size_limits(std::string_view text) {
 Fit fit(std::string_view text) {
   const NominalSize size = nominal_size(text);
   const std::size_t slash = size.zones.find('/');
-  if (slash == std::string_view::npos) refuse(text, "is no fit; write the zones of hole and shaft, such as 8 H7/g6");
+  if (slash == std::string_view::npos) refuse(text, "is not a fit; write the zones of hole and shaft, such as 8 H7/g6");
   const std::string_view first = trimmed(size.zones.substr(0, slash));
   const std::string_view second = trimmed(size.zones.substr(slash + 1));
   const SizeLimits hole = limits_of(first, size.metres, text);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 
 #include "engine/base/text.h"
 #include "engine/kinds/registry.h"
 #include "engine/result/csv_table.h"
 #include "engine/storage/file_writer.h"
+#include "engine/study/calibration.h"
 #include "engine/study/study_file.h"
 
 namespace poesy {
@@ -15,6 +17,28 @@ namespace {
 /// The kind of study that judges a yield.
 const StudyKind& kind_with_yields() {
   return (*std::ranges::find_if(kinds(), [](const Kind* kind) { return kind->study.ask_yield != nullptr; }))->study;
+}
+
+/// Whether the poses at which machines are measured are those of a file of their own.
+bool measures_at_file(const Study& study) {
+  const auto& calibration = study.analysis.calibration;
+  return calibration != nullptr && calibration->poses && calibration->poses->select == PoseSelection::Select::file;
+}
+
+/// Writes points with these coordinates as a table of poses.
+void write_points(const std::string& folder, const std::string& file, const std::vector<PoseCoordinate>& coordinates,
+                  const PoseSet& points) {
+  const auto title = [](const PoseCoordinate& named) {
+    const std::string unit = " [" + std::string(si_unit(named.dimension)) + "]";
+    return named.dimension == Dimension::number ? named.name : named.name + unit;
+  };
+  CsvTable table{std::filesystem::path(file).stem().string(),
+                 {title(coordinates.front()), [&](std::size_t m) { return shortest(points[PoseIndex(m)][0]); }},
+                 points.size()};
+  for (std::size_t c = 1; c < coordinates.size(); ++c) {
+    table.columns.push_back({title(coordinates[c]), [&points, c](std::size_t m) { return points[PoseIndex(m)][c]; }});
+  }
+  write_csv(folder, table);
 }
 
 }  // namespace
@@ -32,6 +56,10 @@ Study as_confirming_study(Study study, const std::string& stem) {
 void name_files_beside(Study& confirming, const std::string& stem) {
   if (confirming.mechanism.file) confirming.mechanism.file->name = stem + "_mechanism.toml";
   if (confirming.poses.select == PoseSelection::Select::file) confirming.poses.file = stem + "_poses.csv";
+  if (!measures_at_file(confirming)) return;
+  auto calibration = std::make_shared<CalibrationTable>(*confirming.analysis.calibration);
+  calibration->poses->file = stem + "_measured.csv";
+  confirming.analysis.calibration = std::move(calibration);
 }
 
 void write_files_beside(const std::string& folder, const Study& confirming, const PoseSet& poses) {
@@ -39,20 +67,13 @@ void write_files_beside(const std::string& folder, const Study& confirming, cons
     const MechanismText& mechanism = *confirming.mechanism.file;
     write_text((std::filesystem::path(folder) / mechanism.name).string(), mechanism.text);
   }
-  if (confirming.poses.select != PoseSelection::Select::file) return;
-  const std::vector<PoseCoordinate>& coordinates = confirming.model().pose_coordinates;
-  const auto title = [](const PoseCoordinate& named) {
-    const std::string unit = " [" + std::string(si_unit(named.dimension)) + "]";
-    return named.dimension == Dimension::number ? named.name : named.name + unit;
-  };
-  const auto coordinate = [&](std::size_t m, std::size_t c) { return poses[PoseIndex(m)][c]; };
-  CsvTable table{std::filesystem::path(confirming.poses.file).stem().string(),
-                 {title(coordinates.front()), [&](std::size_t m) { return shortest(coordinate(m, 0)); }},
-                 poses.size()};
-  for (std::size_t c = 1; c < coordinates.size(); ++c) {
-    table.columns.push_back({title(coordinates[c]), [&coordinate, c](std::size_t m) { return coordinate(m, c); }});
+  const ModelDescription& model = confirming.model();
+  if (confirming.poses.select == PoseSelection::Select::file) {
+    write_points(folder, confirming.poses.file, model.pose_coordinates, poses);
   }
-  write_csv(folder, table);
+  if (!measures_at_file(confirming)) return;
+  const PoseSelection& measured = *confirming.analysis.calibration->poses;
+  write_points(folder, measured.file, coordinates(model, measured.from_file.chart), measured.from_file.points);
 }
 
 std::string write_confirming_study(const std::string& folder, const std::string& name, const Study& confirming,

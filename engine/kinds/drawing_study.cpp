@@ -10,6 +10,7 @@
 #include "engine/base/nan.h"
 #include "engine/drawing/worst_case.h"
 #include "engine/drawing/zone_scatter.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
@@ -18,15 +19,16 @@ using drawing::OfErrors;
 
 namespace axis {
 using namespace poesy::axis;
-using Side = Axis<"side">;  ///< An error's step up and its step down.
+using Side = Axis<"side">;  ///< Whether a step of an error is up or down.
 }  // namespace axis
 
 constexpr std::string_view kNone = "-";
 
-/// Steps of differences over standard deviations: neither what bends nor what rounds is more than 1e-9 of a slope.
+/// The step of a central difference, in standard deviations of the error. Both curvature and rounding change a slope by
+/// at most a share of 1e-9.
 constexpr double kDifferenceStep = 1.0 / 16.0;
 
-/// The features of which all errors vary.
+/// The features of which every error varies in the study.
 std::vector<Feature> varied_features(const Study& study) {
   const auto varies = [&](FactorIndex error) {
     return std::ranges::find(study.analysis.factors, error) != study.analysis.factors.end();
@@ -41,10 +43,10 @@ std::vector<Feature> varied_features(const Study& study) {
   return list;
 }
 
-/// Slopes of all responses by the errors of features at one pose.
+/// Slopes of all responses with respect to the errors of features, at one pose.
 class Slopes {
  public:
-  /// Positions of the two sides.
+  /// Positions on the axis Side: a step of the error in the positive and in the negative direction.
   /// @{
   static constexpr std::size_t kUp = 0;
   static constexpr std::size_t kDown = 1;
@@ -77,7 +79,7 @@ class Slopes {
     evaluator_->evaluate(samples, {found_.all(), status_.all(), iterations_, {}});
   }
 
-  /// The slopes of a signed response by the errors of a feature; NaN where a pose is not solved.
+  /// The slopes of a response with a sign with respect to the errors of a feature; NaN if the pose is not solved.
   OfErrors of(std::size_t response, std::size_t feature) const {
     OfErrors list;
     for (std::size_t e = first_[feature]; e < first_[feature + 1]; ++e) {
@@ -92,7 +94,7 @@ class Slopes {
   std::unique_ptr<Evaluator> evaluator_;
   std::vector<double> constant_;
   std::vector<FactorIndex> errors_;
-  std::vector<std::size_t> first_;  ///< [features + 1] where the errors of a feature begin
+  std::vector<std::size_t> first_;  ///< [features + 1] position of each feature's first error
   std::vector<double> steps_;
   Array<double, axis::Factor, axis::Side, axis::Sample> values_;
   Array<double, axis::Response, axis::Side, axis::Sample> found_;
@@ -100,7 +102,8 @@ class Slopes {
   std::vector<std::uint32_t> iterations_;
 };
 
-/// The signed responses behind a response: itself, or those of which it is the norm; otherwise none.
+/// The responses with a sign that make up a response: the response itself, or its components if it is a norm. Empty if
+/// there are none, or more than three.
 std::vector<std::size_t> components(const ModelDescription& model, std::size_t response) {
   const Response& one = model.responses[response];
   if (one.has_no_sign || one.components.size() > 3) return {};
@@ -128,7 +131,7 @@ std::string datums_of(const std::optional<Zone>& zone) {
   return zone && !zone->datums.empty() ? zone->datums : std::string(kNone);
 }
 
-/// The result with the features, and NaN for what they do.
+/// The result with the description of the features and all effects NaN.
 DrawingResult described(const StudyRun& run, const std::vector<Feature>& features) {
   DrawingResult made;
   const std::size_t count = features.size();
@@ -153,7 +156,8 @@ DrawingResult described(const StudyRun& run, const std::vector<Feature>& feature
     made.orientation(q) = key_of(one.orientation);
     made.orientation_zone(q) = one.orientation ? one.orientation->size : 0.0;
     made.orientation_datums(q) = datums_of(one.orientation);
-    made.sigmas(q) = one.clearance ? 0.0 : drawing::sigmas_of(one, *run.study.errors.zones);
+    const bool has_sigmas = !one.clearance && run.study.errors.zones->has_sigmas();
+    made.sigmas(q) = has_sigmas ? drawing::sigmas_of(one, *run.study.errors.zones) : 0.0;
   }
   const std::size_t responses = run.study.model().responses.size();
   for (auto* list : {&made.effect, &made.share, &made.worst_share}) {
@@ -165,16 +169,49 @@ DrawingResult described(const StudyRun& run, const std::vector<Feature>& feature
   return made;
 }
 
+/// [features] the variances (m^2) of the errors of features that do not scatter as their zones say, because the study
+/// gives one of their errors a distribution of its own, such as a measured one; empty for others.
+std::vector<OfErrors> own_variances(const Study& study, const std::vector<Feature>& features) {
+  const auto by_zones = distributions_by_zones(study);
+  std::vector<OfErrors> variances(features.size());
+  for (std::size_t q = 0; q < features.size(); ++q) {
+    const std::vector<FactorIndex> errors = features[q].errors();
+    const auto is_own = [&](FactorIndex error) {
+      return by_zones[error.value] && study.errors.by_factor[error.value] != *by_zones[error.value];
+    };
+    if (std::ranges::none_of(errors, is_own)) continue;
+    for (const FactorIndex error : errors) {
+      const double sigma = study.errors.by_factor[error.value].standard_deviation();
+      variances[q].push_back(sigma * sigma);
+    }
+  }
+  return variances;
+}
+
+/// The mean square of a response by errors with these variances. squares: of its slopes.
+drawing::ZoneSquares own_squares(const OfErrors& variances, const OfErrors& squares) {
+  double sum = 0.0;
+  for (std::size_t e = 0; e < squares.size(); ++e) sum += squares[e] * variances[e];
+  return {.even = sum, .worst = sum};
+}
+
 /// What features do to one response, over the poses so far.
 struct OverPoses {
-  std::vector<double> squares;     ///< [features] sums of mean squares
-  double worst = -1.0;             ///< largest worst case
-  std::vector<double> at_worst{};  ///< [features] its parts
+  std::vector<double> squares;     ///< [features] sum over poses of the feature's mean square
+  double worst = -1.0;             ///< largest worst case over the poses
+  std::vector<double> at_worst{};  ///< [features] contribution of each feature to that worst case
+};
+
+/// How features scatter.
+struct FeatureScatter {
+  drawing::ZoneScatter in_zones;
+  std::vector<OfErrors> own;  ///< variances of each feature's own errors, see own_variances()
 };
 
 /// Adds a pose. slopes: [features][components].
-void add_pose(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes, std::size_t r,
-              std::size_t m, OverPoses& sums, DrawingResult& result) {
+void add_pose(const std::vector<Feature>& features, const FeatureScatter& scatter,
+              const std::vector<std::vector<OfErrors>>& slopes, std::size_t r, std::size_t m, OverPoses& sums,
+              DrawingResult& result) {
   double even = 0.0;
   double worst = 0.0;
   for (std::size_t q = 0; q < features.size(); ++q) {
@@ -182,7 +219,9 @@ void add_pose(const std::vector<Feature>& features, const std::vector<std::vecto
     for (const OfErrors& component : slopes[q]) {
       for (std::size_t e = 0; e < squares.size(); ++e) squares[e] += component[e] * component[e];
     }
-    const drawing::ZoneSquares found = drawing::zone_squares(features[q], result.sigmas(q), squares);
+    const drawing::ZoneSquares found = scatter.own[q].empty()
+                                           ? drawing::zone_squares(features[q], scatter.in_zones, squares)
+                                           : own_squares(scatter.own[q], squares);
     sums.squares[q] += found.even;
     even += found.even;
     worst += found.worst;
@@ -217,6 +256,7 @@ std::optional<DrawingResult> drawing_result(const StudyRun& run) {
   if (features.empty()) return std::nullopt;
   const ModelDescription& model = study.model();
   DrawingResult result = described(run, features);
+  const FeatureScatter scatter{study.errors.zones.value_or(drawing::ZoneScatter()), own_variances(study, features)};
   Slopes slopes(run, features);
   std::vector<OverPoses> sums(model.responses.size(), {std::vector<double>(features.size(), 0.0)});
   std::vector<std::vector<std::size_t>> signed_ones;
@@ -229,7 +269,7 @@ std::optional<DrawingResult> drawing_result(const StudyRun& run) {
       for (std::size_t q = 0; q < features.size(); ++q) {
         for (const std::size_t component : signed_ones[r]) of_features[q].push_back(slopes.of(component, q));
       }
-      add_pose(features, of_features, r, m, sums[r], result);
+      add_pose(features, scatter, of_features, r, m, sums[r], result);
     }
   }
   for (std::size_t r = 0; r < model.responses.size(); ++r) {

@@ -18,74 +18,80 @@
 #include "engine/study/study.h"
 #include "engine/study/study_kind.h"
 
-/// The interface of a kind of study. Each kind has a folder, with a row of this type beside its run.
+/// The interface of a kind of study. Each kind has a folder that defines one object of type Kind.
 namespace poesy {
 
 /// The result of a study.
 struct StudyResult {
-  std::any found;                         ///< of the kind's own type: SensitivityResult, for instance
+  std::any found;                         ///< the result, in the kind's own type, for instance SensitivityResult
   std::optional<LimitVerdicts> verdicts;  ///< verdicts on the limits that the study states; empty without limits
   std::vector<std::string> row_names;     ///< names of the rows of errors to which a verdict may refer
-  std::optional<Study> confirming = std::nullopt;       ///< a study that confirms the result, if there is one
-  std::optional<DrawingResult> drawing = std::nullopt;  ///< what features do, if they scatter in their zones
+  std::optional<Study> confirming = std::nullopt;       ///< a study that confirms the result; none if the kind makes
+                                                        ///< none
+  std::optional<DrawingResult> drawing = std::nullopt;  ///< effects of a drawing's features; none if no features
+                                                        ///< scatter in zones
+  /// [machines] 1 if the machine is rejected, otherwise 0. Empty without limits or without RunOptions::keep_rejected.
+  /// Not part of a result file.
+  std::vector<std::uint8_t> rejected = {};
 
-  /// The result. Precondition: it is of this type.
+  /// The result in the kind's own type. Precondition: it has this type.
   template <class Found>
   const Found& as() const {
     return std::any_cast<const Found&>(found);
   }
 };
 
-/// A study that is run. Refers to all members.
+/// A study with all that a run of it needs. Refers to all members.
 struct StudyRun {
   const Study& study;         ///< the study
-  const Model& model;         ///< the model of its mechanism
-  const PoseSet& poses;       ///< the poses that it selects
+  const Model& model;         ///< the model of the study's mechanism
+  const PoseSet& poses;       ///< the poses that the study selects
   const RunOptions& options;  ///< threads, ranks, progress and checkpoints
 
   /// The run's checkpoints. Precondition: options.checkpoints is set.
   Checkpoints& checkpoints() const { return *options.checkpoints; }
-  /// Whether this process makes the result: of several ranks only the first does.
+  /// Whether this process makes the result: among several ranks, only the first does.
   bool makes_result() const { return options.team == nullptr || options.team->leads(); }
 };
 
 /// How studies of a kind are run.
 struct RunKind {
-  /// Runs a study. Empty when it was stopped, for a shard, and on the ranks after rank 0.
+  /// Runs a study. Returns nothing if the run was stopped, for a shard, and on ranks other than rank 0.
   std::optional<StudyResult> (*run)(const StudyRun&);
   /// Estimates the work of a run without doing it.
   Outlook (*outlook)(const Study&, const Model&, const PoseSet&);
-  /// The largest number of shards of a study at this many poses; null: its steps need all poses.
+  /// The largest number of shards for a study at this many poses; null if the kind cannot be divided into shards.
   std::size_t (*most_shards)(const Study&, std::size_t poses);
-  bool confirms = false;  ///< whether it writes a study that confirms the result
+  bool confirms = false;  ///< whether the result includes a study that confirms it
 };
 
-/// The most_shards of a kind that is divided by poses.
+/// A function for Kind::most_shards if the shards of the kind are groups of poses.
 inline std::size_t shards_by_pose(const Study&, std::size_t poses) { return poses; }
 
-/// The solves of errors that were given instead of drawn: their addresses and errors. Refers to the result.
+/// Solves of errors that were given instead of drawn: names, addresses and errors. Refers to the result.
 struct GivenErrors {
-  std::string_view word;           ///< the word for what has a name: "case"
-  std::vector<std::string> names;  ///< the names; empty if there are none
-  std::size_t samples =
-      0;  ///< number of solves at each pose, addressed by number; 0: the position of the name is the row of errors
-  Pairing pairing =
-      Pairing::every_pose_with_every_row;  ///< how poses and rows are paired: a row is a sample, or a pose
-  std::span<const double> values;          ///< [rows x P] SI
+  std::string_view word;           ///< what a named row is called in messages: "case"
+  std::vector<std::string> names;  ///< names of the rows; empty if they have none
+  std::size_t samples = 0;  ///< number of solves at each pose, if a solve has a number as its address; 0 if its address
+                            ///< is the name of its row of errors
+  Pairing pairing = Pairing::every_pose_with_every_row;  ///< how poses and rows are combined
+  std::span<const double> values;                        ///< errors, [rows x errors in the result], SI
 };
 
 /// The options of `poesy tolerances`.
 struct TolerancesOptions {
-  std::string result;                    ///< path of the result
-  std::string response;                  ///< the response that they are for; empty: not named
-  std::optional<std::string> limit;      ///< limit on the root mean square of the response: "0.05 mm"
-  std::optional<std::string> reference;  ///< error relative to which equal effects are set: "NAME" or "NAME=0.1 mm"
-  std::string folder;                    ///< folder for the files; empty: RESULT_tolerances
-  bool extrapolate = false;              ///< whether to set tolerances although an index changes with size
+  std::string result;                ///< path of the result
+  std::string response;              ///< the response for which tolerances are set; empty: not named
+  std::optional<std::string> limit;  ///< limit on the root mean square of the response: "0.05 mm"
+  /// Error relative to which tolerances of equal effect are set: "NAME" or "NAME=0.1 mm".
+  std::optional<std::string> reference;
+  std::string folder;        ///< folder for the files; empty: RESULT_tolerances
+  bool extrapolate = false;  ///< whether to set tolerances even if a sensitivity index changes with the
+                             ///< size of the error
 };
 
-/// How a kind of study sets tolerances: writes them with the studies that test them, and returns the output of `poesy
-/// tolerances`, wrapped at `width`. Throws InputError, FileError.
+/// Sets tolerances from a result: writes them into a folder with the studies that test them, and returns the output of
+/// `poesy tolerances`, wrapped at `width` columns. Throws InputError, FileError.
 using SetTolerances = std::string (*)(const StoredResult& result, const TolerancesOptions& options,
                                       const Catalog& catalog, std::size_t width);
 
@@ -95,9 +101,9 @@ struct Kind {
   RunKind run;               ///< how its studies are run
   const FileKind& file;      ///< how its results are stored
   const ReportKind& report;  ///< how tables and reports show its results
-  /// The solves of given errors; null: errors are drawn, or solves have no addresses.
+  /// The given errors of a result; null if the kind draws errors, or if its solves have no addresses.
   GivenErrors (*given_errors)(const StoredResult& result) = nullptr;
-  SetTolerances set_tolerances = nullptr;  ///< null: it sets no tolerances
+  SetTolerances set_tolerances = nullptr;  ///< null if the kind sets no tolerances
 };
 
 }  // namespace poesy

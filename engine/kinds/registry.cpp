@@ -14,6 +14,7 @@
 #include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/sensitivity/kind.h"
 #include "engine/kinds/sobol/kind.h"
+#include "engine/kinds/sweep/kind.h"
 
 namespace poesy {
 namespace {
@@ -42,7 +43,9 @@ const StudyKinds& study_kinds() {
 }
 
 const Kind* find_kind(std::string_view name) {
-  if (name == kCalibrationKind.study.name) return &kCalibrationKind;  // of results alone, not of studies
+  for (const Kind* kind : {&kCalibrationKind, &kSweepKind}) {  // kinds of results that are not kinds of studies
+    if (name == kind->study.name) return kind;
+  }
   const auto* const found = std::ranges::find(kAll, name, [](const Kind* kind) { return kind->study.name; });
   return found == kAll.end() ? nullptr : *found;
 }

@@ -13,6 +13,10 @@ void write_result(const std::string& path, const Study& study, const SelectedPos
   write_result(path, study.analysis.kind->name, kind_of(study).file, study, poses, std::move(found), facts, drawing);
 }
 
+StoredResult as_stored(const Study& study, const SelectedPoses& poses, std::any found, const DrawingResult* drawing) {
+  return as_stored(study.analysis.kind->name, kind_of(study).file, study, poses, std::move(found), drawing);
+}
+
 StoredResult read_result(const std::string& path) {
   return read_result(path, [](std::string_view name) -> const FileKind* {
     const Kind* const kind = find_kind(name);

@@ -7,8 +7,8 @@
 
 namespace poesy {
 
-Study read_study(const std::string& path, const Catalog& catalog, StudyUse use) {
-  return read_study(path, catalog, use, study_kinds());
+Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, std::span<const GivenKey> given) {
+  return read_study(path, catalog, use, study_kinds(), given);
 }
 
 Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use,
@@ -24,7 +24,8 @@ std::string study_reference() { return study_reference(study_kinds()); }
 
 namespace {
 
-/// The study of these texts at these poses. path: the file that contains them.
+/// Reads a study and its mechanism from these texts and joins them with the poses. path: the file that contains the
+/// texts.
 StoredStudy stored_study(const std::string& text, const std::string& mechanism, SelectedPoses poses,
                          const std::string& path, const Catalog& catalog) {
   constexpr const char* kOther = "use the poesy that wrote it";

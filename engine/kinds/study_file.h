@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "engine/model/model.h"
@@ -9,37 +10,37 @@
 #include "engine/study/study.h"
 #include "engine/study/study_file.h"
 
-/// Study files of every kind; engine/study/study_file.h describes the functions.
+/// Functions that read and describe study files of every kind; engine/study/study_file.h describes them in full.
 namespace poesy {
 
 /// Reads a study file.
-Study read_study(const std::string& path, const Catalog& catalog, StudyUse use);
+Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, std::span<const GivenKey> given = {});
 
 /// Reads the text of a study; `path` names it in messages.
 Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use,
                     const std::string* mechanism_text = nullptr);
 
-/// A complete study of this kind and mechanism with comments.
+/// A complete study file for this kind and mechanism, with comments.
 std::string template_text(const CatalogEntry& entry, const StudyKind& kind);
 
-/// The whole reference of study files, as Markdown.
+/// The reference of all keys of study files, as Markdown.
 std::string study_reference();
 
 /// A study as it was run, with the poses that it was run at.
 struct StoredStudy {
-  Study study;          ///< as resolved when it was run
-  SelectedPoses poses;  ///< the poses of the result, whether or not the study's files still exist
+  Study study;          ///< the resolved study
+  SelectedPoses poses;  ///< the poses of the result, even if the study's files no longer exist
 };
 
-/// Reads the resolved study in a shard, with its poses. No other file is opened: files of poses, of a trajectory or of
-/// the mechanism need not exist any more, and the study must not be asked to select poses again. Throws FileError,
-/// which names the shard's file, if this program cannot read the text, or if the poses are not of its mechanism.
+/// Reads the resolved study in a shard, with its poses. Opens no other file: files of poses, of a trajectory or of the
+/// mechanism need not exist. Do not select poses again from the study that is returned. Throws FileError with the
+/// shard's path if this program cannot read the text, or if the poses do not belong to the mechanism.
 StoredStudy stored_study(const StoredShard& shard, const Catalog& catalog);
 
-/// The study of a result with its poses, without the rejected ones.
+/// The resolved study in a result, with its poses without the rejected ones. path: names the result in messages.
 StoredStudy stored_study(const StoredResult& result, const std::string& path, const Catalog& catalog);
 
-/// The study of a result; none if this program cannot read it.
+/// The resolved study in a result; none if this program cannot read it.
 std::optional<Study> study_in(const StoredResult& result, const Catalog& catalog);
 
 }  // namespace poesy

@@ -8,7 +8,8 @@
 
 namespace poesy {
 
-/// Another model as it is: the base of those that change a part of one.
+/// The base class of models that wrap another model and change some of its functions. It forwards every call to the
+/// other model.
 class ForwardingModel : public Model {
  public:
   const ModelDescription& description() const override { return model_->description(); }
@@ -20,10 +21,10 @@ class ForwardingModel : public Model {
   }
   double condition(std::span<const double> pose) const override { return model_->condition(pose); }
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
-    return model_->evaluator(options);
+    return formed(model_->evaluator(options));
   }
   std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
-    return model_->calibrated_evaluator(options);
+    return formed(model_->calibrated_evaluator(options));
   }
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
                                   const SolverOptions& options) const override {
@@ -48,13 +49,26 @@ class ForwardingModel : public Model {
   std::optional<Sketch> sketch(std::span<const double> pose) const override { return model_->sketch(pose); }
   std::vector<std::string> unusual_geometry() const override { return model_->unusual_geometry(); }
 
+  const Model& behind() const { return *model_; }  ///< The model to which this one forwards.
+  /// Wraps an evaluator of the other model, so that it also computes the responses that this model adds. Null gives
+  /// null.
+  virtual std::unique_ptr<Evaluator> formed(std::unique_ptr<Evaluator> evaluator) const { return evaluator; }
+
  protected:
-  explicit ForwardingModel(std::unique_ptr<Model> model) : model_(std::move(model)) {  ///< Not null.
+  /// Model: the other model, not null.
+  explicit ForwardingModel(std::unique_ptr<Model> model) : model_(std::move(model)) {
     POESY_EXPECTS(model_ != nullptr);
   }
 
  private:
   std::unique_ptr<Model> model_;
 };
+
+/// The innermost of the wrapped models, which solves the mechanism. The models around it compute further responses from
+/// those of the innermost one, which come first in the list of `model`.
+const Model& solving_model(const Model& model);
+
+/// Wraps an evaluator of solving_model(model), so that it computes all responses of `model`.
+std::unique_ptr<Evaluator> all_formed(const Model& model, std::unique_ptr<Evaluator> solving);
 
 }  // namespace poesy

@@ -13,7 +13,7 @@
 namespace poesy {
 namespace {
 
-/// "x and -20 mm times theta_x".
+/// The terms of a response as text, such as "x and -20 mm times theta_x".
 std::string terms_text(const OwnResponse& own, const ModelDescription& model) {
   std::string text;
   for (std::size_t k = 0; k < own.terms.size(); ++k) {
@@ -27,7 +27,7 @@ std::string terms_text(const OwnResponse& own, const ModelDescription& model) {
   return text;
 }
 
-/// "at x = 0 mm, y = 0 mm, z = 200 mm".
+/// The reference pose as text, such as "at x = 0 mm, y = 0 mm, z = 200 mm".
 std::string pose_text(const ReferencePose& reference, const ModelDescription& model) {
   if (reference.is_previous()) return "at the pose before";
   std::string text = "at ";
@@ -38,7 +38,7 @@ std::string pose_text(const ReferencePose& reference, const ModelDescription& mo
   return text;
 }
 
-/// As the model has it.
+/// The user's own response as an entry of the model's list.
 Response response_of(const OwnResponse& own, const ModelDescription& model) {
   Response response{own.name, own.dimension, own.description};
   if (response.description.empty()) {
@@ -63,7 +63,7 @@ Response response_of(const OwnResponse& own, const ModelDescription& model) {
   return response;
 }
 
-/// Forms a response of each sample, `to`, from rows [R x samples].
+/// Computes one of the user's responses for each sample. rows: [R x samples] all responses. to: [samples] the result.
 void form(const OwnResponse& own, std::span<const double> rows, std::span<double> to) {
   std::ranges::fill(to, 0.0);
   for (const ResponseTerm& term : own.terms) {
@@ -77,16 +77,16 @@ void form(const OwnResponse& own, std::span<const double> rows, std::span<double
   for (double& value : to) value = std::sqrt(value);
 }
 
-/// The worse of two ways in which solves of one machine ended; the first where both are as bad.
+/// The worse of two solve statuses of one machine; `one` if both are equally bad.
 SolveStatus worse(SolveStatus one, SolveStatus other) {
   const auto badness = [](SolveStatus status) { return solved(status) ? 0 : usable(status) ? 1 : 2; };
   return badness(other) > badness(one) ? other : one;
 }
 
-/// The responses of one's own behind those of a model.
+/// Computes the user's own responses. In an array of responses their rows follow those of the model.
 class OwnRows {
  public:
-  /// responses: the number of the model's.
+  /// responses: the number of the model's responses.
   OwnRows(const std::vector<OwnResponse>& own, std::size_t responses) : own_(&own), responses_(responses) {
     for (const OwnResponse& one : own) {
       if (!one.relative_to) continue;
@@ -95,25 +95,26 @@ class OwnRows {
     }
   }
 
-  /// The number of the model's responses.
+  /// The number of the model's responses, without the user's.
   std::size_t of_model() const { return responses_; }
-  /// The number of all.
+  /// The number of all responses.
   std::size_t all() const { return responses_ + own_->size(); }
-  /// The poses to which responses are relative, each once; an empty one is the pose before.
+  /// The reference poses of the relative responses, each once. An empty list of numbers means the previous pose.
   const std::vector<std::vector<double>>& references() const { return references_; }
-  /// The position of the pose before among them; none if nothing is relative to it.
+  /// The position of the previous pose in references(); none if no response is relative to it.
   std::optional<std::size_t> previous() const {
     const auto found = std::ranges::find_if(references_, &std::vector<double>::empty);
     if (found == references_.end()) return std::nullopt;
     return static_cast<std::size_t>(found - references_.begin());
   }
 
-  /// Forms those of `samples` samples in rows [all x samples], as if none were relative to a pose.
+  /// Computes the user's responses in `rows` [all x samples], as if no response were relative to a pose.
   void form_all(std::span<double> rows, std::size_t samples) const {
     for (std::size_t k = 0; k < own_->size(); ++k) form((*own_)[k], rows, row(rows, k, samples));
   }
 
-  /// Subtracts from those that are relative to the reference what they are there; empty: sets them to 0.
+  /// Subtracts the values `there` from those responses that are relative to this reference pose. If `there` is empty,
+  /// sets these responses to 0.
   void subtract(std::span<double> rows, std::size_t reference, std::span<const double> there,
                 std::size_t samples) const {
     for (std::size_t k = 0; k < own_->size(); ++k) {
@@ -127,7 +128,7 @@ class OwnRows {
     }
   }
 
-  /// Forms those again that are made of relative ones.
+  /// Computes again those responses that are not relative themselves, because terms of them may be relative.
   void form_the_rest(std::span<double> rows, std::size_t samples) const {
     for (std::size_t k = 0; k < own_->size(); ++k) {
       if (!(*own_)[k].relative_to) form((*own_)[k], rows, row(rows, k, samples));
@@ -144,8 +145,8 @@ class OwnRows {
   std::vector<std::vector<double>> references_;
 };
 
-/// The samples of a block at one pose, solved. Machines are solved at one pose after the other, so that most blocks
-/// have the samples of the block before, and are solved at a reference pose once.
+/// The samples of a block and their responses at one pose. Machines are solved at one pose after the other, so most
+/// blocks have the same samples as the block before. The responses at a reference pose are then computed only once.
 struct SolvedBlock {
   std::vector<double> pose;
   std::vector<double> errors;
@@ -153,7 +154,7 @@ struct SolvedBlock {
   std::vector<double> values;
   std::size_t count = 0;
   double range = 0.0;
-  std::vector<double> responses;  ///< [all x B], as if none were relative to a pose
+  std::vector<double> responses;  ///< [all responses x B samples], as if no response were relative to a pose
   std::vector<SolveStatus> status;
   std::vector<std::uint32_t> iterations;
 
@@ -215,7 +216,7 @@ class EvaluatorOfOwn final : public Evaluator {
     rows_->form_all(block.responses, samples.count);
   }
 
-  /// Keeps this block, which is that of the pose before at the next pose.
+  /// Stores this block, because responses at the next pose may be relative to it.
   void keep(const SampleBlock& samples, const OutcomeBlock& outcomes) {
     here_.begin(samples.pose, samples);
     here_.responses.assign(outcomes.responses.begin(), outcomes.responses.end());
@@ -224,11 +225,12 @@ class EvaluatorOfOwn final : public Evaluator {
 
   std::unique_ptr<Evaluator> inner_;
   const OwnRows* rows_;
-  std::vector<SolvedBlock> there_;  ///< [references]
-  SolvedBlock here_;                ///< the present block, which the next one may be relative to
+  std::vector<SolvedBlock> there_;  ///< [references] last samples that were solved at each reference pose
+  SolvedBlock here_;                ///< block at the present pose, to which the next block may be relative
 };
 
-/// Throws InputError at its place if a response is relative to a pose that the model does not reach.
+/// Throws InputError, with the place of the pose in the study, if a response is relative to a pose that the model does
+/// not reach.
 void check_references(const std::vector<OwnResponse>& own, const Model& model) {
   for (const OwnResponse& one : own) {
     if (!one.relative_to || one.relative_to->is_previous()) continue;
@@ -252,11 +254,9 @@ class ModelOfOwn final : public ForwardingModel {
 
   const ModelDescription& description() const override { return description_; }
 
-  std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
-    return with_own(ForwardingModel::evaluator(options));
-  }
-  std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
-    return with_own(ForwardingModel::calibrated_evaluator(options));
+  std::unique_ptr<Evaluator> formed(std::unique_ptr<Evaluator> evaluator) const override {
+    if (evaluator == nullptr) return nullptr;
+    return std::make_unique<EvaluatorOfOwn>(std::move(evaluator), rows_);
   }
 
   std::vector<std::string> remarks() const override {
@@ -271,7 +271,7 @@ class ModelOfOwn final : public ForwardingModel {
     return list;
   }
 
-  /// What is relative to the pose before is NaN, because only one pose is given.
+  /// The result has NaN for responses that are relative to the previous pose, because only one pose is given.
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
                                   const SolverOptions& options) const override {
     std::optional<SolveTrace> trace = formed_trace(pose, errors, options);
@@ -292,7 +292,8 @@ class ModelOfOwn final : public ForwardingModel {
     return is_own(response) ? std::vector<double>() : ForwardingModel::norm_of_details(response, pose);
   }
 
-  /// The sum of what its terms round to, at both poses if it is relative to one.
+  /// The sum of the rounding of the response's terms. If the response is relative to another pose, the terms at both
+  /// poses count.
   double rounding(std::size_t response) const override {
     if (!is_own(response)) return ForwardingModel::rounding(response);
     const OwnResponse& own = own_[response - inner().responses.size()];
@@ -304,11 +305,6 @@ class ModelOfOwn final : public ForwardingModel {
  private:
   const ModelDescription& inner() const { return ForwardingModel::description(); }
   bool is_own(std::size_t response) const { return response >= inner().responses.size(); }
-
-  std::unique_ptr<Evaluator> with_own(std::unique_ptr<Evaluator> evaluator) const {
-    if (evaluator == nullptr) return nullptr;
-    return std::make_unique<EvaluatorOfOwn>(std::move(evaluator), rows_);
-  }
 
   std::optional<SolveTrace> formed_trace(std::span<const double> pose, std::span<const double> errors,
                                          const SolverOptions& options) const {

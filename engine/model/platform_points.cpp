@@ -12,24 +12,26 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kRows = 4;  // x, y, z, position
+constexpr std::size_t kRows = 4;  // responses of each point: x, y, z, position
 
-/// The place of a point at a pose from the platform's origin, in the base's axes (m).
+/// The vector from the platform's origin to a point, in the base's axes (m). place: the same in the platform's frame;
+/// R: base_R_platform.
 PlatformPoint arm_of(const PlatformPoint& place, const std::array<double, 9>& R) {
   PlatformPoint arm{};
   for (std::size_t k = 0; k < 3; ++k) arm[k] = R[3 * k] * place[0] + R[3 * k + 1] * place[1] + R[3 * k + 2] * place[2];
   return arm;
 }
 
-/// exp(theta) - 1 = once hat(theta) + twice hat(theta)^2.
+/// The factors `once` and `twice` in exp(theta) - 1 = once * hat(theta) + twice * hat(theta)^2, where hat(theta) is the
+/// skew-symmetric matrix of theta.
 struct Turn {
   double once;
   double twice;
 };
 
-/// square: the square of the rotation vector's length.
+/// The factors for a rotation vector theta. square: |theta|^2.
 Turn turn_of(double square) {
-  constexpr double kSmall = 1e-4;  // where the next terms of the series are below rounding
+  constexpr double kSmall = 1e-4;  // below this, further terms of the series are below rounding
   if (square < kSmall) {
     return {1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)),
             0.5 - square / 24.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0))};
@@ -43,7 +45,7 @@ std::array<double, 3> cross(const std::array<double, 3>& a, const std::array<dou
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// The number of the response; it must exist.
+/// The position of the response of this name. Precondition: it exists.
 std::size_t row_of(const ModelDescription& model, std::string_view name) {
   const auto found = std::ranges::find(model.responses, name, &Response::name);
   POESY_EXPECTS(found != model.responses.end());
@@ -81,12 +83,7 @@ class PointedModel final : public ForwardingModel {
 
   const ModelDescription& description() const override { return description_; }
 
-  std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
-    return with_points(ForwardingModel::evaluator(options));
-  }
-  std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
-    return with_points(ForwardingModel::calibrated_evaluator(options));
-  }
+  std::unique_ptr<Evaluator> formed(std::unique_ptr<Evaluator> evaluator) const override;
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
                                   const SolverOptions& options) const override {
     std::optional<SolveTrace> trace = ForwardingModel::trace(pose, errors, options);
@@ -115,7 +112,7 @@ class PointedModel final : public ForwardingModel {
     return sketch;
   }
 
-  /// The places of the points at a pose from the platform's origin, in the base's axes (m).
+  /// The vectors from the platform's origin to the points at a pose, in the base's axes (m).
   std::vector<PlatformPoint> arms_at(std::span<const double> pose) const {
     const std::array<double, 9> R = orientation_(pose);
     std::vector<PlatformPoint> arms;
@@ -123,7 +120,7 @@ class PointedModel final : public ForwardingModel {
     return arms;
   }
 
-  /// Fills the rows of the points from those of the platform; rows [all responses x samples].
+  /// Computes the responses of the points from the displacement of the platform. rows: [all responses x samples].
   void displace(std::span<const PlatformPoint> arms, std::span<double> rows, std::size_t samples) const {
     for (std::size_t b = 0; b < samples; ++b) {
       std::array<double, 3> moved{};
@@ -149,24 +146,23 @@ class PointedModel final : public ForwardingModel {
     }
   }
 
-  std::size_t of_model() const { return inner().responses.size(); }  ///< The number of the model's own responses.
+  /// The number of responses of the given model, without those of the points.
+  std::size_t of_model() const { return inner().responses.size(); }
 
  private:
   const ModelDescription& inner() const { return ForwardingModel::description(); }
 
-  /// The point to which the response belongs; null if it is the model's own.
+  /// The point to which the response belongs; null for a response of the given model.
   const NamedPlatformPoint* point_of(std::size_t response) const {
     return response < of_model() ? nullptr : &points_[(response - of_model()) / kRows];
   }
-
-  std::unique_ptr<Evaluator> with_points(std::unique_ptr<Evaluator> evaluator) const;
 
   std::vector<NamedPlatformPoint> points_;
   PlatformOrientation orientation_;
   bool is_linear_;
   ModelDescription description_;
-  std::size_t x_;      ///< position of x; y and z follow
-  std::size_t theta_;  ///< position of theta_x; theta_y and theta_z follow
+  std::size_t x_;      ///< position of the response x; y and z follow
+  std::size_t theta_;  ///< position of the response theta_x; theta_y and theta_z follow
 };
 
 class PointsEvaluator final : public Evaluator {
@@ -182,7 +178,8 @@ class PointsEvaluator final : public Evaluator {
   }
 
  private:
-  /// The number of remembered poses, because samples return to a pose and its orientation may be iterated.
+  /// The number of poses whose vectors are kept. Many blocks have the same pose, and computing the orientation there
+  /// may take an iteration.
   static constexpr std::size_t kMostPoses = 1024;
 
   std::span<const PlatformPoint> arms_at(std::span<const double> pose) {
@@ -196,10 +193,10 @@ class PointsEvaluator final : public Evaluator {
   std::unique_ptr<Evaluator> inner_;
   const PointedModel* model_;
   std::vector<double> key_;
-  std::map<std::vector<double>, std::vector<PlatformPoint>> arms_;  ///< by pose
+  std::map<std::vector<double>, std::vector<PlatformPoint>> arms_;  ///< vectors to the points, by pose
 };
 
-std::unique_ptr<Evaluator> PointedModel::with_points(std::unique_ptr<Evaluator> evaluator) const {
+std::unique_ptr<Evaluator> PointedModel::formed(std::unique_ptr<Evaluator> evaluator) const {
   if (evaluator == nullptr) return nullptr;
   return std::make_unique<PointsEvaluator>(std::move(evaluator), *this);
 }

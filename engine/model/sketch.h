@@ -12,45 +12,48 @@ using SketchVector = std::array<double, 3>;
 
 /// A joint in a picture.
 struct SketchedJoint {
-  std::string name;    ///< name in the mechanism's file; empty if it has none
-  char type;           ///< R, P, H, C, U or S; F for a fixed frame
-  bool actuated;       ///< whether a drive moves it
-  SketchVector point;  ///< its point: the origin of `frame` before the joint moves
-  SketchVector axis;   ///< direction of its first axis
-  bool has_errors;     ///< whether there are errors of the frame to the next joint, or the platform; of the first also
-                       ///< those of the base
-  std::size_t first = 1;   ///< position of the frame of its first axis, in the limb
-  std::size_t frame = 1;   ///< position of the frame at whose origin it is, in the limb
-  std::string drive = {};  ///< name of its drive; empty if it has none
+  std::string name;  ///< name in the mechanism's file; empty if it has none
+  char type;      ///< R (revolute), P (prismatic), H (helical), C (cylindrical), U (universal), S (spherical); F for a
+                  ///< fixed frame
+  bool actuated;  ///< true if a drive moves the joint
+  SketchVector point;  ///< point of the joint: the origin of `frame` before the joint moves
+  SketchVector axis;   ///< direction of the joint's first axis
+  /// True if the frame from this joint to the next one, or to the platform, has errors; for the first joint also true
+  /// if the joint itself or the base has errors.
+  bool has_errors;
+  std::size_t first = 1;   ///< position, in the limb, of the frame of the joint's first axis
+  std::size_t frame = 1;   ///< position, in the limb, of the frame at whose origin the joint is
+  std::string drive = {};  ///< name of the drive; empty if the joint has none
 };
 
-/// A frame of a limb: of the base, of each axis of a joint after it has moved, of the platform.
+/// A frame of a limb: the frame of the base, of an axis of a joint (after the joint has moved), or of the platform.
 struct SketchedFrame {
   SketchVector origin;               ///< origin, m
   std::array<SketchVector, 3> axes;  ///< x, y and z; z is the axis of the joint
 };
 
-/// A small motion of the platform, [omega; v] at the base's origin.
+/// A small motion of the platform as a twist [omega; v] at the base's origin (rad, m).
 using SketchTwist = std::array<double, 6>;
 
 /// An error in a picture. Joints count from 1, from the base to the platform: 0 is the base, and the number after the
 /// last joint is the platform.
 struct SketchedError {
-  std::size_t limb;    ///< from 0
-  std::size_t frame;   ///< position of its frame in Sketch::frames
+  std::size_t limb;    ///< limb, counted from 0
+  std::size_t frame;   ///< position of the error's frame in the limb's list in Sketch::frames
   std::size_t axis;    ///< axis of that frame: 0, 1 or 2
+  bool turns;          ///< whether the error is a rotation about the axis; otherwise a displacement along it
   std::size_t after;   ///< preceding joint
   std::size_t before;  ///< following joint; equal to `after` for an error inside a joint
-  /// The motions of the platform in each limb by the error, to first order, after passive joints have adapted, per SI
-  /// unit of the error. One motion if it is the same in all limbs. Empty if passive joints are in a singular
-  /// configuration.
+  /// The first-order motions of the platform by the error, one as seen by each limb, after the passive joints have
+  /// adapted; per SI unit of the error. Only one motion if it is the same in all limbs. Empty if passive joints are in
+  /// a singular configuration.
   std::vector<SketchTwist> motions;
 };
 
 /// A body between limbs.
 struct SketchedBody {
   std::string name;     ///< name in the mechanism's file
-  SketchVector origin;  ///< origin of its frame
+  SketchVector origin;  ///< origin of the body's frame
 };
 
 /// The bodies at the ends of a limb, as positions among Sketch::bodies.
@@ -62,37 +65,41 @@ struct SketchedEnds {
 /// A point of the platform with a name.
 struct SketchedPoint {
   std::string name;    ///< name in the mechanism's file
-  SketchVector point;  ///< its place
+  SketchVector point;  ///< position of the point
 };
 
 /// A feature of a part in a picture.
 struct SketchedFeature {
-  std::string name;   ///< name on the drawing: "rail"
-  std::string zones;  ///< its tolerances for people: "position 0.05 mm to A|B"; empty: none
-  std::size_t limb;   ///< from 0
-  std::size_t frame;  ///< position, in Sketch::frames, of the frame of its part
-  /// Its shape in that frame (m): the ends of an axis, the corners of a plane in their order, or one point.
+  std::string name;   ///< name on the drawing, such as "rail"
+  std::string zones;  ///< tolerances as text, such as "position 0.05 mm to A|B"; empty: none
+  std::size_t limb;   ///< limb, counted from 0
+  std::size_t frame;  ///< position of the part's frame in the limb's list in Sketch::frames
+  /// Shape in the frame of the part (m): the ends of an axis, the corners of a plane in order, or one point.
   std::vector<SketchVector> outline;
 };
 
-/// A mechanism in a picture at one pose.
+/// The data for a picture of a mechanism at one pose.
 struct Sketch {
-  std::vector<std::vector<SketchedJoint>>
-      limbs;                       ///< joints of each limb, from the base to the platform or from one body to another
-  SketchVector platform;           ///< origin of the platform, P
-  std::vector<SketchVector> tool;  ///< the tool's tip; none or one
-  /// The frames of each limb: base, axes of the joints, platform. With errors_at_joints, the origins of base and
-  /// platform are those of the first and the last joint, about which errors turn.
+  /// Joints of each limb, from the base to the platform or from one body to another.
+  std::vector<std::vector<SketchedJoint>> limbs;
+  SketchVector platform;           ///< origin P of the platform
+  std::vector<SketchVector> tool;  ///< position of the tool's tip; empty if there is no tool
+  /// The frames of each limb: base, axes of the joints, platform. If errors_at_joints is set, errors of the base and of
+  /// the platform rotate about the first and the last joint; the origins of these two frames are then at those joints.
   std::vector<std::vector<SketchedFrame>> frames = {};
-  std::vector<SketchedError> errors = {};  ///< [F], in the order of ModelDescription::factors
-  bool errors_at_joints = false;           ///< whether angles of the first and last frames turn about joints
-  bool z_is_down = false;                  ///< whether the base's z axis points to the ground
-  std::vector<SketchedEnds> ends = {};     ///< [limbs]; empty: all limbs connect the base and the platform
+  std::vector<SketchedError> errors = {};  ///< [F] errors, in the order of ModelDescription::factors
+  bool errors_at_joints = false;  ///< true if angle errors of the first and last frames turn about the joints there
+  bool z_is_down = false;         ///< true if the base's z axis points to the ground
+  /// [limbs] bodies at the ends of each limb; empty: all limbs connect the base and the platform.
+  std::vector<SketchedEnds> ends = {};
   std::vector<SketchedPoint> points = {};  ///< named points of the platform
   std::vector<SketchedBody> bodies = {};   ///< base, platform, and bodies between them; empty if there are none between
-  std::vector<SketchedFeature> features = {};  ///< of the drawing
+  std::vector<SketchedFeature> features = {};  ///< features of the drawing
+  /// [limbs] The end of a response's name after "force_", where the response is the force in this limb; empty: there
+  /// are no such responses.
+  std::vector<std::string> labels = {};
 
-  /// The ends of a limb.
+  /// The bodies at the ends of a limb.
   SketchedEnds ends_of(std::size_t limb) const { return ends.empty() ? SketchedEnds{} : ends[limb]; }
 };
 

@@ -8,31 +8,35 @@
 
 namespace poesy {
 
-/// What a stream's draws are used for. Part of every address, so that purposes never share draws.
+/// What draws are used for. The purpose is part of every address, so that draws for different purposes are different.
 enum class Purpose : std::uint64_t {
   error_samples = 1,
   sampling_design = 2,
   scrambled_sobol = 3,
   latin_hypercube = 4,
-  second_error_samples = 5,  ///< independent of error_samples, of the same errors
-  seed_of_others = 6,        ///< seeds of additional sets of machines that a study tries
-  calibration = 7            ///< what is not known of a machine after its measurement, and noise of measurements
+  second_error_samples = 5,  ///< a second sample of the same errors, independent of error_samples
+  seed_of_others = 6,        ///< seeds for further sets of machines that a study tries
+  calibration = 7,   ///< the remaining uncertainty of a machine after it was measured, and the noise of measurements
+  zone_attempts = 8  ///< further draws of a feature after inspection has rejected one
 };
 
 /// The address of a sequence of draws: one factor at one pose. The sample index completes it.
 struct StreamAddress {
   std::uint64_t seed = 0;                    ///< seed of the study
-  Purpose purpose = Purpose::error_samples;  ///< draws for different purposes are independent
+  Purpose purpose = Purpose::error_samples;  ///< use of the draws; draws for different purposes are independent
   FactorIndex factor;                        ///< position among all factors of the model
   PoseIndex pose;                            ///< position among the study's poses
 };
 
-/// The 64 random bits at (address, sample): a pure function, Philox4x64-10 (Salmon et al. 2011)
-/// with key (seed, purpose) and counter (factor, pose, sample / 4, 0), word sample mod 4.
+/// The 64 random bits at an address and sample. A pure function: word (sample mod 4) of Philox4x64-10 (Salmon et al.
+/// 2011) with key (seed, purpose) and counter (factor, pose, sample / 4, 0).
 std::uint64_t random_bits(const StreamAddress& address, SampleIndex sample);
 
-/// The random bits of samples 4 block to 4 block + 3. All four cost as much as one of them.
+/// The random bits of samples 4 block to 4 block + 3. They take as much time as those of one sample.
 std::array<std::uint64_t, 4> random_block(const StreamAddress& address, std::uint64_t block);
+
+/// The smallest uniform that fill_uniforms() draws.
+inline constexpr double kSmallestUniform = 0x1p-54;
 
 /// Fills uniforms[k] with the draw of sample first + k, strictly inside (0, 1): the middle of one of 2^53 cells, which
 /// the upper bits select. Equal to uniform_from_bits(random_bits(address, first + k)).

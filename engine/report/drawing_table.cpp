@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -14,11 +15,26 @@
 namespace poesy {
 namespace {
 
+/// What the names of a feature's errors have between its label and the number of the limb.
+constexpr std::array<std::string_view, 8> kDirections{"", "_x", "_y", "_z", "_lean_x", "_lean_y", "_lift_x", "_lift_y"};
+
 /// "position 0.05 A|B", or "-".
 std::string zone_text(const std::string& key, double size, const std::string& datums) {
   if (key == "-") return key;
   const bool is_size = key == "tolerance";
   return fmt::format("{}{:.6g}{}", is_size ? "+-" : key + " ", 1e3 * size, datums == "-" ? "" : " " + datums);
+}
+
+/// The number of errors of a feature that are measured.
+std::size_t measured_errors(const StoredResult& result, std::size_t q) {
+  const std::string& label = result.drawing->label(q);
+  const std::string limb = result.drawing->names[q].substr(std::min(label.size(), result.drawing->names[q].size()));
+  const auto is_of_feature = [&](const std::string& error) {
+    return std::ranges::any_of(kDirections, [&](std::string_view direction) {
+      return error == fmt::format("{}{}{}", label, direction, limb);
+    });
+  };
+  return static_cast<std::size_t>(std::ranges::count_if(result.measured.names, is_of_feature));
 }
 
 /// Whether the zones of a feature are between planes, so that only one of its two directions has an error.
@@ -35,9 +51,12 @@ bool is_between_planes(const StoredResult& result, std::size_t q) {
   return has("x") != has("y");
 }
 
-/// The cell of a zone with its frame; that of a distance or of a clearance has none.
+/// The cell of a zone, with a tolerance frame. For a distance or a clearance the cell has no frame.
 Cell zone_cell(const StoredResult& result, std::size_t q, const std::string& key, double size,
                const std::string& datums) {
+  if (key != "-" && measured_errors(result, q) > 0) {
+    return text_cell("measured, instead of " + zone_text(key, size, datums));
+  }
   Cell cell = text_cell(zone_text(key, size, datums));
   const auto known = std::ranges::find(zone_traits(), key, &ZoneTraits::key);
   if (known == zone_traits().end() || known->of == ZoneClass::size) return cell;
@@ -77,6 +96,11 @@ std::optional<Table> drawing_table(const StoredResult& result, std::size_t respo
                 "zones in mm; other errors are not in these numbers"},
       .ranked = true};
   std::vector<std::size_t> rows = positions(found.features());
+  if (std::ranges::any_of(rows, [&](std::size_t q) { return measured_errors(result, q) > 0; })) {
+    table.notes.emplace_back(
+        "measured: the effect is that of the standard deviation of the measured parts, without their mean; the worst "
+        "case is that of the zone");
+  }
   std::ranges::stable_sort(rows, std::ranges::greater(), [&](std::size_t q) { return found.effect(response, q); });
   fill(table, rows,
        {{text_column("feature", "feature"), [&](std::size_t q) { return text_cell(found.names[q]); }},

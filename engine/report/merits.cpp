@@ -27,20 +27,22 @@ std::string_view word_of(Change verdict) {
   return kWords[static_cast<std::size_t>(verdict)];
 }
 
-/// A value with its unit; shares in percent as everywhere.
+/// A value of a figure of merit with its unit; a share is shown in percent.
 std::string text_of(const Merit& merit, double value) {
   if (merit.unit == "%") return percent_text(value / 100.0);
   return number_text(value, kDigits) + (merit.unit.empty() ? "" : " " + merit.unit);
 }
 
-/// "+6.74 percentage points" for a share, otherwise "-17 %" of the value in A.
+/// A change of a figure of merit in words: "+6.74 percentage points" for a share, else in percent of the value in A,
+/// "-17 %".
 std::string change_text(const Merit& a, const MeritChange& change) {
   if (a.unit == "%") return fmt::format("{:+.3g} percentage points", change.value);
   return fmt::format("{:+.3g} %", 100.0 * change.value / std::abs(a.value));
 }
 
 std::string interval_text(const Merit& a, const MeritChange& change) {
-  if (std::isnan(change.low)) return {};
+  // The interval is not known, or the change is exact.
+  if (std::isnan(change.low) || change.low == change.high) return {};
   const double scale = a.unit == "%" ? 1.0 : 100.0 / std::abs(a.value);
   return fmt::format(", interval {:+.3g} to {:+.3g}", scale * change.low, scale * change.high);
 }
@@ -63,7 +65,7 @@ std::string sentence(const Merit& a, const Merit& b, char letter) {
   return fmt::format("T{}.", numbers.substr(1));
 }
 
-/// Names and readable values of all settings, except format and title.
+/// The names and readable values of all settings of a study, except format and title.
 std::vector<std::pair<std::string, std::string>> named_settings(const StoredResult& result) {
   std::vector<std::pair<std::string, std::string>> list;
   for (const StudySetting& one : study_settings(result.study_text)) {
@@ -72,7 +74,7 @@ std::vector<std::pair<std::string, std::string>> named_settings(const StoredResu
   return list;
 }
 
-/// The names of the figures of merit that all results have, in the order of the first.
+/// The names of the figures of merit that all results have, in the order of the first result.
 std::vector<std::string> shared_merits(std::span<const std::vector<Merit>> results) {
   std::vector<std::string> names;
   for (const Merit& merit : results.front()) {
@@ -88,7 +90,8 @@ Cell change_cell(double change) {
   return cell;
 }
 
-/// The row of one figure of merit of one result. first: that of A.
+/// A row of the table that compares results: one figure of merit of one result. first: the same figure of merit of the
+/// first result, A. result: index of the result.
 std::vector<Cell> row_of(const Merit& first, const Merit& merit, std::size_t result) {
   std::vector<Cell> row{text_cell(merit.what),
                         text_cell(merit.unit),
@@ -124,7 +127,7 @@ std::string compared_response(std::span<const StoredResult* const> results) {
 Merit yield_merit(const YieldVerdict& yield) {
   const Interval machines{yield.ci_low, yield.ci_high};
   const Interval interval = yield.with_parts.value_or(machines);
-  return {.what = "yield",
+  return {.what = std::string(kYieldMerit),
           .unit = "%",
           .value = 100.0 * yield.value,
           .low = 100.0 * interval.low,
@@ -163,7 +166,7 @@ std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
               .columns = {text_column("quantity", "quantity"), text_column("unit", "unit"), text_column("result", "in"),
                           number_column("value", "value"), number_column("low", "low", "", 1),
                           number_column("high", "high", "", 1), number_column("change", "change"),
-                          number_column("change_low", "low"), number_column("change_high", "high"),
+                          number_column("change_low", "low", "", 1), number_column("change_high", "high", "", 1),
                           text_column("verdict", "verdict")},
               .notes = {"low, high: intervals of the value, and of its change as if both results were drawn "
                         "independently; common draws make it wider than it need be"}};

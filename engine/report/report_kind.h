@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,47 +14,59 @@
 
 namespace poesy {
 
-/// What a kind of study adds to the list of what was run.
+/// Facts about a kind of study for the list of what was run.
 struct StudyWords {
-  bool draws = false;                   ///< whether errors were drawn from distributions
-  bool from_tables = false;             ///< whether poses and errors came from tables instead of the study
-  std::string samples = {};             ///< samples at each pose; empty: the number in the study
+  bool draws = false;                   ///< true if errors were drawn from distributions
+  bool from_tables = false;             ///< true if poses and errors came from tables instead of the study
+  std::string samples = {};             ///< number of samples at each pose, as text; empty: the number in the study
   std::vector<std::string> sizes = {};  ///< sizes of the errors, if they are not drawn
+  /// Sizes with which errors are drawn, if the kind chose them itself; empty: those of [errors].
+  std::vector<std::string> drawn = {};
+  std::optional<std::uint64_t> seed = {};  ///< the seed of the samples, if it is not that of [run]
 };
 
-/// What a report needs from a kind of study. Each kind has one such row.
+/// What a report needs from a kind of study. Each kind of study has one such object.
 struct ReportKind {
-  SolveTally (*tally)(const StoredResult&);                                ///< how its solves ended
+  SolveTally (*tally)(const StoredResult&);                                ///< how the solves ended
   std::vector<Table> (*tables)(const StoredResult&, const TableOptions&);  ///< tables that only this kind has
-  /// Compares the rankings of errors in two results; null: it ranks nothing.
+  /// Compares the rankings of errors in two results; null: the kind ranks no errors.
   TwoRankings (*two_rankings)(const RankedResult& a, const RankedResult& b, RowOrder order) = nullptr;
-  /// Figures of merit, by which results are compared first. response: that of totals, which the result has; empty: no
-  /// totals. Null: the kind has none.
+  /// The figures of merit by which results are compared; null: the kind has none. response: a response of the result,
+  /// whose totals are among the figures; empty: no totals.
   std::vector<Merit> (*merits)(const StoredResult&, std::string_view response) = nullptr;
-  bool sorts = false;                                   ///< whether its ranked tables support every RowOrder
-  Settling (*settling)(const StoredResult&) = nullptr;  ///< null: the kind is not sampled
-  StudyWords (*words)(const StoredResult&);             ///< texts for the list of what was run
-  /// Adds warnings of the kind; null: it has none.
+  bool sorts = false;  ///< true if the kind's tables of ranked errors support every RowOrder
+  /// The quantities that converge with the number of samples; null: the kind has no samples.
+  Settling (*settling)(const StoredResult&) = nullptr;
+  StudyWords (*words)(const StoredResult&);  ///< texts for the list of what was run
+  /// Adds the kind's own warnings; null: it has none.
   void (*warn)(const StoredResult&, std::vector<std::string>& list) = nullptr;
-  /// The summary at the top. The line "How sure" is extended by how the solves ended.
+  /// The summary at the top of a report. The report completes the line "How sure" by how the solves ended.
   Answer (*answer)(const StoredResult&);
-  ShownCells (*shown_cells)(const StoredResult&);  ///< the part of the numbers that its figures by pose show
-  void (*page)(const StoredResult&, std::span<const Table> tables, Page&);  ///< adds its sections, with its tables
-  ErrorShares (*error_shares)(const StoredResult&) = nullptr;  ///< shares that colour its picture; null: none
-  Comparable (*comparable)(const StoredResult&,
-                           const StoredResult& other);  ///< the part that is compared with the other result
-  /// Adds the sections of two results; null: add_comparison() is used.
+  ShownCells (*shown_cells)(const StoredResult&);  ///< the responses and poses that figures by pose show
+  /// Adds the kind's sections, with its tables.
+  void (*page)(const StoredResult&, std::span<const Table> tables, Page&);
+  /// Adds sections that need the study's machines to be solved again; null: the kind has none. Called after `page` if
+  /// study and model are known and the model has the result's poses.
+  void (*solved_page)(const ReportedResult&, Page&) = nullptr;
+  /// Shares that colour the picture of the mechanism; null: none.
+  ErrorShares (*error_shares)(const StoredResult&) = nullptr;
+  /// [M] The root mean square of a response over the errors at each pose, SI; null: the kind has no such values.
+  std::vector<double> (*rms_at_poses)(const StoredResult&, std::size_t response) = nullptr;
+  /// The numbers of a result that are compared with those of the result `other`.
+  Comparable (*comparable)(const StoredResult&, const StoredResult& other);
+  /// Adds the sections that compare two results; null: add_comparison() adds them.
   void (*compare)(const ReportedResult& a, const ReportedResult& b, const Comparison& compared, Page&) = nullptr;
 };
 
-/// The tables of a result of this kind: its limits (unless the kind has that table itself), the kind's own, and the
-/// convergence of adaptive samples.
+/// The tables of a result of this kind: the limits (unless the kind's own tables include them), the kind's own tables,
+/// and the convergence of adaptive samples.
 std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options);
 
-/// The report of one result, or the comparison of two or more, as one HTML document that needs no other file: what was
-/// run, warnings, figures with their numbers, tables. It can be read without JavaScript, which only draws the figures.
-/// Text from files is escaped. Throws InputError for results that cannot be compared: they have different kinds, or no
-/// responses and no errors, cases or sources in common. Precondition: there is a result; kind is that of the first.
+/// The report of one result, or the comparison of two or more, as one HTML document that needs no other file. It has
+/// what was run, warnings, figures with their numbers, and tables. It can be read without JavaScript, which only draws
+/// the figures. Text from files is escaped. Throws InputError for results that cannot be compared: they are of
+/// different kinds, have no response in common, or, if there are two, have no errors, cases or sources in common.
+/// Precondition: there is a result, and kind is the kind of the first one.
 std::string html_report(const ReportKind& kind, std::span<const ReportedResult> results);
 
 }  // namespace poesy

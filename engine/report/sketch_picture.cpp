@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "engine/report/html/page.h"
 #include "engine/report/sketch_words.h"
@@ -14,15 +16,20 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kBase = 0;      // position among bodies
-constexpr std::size_t kPlatform = 1;  // position among bodies
-constexpr double kTick = 15.0;        // pixels, half of a joint's axis
-constexpr double kAxis = 36.0;        // pixels, axes of a frame
-constexpr double kThinnest = 2.0;     // pixels of a link without share
-constexpr double kThickest = 8.0;     // pixels of the link with the largest share
-constexpr double kMillimetres = 1e3;  // in a metre
+constexpr std::size_t kBase = 0;      // index of the base among the bodies
+constexpr std::size_t kPlatform = 1;  // index of the platform among the bodies
+constexpr double kTick = 15.0;        // pixels, half the length of a joint's axis
+constexpr double kAxis = 36.0;        // pixels, length of a frame's axes
+constexpr double kThinnest = 2.0;     // pixels, width of a link without share
+constexpr double kThickest = 8.0;     // pixels, width of the link with the largest share
+constexpr double kMillimetres = 1e3;  // millimetres in a metre
+constexpr double kFlat = 1e-9;        // a row of points is flat if it is thinner than this share of its length
 constexpr double kSamePoint = 1.0;    // pixels; joints that are closer share a point
+constexpr double kAlong = 0.99;       // cosine of the largest angle between a strut and its way
+constexpr double kRing = 11.0;        // radius of the ring for a link without length, pixels
 constexpr double kDigit = 9.0;        // pixels of a limb's number
+constexpr double kArrow = 60.0;       // pixels, the longest arrow
+constexpr double kTip = 3.5;          // pixels, radius of the end of an arrow
 constexpr double kDot = 2.5;          // pixels, radius of a feature without size
 constexpr std::array<std::string_view, 6> kLimbs{"#2563a8", "#b4541a", "#2f7d4f", "#8a3d8f", "#8a6d1b", "#3b7f8c"};
 
@@ -30,10 +37,10 @@ double distance(const SketchVector& a, const SketchVector& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// Half of the space of a glyph in a row, pixels.
+/// Half of the space that a joint's glyph takes in a row, pixels.
 double half_space(const SketchedJoint& joint) { return joint.type == 'F' ? kGlyph / 3 + 2 : kGlyph + 1; }
 
-/// Points as text in mm: "12.500,-3.000,0.000 ...".
+/// Points (m) as text in mm: "12.500,-3.000,0.000 ...".
 std::string numbers_of(std::span<const SketchVector> points) {
   std::string text;
   const auto number = [](double metres) {
@@ -48,41 +55,64 @@ std::string numbers_of(std::span<const SketchVector> points) {
 
 double dot(const SketchVector& a, const SketchVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Sorts the points by their angle about their middle, in the plane of the first point and the one farthest from the
-/// line to it.
-void go_round(std::vector<SketchVector>& points) {
+/// The corners of the convex hull of points that lie near a plane, in their order along the hull. Points on one line
+/// are returned unchanged.
+std::vector<SketchVector> hull_of(const std::vector<SketchVector>& points) {
+  if (points.size() < 4) return points;
   SketchVector centre{};
   for (const SketchVector& point : points) centre = plus(centre, 1.0 / static_cast<double>(points.size()), point);
-  const SketchVector first = plus(points.front(), -1.0, centre);
-  if (!(dot(first, first) > 0.0)) return;
-  const auto beside = [&](const SketchVector& point) {
-    const SketchVector from = plus(point, -1.0, centre);
-    return plus(from, -dot(from, first) / dot(first, first), first);
+  const auto from_centre = [&](const SketchVector& point) { return plus(point, -1.0, centre); };
+  const auto length = [](const SketchVector& a) { return std::sqrt(dot(a, a)); };
+  const auto longest = [&](const auto& vector_of) {
+    return vector_of(
+        *std::ranges::max_element(points, {}, [&](const SketchVector& p) { return length(vector_of(p)); }));
   };
-  const auto farther = [&](const SketchVector& a, const SketchVector& b) {
-    return dot(beside(a), beside(a)) < dot(beside(b), beside(b));
+  const SketchVector along = longest(from_centre);
+  if (!(length(along) > 0.0)) return points;
+  const SketchVector across = longest([&](const SketchVector& point) {
+    const SketchVector from = from_centre(point);
+    return plus(from, -dot(from, along) / dot(along, along), along);
+  });
+  if (!(length(across) > kFlat * length(along))) return points;
+  struct Corner {
+    double x;
+    double y;
+    const SketchVector* point;
   };
-  const SketchVector across = beside(*std::ranges::max_element(points, farther));
-  if (!(dot(across, across) > 0.0)) return;
-  const auto angle = [&](const SketchVector& point) {
-    const SketchVector from = plus(point, -1.0, centre);
-    return std::atan2(dot(from, across) / std::sqrt(dot(across, across)),
-                      dot(from, first) / std::sqrt(dot(first, first)));
-  };
-  std::ranges::stable_sort(points, {}, angle);
+  std::vector<Corner> corners;
+  for (const SketchVector& point : points) {
+    const SketchVector from = from_centre(point);
+    corners.push_back({dot(from, along) / length(along), dot(from, across) / length(across), &point});
+  }
+  std::ranges::sort(corners, {}, [](const Corner& corner) { return std::pair(corner.x, corner.y); });
+  std::vector<SketchVector> hull;
+  // The lower side from left to right, then the upper side back (Andrew's monotone chain).
+  for (int side = 0; side < 2; ++side) {
+    std::vector<Corner> chain;
+    for (const Corner& next : corners) {
+      const auto turns_left = [&](const Corner& a, const Corner& b) {
+        return (b.x - a.x) * (next.y - a.y) - (b.y - a.y) * (next.x - a.x) > 0.0;
+      };
+      while (chain.size() > 1 && !turns_left(chain[chain.size() - 2], chain.back())) chain.pop_back();
+      chain.push_back(next);
+    }
+    for (std::size_t n = 0; n + 1 < chain.size(); ++n) hull.push_back(*chain[n].point);
+    std::ranges::reverse(corners);
+  }
+  return hull;
 }
 
-/// A picture that is being drawn.
+/// Draws a mechanism as SVG text.
 class Drawing {
  public:
-  /// shares: null for a separate picture.
+  /// shares: null for a picture in a file of its own.
   Drawing(const Sketch& sketch, const SketchView& view, const PartShares* shares)
       : sketch_(&sketch), view_(&view), shares_(shares) {}
 
   std::string all(std::size_t mark) {
     bodies();
     for (std::size_t i = 0; i < sketch_->limbs.size(); ++i) limb(i);
-    if (!sketch_->frames.empty()) {  // a feature has its place in a frame
+    if (!sketch_->frames.empty()) {  // without frames, features have no place
       for (const SketchedFeature& one : sketch_->features) feature(one);
     }
     if (mark < sketch_->errors.size()) frame(sketch_->errors[mark]);
@@ -107,7 +137,7 @@ class Drawing {
     text_ += svg_path(pixels, fmt::format("{} {}", points_attribute(points), attributes));
   }
 
-  /// Adds SVG content with this point as its origin.
+  /// Adds SVG content whose origin is this point.
   void add_group(const SketchVector& point, std::string_view attributes, std::string_view content) {
     const Pixel pixel = view_->at(point);
     text_ += fmt::format("<g transform=\"translate({:.1f} {:.1f})\" {} {}>{}</g>\n", pixel.x, pixel.y,
@@ -118,7 +148,8 @@ class Drawing {
     add_group(point, attributes, svg_text(offset, what));
   }
 
-  /// Draws the axes of the base, the bodies between their joints, the platform's origin, its tool and its points.
+  /// Draws the axes of the base, the bodies with lines to their joints, the platform's origin, the tool and the named
+  /// points.
   void bodies() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       SketchVector end{};
@@ -127,9 +158,10 @@ class Drawing {
       add_line({}, end, "class=\"frame-axis\"");
       add_text(end, {3, -3}, std::string(1, "xyz"[axis]), "class=\"frame-name\"");
     }
-    add_path(joints_at(kBase), "class=\"base\"");
-    add_path(joints_at(kPlatform), "class=\"platform\"");
-    for (std::size_t b = kPlatform + 1; b < sketch_->bodies.size(); ++b) add_path(joints_at(b), "class=\"platform\"");
+    add_path(hull_of(joints_at(kBase)), "class=\"base\"");
+    add_path(hull_of(joints_at(kPlatform)), "class=\"platform\"");
+    for (std::size_t b = kPlatform + 1; b < sketch_->bodies.size(); ++b)
+      add_path(hull_of(joints_at(b)), "class=\"platform\"");
     if (is_still()) add_text(sketch_->platform, {5, -5}, "P", "class=\"frame-name\"");
     for (const SketchVector& tip : sketch_->tool) {
       add_line(sketch_->platform, tip, "class=\"tool\"");
@@ -141,19 +173,36 @@ class Drawing {
     }
   }
 
-  /// The joints that connect limbs to a body.
+  bool share_point(const SketchedJoint& a, const SketchedJoint& b) const {
+    return distance(a.point, b.point) < view_->metres(kSamePoint);
+  }
+
+  /// Whether a limb ends with a strut: a slide that begins at the joint before it and points to the end of the limb.
+  /// Its point is where it begins, so it is not where the limb holds the body. last: end of the limb.
+  bool ends_with_strut(std::span<const SketchedJoint> joints, const SketchVector& last) const {
+    if (joints.size() < 2 || joints.back().type != 'P') return false;
+    const SketchVector way = plus(last, -1.0, joints.back().point);
+    const double length = std::sqrt(dot(way, way));
+    return share_point(joints[joints.size() - 2], joints.back()) && length > view_->metres(kSamePoint) &&
+           std::abs(dot(way, joints.back().axis)) > kAlong * length;
+  }
+
+  /// The points where limbs hold a body: their joints, or the body's origin where a limb ends with a strut.
   std::vector<SketchVector> joints_at(std::size_t body) const {
     std::vector<SketchVector> points;
     for (std::size_t i = 0; i < sketch_->limbs.size(); ++i) {
+      const std::vector<SketchedJoint>& joints = sketch_->limbs[i];
       const SketchedEnds ends = sketch_->ends_of(i);
-      if (ends.from == body) points.push_back(sketch_->limbs[i].front().point);
-      if (ends.to == body) points.push_back(sketch_->limbs[i].back().point);
+      if (ends.from == body) points.push_back(joints.front().point);
+      if (ends.to != body) continue;
+      const bool has_strut = body != kBase && ends_with_strut(joints, middle_of(body));
+      points.push_back(has_strut ? middle_of(body) : joints.back().point);
     }
-    if (!sketch_->bodies.empty() && points.size() > 3) go_round(points);
     return points;
   }
 
-  /// The point from which lines to a body's joints are drawn: its origin, or the middle of the base's joints.
+  /// The point from which lines to a body's joints are drawn: the body's origin, or for the base the middle of its
+  /// joints.
   SketchVector middle_of(std::size_t body) const {
     if (body == kPlatform) return sketch_->platform;
     if (body != kBase) return sketch_->bodies[body].origin;
@@ -163,6 +212,8 @@ class Drawing {
     return plus({}, 1.0 / static_cast<double>(points.size()), sum);
   }
 
+  /// Draws the links and joints of a limb. A link with errors whose ends coincide is drawn as a ring, so that its
+  /// colour can be seen.
   void limb(std::size_t i) {
     const std::vector<SketchedJoint>& joints = sketch_->limbs[i];
     const SketchedEnds ends = sketch_->ends_of(i);
@@ -170,18 +221,25 @@ class Drawing {
     places.insert(places.begin(), middle_of(ends.from));
     places.push_back(middle_of(ends.to));
     if (is_still()) text_ += fmt::format("<g color=\"{}\">\n", kLimbs[i % kLimbs.size()]);
+    const bool has_strut = ends_with_strut(joints, places.back());
     for (std::size_t j = 0; j + 1 < places.size(); ++j) {
+      const bool is_of_body = j == 0 || (j == joints.size() && !has_strut);
       add_line(places[j], places[j + 1],
-               fmt::format("class=\"link{}\" data-limb=\"{}\" {}", j == 0 || j == joints.size() ? " body" : "", i + 1,
+               fmt::format("class=\"link{}\" data-limb=\"{}\" {}", is_of_body ? " body" : "", i + 1,
                            share_style(&PartShares::links, i, j)));
+      if (!is_still() && shares_->links[i][j] > 0.0 && distance(places[j], places[j + 1]) < view_->metres(kSamePoint)) {
+        add_group(places[j],
+                  fmt::format("class=\"link short\" data-limb=\"{}\" {}", i + 1, share_style(&PartShares::links, i, j)),
+                  svg_circle({0, 0}, kRing, "fill=\"none\""));
+      }
     }
     for (std::size_t j = 0; j < joints.size(); ++j) joint(i, j, places[j + 1]);
     number(i, places[1], places[2]);
     if (is_still()) text_ += "</g>\n";
   }
 
-  /// Draws a limb's number below its first joint, or above it if the limb goes downwards, to the right of other numbers
-  /// there.
+  /// Draws a limb's number below its first joint, or above it if the limb goes downwards. Numbers at the same place are
+  /// side by side.
   void number(std::size_t i, const SketchVector& place, const SketchVector& next) {
     const std::span others(sketch_->limbs.data(), i);
     const auto is_here = [&](const auto& limb) { return view_->distance(limb.front().point, place) < kDigit; };
@@ -196,6 +254,7 @@ class Drawing {
       add_line(plus(place, -view_->metres(kTick), joint.axis), plus(place, view_->metres(kTick), joint.axis),
                "class=\"tick\"");
     }
+    if (!is_still() && shares_->arrows[i][j] > 0.0) arrow(place, shares_->arrows[i][j], joint.axis);
     const std::string name = joint_words(*sketch_, i, j + 1) + (joint.name.empty() ? "" : " " + name_words(joint));
     std::string content = element("title", fmt::format("limb {}, {}", i + 1, name));
     if (is_still() && joint.has_errors) content += svg_circle({0, 0}, 1.7 * kGlyph, "class=\"errors\"");
@@ -209,7 +268,14 @@ class Drawing {
               content);
   }
 
-  /// The CSS of a part: its share in percent of the largest, for the colour, and its width.
+  /// Draws an arrow: a line that ends in a dot.
+  void arrow(const SketchVector& from, double share, const SketchVector& axis) {
+    const SketchVector tip = plus(from, view_->metres(kArrow * share), axis);
+    add_line(from, tip, "class=\"arrow\"");
+    add_group(tip, "class=\"arrow-tip\"", svg_circle({0, 0}, kTip, ""));
+  }
+
+  /// The style of a link or joint: its share in percent of the largest share, for the colour, and its width.
   std::string share_style(std::vector<std::vector<double>> PartShares::*parts, std::size_t i, std::size_t j) const {
     if (is_still()) return fmt::format("stroke-width=\"{:.1f}\"", kThinnest);
     const double part = shares_->largest > 0.0 ? (shares_->*parts)[i][j] / shares_->largest : 0.0;
@@ -218,23 +284,25 @@ class Drawing {
   }
 
   /// The places of the joints' glyphs: their points. Joints at one point form a row; a slide that begins at another
-  /// joint is drawn between the two joints that it connects. last: end of the limb.
+  /// joint is drawn between the two joints that it connects, or between that joint and the end of the limb. last: end
+  /// of the limb.
   std::vector<SketchVector> places_of(std::span<const SketchedJoint> joints, const SketchVector& last) const {
     std::vector<SketchVector> places;
     while (places.size() < joints.size()) {
       const std::size_t begin = places.size();
       std::size_t end = begin + 1;
-      while (end < joints.size() && distance(joints[end].point, joints[begin].point) < view_->metres(kSamePoint)) ++end;
+      while (end < joints.size() && share_point(joints[end], joints[begin])) ++end;
       const SketchVector& here = joints[begin].point;
       const SketchVector& next = end < joints.size() ? joints[end].point : last;
-      const bool slides = end - begin > 1 && end < joints.size() && joints[end - 1].type == 'P';
+      const bool slides =
+          end - begin > 1 && joints[end - 1].type == 'P' && (end < joints.size() || ends_with_strut(joints, last));
       add_row(joints.subspan(begin, end - begin - (slides ? 1 : 0)), next, places);
       if (slides) places.push_back(middle(here, next));
     }
     return places;
   }
 
-  /// Places joints at one point in a row: towards the next joint if there is enough room, otherwise to the right.
+  /// Places joints that share a point in a row: towards the next joint if there is room, otherwise to the right.
   void add_row(std::span<const SketchedJoint> row, const SketchVector& next, std::vector<SketchVector>& places) const {
     const SketchVector& here = row.front().point;
     std::vector<double> offsets{0.0};
@@ -247,7 +315,7 @@ class Drawing {
     for (const double offset : offsets) places.push_back(plus(here, offset, pixel));
   }
 
-  /// Draws an axis as a bar, a plane as a plate, and other features as a dot.
+  /// Draws a feature: an axis as a bar, a plane as a plate, and other features as a dot.
   void feature(const SketchedFeature& feature) {
     const SketchedFrame& frame = sketch_->frames[feature.limb][feature.frame];
     std::vector<SketchVector> points;
@@ -268,7 +336,7 @@ class Drawing {
     text_ += "</g>\n";
   }
 
-  /// Draws the frame of an error, with its axis thicker than the others.
+  /// Draws the frame of an error. The axis of the error is thicker than the other two.
   void frame(const SketchedError& error) {
     const SketchedFrame& frame = sketch_->frames[error.limb][error.frame];
     text_ += "<g class=\"marked\">";
@@ -293,6 +361,7 @@ PartShares::PartShares(const Sketch& sketch) {
   for (const auto& limb : sketch.limbs) {
     links.emplace_back(limb.size() + 1, 0.0);
     joints.emplace_back(limb.size(), 0.0);
+    arrows.emplace_back(limb.size(), 0.0);
   }
 }
 

@@ -8,7 +8,7 @@
 namespace poesy {
 namespace {
 
-constexpr double kMargin = 30.0;  // pixels on all sides
+constexpr double kMargin = 30.0;  // pixels, free on all sides
 
 std::vector<SketchVector> points_of(const Sketch& sketch) {
   std::vector<SketchVector> points = sketch.tool;
@@ -30,7 +30,7 @@ Pixel SketchView::at(const SketchVector& point) const {
   const double right = p[0] * std::cos(radians(yaw)) - p[1] * std::sin(radians(yaw));
   const double deep = p[0] * std::sin(radians(yaw)) + p[1] * std::cos(radians(yaw));
   const double up = p[2] * std::cos(radians(pitch)) + deep * std::sin(radians(pitch));
-  return {kSketchWidth / 2 + scale * right, kSketchHeight / 2 - scale * up};
+  return {kSketchWidth / 2 + scale * right, height / 2 - scale * up};
 }
 
 double SketchView::distance(const SketchVector& a, const SketchVector& b) const {
@@ -41,7 +41,7 @@ SketchVector SketchView::right() const {
   return {std::cos(radians(yaw)), (z_is_down ? 1.0 : -1.0) * std::sin(radians(yaw)), 0.0};
 }
 
-SketchView sketch_view(std::span<const Sketch> sketches, double yaw, double pitch) {
+SketchView sketch_view(std::span<const Sketch> sketches, double yaw, double pitch, double tallest) {
   SketchVector low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   SketchVector high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   for (const Sketch& sketch : sketches) {
@@ -52,7 +52,7 @@ SketchView sketch_view(std::span<const Sketch> sketches, double yaw, double pitc
       }
     }
   }
-  SketchView view{yaw, pitch, middle(low, high), 1.0, sketches.front().z_is_down};
+  SketchView view{yaw, pitch, middle(low, high), 1.0, sketches.front().z_is_down, kSketchHeight};
   double aside = 0.0;
   double upwards = 0.0;
   for (const Sketch& sketch : sketches) {
@@ -64,7 +64,9 @@ SketchView sketch_view(std::span<const Sketch> sketches, double yaw, double pitc
     }
   }
   if (std::max(aside, upwards) > 0.0) {
-    view.scale = std::min((kSketchWidth / 2 - kMargin) / aside, (kSketchHeight / 2 - kMargin) / upwards);
+    const double room = kSketchWidth / 2 - kMargin;
+    view.height = std::clamp(2 * (kMargin + room * upwards / aside), kSketchHeight, tallest);
+    view.scale = std::min(room / aside, (view.height / 2 - kMargin) / upwards);
   }
   return view;
 }

@@ -30,17 +30,17 @@ std::string between_words(const Sketch& sketch, std::size_t limb, std::size_t af
   return fmt::format("between {} and {}", joint_words(sketch, limb, after), joint_words(sketch, limb, before));
 }
 
-std::string axis_words(const Sketch& sketch, const SketchedError& error, Dimension dimension) {
+std::string axis_words(const Sketch& sketch, const SketchedError& error) {
   const std::size_t last = sketch.frames[error.limb].size() - 1;
   const SketchedEnds ends = sketch.ends_of(error.limb);
   const std::string frame = error.frame == 0      ? body_words(sketch, ends.from)
                             : error.frame == last ? body_words(sketch, ends.to)
                                                   : fmt::format("frame {}", error.frame);
-  const bool turns = dimension == Dimension::angle;
   std::string at;
-  if (turns && sketch.errors_at_joints && error.frame == 0) at = ", at the first joint";
-  if (turns && sketch.errors_at_joints && error.frame == last) at = ", at the last joint";
-  return fmt::format("{} {} of {}{}", turns ? "rotation about" : "displacement along", "xyz"[error.axis], frame, at);
+  if (error.turns && sketch.errors_at_joints && error.frame == 0) at = ", at the first joint";
+  if (error.turns && sketch.errors_at_joints && error.frame == last) at = ", at the last joint";
+  return fmt::format("{} {} of {}{}", error.turns ? "rotation about" : "displacement along", "xyz"[error.axis], frame,
+                     at);
 }
 
 }  // namespace poesy

@@ -14,7 +14,7 @@
 namespace poesy {
 namespace {
 
-/// max_not_converged of the study of a result; 1 if its text does not state it.
+/// The key solver.max_not_converged of the result's study; 1 if the study's text does not state it.
 double max_not_converged(const StoredResult& result) {
   const std::string text = study_setting(result.study_text, "solver", "max_not_converged");
   double share = 1.0;
@@ -22,17 +22,18 @@ double max_not_converged(const StoredResult& result) {
   return share;
 }
 
-/// The warning if too many solves did not converge.
+/// The warning if more than kManyNotConverged of all solves did not converge.
 constexpr std::string_view kDoubt =
     " That is more than 1 %: all numbers rest on the rest, and both ways of treating such solves are wrong where they "
     "are many. Left out, they make numbers too small, because they are mostly the large errors; included, they fill "
     "them with unfinished iterates.";
 
-/// The warning if most of these have no solution.
+/// The warning if more than kManyNotConverged of all solves did not converge, and most of these cannot be assembled.
 constexpr std::string_view kMissing =
     " That is more than 1 %: means, spreads and quantiles are those of the machines that can be assembled.";
 
-/// A sentence on the rows and poses with the largest shares, " The largest shares: ..."; empty if there is only one.
+/// A sentence on the row (error, case or size) and the pose with the largest shares of unsolved samples, " The largest
+/// shares: ...". Empty if there is only one row and one pose.
 std::string largest_shares_text(const StoredResult& result, const SolveTally& tally) {
   std::vector<std::string> places;
   const auto add = [&](const std::vector<double>& shares, const auto& name) {
@@ -50,7 +51,8 @@ std::string count_line(std::uint64_t failed, std::uint64_t solves, const std::st
                      why);
 }
 
-/// The consequences of more than kManyNotConverged, and advice for machines that cannot be assembled.
+/// Sentences on the consequences if the share of unsolved samples is above kManyNotConverged, and advice if machines
+/// cannot be assembled.
 std::string consequences_text(const SolveCounts& solves) {
   const bool many = share_not_converged(solves) > kManyNotConverged;
   if (solves.not_assembled() == 0) return std::string(many ? kDoubt : "");
@@ -61,7 +63,7 @@ std::string consequences_text(const SolveCounts& solves) {
                      kAssemblyAdvice);
 }
 
-/// The line for two fidelities. Only failures of the first are listed one by one.
+/// The line with the solves of two fidelities that did not converge.
 std::string line_of_both(const SolveCounts& first, const SecondFidelity& second) {
   return fmt::format(
       "{}: {} at fidelity \"{}\", {} at \"{}\"",
@@ -69,7 +71,7 @@ std::string line_of_both(const SolveCounts& first, const SecondFidelity& second)
       count_text(first.not_converged()), second.first, count_text(second.not_converged), second.second);
 }
 
-/// Says which of the failures the result lists.
+/// Says how many of the failures the result lists one by one.
 std::string listed_text(const StoredResult& result, const SolveTally& tally, std::uint64_t failed) {
   const std::size_t listed = result.failures.size();
   const std::string of = tally.second ? fmt::format(" at \"{}\"", tally.second->first) : "";
@@ -143,6 +145,7 @@ std::string unsolved_text(const StoredResult& result, const SolveTally& tally) {
 std::string failures_text(const StoredResult& result, const SolveTally& tally, const std::string& path,
                           std::size_t width) {
   const SolveCounts solves = tally.total();
+  if (solves.total() == 0) return {};
   std::string text = prose_of(tally.second ? line_of_both(solves, *tally.second)
                                            : count_line(solves.not_converged(), solves.total(), why_unsolved(solves)),
                               width);

@@ -44,6 +44,15 @@ std::string svg_text(Pixel at, std::string_view text, std::string_view attribute
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", at.x, at.y, attributes, escaped(text));
 }
 
+std::string svg_picture(const std::string& id, Pixel size, std::string_view title, std::string_view description,
+                        std::string_view drawn) {
+  return fmt::format(
+      "<svg id=\"{0}\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {1:g} {2:g}\" role=\"img\" "
+      "aria-labelledby=\"{0}-title {0}-desc\">\n{3}\n{4}\n{5}</svg>\n",
+      id, size.x, size.y, element("title", title, fmt::format("id=\"{}-title\"", id)),
+      element("desc", description, fmt::format("id=\"{}-desc\"", id)), drawn);
+}
+
 std::string svg_glyph(char type, bool actuated, Pixel at, std::string_view paper) {
   const std::string style =
       fmt::format("fill=\"{}\" stroke=\"currentColor\" stroke-width=\"1.6\"", actuated ? "currentColor" : paper);

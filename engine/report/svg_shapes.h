@@ -4,13 +4,14 @@
 #include <string>
 #include <string_view>
 
-/// Shapes for pictures of mechanisms, as SVG elements. style, attributes: SVG attributes, not escaped.
+/// Shapes for pictures of mechanisms, as SVG elements. The arguments style and attributes are SVG attributes, not
+/// escaped.
 namespace poesy {
 
-/// A point of a picture.
+/// A point of a picture, pixels.
 struct Pixel {
-  double x;  ///< to the right
-  double y;  ///< downwards
+  double x;  ///< distance from the left side
+  double y;  ///< distance from the upper side
 };
 
 std::string svg_line(Pixel a, Pixel b, std::string_view style);               ///< A line between two points.
@@ -19,11 +20,17 @@ std::string svg_path(std::span<const Pixel> points, std::string_view style);  //
 /// A text, which is escaped.
 std::string svg_text(Pixel at, std::string_view text, std::string_view attributes = {});
 
+/// A picture of this size as one SVG element, with a title and a description for screen readers. id: must be unique on
+/// the page. drawn: SVG content.
+std::string svg_picture(const std::string& id, Pixel size, std::string_view title, std::string_view description,
+                        std::string_view drawn);
+
 inline constexpr double kGlyph = 6.0;  ///< Half the size of a joint's glyph, pixels.
 
-/// The glyph of a joint. R: circle; P: square; H: diamond; C: circle in a square; U: circle with a cross; S: circle in
-/// a circle; F: a dot. It is filled if the joint is actuated. Lines have the CSS colour of the enclosing element.
-/// paper: the colour of unfilled areas.
+/// The glyph of a joint by its type. R (revolute): circle; P (prismatic): square; H (helical): diamond; C
+/// (cylindrical): circle in a square; U (universal): circle with a cross; S (spherical): circle in a circle; F (fixed):
+/// a dot. It is filled if the joint is actuated. Lines have the CSS colour of the enclosing element. paper: the colour
+/// of unfilled areas.
 std::string svg_glyph(char type, bool actuated, Pixel at, std::string_view paper);
 
 }  // namespace poesy

@@ -18,7 +18,7 @@
 namespace poesy {
 namespace {
 
-constexpr int kDigits = 6;
+constexpr int kDigits = 6;  ///< digits of numbers that the study states
 
 std::string judged_by(const LimitVerdicts& verdicts) {
   if (!verdicts.judge) return "largest";
@@ -41,7 +41,7 @@ std::string rule(const LimitVerdicts& verdicts) {
       percent_text(verdicts.share));
 }
 
-/// The place where the value was found; empty if it is for all poses.
+/// The pose and the row of errors at which a limit's value was found; empty if the value belongs to all poses together.
 std::string place(const StoredResult& result, const LimitVerdict& verdict) {
   if (!verdict.pose) return {};
   const bool named = verdict.row && !result.row_names.empty();
@@ -66,7 +66,7 @@ std::string yield_caption(const YieldVerdict& yield) {
   return "Yield: " + found;
 }
 
-/// Adds the share k / n with its interval.
+/// Gives the row further cells with the share of good machines, its interval, and the numbers of rejects and machines.
 void add_share(std::vector<Cell>& row, std::uint64_t good, const YieldVerdict& yield) {
   const Estimate estimate = proportion(good, yield.machines, yield.conf_level);
   for (const double share : {estimate.value, estimate.interval.low, estimate.interval.high}) {
@@ -88,9 +88,16 @@ std::string with_parts_text(const YieldVerdict& yield) {
       percent_text(yield.with_parts->low), percent_text(yield.with_parts->high), percent_text(yield.conf_level));
 }
 
-/// An end of a limit; empty where there is none.
+/// A cell that shows one end of a limit; empty if the limit has no such end.
 Cell end_cell(double end, const NamedUnit& response) {
   return number_cell((std::isfinite(end) ? end : kNaN) / display(response).si, kDigits);
+}
+
+/// A value beside its limit: with the digits of a limit where fewer read as an end of it.
+Cell value_beside(double value, const ValueLimit& limit, const Unit& unit) {
+  const auto reads_as = [&](double end) { return number_text(value / unit.si) == number_text(end / unit.si); };
+  const bool is_near = reads_as(limit.to()) || reads_as(limit.from());
+  return is_near ? number_cell(value / unit.si, kDigits) : number_cell(value / unit.si);
 }
 
 /// Adds a column with the lower ends and one with the limits in words, if a limit is more than a magnitude at each
@@ -116,12 +123,12 @@ void add_limit_words(const StoredResult& result, std::span<const LimitVerdict> l
   }
 }
 
-/// The usual yield of tolerances: three sigma of a normal error.
+/// The yield to which tolerances are usually set: three standard deviations of a normal error.
 constexpr double kUsualYield = 0.9973;
 
 constexpr std::size_t kMostShown = 5;
 
-/// Positions in [R x P] of the deciding quantities that did not reach the wanted interval, the widest first.
+/// The indices in [R x P] of deciding quantities that did not reach the wanted interval, the widest interval first.
 std::vector<std::size_t> not_reached(const ConvergenceResult& found, const Settling& settling) {
   const std::size_t slots = found.samples.size();
   std::vector<std::size_t> list;
@@ -144,7 +151,8 @@ std::string samples_text(const ConvergenceResult& found) {
   return fmt::format("from {} to {} samples at each pose", count_text(least), count_text(most));
 }
 
-/// The samples that would be enough, because half-widths fall with the root of their number; two digits, rounded up.
+/// The cell with the number of samples that would be enough, to two digits, rounded up. Half-widths fall with the
+/// square root of this number.
 Cell needed_cell(const ConvergenceResult& found, std::size_t at) {
   const double ratio = found.relative_half_width[at] / found.relative_error;
   const double needed = static_cast<double>(found.samples[at % found.samples.size()]) * ratio * ratio;
@@ -218,7 +226,7 @@ std::string default_ranking(const StoredResult& result) {
 
 namespace {
 
-/// The features by their effect on the response that ranks.
+/// The table of the drawing's features, by their effect on the response that ranks errors.
 std::optional<Table> features_table(const StoredResult& result, const TableOptions& options) {
   const auto response = std::ranges::find(result.responses, options.ranked_by, &NamedUnit::name);
   if (response == result.responses.end()) return std::nullopt;
@@ -230,7 +238,7 @@ std::optional<Table> features_table(const StoredResult& result, const TableOptio
 std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options) {
   std::vector<Table> tables = kind.tables(result, options);
   auto limits = limits_table(result);
-  // A kind that shows more of its yield has this table itself.
+  // A kind that shows more of its yield has a table of this name already.
   if (limits && std::ranges::find(tables, limits->name, &Table::name) == tables.end()) {
     tables.insert(tables.begin(), *std::move(limits));
   }
@@ -293,9 +301,8 @@ std::optional<Table> measured_table(const StoredResult& result) {
   const MeasuredErrors& found = result.measured;
   if (found.names.empty()) return std::nullopt;
   const auto number = [&](std::string name, std::string heading, const std::vector<double>& values, int dispensable) {
-    return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable), [&](std::size_t e) {
-                          return value_cell(values[e], result.factors[found.factors[e]], kDigits);
-                        }};
+    return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
+                        [&](std::size_t e) { return value_cell(values[e], result.factors[found.factors[e]]); }};
   };
   Table table{.name = "measured_errors",
               .caption = "Errors as measured: mean and standard deviation of the draws are those of the parts",
@@ -351,7 +358,7 @@ std::string few_parts_text(const StoredResult& result, double conf_level, double
   const MeasuredErrors& found = result.measured;
   const std::uint64_t fewest = *std::ranges::min_element(found.parts);
   const double target = asked > 0.0 ? asked : kUsualYield;
-  // All n parts are good with this probability if the yield is its n-th root.
+  // With confidence conf_level, n good parts of n show that the yield is at least (1 - conf_level)^(1/n).
   const double shown = std::pow(1.0 - conf_level, 1.0 / static_cast<double>(fewest));
   std::string text = fmt::format(
       "{} drawn from {} measured parts{}: where one such error alone makes the rejects, {} good parts show a yield of "
@@ -372,7 +379,7 @@ std::optional<Table> limits_table(const StoredResult& result) {
   Table table{.name = "limits",
               .caption = {},
               .columns = {text_column("verdict", "limit kept"), text_column("response", "response"),
-                          text_column("unit", "unit"), text_column("judged_by", "judged by"),
+                          text_column("unit", "unit"), text_column("judged_by", "judged by", 3),
                           number_column("value", "value"), number_column("limit", "limit"),
                           percent_column("within", "within", 1), text_column("place", "where", 2)},
               .notes = {rule(*verdicts)}};
@@ -381,7 +388,7 @@ std::optional<Table> limits_table(const StoredResult& result) {
     kept += one.passed ? 1 : 0;
     table.rows.push_back({text_cell(one.passed ? "PASS" : "FAIL"), text_cell(result.responses[one.response].name),
                           text_cell(unit.name), text_cell(judged_by(*verdicts)),
-                          number_cell(one.value / unit.si, kDigits),
+                          value_beside(one.value, one.limit, unit),
                           end_cell(one.limit.to(), result.responses[one.response]),
                           percent_cell(share_of(one.within, one.tried)), text_cell(place(result, one))});
   }

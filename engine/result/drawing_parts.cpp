@@ -24,7 +24,10 @@ const Group<DrawingResult> kDrawing{
      {"orientation", &DrawingResult::orientation, "1", "Zone of orientation; \"-\": none"},
      {"orientation_zone", &DrawingResult::orientation_zone, "m", "Its width or diameter as written"},
      {"orientation_datums", &DrawingResult::orientation_datums, "1", "Its datums; \"-\": none"},
-     {"sigmas", &DrawingResult::sigmas, "1", "Half a zone in standard deviations of a coordinate of an extreme point"},
+     {"sigmas", &DrawingResult::sigmas, "1",
+      "Half a zone in standard deviations of a coordinate of an extreme point, before an inspection; 0: a clearance, "
+      "or "
+      "not by standard deviations"},
      {"effect", &DrawingResult::effect, kResponseUnit,
       "Root mean square of the response by this feature alone, over the poses"},
      {"share", &DrawingResult::share, "1", "Share of the mean square of all features together, over the poses"},

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <numeric>
 
 #include "engine/base/array.h"
 #include "engine/base/error.h"
+#include "engine/result/described.h"
 #include "engine/result/drawing_parts.h"
 #include "engine/result/headline.h"
 #include "engine/result/result_parts.h"
@@ -43,7 +43,8 @@ const Fields<RunFacts> kFactFields{
     {"checkpoint_seconds", &RunFacts::checkpoint_seconds, kScalar, "s", "Of that time, spent on checkpoints"},
     {"solves", &RunFacts::solves, kScalar, "1", "Solves of the mechanism"}};
 
-/// The rows of a list of named things. what: "error" for the axis "factor", for instance.
+/// Descriptions of the datasets with names, units and descriptions of a list of things. what: the word for a thing in
+/// descriptions; for the axis "factor", for instance, it is "error".
 Fields<NamedUnit> name_fields(const std::string& axis, const std::string& what) {
   return {{"name", &NamedUnit::name, {axis}, "1", "Name of the " + what},
           {"unit", &NamedUnit::unit, {axis}, "1", "SI unit of the " + what},
@@ -71,8 +72,7 @@ std::vector<NamedUnit> read_named(const h5::File& file, const std::string& axis)
 }
 
 void add_responses(ResultBuilder& result, const ModelDescription& model) {
-  std::vector<NamedUnit> responses;
-  for (const Response& response : model.responses) responses.push_back(named(response));
+  const std::vector<NamedUnit> responses = named_responses(model);
   add_named(result, "response", "response", responses);
   const auto add_chosen = [&](const std::string& attribute, const std::vector<std::size_t>& chosen) {
     const auto list = texts(chosen, [&](std::size_t r) { return responses[r].name; });
@@ -84,19 +84,18 @@ void add_responses(ResultBuilder& result, const ModelDescription& model) {
 
 void read_responses(const h5::File& file, StoredResult& result) {
   result.responses = read_named(file, "response");
-  const auto read_chosen = [&](const std::string& attribute, std::vector<std::size_t> otherwise) {
-    if (!file.has_attribute("/responses", attribute)) return otherwise;
+  const auto read_chosen = [&](const std::string& attribute) {
     std::vector<std::size_t> chosen;
+    if (!file.has_attribute("/responses", attribute)) return chosen;
     for (const std::string& name : file.attribute<std::string>("/responses", attribute)) {
       chosen.push_back(position_in(result.responses, name, "/responses " + attribute + " names an unknown response",
                                    &NamedUnit::name));
     }
     return chosen;
   };
-  std::vector<std::size_t> all(result.responses.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  result.headline = read_chosen("headline", std::move(all));
-  result.signed_headline = read_chosen("signed_headline", result.headline);
+  result.headline = chosen_or_all(read_chosen("headline"), result.responses.size());
+  result.signed_headline = read_chosen("signed_headline");
+  if (result.signed_headline.empty()) result.signed_headline = result.headline;
 }
 
 constexpr std::string_view kMetricMeaning =
@@ -133,11 +132,13 @@ void read_metric(const h5::File& file, StoredResult& result) {
 void add_poses(ResultBuilder& result, const ModelDescription& model, const SelectedPoses& selected) {
   result.add_axis("pose", axis_numbers(selected.poses.size()), {"1", "Number of the pose, from 0"});
   result.file().make_group("/poses");
-  const auto names = texts(model.pose_coordinates, &PoseCoordinate::name);
+  const std::vector<NamedUnit> coordinates = named_coordinates(model);
+  const auto names = texts(coordinates, &NamedUnit::name);
   result.file().set_attribute("/poses", "coordinates", std::span(names));
-  for (std::size_t c = 0; c < names.size(); ++c) {
-    const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    result.add("/poses/" + names[c], {"pose"}, selected.poses.column(c), {unit_of(coordinate), coordinate.description});
+  for (std::size_t c = 0; c < coordinates.size(); ++c) {
+    const NamedUnit& coordinate = coordinates[c];
+    result.add("/poses/" + coordinate.name, {"pose"}, selected.poses.column(c),
+               {coordinate.unit, coordinate.description});
   }
   write_fields(result, "/poses", kPoseFields, selected);
   if (selected.rejected.empty()) return;
@@ -192,8 +193,34 @@ void add_facts(ResultBuilder& result, const RunFacts& facts) {
   result.add_scalar("/run/solves_per_second", rate, {"1/s", "Solves a second, all threads and ranks together"});
 }
 
-/// Whether a file is a result or a shard, even a damaged one, which a newer one may replace. The type is in its first
-/// kilobyte. An empty file may be replaced too.
+/// Writes a whole file into `result`. compose(result): adds the parts between the header and the facts of the run.
+void compose_all(ResultBuilder& result, std::string_view filetype, std::string_view kind, const Study& study,
+                 const SelectedPoses& poses, const RunFacts& facts,
+                 const std::function<void(ResultBuilder&)>& compose) {
+  add_header(result, filetype, kind, study, poses);
+  compose(result);
+  add_facts(result, facts);
+  result.file().set_attribute("/", "content_sha256", content_sha256(result.file()));
+}
+
+/// A function that writes the parts which a result of this kind has in addition to the header.
+std::function<void(ResultBuilder&)> parts_of(const FileKind& kind, const Study& study, std::any& found,
+                                             const DrawingResult* drawing) {
+  return [&kind, &study, &found, drawing](ResultBuilder& result) {
+    kind.write(result, study, found);
+    if (drawing != nullptr) write_drawing(result, *drawing);
+  };
+}
+
+/// Reads the parts of a result that follow its header.
+void read_parts(const h5::File& file, const FileKind& kind, StoredResult& result) {
+  kind.read(file, result);
+  if (file.exists("/drawing")) result.drawing = read_drawing(file);
+  order_headline(result);
+}
+
+/// Returns true if a new result may replace a file: an older result or shard, even a damaged one, or an empty file. The
+/// type of a result or shard is in its first kilobyte.
 bool may_be_replaced(const std::string& path) { return is_marked(path, kResultFile) || has_mark(path, kShardFile); }
 
 }  // namespace
@@ -201,7 +228,7 @@ bool may_be_replaced(const std::string& path) { return is_marked(path, kResultFi
 void check_names(std::span<const std::string> names, const std::string& path) {
   for (const std::string& name : names) {
     const bool fits = std::ranges::none_of(name, [](char c) { return c == '/' || c == ',' || (c >= 0 && c < ' '); });
-    if (name.empty() || !fits) throw h5::Error("'" + name + "' in " + path + " is no name");
+    if (name.empty() || !fits) throw h5::Error("'" + name + "' in " + path + " is not a name");
   }
 }
 
@@ -211,12 +238,8 @@ void compose_file(const std::string& path, std::string_view filetype, std::strin
   FileWriter writer(path);
   try {
     ResultBuilder result(h5::File::on_disk(writer));
-    add_header(result, filetype, kind, study, poses);
-    compose(result);
-    add_facts(result, facts);
-    h5::File& file = result.file();
-    file.set_attribute("/", "content_sha256", content_sha256(file));
-    file.close();
+    compose_all(result, filetype, kind, study, poses, facts, compose);
+    result.file().close();
   } catch (const h5::Error& error) {
     writer.check();
     if (is_out_of_memory(error)) throw std::bad_alloc();
@@ -298,10 +321,17 @@ const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(n
 
 void write_result(const std::string& path, std::string_view name, const FileKind& kind, const Study& study,
                   const SelectedPoses& poses, std::any found, const RunFacts& facts, const DrawingResult* drawing) {
-  compose_file(path, kResultFile, name, study, poses, facts, [&](ResultBuilder& result) {
-    kind.write(result, study, found);
-    if (drawing != nullptr) write_drawing(result, *drawing);
-  });
+  compose_file(path, kResultFile, name, study, poses, facts, parts_of(kind, study, found, drawing));
+}
+
+StoredResult as_stored(std::string_view name, const FileKind& kind, const Study& study, const SelectedPoses& poses,
+                       std::any found, const DrawingResult* drawing) {
+  ResultBuilder composed(h5::File::in_memory());
+  compose_all(composed, kResultFile, name, study, poses, {}, parts_of(kind, study, found, drawing));
+  StoredResult result;
+  read_header(composed.file(), result);
+  read_parts(composed.file(), kind, result);
+  return result;
 }
 
 std::string check_result_path(const std::string& path, std::span<const std::string> inputs) {
@@ -315,9 +345,7 @@ StoredResult read_result(const std::string& path, FindFileKind find_kind) {
     read_header(file, result);
     const FileKind* kind = find_kind(result.kind);
     if (kind == nullptr) throw h5::Error("its kind '" + result.kind + "' is unknown");
-    kind->read(file, result);
-    if (file.exists("/drawing")) result.drawing = read_drawing(file);
-    order_headline(result);
+    read_parts(file, *kind, result);
     return result;
   });
 }

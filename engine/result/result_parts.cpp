@@ -9,12 +9,12 @@
 namespace poesy {
 namespace {
 
-/// How the solves of C cells ended, column by column.
+/// How the solves of C cells ended, as columns of the group /solver.
 struct SolverColumns {
-  std::vector<std::uint64_t> not_converged;   ///< [C]
-  std::vector<double> iterations_mean;        ///< [C]
-  std::vector<std::uint32_t> iterations_max;  ///< [C]
-  std::vector<std::uint64_t> by_status;       ///< [statuses x C]
+  std::vector<std::uint64_t> not_converged;   ///< [C] samples without a solution
+  std::vector<double> iterations_mean;        ///< [C] mean number of iterations
+  std::vector<std::uint32_t> iterations_max;  ///< [C] largest number of iterations
+  std::vector<std::uint64_t> by_status;       ///< [statuses x C] samples that ended with each status
 };
 
 double mean_iterations(const SolveCounts& cell) {
@@ -30,7 +30,7 @@ Fields<SolverColumns> solver_fields(const Axes& cells) {
           {"solves_by_status", &SolverColumns::by_status, by_status, "1", "Samples that ended so"}};
 }
 
-/// A listed failure as it is stored.
+/// A failed sample in the list of failures, as a file stores it.
 struct FailureRow {
   std::string factor;
   std::uint64_t pose;
@@ -48,11 +48,11 @@ const Fields<FailureRow> kFailureFields{
     {"failed_status", &FailureRow::status, kByFailure, "1",
      "How these solves ended: a position in status_names, from 0"}};
 
-constexpr std::string_view kByRow = "row";  ///< the word of `judge` for an evaluation
+constexpr std::string_view kByRow = "row";  ///< word of the attribute `judge` in a result of an evaluation
 
 const Axes kLimited{"limited_response"};
 
-/// A verdict as a file has it.
+/// The verdict on one limit, as a file stores it.
 struct LimitRow {
   double value = 0.0;
   double limit = 0.0;
@@ -66,7 +66,7 @@ struct LimitRow {
   bool spread = false;
 };
 
-/// The fields of limits, in the order of the columns of limits.csv.
+/// The datasets of /limits, in the order of the columns of limits.csv.
 const Fields<LimitRow> kLimitFields{
     {"value", &LimitRow::value, kLimited, kResponseUnit,
      "What is compared with it, a magnitude; infinite or NaN where too few samples were solved, NaN where nothing is "
@@ -80,7 +80,7 @@ const Fields<LimitRow> kLimitFields{
     {"pose", &LimitRow::pose, kLimited, "1", "Pose of the value, from 0; -1 where it is of all poses"},
     {"row", &LimitRow::row, kLimited, "1", "Row of errors, or case, of the value, from 0; -1 where there are none"}};
 
-/// The fields of files with a limit that is more than a magnitude at each pose.
+/// Additional datasets of /limits, for files with a limit that is not simply a magnitude at each pose.
 const Fields<LimitRow> kEndFields{
     {"from", &LimitRow::from, kLimited, kResponseUnit,
      "Lower end of the limit, of which /limits/limit is then the upper end: minus infinity or infinity for none, and "
@@ -106,7 +106,7 @@ bool has_ends(const LimitVerdicts& verdicts) {
   return !std::ranges::all_of(verdicts.limits, [](const LimitVerdict& one) { return one.limit.is_plain(); });
 }
 
-/// The verdict of a row, with a limit on magnitudes.
+/// The verdict that a row states. Its limit is taken as a limit on magnitudes.
 LimitVerdict verdict_of(const LimitRow& row) {
   return {.limit = row.limit,
           .value = row.value,
@@ -117,7 +117,7 @@ LimitVerdict verdict_of(const LimitRow& row) {
           .row = row.row};
 }
 
-/// The limit of a row, whose ends were read. Throws h5::Error if there is no such limit.
+/// The limit that a row states by its two ends. Throws h5::Error if no limit can have these numbers.
 ValueLimit limit_of(const LimitRow& row) {
   const bool is_possible = row.from < row.limit && row.pose_share > 0.0 && row.pose_share <= 1.0 &&
                            !(row.spread && (row.pose_share < 1.0 || row.from != -row.limit));
@@ -135,9 +135,11 @@ constexpr std::string_view kLimitsMeaning =
     "any "
     "row of errors";
 
-/// The fields of a convergence that follow its course, with a number for each quantity or slot.
+/// The datasets of /convergence that describe the end of a course, with a number for each quantity or for each slot.
+/// They are written after those of the course itself.
 Fields<ConvergenceResult> end_fields(const CourseWords& words) {
-  const Axes& all = words.group.fields.front().axes;  // axes of the quantities and the milestones
+  // The axes of the quantities, followed by the axis of the numbers of samples.
+  const Axes& all = words.group.fields.front().axes;
   const Axes quantities(all.begin(), all.end() - 1);
   const Axes slots(all.begin() + 1, all.end() - 1);
   return {{"reached", &ConvergenceResult::reached, quantities, "1",
@@ -184,7 +186,7 @@ const Group<MeasuredErrors> kMeasuredErrors{
      {"correlation", &MeasuredErrors::correlation, kMeasured, "1",
       "With that one, of their normal scores; 0 for none"}}};
 
-/// Adds the error with the strongest correlation to this one.
+/// Adds, for this error, the error with which it is correlated most, and their correlation.
 void append_correlation(const Study& study, FactorIndex factor, MeasuredErrors& found) {
   std::string name(kUncorrelated);
   double largest = 0.0;
@@ -210,7 +212,7 @@ double sample_deviation(std::span<const double> values, double mean) {
   return std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
-/// The last cell of a line is the unit of the error.
+/// The table measured_errors.csv. The last cell of a line is the unit of the error.
 CsvTable measured_table(const StoredResult& result) {
   const MeasuredErrors& found = result.measured;
   CsvTable table{"measured_errors",
@@ -259,7 +261,8 @@ std::vector<double> stated_means(const Study& study) {
 
 namespace {
 
-/// Adds what a study says about single errors beside their scatter, if it says something.
+/// Adds to the result file the means that a study states, and the names of the errors that its machines draw per pose.
+/// Adds nothing for either if the study states none.
 void add_stated(ResultBuilder& result, const Study& study) {
   if (const std::vector<double> mean = stated_means(study); !mean.empty()) {
     result.add("/factors/mean", {"factor"}, mean, {kFactorUnit, "Mean of the error, as set in the study"});
@@ -301,8 +304,8 @@ void read_sigma(const h5::File& file, StoredResult& result) {
   result.measured.names = file.read<std::string>("/measured_error");
   check_names(result.measured.names, "/measured_error");
   for (const std::string& name : result.measured.names) {
-    result.measured.factors.push_back(
-        position_in(result.factors, name, "/measured_error has '" + name + "', which is no error", &NamedUnit::name));
+    result.measured.factors.push_back(position_in(
+        result.factors, name, "/measured_error has '" + name + "', which is not an error", &NamedUnit::name));
   }
   read_group(file, kMeasuredErrors, result.measured);
   check_names(result.measured.most_correlated, "/measured_errors/most_correlated");
@@ -374,7 +377,8 @@ std::vector<SolveCounts> read_solver(const h5::File& file, const Axes& axes) {
     for (std::size_t status = 0; status < statuses; ++status) {
       counts.by_status[status] = by_status(status, cell);
     }
-    // The mean is the sum over the total, so this gives back the exact sum; NaN without samples.
+    // The sum of iterations is not stored. It is the stored mean times the total number of samples, rounded to a whole
+    // number, which is exact. The mean is NaN without samples.
     const auto total = static_cast<double>(counts.total());
     const double sum = columns.iterations_mean[cell] * total;
     if (total > 0.0) counts.iterations = static_cast<std::uint64_t>(std::llround(sum));

@@ -11,7 +11,8 @@
 namespace poesy {
 namespace {
 
-/// The largest magnitude to expect: for a normal four standard deviations, which one draw in 16 000 exceeds.
+/// The largest magnitude to expect of an error: for a normal error its mean plus four standard deviations, which one
+/// draw in 16 000 exceeds.
 double expected_range(const Distribution& distribution) {
   return std::min(distribution.largest(), std::abs(distribution.mean()) + 4.0 * distribution.standard_deviation());
 }
@@ -108,6 +109,15 @@ void UnitSolver::draw_per_pose(const WorkUnit& unit) {
   plan_->transform_per_pose(values, unit.count);
 }
 
+SampleBlock UnitSolver::drawn(std::size_t count) const {
+  const std::span<const FactorIndex> factors = plan_->factors();
+  return {.pose = {},
+          .errors = plan_->background(),
+          .varied = factors,
+          .values = std::span(values_).first(factors.size() * count),
+          .count = count};
+}
+
 UnitOutcomes UnitSolver::solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range,
                                std::span<double> details) {
   const std::span values = std::span(values_).first(varied.size() * count);
@@ -115,8 +125,9 @@ UnitOutcomes UnitSolver::solve(PoseIndex pose, std::span<const FactorIndex> vari
   const std::span status = std::span(status_).first(count);
   const std::span iterations = std::span(iterations_).first(count);
   const PoseSet& poses = plan_->poses();
-  evaluator_->evaluate({poses[pose], plan_->background(), varied, values, count, range, poses.before(pose)},
-                       {outcome, status, iterations, details});
+  Evaluator& evaluator = other_ == nullptr ? *evaluator_ : *other_;
+  evaluator.evaluate({poses[pose], plan_->background(), varied, values, count, range, poses.before(pose)},
+                     {outcome, status, iterations, details});
   return {values, outcome, status, iterations};
 }
 
@@ -133,7 +144,8 @@ UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit, std::span<const double> 
   plan_->distributions()[unit.slot].transform(draws);
   const ArrayView<double, Axis<"scale">, axis::Sample> scaled{std::span(values_).first(count),
                                                               {scales.size(), unit.count}};
-  for (std::size_t k = scales.size(); k-- > 0;) {  // in reverse, because all others are computed from the first
+  // Goes backwards, because row 0 has the draws from which all rows are computed and is overwritten last.
+  for (std::size_t k = scales.size(); k-- > 0;) {
     for (std::size_t b = 0; b < unit.count; ++b) scaled(k, b) = scales[k] * draws[b];
   }
   return UnitSolver::solve(unit.pose, plan_->factors().subspan(unit.slot, 1), count,

@@ -18,104 +18,119 @@ namespace poesy {
 
 /// The statistics of one work unit.
 struct UnitStats {
-  std::vector<Moments> responses;  ///< [R] over the samples that count
-  SolveCounts solves;              ///< how its solves ended
-  FailedSamples failed;            ///< the first failed samples
+  /// [R] Moments of each response over the samples that count in statistics (counts()).
+  std::vector<Moments> responses;
+  SolveCounts solves;    ///< how the solves of the unit ended
+  FailedSamples failed;  ///< the first failed samples
 
   /// Adds later samples. Precondition: the samples of `other` come after those of this object.
   void merge(const UnitStats& other);
-  /// Reads or writes the statistics of samples from `first` on.
+  /// Reads or writes the statistics. first: number of the first sample.
   void state(Archive& archive, std::uint64_t first);
 };
 
-/// The output of one work unit of a sensitivity study: its statistics, and indices over the first of its samples.
+/// The output of one work unit of a sensitivity study: its statistics, and indices after its first samples.
 struct CellUnit : UnitStats {
-  std::vector<LocalIndex> within;  ///< [K x R] indices over the samples of the unit up to each of points_within()
+  /// [K x R] indices over the first samples of the unit, for each number of samples in points_within().
+  std::vector<LocalIndex> within;
 
-  /// Reads or writes the unit as a message, for samples from `first` on.
+  /// Reads or writes the unit as a message between ranks. first: number of its first sample.
   void state(Archive& archive, std::uint64_t first);
 };
 
-/// One response in one work unit of a Monte Carlo study, over the samples that count.
+/// The data of one response in one work unit of a Monte Carlo study, over the samples that count in statistics
+/// (counts()).
 struct ResponseUnit {
-  Moments moments;     ///< mean and spread
-  NumberBlock values;  ///< the same samples, prepared for a sketch
+  Moments moments;     ///< moments of the values
+  NumberBlock values;  ///< the values, prepared for a quantile sketch
 
   void state(Archive& archive) { archive.objects(moments, values); }  ///< Reads or writes both.
 };
 
 /// The output of one work unit of a Monte Carlo study.
 struct PoseUnit {
-  std::vector<ResponseUnit> responses;    ///< [R]
-  SolveCounts solves;                     ///< how its solves ended
+  std::vector<ResponseUnit> responses;    ///< [R] data of each response
+  SolveCounts solves;                     ///< how the solves of the unit ended
   FailedSamples failed;                   ///< the first failed samples
   std::optional<MainEffectSums> effects;  ///< main effects, at the poses where they are summed
 
-  /// Reads or writes the unit as a message, for samples from `first` on. errors: the number of errors that vary.
+  /// Reads or writes the unit as a message between ranks. first: number of its first sample. errors: the number of
+  /// errors that vary.
   void state(Archive& archive, std::size_t errors, std::uint64_t first);
 };
 
-/// Reads or writes how the samples of a unit or a cell, from `first` on, ended.
+/// Reads or writes how the samples of a unit or a cell ended. first: number of the first sample.
 void ends_state(Archive& archive, SolveCounts& solves, FailedSamples& failed, std::uint64_t first);
-/// Reads or writes how `count` machines with numbers in [first, end) ended, at each pose.
+/// Reads or writes how the solves of machines ended, at each pose. count: number of machines; their numbers are in
+/// [first, end).
 void ends_state(Archive& archive, std::span<SolveCounts> solves, std::span<FailedSamples> failed, std::uint64_t count,
                 std::uint64_t first, std::uint64_t end);
 
 /// The numbers of samples after which a sensitivity study with a fixed number of samples records its indices,
-/// ascending: 100, 200, 500, 1000, 2000, 5000, ... up to Plan::samples(). More samples only extend the list. Numbers
-/// above Plan::kUnitSamples are whole units. Empty if samples are adaptive.
+/// ascending: 100, 200, 500, 1000, 2000, 5000, ... up to Plan::samples(). A study with more samples has the same list
+/// with further numbers. Numbers above Plan::kUnitSamples are whole units. Empty if samples are adaptive.
 std::vector<std::size_t> history_points(const Plan& plan);
 
-/// The history points inside the unit; only the first unit of a cell has some. Refers to `points`.
+/// The history points below unit.count, for the first unit of a cell; none for later units. Refers to `points`.
 std::span<const std::size_t> points_within(const WorkUnit& unit, std::span<const std::size_t> points);
 
-/// The largest number of poses at which a sensitivity study is checked a second time.
+/// The largest number of poses at which a sensitivity study solves again to check an assumption, such as linearity.
 inline constexpr std::size_t kSomePoses = 32;
 
-/// The number of these poses in a study with `poses` poses.
+/// The number of poses at which such a check (kSomePoses) solves, in a study with `poses` poses.
 constexpr std::size_t some_poses(std::size_t poses) { return std::min(kSomePoses, poses); }
 
-/// The n-th of these poses; they are evenly spaced over the order of the study's poses. Precondition: n <
-/// some_poses(poses).
+/// The n-th pose of such a check (kSomePoses). These poses are evenly spaced over the order of the study's poses.
+/// Precondition: n < some_poses(poses).
 constexpr PoseIndex some_pose(std::size_t n, std::size_t poses) { return PoseIndex(n * poses / some_poses(poses)); }
 
 /// The outcomes of the samples of one work unit. Refers to the solver's scratch, and is valid until its next solve.
 struct UnitOutcomes {
   std::span<const double> values;             ///< [V x B] errors that vary, SI
-  std::span<const double> responses;          ///< [R x B]
-  std::span<const SolveStatus> status;        ///< [B] how each ended
+  std::span<const double> responses;          ///< [R x B] responses, SI
+  std::span<const SolveStatus> status;        ///< [B] how each solve ended
   std::span<const std::uint32_t> iterations;  ///< [B] iterations of each sample
 };
 
-/// The base of evaluators of work units: the model's evaluator and the scratch of one thread. Refers to the plan.
+/// The base class of the evaluators of work units. It owns the model's evaluator and the scratch memory of one thread.
+/// Refers to the plan.
 class UnitSolver {
  protected:
   /// varied: the number of errors that vary together.
   UnitSolver(const Plan& plan, const Model& model, std::size_t varied);
 
-  /// Fills a row with the uniforms from which the errors of this slot are computed.
+  /// Fills a row with the uniform numbers from which the errors of this slot are computed.
   void draw_uniforms(const WorkUnit& unit, std::size_t slot, std::span<double> row) const;
-  /// Fills values_ with the draws of all factors, one row after the other, and returns the bins of the draws.
+  /// Fills values_ with the uniforms of all factors, one row of samples for each factor, and returns the bins of the
+  /// uniforms.
   EffectBins draw_in_bins(const WorkUnit& unit);
-  /// Replaces, in values_ [P x B], the errors that machines draw anew at each pose by those of the unit's pose.
+  /// Replaces, in values_ [P x B], those errors that a machine draws anew at each pose by their draws at the unit's
+  /// pose.
   void draw_per_pose(const WorkUnit& unit);
-  /// Solves the first [varied x count] values at a pose. details: see OutcomeBlock.
+  /// Uses this evaluator for all further solves, until the next call; the evaluator must outlive them. null: uses the
+  /// model's own evaluator again.
+  void solve_by(Evaluator* other) { other_ = other; }
+  /// The present draws of all factors for this many samples; the pose is not set.
+  SampleBlock drawn(std::size_t count) const;
+  /// Solves the first [varied x count] values at a pose. details: memory for the model's additional outputs, see
+  /// OutcomeBlock; empty if they are not wanted.
   UnitOutcomes solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range,
                      std::span<double> details = {});
 
   const Plan* plan_;            ///< the plan whose units are solved
-  std::size_t responses_;       ///< R
-  std::vector<double> values_;  ///< [V x B]
+  std::size_t responses_;       ///< number of responses, R
+  std::vector<double> values_;  ///< [V x B] values of the errors that vary, SI
 
  private:
   std::unique_ptr<Evaluator> evaluator_;
-  std::vector<double> outcome_;  ///< [R x B]
+  Evaluator* other_ = nullptr;
+  std::vector<double> outcome_;  ///< [R x B] responses, SI
   std::vector<SolveStatus> status_;
   std::vector<std::uint32_t> iterations_;
 };
 
-/// Solves work units of a sensitivity study serially. Owns the scratch of one thread. The result of a unit depends only
-/// on the plan and the unit.
+/// Solves work units of a sensitivity study, one after the other, and owns the scratch memory of one thread. The result
+/// of a unit depends only on the plan and the unit.
 class UnitEvaluator : private UnitSolver {
  public:
   /// Refers to both arguments.
@@ -123,20 +138,20 @@ class UnitEvaluator : private UnitSolver {
 
   /// Solves the whole unit.
   CellUnit operator()(const WorkUnit& unit);
-  /// Solves any samples of a cell, at most Plan::kUnitSamples. The outcome of a sample does not depend on the unit.
+  /// Solves any samples of a cell, at most Plan::kUnitSamples. The outcome of a sample is the same in any unit.
   UnitOutcomes solve(const WorkUnit& unit);
-  /// Solves the unit's draws times each of these scales, [scales x B] one after the other, at most Plan::kUnitSamples
-  /// in all. Precondition: scales are between -1 and 1.
+  /// Multiplies the unit's draws by each of these scales and solves them all: [scales x B], one scale after the other.
+  /// scales x B is at most Plan::kUnitSamples. Precondition: scales are between -1 and 1.
   UnitOutcomes solve(const WorkUnit& unit, std::span<const double> scales);
 
  private:
-  std::vector<std::size_t> kept_;    ///< samples that count
-  std::vector<std::size_t> points_;  ///< history points
+  std::vector<std::size_t> kept_;    ///< positions of the samples that count in statistics
+  std::vector<std::size_t> points_;  ///< numbers of samples after which indices are recorded
 };
 
-/// Solves work units of a Monte Carlo study serially, in which all factors vary together. Factor f draws from the
-/// address that it has in a sensitivity study. Owns the scratch of one thread. The result of a unit depends only on the
-/// plan and the unit.
+/// Solves work units of a Monte Carlo study, in which all factors vary together, one after the other. A factor has the
+/// same draws as in a sensitivity study. Owns the scratch memory of one thread. The result of a unit depends only on
+/// the plan and the unit.
 class PoseUnitEvaluator : private UnitSolver {
  public:
   /// Refers to both arguments.
@@ -153,7 +168,7 @@ class PoseUnitEvaluator : private UnitSolver {
   std::span<const double> only_counting(std::span<const double> outcomes, std::span<const SolveStatus> status);
   MainEffectSums effects_of(const UnitOutcomes& outcomes, const EffectBins& bins) const;
 
-  std::vector<double> kept_;             ///< one response of the samples that count
+  std::vector<double> kept_;             ///< values of one response in the samples that count in statistics
   std::vector<PoseIndex> effect_poses_;  ///< poses at which main effects are summed
 };
 

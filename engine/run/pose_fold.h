@@ -16,8 +16,9 @@
 
 namespace poesy {
 
-/// The work of fold() for the units of a plan. A unit has samples of a cell, which is a slot at a pose. PoseFold
-/// manages the pending units, the rounds of adaptive samples, shards, and states. A job provides the rest:
+/// The work of fold() for the units of a plan. A unit is a block of samples of one cell; a cell is one slot at one
+/// pose. PoseFold manages the pending units, the rounds of adaptive samples, shards, and states. A job is a type with
+/// everything else:
 ///
 ///     static constexpr std::string_view kName     name of its states, unique among all jobs
 ///     std::vector<std::uint64_t> sizes() const    sizes that a state must have to be read
@@ -33,17 +34,17 @@ namespace poesy {
 ///     void add(const WorkUnit&, const Unit&)      adds the next unit of its cell
 ///     std::size_t units_done(std::size_t cell) const
 ///     SolveCounts total() const
-///     void state(Archive&, std::size_t samples)   writes all cells, or reads and adds those of a plan with other
-///     samples
+///     void state(Archive&, std::size_t samples)   writes all cells, or reads and adds cells with other `samples`
 template <class Job>
 class PoseFold {
  public:
-  using Worker = std::remove_cvref_t<decltype(std::declval<const Job&>().worker())>;  ///< The worker of one thread.
-  using Unit = std::invoke_result_t<Worker&, const WorkUnit&>;                        ///< The output of a unit.
-  using Sums = decltype(std::declval<const Job&>().sums(std::declval<const Plan&>(),
-                                                        {}));  ///< The sums to which units are added.
+  /// The type of the worker of one thread.
+  using Worker = std::remove_cvref_t<decltype(std::declval<const Job&>().worker())>;
+  using Unit = std::invoke_result_t<Worker&, const WorkUnit&>;  ///< The type of the output of a unit.
+  /// The type of the sums to which units are added.
+  using Sums = decltype(std::declval<const Job&>().sums(std::declval<const Plan&>(), {}));
 
-  /// Folds the shard of the options, if they have one. Refers to the plan and the job.
+  /// Works on the shard of the options, if they have one. Refers to the plan and the job.
   PoseFold(const Plan& plan, const Job& job, const RunOptions& options)
       : plan_(plan), job_(job), shard_(options.shard.value_or(Shard())), rounds_(plan, job.rule()) {
     begin_sums();
@@ -101,7 +102,7 @@ class PoseFold {
   /// @}
 
   Sums& sums() { return *sums_; }  ///< The sums of all units that were solved.
-  /// When the samples of the study ended; empty if their number was fixed. Precondition: no round follows.
+  /// Tells how the adaptive sampling ended; empty if the number of samples was fixed. Precondition: no round follows.
   std::optional<ConvergenceResult> convergence() const { return rounds_.result(); }
 
  private:
@@ -112,7 +113,8 @@ class PoseFold {
     if constexpr (Sums::kOfRound) part_.emplace(plan_.with_samples(rounds_.samples(0)));
     sums_.emplace(job_.sums(plan_of_sums(), shard_));
   }
-  /// Reads or writes all units that were added; in the states of several shards, those of one.
+  /// Reads or writes the sums of all units that were added. When merged shards are read, each call reads the sums of
+  /// one shard.
   void part_state(Archive& archive) {
     head_state(archive, Job::kName, job_.sizes());
     archive.known(plan_.cells(), "has other cells");
@@ -126,27 +128,27 @@ class PoseFold {
   const Job& job_;
   Shard shard_;
   Rounds rounds_;
-  std::optional<Plan> part_;  ///< the plan with the samples of the round, if sums are made anew for each round
-  std::optional<Sums> sums_;  ///< refers to the plan above
+  std::optional<Plan> part_;  ///< plan with the samples of the round, if sums are made anew for each round (kOfRound)
+  std::optional<Sums> sums_;  ///< sums of the units; they refer to the plan part_ or plan_
   std::optional<PendingUnits> pending_;  ///< units of the round
 };
 
-/// The sums of the cells of a plan, or of a shard's cells. A last unit with fewer than Plan::kUnitSamples samples is
-/// kept apart, because a study with more samples has another unit in its place. A store has values of R responses for
-/// each of some cells:
+/// The sums of the cells of a plan, or of a shard's cells. If the last unit of a cell has fewer than Plan::kUnitSamples
+/// samples, its sums are separate, because in a study with more samples another unit takes its place. A store is a type
+/// with values of R responses for each of some cells:
 ///
 ///     Store(std::size_t responses, std::size_t cells)    without samples; also Store() without cells
 ///     std::vector<SolveCounts> solves                    [cells]
 ///     void merge(std::size_t cell, const Unit&)          adds later samples of a cell
 ///     void merge(Store later)                            adds later samples of each cell
-///     void state(Archive&, std::size_t cell, std::uint64_t first)   reads or writes a cell with samples from `first`
-///     on Store part(const NumberRange& cells) const
+///     void state(Archive&, std::size_t cell, std::uint64_t first)   reads or writes a cell; first: its first sample
+///     Store part(const NumberRange& cells) const         some of the cells
 template <class Store>
 class CellSums {
  public:
-  static constexpr bool kOfRound = false;  ///< They stay from round to round.
+  static constexpr bool kOfRound = false;  ///< The sums are kept from round to round.
 
-  /// Refers to the plan.
+  /// Sums without samples, for the cells of a shard and R responses. Refers to the plan.
   CellSums(const Plan& plan, std::size_t responses, const Shard& shard)
       : plan_(&plan), responses_(responses), cells_(shard.of(plan.cells())) {}
 
@@ -157,7 +159,7 @@ class CellSums {
     POESY_EXPECTS(cells_.holds(cell) && unit.first.value == units_done(cell) * Plan::kUnitSamples);
     with_room(unit.count == Plan::kUnitSamples ? whole_ : parts_).merge(cell - cells_.first, found);
   }
-  /// The number of units of this cell that were added.
+  /// The number of units of a cell that were added.
   std::size_t units_done(std::size_t cell) const {
     return static_cast<std::size_t>(samples_in(whole_, cell) / Plan::kUnitSamples) +
            (samples_in(parts_, cell) > 0 ? 1 : 0);
@@ -168,7 +170,7 @@ class CellSums {
     sum.merge(total_of(parts_.solves));
     return sum;
   }
-  /// The cells of one slot at all poses. Preconditions: the shard has them all; units were added.
+  /// The cells of one slot at all poses. Preconditions: the shard has all these cells; units were added.
   Store cells_of(std::size_t slot) const {
     const NumberRange range{slot * plan_->poses().size(), (slot + 1) * plan_->poses().size()};
     POESY_EXPECTS(cells_.first == 0 && range.end <= cells_.end && (!whole_.solves.empty() || !parts_.solves.empty()));
@@ -177,7 +179,7 @@ class CellSums {
     if (!parts_.solves.empty()) some.merge(parts_.part(range));
     return some;
   }
-  /// All cells. Preconditions: the shard has them all; units were added.
+  /// All cells. Preconditions: the shard has all cells of the plan; units were added.
   Store cells() && {
     POESY_EXPECTS(cells_.first == 0 && cells_.end == plan_->cells());
     POESY_EXPECTS(!whole_.solves.empty() || !parts_.solves.empty());
@@ -186,8 +188,8 @@ class CellSums {
     return std::exchange(whole_, {});
   }
 
-  /// Writes all cells, or reads those of a plan with this many samples and adds them. Returns the units of each cell in
-  /// that state.
+  /// Writes all cells. Or reads the cells of a plan with this number of samples and adds them. Returns the number of
+  /// units of each cell in the state.
   std::vector<std::size_t> state(Archive& archive, std::size_t samples) {
     std::vector<std::size_t> units;
     units.reserve(plan_->cells());
@@ -196,25 +198,25 @@ class CellSums {
   }
 
  protected:
-  /// The position of the unit's cell.
+  /// The position of the unit's cell in the plan.
   std::size_t cell_of(const WorkUnit& unit) const { return unit.slot * plan_->poses().size() + unit.pose.value; }
   /// The store to which a unit of this size was added.
   const Store& store_of(const WorkUnit& unit) const { return unit.count == Plan::kUnitSamples ? whole_ : parts_; }
 
   const Plan* plan_;       ///< the plan of the cells
-  std::size_t responses_;  ///< R
+  std::size_t responses_;  ///< number of responses, R
   NumberRange cells_;      ///< cells of the shard
 
  private:
   std::uint64_t samples_in(const Store& store, std::size_t cell) const {
     return !store.solves.empty() && cells_.holds(cell) ? store.solves[cell - cells_.first].total() : 0;
   }
-  /// Makes room on first use.
+  /// The store, with room for the cells of the shard.
   Store& with_room(Store& store) const {
     if (store.solves.empty()) store = Store(responses_, cells_.end - cells_.first);
     return store;
   }
-  /// Reads or writes a cell with samples from `first` on. Returns their number.
+  /// Reads or writes a cell. first: number of its first sample. Returns the number of samples.
   std::uint64_t store_state(Archive& archive, Store& store, std::size_t cell, std::uint64_t first) const {
     with_room(store).state(archive, cell, first);
     return store.solves[cell].total();
@@ -229,14 +231,14 @@ class CellSums {
     if (has_whole) {
       whole = store_state(archive, whole_, cell - cells_.first, 0);
       const bool is_whole = whole > 0 && whole % Plan::kUnitSamples == 0 && whole <= samples;
-      archive.expect(is_whole, "has a cell that is no number of whole units");
+      archive.expect(is_whole, "has a cell that is not a number of whole units");
     }
     if (!has_part) return Plan::units_for(static_cast<std::size_t>(whole));
     std::uint64_t part = 0;
     if (samples == plan_->samples()) {
       part = store_state(archive, parts_, cell - cells_.first, whole);
     } else {
-      Store left_out(responses_, 1);  // a study with more samples has another unit there
+      Store left_out(responses_, 1);  // dropped, because in a study with more samples another unit takes its place
       part = store_state(archive, left_out, 0, whole);
     }
     const bool is_part = part > 0 && part < Plan::kUnitSamples && whole + part == samples;
@@ -244,8 +246,8 @@ class CellSums {
     return Plan::units_for(samples);
   }
 
-  Store whole_;  ///< [cells of the shard] full units; empty before the first of them
-  Store parts_;  ///< [cells of the shard] the last units that are smaller; empty before the first of them
+  Store whole_;  ///< [cells of the shard] units of full size; empty before the first
+  Store parts_;  ///< [cells of the shard] last units of a smaller size; empty before the first
 };
 
 }  // namespace poesy

@@ -14,39 +14,41 @@ namespace poesy {
 
 /// The progress of a run, in samples.
 struct Progress {
-  std::uint64_t solves = 0;         ///< samples that are done, including those of an earlier run that is continued
-  std::uint64_t total = 0;          ///< expected number of all samples
+  std::uint64_t solves = 0;  ///< samples that are done, including those of the earlier run that this run continues
+  std::uint64_t total = 0;   ///< expected number of all samples
   std::uint64_t not_converged = 0;  ///< samples that were done and did not converge
-  std::uint64_t before = 0;         ///< samples of an earlier run that is continued
+  std::uint64_t before = 0;         ///< samples of the earlier run that this run continues
 };
 
 /// How a run is done. No option changes a bit of the result.
 struct RunOptions {
-  std::size_t threads = 0;  ///< 0: one per processor
-  /// Called from time to time, never from two threads at once. May be empty.
+  std::size_t threads = 0;  ///< number of threads; 0: one per processor
+  /// A function that shows the progress. It is called from time to time, never from two threads at once. May be empty.
   std::function<void(const Progress&)> progress = {};
-  /// Set from outside to stop the run soon. May be null.
+  /// Another thread or a signal handler sets it to stop the run soon. May be null.
   const std::atomic<bool>* stop = nullptr;
-  /// The source and the destination of the run's state. May be null. With checkpoints, a run function throws BytesError
-  /// for a state that it did not write.
+  /// Where the run gets and saves its state. May be null. With checkpoints, a run function throws BytesError for a
+  /// state that it did not write.
   Checkpoints* checkpoints = nullptr;
   /// The shard to run instead of the whole study. It has no result; its state goes to the checkpoints.
   std::optional<Shard> shard = std::nullopt;
-  /// Whether a longer study may continue from the last checkpoint. A study that draws all errors together then keeps
-  /// more.
+  /// Whether a longer study may continue from the last checkpoint. If so, a study that draws all errors together keeps
+  /// more data.
   bool keep_checkpoint = true;
+  /// True if a study of machines records for each machine whether it is rejected (StudyResult::rejected).
+  bool keep_rejected = false;
   /// The ranks that share the work; null: this process alone. Every rank calls the same run functions with the same
   /// arguments and gets the same results; only rank 0 has checkpoints and reports progress. If a rank is stopped or
   /// leaves, the functions return nothing, and team->left() says why. The ranks after rank 0 may throw Dismissed.
   Team* team = nullptr;
 };
 
-/// The number of threads; 0 is replaced by the number of processors.
+/// The number of threads to use: `threads`, or the number of processors if that is 0.
 std::size_t resolved_threads(std::size_t threads);
 
-/// Starts this many threads of the pool, unless they exist. Call it before anything can be lost and while there is
-/// memory, because oneTBB ends the program if it cannot start a thread. Throws FileError if this process cannot have
-/// this many.
+/// Starts this many threads of the pool, unless they exist. Call it early, while there is memory and no result that
+/// could be lost, because oneTBB ends the program if it cannot start a thread. Throws FileError if this process cannot
+/// have so many threads.
 void start_threads(std::size_t threads);
 
 }  // namespace poesy

@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kPrevious = "previous";
 constexpr std::string_view kOrigin = "origin";
 
-/// The scope of the rows.
+/// The scope of the keys, whose readers need only the value.
 struct Nothing {};
 
 const Keys<OwnResponse, Nothing>& response_keys() {
@@ -77,10 +77,11 @@ std::optional<std::size_t> find_response(const ModelDescription& model, const st
   return static_cast<std::size_t>(found - model.responses.begin());
 }
 
-/// A point whose displacement a model reports.
+/// A point of which the model reports the displacement as three responses.
 struct ReportedPoint {
   std::string name;
-  std::array<std::size_t, 3> responses;  ///< its displacement along the base's x, y and z
+  /// Indices of the responses that are its displacement along the base's x, y and z.
+  std::array<std::size_t, 3> responses;
 };
 
 std::vector<ReportedPoint> reported_points(const ModelDescription& model) {
@@ -102,7 +103,7 @@ std::vector<ReportedPoint> reported_points(const ModelDescription& model) {
   return points;
 }
 
-/// Reads the tables one after the other.
+/// Reads tables of responses one after the other. Each may use the responses that were read before it.
 class OwnReader {
  public:
   OwnReader(ModelDescription model, PoseBefore before) : model_(std::move(model)), before_(before) {}
@@ -150,7 +151,7 @@ class OwnReader {
     if (direction) read_direction(*direction, section.require("point", "name it: point = \"origin\""), own);
   }
 
-  /// The position of a response of this name. Throws InputError at the value.
+  /// The index of the response of this name. Throws InputError at the value if there is no such response.
   std::size_t response_of(const StudyValue& value, const std::string& name) const {
     const std::optional<std::size_t> found = find_response(model_, name);
     if (found) return *found;
@@ -264,7 +265,7 @@ class OwnReader {
     });
   }
 
-  /// Throws if a term is, or depends on, a response that is relative to a pose.
+  /// Throws InputError if a term is a response that is relative to a pose, or that depends on one.
   void check_terms(const StudyValue& value, const OwnResponse& own) const {
     for (const ResponseTerm& term : own.terms) {
       if (!model_.responses[term.response].is_relative) continue;
@@ -286,7 +287,7 @@ class OwnReader {
       const Response member = model_.responses[term.response];
       const StudyValue place = section.require("norm").list()[k];
       if (member.is_magnitude()) {
-        place.fail("is '" + member.name + "', which has no sign, so its difference is no part of a norm",
+        place.fail("is '" + member.name + "', which has no sign, so its difference is not a part of a norm",
                    "take its components, or leave out relative_to");
       }
       const std::string name = own.name + "_" + member.name;
@@ -304,7 +305,7 @@ class OwnReader {
     own_.push_back(std::move(own));
   }
 
-  ModelDescription model_;  ///< with those that were read
+  ModelDescription model_;  ///< the mechanism's description with the responses that were read so far
   PoseBefore before_;
   std::vector<OwnResponse> own_;
 };

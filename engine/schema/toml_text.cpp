@@ -1,16 +1,20 @@
 #include "engine/schema/toml_text.h"
 
 #include <algorithm>
+#include <compare>
 #include <cstddef>
+#include <tuple>
 #include <vector>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/schema/open_quote.h"
 
 namespace poesy {
 namespace {
 
-/// Limits the depth of tables by dotted keys, because the TOML library frees tables by recursion.
+/// The longest line of a file in bytes. It limits how deeply dotted keys can nest tables, because the TOML library
+/// frees nested tables by recursion.
 constexpr std::size_t kLongestLine = 16384;
 
 /// The lines of a text, as views of it.
@@ -28,10 +32,29 @@ std::vector<std::string_view> lines_of(std::string_view text, const std::string&
   return lines;
 }
 
+/// Throws for a quote that is not closed, if it explains why the text is not TOML. The library names the end of the
+/// text or of the line where it misses the closing quote, or the place where it did not expect the rest of the line.
+void refuse_open_quote(const std::string& text, const std::string& path, const toml::source_position& noticed) {
+  const auto open = open_quote(text);
+  if (!open) return;
+  const std::string mark(open->quote);
+  if (std::tie(open->line, open->column) < std::tuple<std::size_t, std::size_t>(noticed.line, noticed.column)) {
+    throw InputError({path, open->line, open->column},
+                     "the text that begins here with " + mark + " is not closed" +
+                         (open->is_of_one_line() ? " on its line" : " up to the end of the file"),
+                     "write " + mark + " at its end");
+  }
+  if (open->line != noticed.line) return;
+  throw InputError({path, noticed.line, noticed.column},
+                   "this is not TOML: the line has a quote too many, or one is missing before this place",
+                   "close each text with the quote that opens it");
+}
+
 toml::table parsed(const std::string& text, const std::string& path, std::string_view remedy) {
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
+    refuse_open_quote(text, path, error.source().begin);
     std::string_view reason = error.description();
     constexpr std::string_view kPrefix = "Error while ";
     if (reason.starts_with(kPrefix)) reason.remove_prefix(kPrefix.size());
@@ -40,7 +63,8 @@ toml::table parsed(const std::string& text, const std::string& path, std::string
   }
 }
 
-/// A number as it was written. lines: of the file; begin: its place, with the column in characters.
+/// A number as the file writes it; empty if it is not found. lines: lines of the file. begin: position of the number,
+/// with the column counted in characters.
 std::string_view written_number(const std::vector<std::string_view>& lines, const toml::source_position& begin) {
   if (begin.line == 0 || begin.line > lines.size()) return {};
   std::string_view rest = lines[begin.line - 1];
@@ -50,12 +74,12 @@ std::string_view written_number(const std::vector<std::string_view>& lines, cons
   return rest.substr(0, rest.find_first_not_of("0123456789+-._eE"));
 }
 
-/// Whether a digit before the exponent is not 0.
+/// Returns true if a number has a nonzero digit before its exponent.
 bool has_digits(std::string_view number) {
   return number.substr(0, number.find_first_of("eE")).find_first_of("123456789") != std::string_view::npos;
 }
 
-/// Throws for a number that is so small that the TOML library reads it as 0.
+/// Throws InputError for a nonzero number that is so small that the TOML library reads it as 0.
 void check_zero(const toml::node& node, std::string_view key, const std::vector<std::string_view>& lines,
                 const std::string& path) {
   const toml::source_position& begin = node.source().begin;
@@ -66,13 +90,13 @@ void check_zero(const toml::node& node, std::string_view key, const std::vector<
                    "write 0, or a number from 1e-307 on");
 }
 
-/// A value of the file with its key; elements of a list have the key of the list.
+/// A TOML value with its key. Elements of a list have the key of the list.
 struct KeyedNode {
   const toml::node* node;
   std::string_view key;
 };
 
-/// Checks all numbers, without recursion because tables may be nested deeply.
+/// Checks all numbers of a file with check_zero(). There is no recursion, because tables may be nested deeply.
 void check_numbers(const toml::table& table, const std::vector<std::string_view>& lines, const std::string& path) {
   std::vector<KeyedNode> open{{&table, ""}};
   while (!open.empty()) {

@@ -10,14 +10,15 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kTogether = EffectRow{}.size() / 2;  ///< responses in a row
+constexpr std::size_t kTogether = EffectRow{}.size() / 2;  ///< number of responses in a row
 
-/// The number of samples that are added together: their rows, and the sums of a few errors, fit the nearest cache.
+/// The number of samples that are added together. Their rows, and the sums of a few errors, fit the first-level cache.
 constexpr std::size_t kPiece = 256;
 
-/// Adds each row to the row of its bin, for each error. bins: of the first error; those of the next error are `stride`
-/// positions further. sums: [errors x bins]. Four errors are added at a time, so that a row of sums is not read again
-/// before it is written.
+/// For each error, adds the row of each sample (numbers of four responses) to the sums of the bin in which the sample's
+/// value of this error lies. bins: [samples] bins by the first error; the bins by the next error are `stride` positions
+/// further. sums: [errors x bins]. Four errors are added at a time, so that a row of sums is not read again before it
+/// is written.
 POESY_EACH_INSTRUCTION_SET void add_rows(std::span<const EffectRow> rows, const std::uint8_t* bins, std::size_t stride,
                                          std::size_t errors, EffectRow* sums) {
   const auto add = [&](const EffectRow& row, std::size_t error, std::size_t sample) {
@@ -40,7 +41,7 @@ POESY_EACH_INSTRUCTION_SET void add_rows(std::span<const EffectRow> rows, const 
   }
 }
 
-/// The values of the samples that count.
+/// The values of only those samples that count.
 std::vector<double> only_counting(std::span<const double> values, std::span<const std::uint8_t> counts) {
   std::vector<double> kept;
   kept.reserve(values.size());
@@ -50,11 +51,14 @@ std::vector<double> only_counting(std::span<const double> values, std::span<cons
   return kept;
 }
 
-bool possible(const BinSums& bin) {
-  constexpr double kRounding = 1.0 + 1e-9;
+/// Whether samples in a bin can give these sums. square: mean square of all samples about the shift. Sums of blocks
+/// with different shifts have rounding errors in proportion to it.
+bool possible(const BinSums& bin, double square) {
+  constexpr double kRounding = 1e-9;
   if (bin.count == 0.0) return bin.sum == 0.0 && bin.square == 0.0;
-  return std::isfinite(bin.square) && bin.square >= 0.0 &&
-         bin.sum * bin.sum <= bin.count * bin.square * kRounding + std::numeric_limits<double>::min();
+  return std::isfinite(bin.square) && bin.square >= -kRounding * bin.count * square &&
+         bin.sum * bin.sum <= bin.count * (bin.square + kRounding * (bin.square + bin.count * square)) +
+                                  std::numeric_limits<double>::min();
 }
 
 }  // namespace
@@ -193,10 +197,13 @@ void MainEffectSums::check() const {
     if (moments_[r].count() != samples() || !std::isfinite(shift_[r])) {
       throw BytesError("has responses of different samples");
     }
+    const double off = moments_[r].mean() - shift_[r];
+    const double deviation = moments_[r].count() < 2 ? 0.0 : moments_[r].standard_deviation();
+    const double square = off * off + deviation * deviation;
     for (std::size_t p = 0; p < errors_; ++p) {
       double count = 0.0;
       for (const BinSums& bin : bins_of(r, p)) {
-        if (!possible(bin)) throw BytesError("has sums that no samples in a bin give");
+        if (!possible(bin, square)) throw BytesError("has sums that no samples in a bin give");
         count += bin.count;
       }
       if (count != static_cast<double>(samples())) throw BytesError("has errors of different samples");

@@ -5,7 +5,7 @@
 #include "engine/stats/moments.h"
 
 /// Proportions of trials, such as the share of good machines, with the limits of Clopper and Pearson (1934, Biometrika
-/// 26, 404-413). These are exact: whatever the true proportion, their coverage is at least the level.
+/// 26, 404-413). These limits are exact: for any true proportion, their coverage is at least the level.
 namespace poesy {
 
 /// The share k / n with its two-sided interval. On either side, at most (1 - conf_level) / 2 of all intervals miss the
@@ -22,5 +22,12 @@ double proportion_at_most(std::uint64_t k, std::uint64_t n, double confidence);
 /// trials succeeds: the smallest n with share^n <= 1 - confidence, 1109 for 99.73 % at 95 %. Preconditions: 0 < share <
 /// 1, 0 < confidence < 1.
 std::uint64_t trials_without_failure(double share, double confidence);
+
+/// The change of the share of successes between two series of the same n trials, with its interval. gained: trials that
+/// succeed in the second series alone; lost: in the first alone. The interval is that of Agresti and Min (2005,
+/// Statistics in Medicine 24, 729-740): Wald's, after half a trial is added to each of the four outcomes. It is
+/// narrower than for independent series if most trials have the same outcome in both. NaN and [-1, 1] without trials.
+/// Preconditions: gained + lost <= n, 0 < conf_level < 1.
+Estimate paired_change(std::uint64_t gained, std::uint64_t lost, std::uint64_t n, double conf_level);
 
 }  // namespace poesy

@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -28,7 +30,7 @@ constexpr int kClosed = -1;
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-/// Throws if the file at the path must not be replaced.
+/// Throws if there is a file at the path that must not be replaced.
 void check_present(const std::string& path, const OutputKind& kind, std::span<const std::string> inputs) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
@@ -42,11 +44,11 @@ void check_present(const std::string& path, const OutputKind& kind, std::span<co
                      "name another file with -o");
   }
   if (kind.may_be_replaced(path)) return;
-  throw InputError({.file = path}, fmt::format("exists and is no {} of poesy, and it would be lost", kind.name),
+  throw InputError({.file = path}, fmt::format("exists and is not a {} of poesy, and it would be lost", kind.name),
                    "name another file with -o, or remove it");
 }
 
-/// The target of a symbolic link, also through several links.
+/// The path to which a symbolic link leads, followed through several links.
 std::string end_of_links(const std::string& path) {
   constexpr int kMostLinks = 40;  // the same limit as the system's
   fs::path at(path);
@@ -92,7 +94,7 @@ std::optional<mode_t> rights_of(const std::string& first, const std::string& sec
   return std::nullopt;
 }
 
-/// The beginning of a plain file; none if it does not exist or cannot be read.
+/// The first 64 KiB of a plain file; none if it does not exist or cannot be read.
 std::optional<std::string> head_of(const std::string& path) {
   constexpr std::size_t kHead = 1 << 16;
   const PlainFile file(path);
@@ -117,6 +119,12 @@ bool sync_folder(const std::string& path) {
 }
 
 }  // namespace
+
+std::optional<std::string> content_of(const std::string& path) {
+  if (!PlainFile(path).is_open()) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
+  return std::string{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
 
 bool has_mark(const std::string& path, std::string_view mark) {
   const auto head = head_of(path);
@@ -150,7 +158,7 @@ void check_name_length(const std::string& path) {
   const std::size_t bytes = fs::path(path).filename().string().size() + kTemporary.size() + 2 * kRandomBytes;
   const long most = ::pathconf(folder_of(path).c_str(), _PC_NAME_MAX);
   if (most < 0 || bytes <= static_cast<std::size_t>(most))
-    return;  // if the limit is not known, the system will report it
+    return;  // the limit is not known, and the system will report it if it is exceeded
   throw InputError({.file = path},
                    fmt::format("has too long a name: with what is added while it is written it takes {} bytes, and "
                                "names in its folder have {} at the most",
@@ -259,8 +267,8 @@ void FileWriter::commit() {
 
 std::uint64_t FileWriter::expected_size() const { return expected_ ? expected_() : length_; }
 
-/// "needs N bytes, M are free", as far as known. Blocks that were already written count as free, because they will be
-/// released.
+/// The text "needs N bytes, M are free", as far as the numbers are known. Blocks of the unfinished file count as free,
+/// because they will be released.
 std::string FileWriter::missing_space() const {
   const std::uint64_t size = expected_size();
   std::string text = size == 0 ? "" : "; needs " + std::to_string(size) + " bytes";

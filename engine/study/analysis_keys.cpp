@@ -31,10 +31,10 @@ std::vector<FactorIndex> factors_of_set(const StudyValue& value, const ModelDesc
   }
   std::vector<std::string_view> known = names(model.factor_sets);
   if (model.find_set("all") == nullptr) known.push_back("all");
-  value.fail("is '" + printable(written) + "', which is no factor set of the model", suggestion(written, known));
+  value.fail("is '" + printable(written) + "', which is not a factor set of the model", suggestion(written, known));
 }
 
-/// The factors of a study of this kind that names none.
+/// The factors that vary in a study of this kind if the study names none.
 std::vector<FactorIndex> usual_factors(const StudyKind& kind, const ModelDescription& model) {
   const FactorSet* set = model.find_set(kind.usual_factors);
   return set != nullptr ? set->factors : all_factors(model);
@@ -59,12 +59,12 @@ std::string shown_factors(const TemplateLines& lines, const Study& study) {
          lines.explained("analysis", "factors", fmt::format("factors = \"{}\"", usual));
 }
 
-/// The table of adaptive samples.
+/// The content of the key `samples` if it is a table, which asks for adaptive samples.
 struct Adaptive {
   std::size_t min = AdaptiveSamples().min;
   std::size_t max = 0;
   double relative_error = 0.0;
-  double conf_level = 0.0;  ///< 0 if the table has no level
+  double conf_level = 0.0;  ///< confidence level of intervals; 0 if the table states none
 };
 
 const InnerRows<Adaptive>& adaptive_keys() {
@@ -109,7 +109,8 @@ KeyValue<Study> fixed_samples() {
   return value;
 }
 
-/// Reads a number, or the table of adaptive samples. A level of the intervals may be stated only once.
+/// Reads the key `samples`: a number, or the table of adaptive samples. Throws InputError if this table and the key
+/// `conf_level` both state the confidence level of intervals.
 void read_samples(const StudyValue& value, Study& study, const Reading& reading) {
   Analysis& analysis = study.analysis;
   if (!value.is_section()) {
@@ -145,7 +146,7 @@ std::string shown_samples(const TemplateLines& lines, const Study&) {
          "# samples = " + lines.inline_table("analysis.samples") + "\n";
 }
 
-/// The line of `relative`; empty where nothing that is held is a number.
+/// The line of the key `relative`; empty if no constant error is a number.
 std::string relative_line(const Background& background) {
   return background.relative == 0.0 ? "" : "relative = " + shortest(background.relative) + "\n";
 }
@@ -175,7 +176,7 @@ const InnerRows<Background>& background_keys() {
   return keys;
 }
 
-/// Reads the background. By default, its errors are as large as errors of the study are.
+/// Reads the background. By default, its errors are as large as the study's errors of the same dimension.
 void read_background(const StudyValue& value, Study& study, const Reading& reading) {
   const StudySection section = value.section();
   Background background{.factors = {},
@@ -198,7 +199,7 @@ std::string background_lines(const Study& study) {
          keys_text(background_keys(), background);
 }
 
-/// The background in a template: the set that the kind suggests, if the model has it.
+/// The background in a template: the set of constant errors that the kind suggests, if the model has this set.
 std::string shown_background(const TemplateLines& lines, const Study& study) {
   const std::string_view held = study.analysis.kind->usual_background;
   return lines.explanation_lines("analysis", "background") + lines.keys_lines("analysis.background") +
@@ -206,7 +207,7 @@ std::string shown_background(const TemplateLines& lines, const Study& study) {
                                                   : "# background = { factors = \"all\" }\n");
 }
 
-/// Reads `calibrated`. Whether the model can be calibrated is known only when it is built (build_model).
+/// Reads the key `calibrated`. build_model() checks whether the model can be calibrated.
 void read_calibrated(const StudyValue& value, Study& study, const Reading&) {
   study.mechanism.calibrated = value.yes_or_no();
   study.mechanism.calibrated_place = value.place();
@@ -214,7 +215,7 @@ void read_calibrated(const StudyValue& value, Study& study, const Reading&) {
 
 std::string calibrated_line(const Study& study) { return study.mechanism.calibrated ? "calibrated = true\n" : ""; }
 
-/// The line of `calibrated`, for models that can be calibrated.
+/// The template's line of the key `calibrated`; empty for models that cannot be calibrated.
 std::string shown_calibrated(const TemplateLines& lines, const Study& study) {
   return study.model().separation ? lines.usual("analysis", "calibrated") : "";
 }
@@ -258,6 +259,7 @@ std::vector<StudyRow> shared_rows() {
                     {Draws::per_machine,
                      "once for all poses: each sample is a machine with its errors, which has them wherever it goes"}},
                    &Study::analysis, &Analysis::draws),
+               .usual = "`\"per machine\"`",
                .meaning = "Where errors are drawn."},
       StudyRow{.name = "calibrated",
                .value = {.type = "true or false"},
@@ -306,12 +308,13 @@ std::vector<StudyRow> own_rows(const StudyKind& kind) {
   return kind.rows == nullptr ? std::vector<StudyRow>() : kind.rows();
 }
 
-/// Whether the kind has a row of its own instead of a shared one.
+/// Returns true if the kind replaces the shared row (key) of this name by its own.
 bool has_own_row(const StudyKind& kind, std::string_view name) {
   return std::ranges::count(own_rows(kind), name, &StudyRow::name) > 0;
 }
 
-/// Adds to each shared row the kinds to which it applies, and describes `kind`. Kinds with named factors come first.
+/// Adds to each shared row (key of [analysis]) the kinds to which it applies, and describes the key `kind`. Kinds that
+/// have the key `factors` come first.
 void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   std::vector<const StudyKind*> listed(kinds.begin(), kinds.end());
   std::stable_partition(listed.begin(), listed.end(), [](const StudyKind* kind) { return kind->has_key("factors"); });
@@ -326,7 +329,8 @@ void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   for (const StudyKind* kind : kinds) row.value.words.push_back({kind->name, kind->asks});
 }
 
-/// The default factors in words: "in a sensitivity study deforming, where the model has that set; else all".
+/// The factors that vary by default, in words: "in a sensitivity study deforming, where the model has that set; else
+/// all".
 std::string usual_factors_text(std::span<const StudyKind* const> kinds) {
   std::string text;
   for (const StudyKind* kind : kinds) {
@@ -340,7 +344,7 @@ std::string usual_factors_text(std::span<const StudyKind* const> kinds) {
 
 namespace {
 
-/// Adds the factors whose names match a pattern, those that are not there yet.
+/// Adds to `factors` those whose names match the pattern and that are not in the list yet.
 void add_matching(const StudyValue& pattern, const ModelDescription& model, std::vector<FactorIndex>& factors) {
   bool any = false;
   for (std::size_t f = 0; f < model.factors.size(); ++f) {
@@ -459,6 +463,8 @@ void read_analysis(Study& study, const Reading& reading) {
   if (const auto refusal = runs && kind.refusal != nullptr ? kind.refusal(study.model()) : std::nullopt) {
     section.require("kind").fail("is " + in_quotes(kind.name) + ", but " + refusal->problem, refusal->remedy);
   }
+  if (runs) refuse_calibration(section, study, reading.kinds);
+  study.analysis.draws = kind.draws;
   study.analysis.factors = usual_factors(kind, study.model());
   read_keys(analysis_keys(kind), section, study, reading, runs ? Extent::complete : Extent::any);
   if (kind.complete != nullptr) kind.complete(study, reading);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -12,11 +14,12 @@
 namespace poesy {
 namespace {
 
-constexpr double kFarBeyond = 10.0;  ///< over the size of an error
-constexpr double kRounding = 1e-9;   ///< over a workspace's range
+/// A number is doubtful if it is more than this many times the usual size of an error.
+constexpr double kFarBeyond = 10.0;
+constexpr double kRounding = 1e-9;  ///< tolerance at the ends of a workspace, as a share of its range
 constexpr int kDigits = 6;
 
-/// A line that asks about a number: "FILE: z has no unit, so its numbers are in m: FOUND; ...".
+/// A line that doubts a column without a unit: "FILE: z has no unit, so its numbers are in m: FOUND; ...".
 std::string line(std::string_view file, std::string_view column, Dimension dimension, const std::string& found) {
   return fmt::format(
       "{}: {} has no unit, so its numbers are in {}: {}; if they are not, name their unit in the first line, e.g. '{} "
@@ -24,10 +27,40 @@ std::string line(std::string_view file, std::string_view column, Dimension dimen
       printable(file), printable(column), si_unit(dimension), found, printable(column), display_unit(dimension).name);
 }
 
-/// Describes a magnitude that is too large; empty if it is not.
+/// A clause that says by which factor a value exceeds the usual size. Both values are in SI. whose: the thing that has
+/// the usual size.
 std::string beyond_text(double value, Dimension dimension, double usual, std::string_view whose) {
   return fmt::format("one is {}, more than {} times {} ({})", readable_text({value, dimension}, kDigits), kFarBeyond,
                      whose, readable_text({usual, dimension}, kDigits));
+}
+
+/// The size of the study's largest error of a dimension, SI; infinity if it has no such error.
+double largest_error(Dimension dimension, const Study& study) {
+  double largest = 0.0;
+  for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
+    if (study.model().factors[f].dimension != dimension) continue;
+    largest = std::max(largest, error_size(study.errors.by_factor[f]));
+  }
+  return largest > 0.0 ? largest : std::numeric_limits<double>::infinity();
+}
+
+/// The diagonal of the box of the pose coordinates that are lengths, m.
+double size_of_workspace(const ModelDescription& model) {
+  double squares = 0.0;
+  for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
+    if (model.pose_coordinates[c].dimension != Dimension::length) continue;
+    squares += std::pow(model.pose_upper[c] - model.pose_lower[c], 2);
+  }
+  return std::sqrt(squares);
+}
+
+/// The difference between a measured value and its value without errors, SI; none if finding the latter needs a solve.
+std::optional<double> departure(const MachineValue& value, const PoseTable& poses, const ModelDescription& model) {
+  if (value.column != MachineColumn::actual) return value.value;
+  const auto own = std::ranges::find(model.pose_coordinates, value.quantity, &PoseCoordinate::name);
+  if (poses.chart || own == model.pose_coordinates.end()) return std::nullopt;
+  return value.value -
+         poses.points[PoseIndex(value.row)][static_cast<std::size_t>(own - model.pose_coordinates.begin())];
 }
 
 double largest_magnitude(std::span<const double> values) {
@@ -41,7 +74,8 @@ std::string bare_pose_text(std::string_view file, const PoseTable& table, const 
   if (table.bare.empty()) return {};
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
     const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    // The coordinates of a chart determine the pose only together.
+    // The columns of a chart give a coordinate of the pose only together. So the coordinate is checked if any of them
+    // has no unit.
     const auto own = std::ranges::find(table.bare, coordinate.name);
     if (!table.chart && own == table.bare.end()) continue;
     const double lower = model.pose_lower[c];
@@ -86,6 +120,30 @@ std::string bare_error_text(std::string_view file, const ErrorTable& table, cons
       return line(file, factor.name, factor.dimension,
                   beyond_text(value, factor.dimension, usual, "the size that the study gives this error"));
     }
+  }
+  return {};
+}
+
+std::string bare_measurement_text(std::string_view file, const MachineFile& measurements, const Study& study) {
+  const ModelDescription& model = study.model();
+  for (const MachineValue& value : measurements.values) {
+    const bool is_distance = value.column == MachineColumn::distance;
+    const bool is_angle = value.column == MachineColumn::deviation && value.quantity.starts_with("theta");
+    const Dimension dimension = is_angle ? Dimension::angle : Dimension::length;
+    const double of_errors = largest_error(dimension, study);
+    const std::string errors = fmt::format("the largest {} error of the study", error_kind(dimension));
+    const auto doubt = [&](const std::string& title, std::optional<double> number, double usual,
+                           const std::string& whose) {
+      const bool is_bare = std::ranges::find(measurements.bare, title) != measurements.bare.end();
+      if (!is_bare || !number || std::abs(*number) <= kFarBeyond * usual) return std::string();
+      return line(file, title, dimension, beyond_text(*number, dimension, usual, whose));
+    };
+    const std::string of_value =
+        is_distance ? doubt(value.column_name(), value.value, size_of_workspace(model), "the size of the workspace")
+                    : doubt(value.column_name(), departure(value, measurements.poses, model), of_errors, errors);
+    if (!of_value.empty()) return of_value;
+    std::string of_sd = doubt("sd_" + value.quantity, value.sd, of_errors, errors);
+    if (!of_sd.empty()) return of_sd;
   }
   return {};
 }

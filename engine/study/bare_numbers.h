@@ -4,24 +4,34 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/study/machine_file.h"
 #include "engine/study/study.h"
 #include "engine/study/table_file.h"
 
-/// Checks numbers of tables whose first line states no unit, which are SI. If they look as if another unit was meant,
-/// each function returns a line for people that begins with the table's name; otherwise an empty text.
+/// Checks of numbers in tables whose first line states no unit. Such numbers are read as SI. If the numbers look as if
+/// another unit was meant, each function returns a warning for the user, which begins with the table's name. Otherwise
+/// the text is empty.
 namespace poesy {
 
-/// Checks whether poses are outside the mechanism's workspace. poses: those of the table, or between its points.
+/// A warning if poses of a table are outside the mechanism's workspace. poses: the poses of the table, or poses that
+/// are interpolated between its points.
 std::string bare_pose_text(std::string_view file, const PoseTable& table, const PoseSet& poses,
                            const ModelDescription& model);
 
-/// The lines for all tables that the study names. poses: those that it selects.
+/// All warnings about numbers without a unit in the tables that the study names, one line for each warning. poses: the
+/// poses that the study selects.
 std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& poses);
 
-/// Checks whether an error is more than ten times as large as in the study (error_size).
+/// A warning if an error is more than ten times as large as the study's distribution of it (error_size()).
 std::string bare_error_text(std::string_view file, const ErrorTable& table, const Study& study);
 
-/// Checks whether a measured value is more than ten times as large as errors of its dimension usually are, SI.
+/// A warning if measurements of a machine look too large. A deviation, its standard deviation and the distance of a
+/// measured place from its pose should be at most ten times as large as the study's largest error of the same
+/// dimension. A measured distance should be at most ten times as long as the workspace.
+std::string bare_measurement_text(std::string_view file, const MachineFile& measurements, const Study& study);
+
+/// A warning if a measured value is more than ten times as large as `usual`, the distribution of the study's other
+/// errors of this dimension.
 std::string bare_column_text(std::string_view file, const MeasuredColumn& column, Dimension dimension,
                              const Distribution& usual);
 

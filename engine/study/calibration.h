@@ -15,82 +15,93 @@
 
 namespace poesy {
 
-/// Errors that are fitted by one number: each error is its weight times the number.
+/// Errors whose sizes are fitted by one common number: each error is its weight times this number.
 struct FittedErrors {
-  std::string name;                       ///< name of the combination; that of the error if it is one alone
-  std::vector<FactorIndex> factors = {};  ///< at least one, no repetition
+  std::string name;                       ///< name of the combination, or of the error if there is only one
+  std::vector<FactorIndex> factors = {};  ///< fitted errors, at least one, all different
   std::vector<double> weights = {};       ///< SI unit of the error per SI unit of the number; none is 0
-  Dimension dimension;                    ///< of the number: that of its first error
-  Place place = {};                       ///< for messages
+  Dimension dimension;                    ///< dimension of the number, which is that of its first error
+  Place place = {};                       ///< place of the error or combination in the key `fit`, for messages
 };
 
-/// The unknown place of the measuring device.
+/// The unknown properties of the measuring device's frame.
 enum class MeasuringFrame {
-  known,   ///< it measures in the base's frame
-  height,  ///< its zero of heights is unknown
-  plane,   ///< heights are measured from a plane, whose height and two slopes are unknown
-  rigid    ///< all of its frame is unknown
+  known,   ///< nothing is unknown: it measures in the base's frame
+  height,  ///< the zero of its heights
+  plane,   ///< height and two slopes of the plane from which it measures heights
+  rigid    ///< position and orientation of its frame
 };
 
-/// What is unknown about the place of the platform that is measured.
+/// The unknown properties of the measured point of the platform.
 enum class MeasuredTarget {
-  known,  ///< nothing
-  point,  ///< the point
-  rigid   ///< the point and its axes
+  known,  ///< nothing is unknown
+  point,  ///< the position of the point
+  rigid   ///< the position of the point and the axes of its frame
 };
 
 /// What is known of the fitted errors before anything is measured.
 enum class PriorKnowledge {
-  none,       ///< nothing: least squares
-  tolerances  ///< their distributions in [errors]
+  none,       ///< nothing; the fit is least squares
+  tolerances  ///< the distributions in [errors]; the fit is Bayesian
 };
 
-/// The standard deviations of measured values.
+/// What is known about the standard deviations of measured values.
 enum class NoiseLevel {
-  given,     ///< as stated
-  estimated  ///< as stated up to one factor, which follows from the residual
+  given,     ///< they are as stated
+  estimated  ///< they are known up to one common factor, which the fit estimates from its residual
 };
 
-/// The standard deviation of values that are measured of one quantity.
+/// The standard deviation of the measurements of one quantity.
 struct StatedNoise {
-  std::string what;  ///< name of a response, or "distance"
-  double sd;         ///< SI, at least 0
+  std::string what;  ///< name of the response, or "distance"
+  double sd;         ///< standard deviation, SI, at least 0
 };
 
-/// An expression in parameters of the geometry and fitted errors.
+/// A number that the user types into the controller, as an expression in geometry parameters and fitted errors.
 struct ControllerNumber {
-  std::string name;  ///< name in the controller
-  std::string text;  ///< the expression
-  Place place;       ///< of the expression
+  std::string name;  ///< name of the number in the controller
+  std::string text;  ///< the expression as written
+  Place place;       ///< place of the expression, for messages
 };
 
-/// The table [analysis.calibration].
+/// Words of the key `measured` that do not name a response.
+/// @{
+inline constexpr std::string_view kMeasuredDistance = "distance";
+inline constexpr std::string_view kMeasuredPose = "pose";
+/// @}
+
+/// The table [analysis.calibration], which says how a machine is calibrated.
 struct CalibrationTable {
-  std::vector<FittedErrors> fit;                           ///< [k], no two of the same direction
-  std::vector<std::string> measured = {};                  ///< responses, "pose" or "distance", for studies
-  std::vector<StatedNoise> noise = {};                     ///< noise of measured quantities
-  std::optional<PoseSelection> poses = std::nullopt;       ///< poses of measurements in studies; none: the study's
-  std::vector<std::array<std::size_t, 2>> pairs = {};      ///< poses between which distances are measured
-  std::size_t repeats = 1;                                 ///< each value is the mean of so many
-  MeasuringFrame frame = MeasuringFrame::known;            ///< the place of the measuring device
-  MeasuredTarget target = MeasuredTarget::known;           ///< what is measured of the platform
-  PriorKnowledge prior = PriorKnowledge::none;             ///< what is known of the fitted errors
-  NoiseLevel sd = NoiseLevel::given;                       ///< whether the noise is known
-  std::vector<std::string> coordinates = {};               ///< commanded coordinates; empty: those of the pose
-  std::vector<std::vector<std::string>> motors = {};       ///< drives that move together; empty: each is one
-  std::vector<double> present = {};                        ///< [k] in the controller while it measured, SI; empty: none
-  std::vector<ControllerNumber> controller = {};           ///< numbers to be typed in
-  std::size_t next = 0;                                    ///< poses to measure next
-  std::optional<PoseSelection> candidates = std::nullopt;  ///< poses from which these are; none: the study's
-  /// Errors whose distribution [errors] states and that the study varies, ascending.
+  std::vector<FittedErrors> fit;           ///< [k] fitted errors, linearly independent
+  std::vector<std::string> measured = {};  ///< what a study measures: names of responses, "pose" or "distance"
+  std::vector<StatedNoise> noise = {};     ///< noise of measured quantities
+  std::optional<PoseSelection> poses = std::nullopt;   ///< poses at which a study measures; none: the study's poses
+  std::vector<std::array<std::size_t, 2>> pairs = {};  ///< pairs of poses between which distances are measured
+  std::size_t repeats = 1;                             ///< number of measurements of which each value is the mean
+  MeasuringFrame frame = MeasuringFrame::known;        ///< unknown properties of the measuring device's frame
+  MeasuredTarget target = MeasuredTarget::known;       ///< unknown properties of the measured point of the platform
+  PriorKnowledge prior = PriorKnowledge::none;         ///< what is known of the fitted errors beforehand
+  NoiseLevel sd = NoiseLevel::given;  ///< how well the standard deviations of measured values are known
+  /// Coordinates that the controller commands; empty: the model's pose coordinates.
+  std::vector<std::string> coordinates = {};
+  std::vector<std::vector<std::string>> motors = {};  ///< drives that move together; empty: each moves alone
+  /// [k] SI, fitted errors that the controller already corrected while it measured; empty: none.
+  std::vector<double> present = {};
+  std::vector<ControllerNumber> controller = {};  ///< numbers to type into the controller
+  std::size_t next = 0;                           ///< number of poses to propose for the next measurement
+  /// Poses from which the proposed ones are chosen; none: the study's poses.
+  std::optional<PoseSelection> candidates = std::nullopt;
+  /// Errors that the study varies and for which [errors] states a distribution, ascending.
   std::vector<FactorIndex> with_tolerance = {};
-  Place place = {};              ///< for messages
-  Place coordinates_place = {};  ///< for messages about coordinates and motors
+  Place place = {};              ///< place of the table, for messages
+  Place measured_place = {};     ///< place of the key `measured`, for messages
+  Place pairs_place = {};        ///< place of the key `pairs`, for messages
+  Place coordinates_place = {};  ///< place of the keys `coordinates` and `motors`, for messages
 };
 
-std::string_view name(MeasuringFrame frame);   ///< The word in a study file.
-std::string_view name(MeasuredTarget target);  ///< The word in a study file.
-std::string_view name(PriorKnowledge prior);   ///< The word in a study file.
-std::string_view name(NoiseLevel level);       ///< The word in a study file.
+std::string_view name(MeasuringFrame frame);   ///< The word for this value in a study file.
+std::string_view name(MeasuredTarget target);  ///< The word for this value in a study file.
+std::string_view name(PriorKnowledge prior);   ///< The word for this value in a study file.
+std::string_view name(NoiseLevel level);       ///< The word for this value in a study file.
 
 }  // namespace poesy

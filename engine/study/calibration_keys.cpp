@@ -13,6 +13,7 @@
 #include "engine/base/text.h"
 #include "engine/study/calibration.h"
 #include "engine/study/fitted_keys.h"
+#include "engine/study/machine_file.h"
 #include "engine/study/table_file.h"
 
 namespace poesy {
@@ -20,12 +21,10 @@ namespace {
 
 constexpr std::int64_t kMostRepeats = 1'000'000;
 constexpr std::int64_t kMostNext = 1000;
-constexpr std::string_view kDistance = "distance";
-constexpr std::string_view kPose = "pose";
-/// The six components of a pose that "pose" measures.
+/// The six components of a pose, which the word "pose" in the key `measured` abbreviates.
 constexpr std::array<std::string_view, 6> kWholePose{"x", "y", "z", "theta_x", "theta_y", "theta_z"};
 
-/// What the rows of the table read with.
+/// What the readers of the keys of [analysis.calibration] use in addition to the key's value.
 struct CalibrationReading {
   const Study& study;
   const Reading& reading;
@@ -39,7 +38,7 @@ void read_fit(const StudyValue& value, CalibrationTable& table, const Calibratio
   table.fit = read_fitted(value, at.section, at.study);
 }
 
-/// Throws if a response cannot be measured with a sign.
+/// The response of this name. Throws InputError if the response is unknown or has no sign.
 const Response& signed_response(const StudyValue& value, const std::string& word, const ModelDescription& model) {
   const auto found = std::ranges::find(model.responses, word, &Response::name);
   if (found == model.responses.end()) {
@@ -47,7 +46,7 @@ const Response& signed_response(const StudyValue& value, const std::string& word
     for (const Response& response : model.responses) {
       if (!response.is_magnitude()) known.push_back(response.name);
     }
-    known.insert(known.end(), {kPose, kDistance});
+    known.insert(known.end(), {kMeasuredPose, kMeasuredDistance});
     value.fail("is '" + printable(word) + "', which cannot be measured", suggestion(word, known));
   }
   if (found->is_magnitude()) {
@@ -63,9 +62,11 @@ const Response& signed_response(const StudyValue& value, const std::string& word
 }
 
 void read_measured(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
+  table.measured_place = value.place();
   for (const StudyValue& element : value.list()) {
     const std::string word = element.text();
-    if (word != kPose && word != kDistance) static_cast<void>(signed_response(element, word, at.study.model()));
+    if (word != kMeasuredPose && word != kMeasuredDistance)
+      static_cast<void>(signed_response(element, word, at.study.model()));
     if (std::ranges::find(table.measured, word) != table.measured.end()) {
       element.fail("names '" + word + "' a second time", "remove one of them");
     }
@@ -77,7 +78,7 @@ void read_measured(const StudyValue& value, CalibrationTable& table, const Calib
 void read_noise(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
   for (const auto& [key, level] : in_order(value.section())) {
     const Dimension dimension =
-        key == kDistance ? Dimension::length : signed_response(level, key, at.study.model()).dimension;
+        key == kMeasuredDistance ? Dimension::length : signed_response(level, key, at.study.model()).dimension;
     const double sd = level.is_zero() ? 0.0 : level.quantity(dimension);
     if (sd < 0.0) level.fail("is below zero", "write a standard deviation, or 0");
     table.noise.push_back({key, sd});
@@ -85,7 +86,7 @@ void read_noise(const StudyValue& value, CalibrationTable& table, const Calibrat
   if (table.noise.empty()) value.fail("is empty", "write e.g. { z = \"5 um\" }");
 }
 
-/// Reads a table as [poses].
+/// Reads a table with the keys of [poses].
 PoseSelection read_selection(const StudyValue& value, const CalibrationReading& at) {
   Study other;
   other.mechanism = at.study.mechanism;
@@ -102,6 +103,7 @@ void read_candidates(const StudyValue& value, CalibrationTable& table, const Cal
 }
 
 void read_pairs(const StudyValue& value, CalibrationTable& table, const CalibrationReading&) {
+  table.pairs_place = value.place();
   for (const StudyValue& pair : value.list()) {
     const auto ends = pair.list(2, "write the positions of two poses: [0, 3]");
     const auto position = [](const StudyValue& end) {
@@ -186,12 +188,23 @@ void read_controller(const StudyValue& value, CalibrationTable& table, const Cal
   }
 }
 
-/// Throws if what the study measures lacks its noise.
+/// Throws InputError if the table lacks the noise of a measured quantity. Also throws if the table has measured
+/// distances but no pairs of poses, or pairs but no measured distances.
 void check_measured(const CalibrationTable& table, const StudySection& section) {
+  const bool measures_distances = std::ranges::find(table.measured, kMeasuredDistance) != table.measured.end();
+  if (measures_distances && table.pairs.empty()) {
+    section.require("measured")
+        .fail("has 'distance', but analysis.calibration.pairs names no poses",
+              "write the poses between which distances are measured: pairs = [[0, 3]]");
+  }
+  if (!table.pairs.empty() && !table.measured.empty() && !measures_distances) {
+    section.require("pairs").fail("is set, but analysis.calibration.measured has no \"distance\"",
+                                  "add it there, or remove pairs");
+  }
   for (const std::string& word : table.measured) {
     const std::span<const std::string_view> whole = kWholePose;
     const std::array<std::string_view, 1> alone{word};
-    for (const std::string_view needed : word == kPose ? whole : std::span<const std::string_view>(alone)) {
+    for (const std::string_view needed : word == kMeasuredPose ? whole : std::span<const std::string_view>(alone)) {
       if (std::ranges::find(table.noise, needed, &StatedNoise::what) != table.noise.end()) continue;
       const StudyValue value = section.require("measured");
       value.fail(
@@ -349,7 +362,7 @@ bool is_single(const FittedErrors& fitted, const ModelDescription& model) {
   return model.factors[fitted.factors.front().value].name == fitted.name;
 }
 
-/// The lines of a selection of poses, as a table of its own.
+/// The lines of a table [analysis.calibration.KEY] with a selection of poses.
 std::string selection_lines(std::string_view key, const PoseSelection& selection, const Study& study) {
   Study other;
   other.mechanism = study.mechanism;
@@ -396,7 +409,49 @@ std::string calibration_lines(const Study& study) {
   return text;
 }
 
+/// Comment lines of a template that show a calibration of one error; empty if nothing of the mechanism can be measured.
+std::string shown_calibration(const TemplateLines& lines, const Study& study) {
+  const ModelDescription& model = study.model();
+  const std::vector<std::string_view> known = measurable(model);
+  if (known.empty() || model.factors.empty()) return {};
+  const auto height = std::ranges::find(known, "z");
+  const std::string what(height == known.end() ? known.front() : *height);
+  const Dimension dimension = std::ranges::find(model.responses, what, &Response::name)->dimension;
+  return lines.explained("analysis", "calibration",
+                         fmt::format("# calibration = {{ fit = [\"{}\"], measured = [\"{}\"], noise = {{ {} = {} }} }}",
+                                     model.factors.front().name, what, what, example_size(dimension, 0.005))) +
+         lines.keys_lines("analysis.calibration");
+}
+
 }  // namespace
+
+void check_simulated(const Study& study, const StudySection& analysis) {
+  const auto calibration = analysis.find("calibration");
+  if (!calibration || !study.analysis.calibration->measured.empty()) return;
+  calibration->fail("does not say what is measured",
+                    "write analysis.calibration.measured, e.g. [\"z\"], and its noise");
+}
+
+void check_simulated_machines(const Study& study, const StudySection& analysis) {
+  check_simulated(study, analysis);
+  const auto calibration = analysis.find("calibration");
+  if (!calibration || study.errors.per_pose.empty()) return;
+  calibration->fail("is of a machine, but '" + study.model().factors[study.errors.per_pose.front().value].name +
+                        "' is drawn anew at each pose, and no measurement of such errors is simulated",
+                    "leave these errors out, and state what they do to a measured value as noise");
+}
+
+void refuse_calibration(const StudySection& analysis, const Study& study, const StudyKinds& kinds) {
+  const auto calibration = analysis.find("calibration");
+  if (!calibration || study.analysis.kind->has_key("calibration")) return;
+  std::vector<std::string> others;
+  for (const StudyKind* kind : kinds.all) {
+    if (kind->has_key("calibration")) others.push_back(fmt::format("kind = \"{}\"", kind->name));
+  }
+  calibration->fail(fmt::format("does not belong to kind = \"{}\"", study.analysis.kind->name),
+                    fmt::format("take {}, or remove it here; `poesy calibrate` takes it from a study of any kind",
+                                fmt::join(others, " or ")));
+}
 
 std::string_view name(MeasuringFrame frame) {
   constexpr std::array<std::string_view, 4> kNames{"known", "height", "plane", "rigid"};
@@ -414,15 +469,11 @@ std::string_view name(NoiseLevel level) { return level == NoiseLevel::given ? "g
 
 std::vector<FactorIndex> errors_with_tolerance(const Study& study, const StudySection& root) {
   const StudySection errors = root.section("errors");
-  const std::vector<std::string> overrides = errors.section("override").keys();
-  const std::vector<std::optional<double>> by_zones = sigmas_by_zones(study);
+  const std::vector<std::optional<Distribution>> by_zones = distributions_by_zones(study);
   const bool names_factors = root.section("analysis").find("factors").has_value();
   std::vector<FactorIndex> list;
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
-    const Factor& factor = study.model().factors[f];
-    const bool is_stated =
-        errors.find(error_kind(factor.dimension)) || by_zones[f] ||
-        std::ranges::any_of(overrides, [&](const std::string& key) { return matches(key, factor.name); });
+    const bool is_stated = by_zones[f] || states_size(errors, study.model().factors[f]);
     const bool varies =
         !names_factors || std::ranges::find(study.analysis.factors, FactorIndex(f)) != study.analysis.factors.end();
     if (is_stated && varies) list.emplace_back(f);
@@ -431,16 +482,19 @@ std::vector<FactorIndex> errors_with_tolerance(const Study& study, const StudySe
 }
 
 StudyRow calibration_row() {
-  return {.name = "calibration",
-          .value = {.type = "table"},
-          .usual = "none",
-          .meaning =
-              "How a machine is calibrated: few numbers that its controller can correct, fitted to what is "
-              "measured of it. `poesy calibrate` fits them to a file of measurements.",
-          .reader = read_calibration,
-          .lines = calibration_lines,
-          .late = 3,
-          .shown = [](const TemplateLines&, const Study&) { return std::string(); }};
+  return {
+      .name = "calibration",
+      .value = {.type = "table"},
+      .usual = "none",
+      .meaning =
+          "How a machine is calibrated: few numbers that its controller can correct, fitted to what is "
+          "measured of it. `poesy calibrate` fits them to a file of measurements; a Monte Carlo study with draws = "
+          "\"per machine\" and an allocation measure and calibrate each of their machines, an evaluation each of its "
+          "cases and a sensitivity study each of its samples, without noise.",
+      .reader = read_calibration,
+      .lines = calibration_lines,
+      .late = 3,
+      .shown = shown_calibration};
 }
 
 StudyTables calibration_tables() {

@@ -14,7 +14,8 @@
 namespace poesy {
 namespace {
 
-/// The word for errors that were measured together: each row of a table belongs to one part.
+/// The word in a study file that asks for the correlations of measured parts. Each line of the measured table then
+/// belongs to one part.
 constexpr std::string_view kAsMeasured = "as measured";
 
 const InnerRows<CorrelatedErrors>& block_keys() {
@@ -39,14 +40,14 @@ const InnerRows<CorrelatedErrors>& block_keys() {
   return keys;
 }
 
-/// The columns of a file in which errors were measured.
+/// Columns of one file whose measured errors belong to the same parts, line by line.
 struct MeasuredTogether {
-  std::string file;  ///< as the study names it
+  std::string file;  ///< name of the file in the study
   std::vector<FactorIndex> factors;
   std::vector<std::string> columns;
 };
 
-/// The columns that [errors.override] takes from files, file by file.
+/// The columns that [errors.override] takes from files, grouped by file.
 std::vector<MeasuredTogether> measured_together(const StudySection& errors, const ModelDescription& model) {
   std::vector<MeasuredTogether> tables;
   const StudySection override = errors.section("override");
@@ -62,10 +63,11 @@ std::vector<MeasuredTogether> measured_together(const StudySection& errors, cons
   return tables;
 }
 
-/// The correlation of normal scores that have the rank correlation of the columns: 2 sin(pi r / 6) for Spearman's r.
+/// [k x k] The correlation matrix of the normal scores of k columns. It is 2 sin(pi r / 6) for the rank correlation r
+/// (Spearman) of two columns.
 std::vector<double> correlation_of(const MeasuredTogether& table, const StudySection& errors,
                                    const ModelDescription& model) {
-  const std::string path = beside_study(errors, table.file);
+  const std::string path = beside_study(errors.place(), table.file);
   const std::size_t size = table.factors.size();
   std::vector<std::vector<double>> columns;
   for (std::size_t k = 0; k < size; ++k) {
@@ -90,7 +92,7 @@ void check_definite(const StudyValue& value, std::span<const double> correlation
              "take smaller correlations, or leave out an error that follows from the others");
 }
 
-/// Reads and checks all numbers of a matrix.
+/// Reads a square matrix with `size` rows, and checks all numbers.
 std::vector<double> read_matrix(const StudyValue& value, std::size_t size) {
   const std::string remedy = fmt::format("write {} rows of {} numbers, in the order of factors", size, size);
   std::vector<double> matrix;
@@ -112,7 +114,7 @@ std::vector<double> read_matrix(const StudyValue& value, std::size_t size) {
   return matrix;
 }
 
-/// The columns of these factors. Throws unless one file has them all.
+/// The columns of these factors. Throws InputError unless one file has them all.
 MeasuredTogether columns_of(const StudyValue& value, std::span<const FactorIndex> factors, const StudySection& errors,
                             const ModelDescription& model) {
   MeasuredTogether asked;
@@ -127,16 +129,16 @@ MeasuredTogether columns_of(const StudyValue& value, std::span<const FactorIndex
       asked.columns.push_back(table.columns[static_cast<std::size_t>(place - table.factors.begin())]);
     }
     if (!found) {
-      value.fail(
-          fmt::format("is \"{}\", but {} is no column of the same file", kAsMeasured, model.factors[factor.value].name),
-          "give each of the errors a distribution \"measured\" with file and column in errors.override, or "
-          "write the numbers");
+      value.fail(fmt::format("is \"{}\", but {} is not a column of the same file", kAsMeasured,
+                             model.factors[factor.value].name),
+                 "give each of the errors a distribution \"measured\" with file and column in errors.override, or "
+                 "write the numbers");
     }
   }
   return asked;
 }
 
-/// Throws if some of these errors are drawn per machine and others per pose.
+/// Throws InputError if some of these errors are drawn per machine and others per pose.
 void check_draws(const StudyValue& value, std::span<const FactorIndex> factors, const Study& study) {
   const auto anew = [&](FactorIndex factor) { return study.errors.is_per_pose(factor); };
   const auto fixed = std::ranges::find_if_not(factors, anew);
@@ -186,7 +188,7 @@ CorrelatedErrors read_block(const StudyValue& value, const Study& study, const R
   return block;
 }
 
-/// Makes a block for each file from which errors take several columns.
+/// Makes a block of correlated errors for each file that has the values of several errors.
 void read_as_measured(const StudyValue& value, Study& study, const Reading& reading) {
   const StudySection errors = reading.root.section("errors");
   for (const MeasuredTogether& table : measured_together(errors, study.model())) {

@@ -19,31 +19,33 @@ namespace {
 
 using Shape = Distribution::Shape;
 
-/// The smallest size, SI. Fourth powers of an error, and of indices down to rounding times it, are then far above the
-/// smallest double.
+/// The smallest size of an error, SI. With it, even the fourth power of an error's effect that is only rounding stays
+/// far above the smallest double.
 constexpr double kSmallest = 1e-30;
 
-/// The largest number of values of a measured distribution, because they become part of every result.
+/// The largest number of values of a measured distribution. Every result stores them, so they must stay few.
 constexpr std::size_t kMostMeasured = 10'000;
 
 /// The parameters of a distribution in a study.
 struct Parameters {
   Shape shape = Shape::normal;
-  double sigma = 0.0;                     ///< SI; 0 if the shape has none
-  double half_width = 0.0;                ///< SI; 0 if the shape has none
-  double shift = 0.0;                     ///< SI
-  double mean = 0.0;                      ///< SI
-  std::optional<SizeLimits> limits = {};  ///< SI, instead of half_width (of a normal: sigma) and mean
-  double sigmas = 0.0;                    ///< of a normal with limits: standard deviations from its mean to a limit
+  double sigma = 0.0;       ///< standard deviation, SI, before it is cut off; 0 if the shape has none
+  double half_width = 0.0;  ///< largest size of the error before shift and mean, SI; 0 if the shape has none
+  double shift = 0.0;       ///< half of the errors scatter about -shift, half about +shift; SI
+  double mean = 0.0;        ///< mean, SI
+  /// Ends of the distribution, SI. They replace the mean, and half_width or (for a normal distribution) sigma.
+  std::optional<SizeLimits> limits = {};
+  /// For a normal distribution with limits: distance from the mean to a limit, in standard deviations.
+  double sigmas = 0.0;
   Draws draws = Draws::per_machine;
   Dimension dimension = Dimension::length;
-  std::string file = {};            ///< file of measured values
+  std::string file = {};            ///< file of the measured values, as the study names it
   std::string column = {};          ///< column of the file
   std::vector<double> values = {};  ///< measured values, SI
-  std::string doubt = {};           ///< doubt about their unit
+  std::string doubt = {};           ///< a warning about the unit of the measured values; empty if there is none
 };
 
-/// The distribution about zero, without its shift.
+/// The distribution about zero, before its shift and mean are added.
 Distribution centred_distribution_of(const Parameters& parameters) {
   switch (parameters.shape) {
     case Shape::normal:
@@ -69,7 +71,7 @@ Distribution centred_distribution_of(const Parameters& parameters) {
   return measured;
 }
 
-/// A key of a size. read_size: StudyValue::positive_quantity or half_width.
+/// A key that is the size of an error. read_size: StudyValue::positive_quantity or half_width.
 KeyValue<Parameters> size_at(double Parameters::*member, double (StudyValue::*read_size)(Dimension) const) {
   const auto read = [=](const StudyValue& value, Parameters& parameters) {
     parameters.*member = (value.*read_size)(parameters.dimension);
@@ -80,7 +82,7 @@ KeyValue<Parameters> size_at(double Parameters::*member, double (StudyValue::*re
   return {.type = "quantity", .bounds = "at least 1e-30 m or rad", .read = read};
 }
 
-/// An example of limits.
+/// An example of the key `limits` for messages.
 std::string_view example_limits(Dimension dimension) {
   if (dimension == Dimension::number) return "[\"-0.1 %\", 0]";
   return dimension == Dimension::angle ? "[\"-0.1 deg\", 0]" : "[\"-0.1 mm\", 0]";
@@ -96,12 +98,12 @@ KeyValue<Parameters> shift_value() {
   return {.type = "quantity", .bounds = "at least 0", .read = read};
 }
 
-/// A limit: a quantity, or 0 without a unit.
+/// Reads an end of the key `limits`: a quantity, or 0 without a unit; SI.
 double limit_of(const StudyValue& value, Dimension dimension) {
   return value.is_zero() ? 0.0 : value.quantity(dimension);
 }
 
-/// Limits as a drawing states them for a size: "217 h6".
+/// Reads the limits of a size from the designation in a drawing: "217 h6".
 SizeLimits read_size_limits(const StudyValue& value, Dimension dimension) {
   if (dimension != Dimension::length) {
     value.fail("is '" + printable(value.text()) + "', but zones of ISO 286 are of lengths",
@@ -244,7 +246,8 @@ const InnerRows<Parameters>& distribution_keys() {
   return keys;
 }
 
-/// 1 mm, 1 deg and 0.1 %.
+/// The distribution of errors for which a study states none. It is a normal distribution with a standard deviation of 1
+/// mm, 1 deg or 0.1 %.
 Distribution default_distribution(Dimension dimension) {
   return Distribution::normal(dimension == Dimension::number ? 1e-3 : display_unit(dimension).si);
 }
@@ -253,17 +256,18 @@ bool has_errors_of(Dimension dimension, const ModelDescription& model) {
   return std::ranges::find(model.factors, dimension, &Factor::dimension) != model.factors.end();
 }
 
-/// Reads the values of a file if the study names one; returns whether there are any. Files are opened only for a run.
-/// usual: the distribution of other errors of this dimension.
+/// Reads the measured values of a distribution from the file that the study names. Files are opened only for a run.
+/// usual: the distribution of other errors of this dimension. Returns true if there are values, from the file or in the
+/// study itself.
 bool take_values(const StudySection& section, StudyUse use, const Distribution& usual, Parameters& parameters) {
   if (section.find("values")) {
     for (const std::string_view key : {"file", "column"}) section.refuse(key, "a distribution with values");
     return true;
   }
-  static_cast<void>(section.require("file", "write file = \"parts.csv\" and column = \"...\", or values = [...]"));
+  const StudyValue file = section.require("file", "write file = \"parts.csv\" and column = \"...\", or values = [...]");
   static_cast<void>(section.require("column", "name the column of the file that has the values"));
   if (use != StudyUse::run) return false;
-  const std::string path = beside_study(section, parameters.file);
+  const std::string path = named_file(file);
   MeasuredColumn column = read_column(path, parameters.column, parameters.dimension);
   parameters.doubt = bare_column_text(parameters.file, column, parameters.dimension, usual);
   parameters.values = std::move(column.values);
@@ -275,7 +279,7 @@ bool take_values(const StudySection& section, StudyUse use, const Distribution& 
       fmt::format("measure at least {} parts, or write a distribution with sigma", Distribution::kLeastMeasured));
 }
 
-/// A distribution and when its errors are drawn.
+/// The distribution of an error, and whether it is drawn at each pose or once for each machine.
 struct StatedError {
   Distribution distribution;
   Draws draws = Draws::per_machine;
@@ -283,7 +287,7 @@ struct StatedError {
   friend bool operator==(const StatedError&, const StatedError&) = default;
 };
 
-/// Takes the limits of a distribution as its middle and its size. Throws where other keys state these, too.
+/// Converts the key `limits` to a mean and a size. Throws InputError if other keys state these, too.
 void take_limits(const StudySection& section, Parameters& parameters) {
   const bool is_normal = parameters.shape == Shape::normal;
   if (!parameters.limits) {
@@ -303,7 +307,7 @@ void take_limits(const StudySection& section, Parameters& parameters) {
       is_normal ? (upper - lower) / (2.0 * parameters.sigmas) : 0.5 * (upper - lower);
 }
 
-/// Throws if a key is missing that the distribution of this word needs.
+/// Throws InputError if a key is missing that the distribution needs. word: the distribution in the study file.
 void require_sizes(const StudySection& section, const std::string& word, const Parameters& parameters) {
   for (const auto& row : distribution_keys().rows) {
     if (!row.required || !holds_for(row.only_for, word)) continue;
@@ -312,8 +316,9 @@ void require_sizes(const StudySection& section, const std::string& word, const P
   }
 }
 
-/// Reads a distribution and when it is drawn. usual: that of other errors of this dimension. doubts: receives doubts
-/// about a file of measured values.
+/// Reads the distribution of an error, and whether it is drawn at each pose or once for each machine. usual: the
+/// distribution of other errors of this dimension. doubts: receives a warning if the unit of measured values looks
+/// wrong.
 StatedError read_error(const StudyValue& value, Dimension dimension, StudyUse use, const Distribution& usual,
                        std::vector<std::string>& doubts) {
   const StudySection section = value.section();
@@ -332,7 +337,7 @@ StatedError read_error(const StudyValue& value, Dimension dimension, StudyUse us
   }
 }
 
-/// The error of this factor in a study.
+/// The distribution of this factor in a study, and whether it is drawn at each pose or once for each machine.
 StatedError stated_error(const ErrorModel& errors, std::size_t f) {
   return {errors.by_factor[f], errors.is_per_pose(FactorIndex(f)) ? Draws::per_pose : Draws::per_machine};
 }
@@ -357,7 +362,8 @@ void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
   set_by_zones(study);
 }
 
-/// What [errors.override] says of a factor: the last key in the file that is its name or a pattern of it.
+/// The value in [errors.override] for a factor. A key applies if it is the factor's name or a pattern that matches it;
+/// the last one in the file counts.
 std::optional<StudyValue> override_of(const StudySection& overrides, const std::string& factor) {
   const auto place = [](const StudyValue& value) { return std::pair(value.place().line, value.place().column); };
   std::optional<StudyValue> last;
@@ -369,7 +375,7 @@ std::optional<StudyValue> override_of(const StudySection& overrides, const std::
   return last;
 }
 
-/// Throws for a key that is the name of no factor, and for a pattern that none matches.
+/// Throws InputError for a key that names no factor, and for a pattern that matches none.
 void check_override(const StudySection& overrides, const ModelDescription& model) {
   const std::vector<std::string> keys = overrides.keys();
   std::vector<std::string_view> known = names(model.factors);
@@ -382,7 +388,8 @@ void check_override(const StudySection& overrides, const ModelDescription& model
   overrides.allow(known, "factor");
 }
 
-/// Reads a table of [errors.override]. usual: the error without it.
+/// Reads a value of [errors.override]. usual: distribution and draws of the error without this value. A table that has
+/// only the key `draws` keeps the usual distribution.
 StatedError read_own_error(const StudyValue& value, Dimension dimension, StudyUse use, const StatedError& usual,
                            std::vector<std::string>& doubts) {
   if (!value.is_section() || value.section().keys() != std::vector<std::string>{"draws"}) {
@@ -405,13 +412,13 @@ void read_override(const StudyValue& value, Study& study, const Reading& reading
   }
 }
 
-/// The most numbers of given machines, because they become part of every result.
+/// The largest number of values of given machines. Every result stores them, so they must stay few.
 constexpr std::size_t kMostGiven = 200'000;
 
-/// A table of given machines, in a resolved study.
+/// A table of given machines, as a resolved study states it.
 struct GivenRows {
   std::vector<std::string> columns = {};
-  std::vector<std::vector<double>> rows = {};  ///< SI
+  std::vector<std::vector<double>> rows = {};  ///< values of the machines, one row for each machine, SI
 };
 
 KeyValue<GivenRows> columns_value() {
@@ -459,7 +466,7 @@ ErrorTable table_of(const StudyValue& value, const ModelDescription& model) {
   for (const StudyValue& column : section.require("columns").list()) {
     const auto factor = model.find_factor(column.text());
     if (!factor)
-      column.fail("is '" + printable(column.text()) + "', which is no error of the mechanism",
+      column.fail("is '" + printable(column.text()) + "', which is not an error of the mechanism",
                   suggestion(column.text(), names(model.factors)));
     table.factors.push_back(*factor);
   }
@@ -467,7 +474,7 @@ ErrorTable table_of(const StudyValue& value, const ModelDescription& model) {
   return table;
 }
 
-/// Takes the columns of given machines as the distributions of their errors.
+/// Stores a table of given machines, and makes each of its columns the distribution of its error.
 void take_machines(const StudyValue& value, ErrorTable table, Study& study) {
   if (table.values.size() > kMostGiven) {
     value.fail(fmt::format("has {} numbers", table.values.size()),
@@ -489,13 +496,13 @@ void take_machines(const StudyValue& value, ErrorTable table, Study& study) {
   study.errors.machines = std::move(table);
 }
 
-/// Reads the machines of a file, or of a table in the study. Files are opened only for a run.
+/// Reads given machines from a file, or from a table in the study. Files are opened only for a run.
 void read_machines(const StudyValue& value, Study& study, const Reading& reading) {
   if (value.is_section()) return take_machines(value, table_of(value, study.model()), study);
   const std::string file = value.text();
   if (reading.use != StudyUse::run) return;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  ErrorTable table = read_errors(beside_study(reading.root.section("errors"), file), *model);
+  ErrorTable table = read_errors(named_file(value), *model);
   if (std::string doubt = bare_error_text(file, table, study); !doubt.empty()) study.doubts.push_back(std::move(doubt));
   take_machines(value, std::move(table), study);
 }
@@ -514,7 +521,7 @@ std::string machines_lines(const Study& study) {
   return text + "]\n";
 }
 
-/// Whether the error is that of given machines.
+/// Returns true if given machines state this error.
 bool is_given(const Study& study, std::size_t f) {
   return study.errors.by_factor[f].shape() == Distribution::Shape::given;
 }
@@ -546,7 +553,7 @@ std::string error_text(const StatedError& error, Dimension dimension, ValueText 
       text += half_width();
       break;
     case Shape::given:
-      break;  // in the table of machines
+      break;  // the table of machines has the values
     case Shape::measured:
       text += ", values = " + values_text(distribution.parts()->values(), dimension, value);
       break;
@@ -557,10 +564,11 @@ std::string error_text(const StatedError& error, Dimension dimension, ValueText 
   return text + " }";
 }
 
-/// The error that most factors of this dimension have, to which `linear` or `angular` is set, but for those in zones.
+/// Distribution and draws that most factors of this dimension have. Errors with a distribution by zones do not count.
+/// The resolved text states it once, as `linear` or `angular`.
 StatedError commonest_error(const Study& study, Dimension dimension) {
   const std::vector<Factor>& factors = study.model().factors;
-  const std::vector<std::optional<double>> zones = sigmas_by_zones(study);
+  const std::vector<std::optional<Distribution>> zones = distributions_by_zones(study);
   std::vector<StatedError> all;
   for (std::size_t f = 0; f < factors.size(); ++f) {
     if (factors[f].dimension != dimension || zones[f] || is_given(study, f)) continue;
@@ -582,7 +590,7 @@ std::string override_lines(const Study& study) {
   const StatedError linear = commonest_error(study, Dimension::length);
   const StatedError angular = commonest_error(study, Dimension::angle);
   const StatedError relative = commonest_error(study, Dimension::number);
-  const std::vector<std::optional<double>> zones = sigmas_by_zones(study);
+  const std::vector<std::optional<Distribution>> zones = distributions_by_zones(study);
   const std::vector<FactorIndex> loose = clearance_errors(study.model());
   std::string text;
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
@@ -592,7 +600,7 @@ std::string override_lines(const Study& study) {
                                : factor.dimension == Dimension::angle ? angular
                                                                       : relative;
     const Draws draws = std::ranges::binary_search(loose, FactorIndex(f)) ? Draws::per_pose : Draws::per_machine;
-    if (is_given(study, f) || own == (zones[f] ? StatedError{Distribution::normal(*zones[f]), draws} : usual)) continue;
+    if (is_given(study, f) || own == (zones[f] ? StatedError{*zones[f], draws} : usual)) continue;
     text += factor.name + " = " + error_text(own, factor.dimension, exact_value) + "\n";
   }
   return text.empty() ? "" : "\n[errors.override]\n" + text;
@@ -632,7 +640,8 @@ StudyRow relative_row() {
   return row;
 }
 
-/// Refuses at the value that determines the factor's distribution: the first of these keys that it has, or else sigma.
+/// Throws InputError at the value that determines the factor's distribution: the first of `keys` that is set, or else
+/// sigma.
 [[noreturn]] void refuse_distribution(const StudySection& root, const Factor& factor, bool is_in_zone,
                                       const std::string& problem, std::span<const std::string_view> keys) {
   const StudySection errors = root.section("errors");
@@ -647,12 +656,12 @@ StudyRow relative_row() {
   refuse_error(distribution, "sigma", problem);
 }
 
-/// Checks the distributions of the factors that vary by their mean, and by their largest possible error or the standard
-/// deviation of a normal.
+/// Throws InputError if a varied factor has a mean or a size that is too large for the model. The size is the largest
+/// possible error, or the standard deviation of a normal.
 void check_distributions(const StudySection& root, const Study& study, const Model& model) {
   constexpr std::array<std::string_view, 6> kKeys{"mean", "shift", "limits", "half_width", "values", "column"};
   const std::span keys(kKeys);
-  const std::vector<std::optional<double>> zones = sigmas_by_zones(study);
+  const std::vector<std::optional<Distribution>> zones = distributions_by_zones(study);
   for (const FactorIndex factor : study.analysis.factors) {
     const Distribution& distribution = study.errors.by_factor[factor.value];
     if (distribution.shape() == Distribution::Shape::given) {
@@ -677,8 +686,8 @@ void check_distributions(const StudySection& root, const Study& study, const Mod
   }
 }
 
-/// Throws if a calibrated machine would draw an error anew at each pose: the best correction at each pose would remove
-/// it, which no calibration can.
+/// Throws InputError if calibrated machines draw an error anew at each pose. The model's correction at each pose would
+/// remove this error, which no real calibration can do.
 void check_calibrated(const StudySection& analysis, const Study& study) {
   if (!study.mechanism.calibrated || study.analysis.draws != Draws::per_machine) return;
   for (const FactorIndex factor : study.analysis.factors) {
@@ -771,6 +780,30 @@ void check_machines(const Study& study, const Reading& reading) {
       .require("samples")
       .fail(fmt::format("asks for {} machines, but errors.machines has {}", study.analysis.samples, rows),
             "write no more, or leave it out to take all of them");
+}
+
+bool states_size(const StudySection& errors, const Factor& factor) {
+  return errors.find(error_kind(factor.dimension)) || override_of(errors.section("override"), factor.name);
+}
+
+void check_sizes_of_features(const Study& study, const Reading& reading) {
+  const StudySection errors = reading.root.section("errors");
+  if (reading.use != StudyUse::run || study.errors.zones) return;
+  const auto has_no_size = [&](FactorIndex error) {
+    return std::ranges::find(study.analysis.factors, error) != study.analysis.factors.end() &&
+           !is_given(study, error.value) && !states_size(errors, study.model().factors[error.value]);
+  };
+  for (const Feature& feature : study.model().features) {
+    const std::vector<FactorIndex> list = feature.errors();
+    const auto error = std::ranges::find_if(list, has_no_size);
+    if (feature.clearance || error == list.end()) continue;
+    throw InputError(errors.place(),
+                     "key 'errors.zones' is missing: '" + study.model().factors[error->value].name +
+                         "' of the feature '" + feature.name +
+                         "' varies, and the study says neither how much of its zone is used nor another size",
+                     "write errors.zones = { distribution = \"normal\", sigmas = 3 }, or the size of all lengths as "
+                     "errors.linear");
+  }
 }
 
 void refuse_error(const StudySection& section, std::string_view key, const std::string& problem) {

@@ -12,7 +12,8 @@
 namespace poesy {
 namespace {
 
-/// Throws if a name of the user's cannot be used in expressions, or is that of an error.
+/// Throws InputError if a name that the user gives cannot be used in expressions, or is the name of an error. what: the
+/// named thing, for messages.
 void check_own_name(const StudyValue& value, const std::string& own, std::string_view what,
                     const ModelDescription& model) {
   const bool is_plain = std::ranges::all_of(own, [](char c) {
@@ -27,7 +28,8 @@ void check_own_name(const StudyValue& value, const std::string& own, std::string
   }
 }
 
-/// The factor of an error in a combination: a number, or a quantity over the combination's unit, "125 mm/rad".
+/// The weight of an error in a combination: a number, or a quantity in the error's unit per unit of the combination,
+/// "125 mm/rad".
 double read_weight(const StudyValue& value, const Factor& factor, const FittedErrors& combination,
                    const ModelDescription& model) {
   const std::string remedy = "write a number, e.g. 1; where units differ with a unit, \"125 mm/rad\"";
@@ -82,7 +84,7 @@ std::vector<FittedErrors> read_combinations(const StudySection& section, const M
   return list;
 }
 
-/// Adds an error alone. Throws if a machine has it anew at each pose.
+/// Adds a single error to the fitted ones. Throws InputError if a machine draws this error anew at each pose.
 void add_error(const StudyValue& value, FactorIndex factor, const Study& study, std::vector<FittedErrors>& fit) {
   const Factor& error = study.model().factors[factor.value];
   if (std::ranges::find(fit, error.name, &FittedErrors::name) != fit.end()) return;
@@ -92,7 +94,8 @@ void add_error(const StudyValue& value, FactorIndex factor, const Study& study, 
   fit.push_back({error.name, {factor}, {1.0}, error.dimension, value.place()});
 }
 
-/// Adds what one element of `fit` names: a combination, an error, a set, or errors that match a pattern.
+/// Adds to `fit` the errors that one element of the key `fit` names: a combination, an error, a set, or a pattern of
+/// names.
 void add_named(const StudyValue& value, const std::vector<FittedErrors>& combinations, const Study& study,
                std::vector<FittedErrors>& fit) {
   const ModelDescription& model = study.model();
@@ -125,18 +128,18 @@ void add_named(const StudyValue& value, const std::vector<FittedErrors>& combina
   std::vector<std::string_view> known = names(model.factors);
   for (const FittedErrors& one : combinations) known.push_back(one.name);
   for (const FactorSet& set : model.factor_sets) known.push_back(set.name);
-  value.fail("is '" + printable(written) + "', which is no error, set or combination",
+  value.fail("is '" + printable(written) + "', which is not an error, set or combination",
              suggestion(written, known.size() > 40 ? std::span(known).first(40) : std::span(known)));
 }
 
-/// The column of a combination among all errors.
+/// [F] The weights of a combination as a vector over all factors of the model.
 std::vector<double> column_of(const FittedErrors& errors, std::size_t factors) {
   std::vector<double> column(factors, 0.0);
   for (std::size_t n = 0; n < errors.factors.size(); ++n) column[errors.factors[n].value] = errors.weights[n];
   return column;
 }
 
-/// What is left of a column, of norm 1, after its parts along the others are taken away.
+/// Measures the part of each next column of norm 1 that is linearly independent of the earlier columns.
 struct DirectionTest {
   std::vector<std::vector<double>> orthonormal;
 
@@ -162,7 +165,7 @@ struct DirectionTest {
   }
 };
 
-/// Throws if fitted numbers are dependent whatever is measured.
+/// Throws InputError if the fitted numbers are linearly dependent, because no measurement can separate them.
 void check_directions(const std::vector<FittedErrors>& fit, const Study& study) {
   constexpr double kDependent = 1e-9;
   const std::size_t factors = study.model().factors.size();

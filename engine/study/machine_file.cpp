@@ -25,20 +25,21 @@ constexpr std::string_view kSd = "sd_";
 constexpr std::string_view kDistance = "distance";
 constexpr std::string_view kNoValue = "no column is measured: deviation_*, actual_*, or distance";
 
-/// A column while it is read.
+/// A column of a table of measurements.
 struct FileColumn {
   enum class Role { pose, deviation, actual, distance, sd, name, to };
   Role role;
-  std::string quantity;  ///< without the prefix
-  std::string title;     ///< without the unit
-  double si = 1.0;       ///< size of its unit
-  bool is_bare = false;  ///< whether it states no unit
-  Place place;           ///< of the title
+  std::string quantity;  ///< name of the quantity, without the prefix of the column
+  std::string title;     ///< title without the unit
+  double si = 1.0;       ///< size of the column's unit in SI
+  bool is_bare = false;  ///< true if the column states no unit
+  Place place;           ///< place of the title
 
   bool is_measured() const { return role == Role::deviation || role == Role::actual || role == Role::distance; }
 };
 
-/// Coordinates that belong together: those of the pose, or of a chart.
+/// The coordinates of a pose whose columns a file must have together. They are either the model's own or those of a
+/// chart.
 struct PoseHeader {
   std::optional<std::size_t> chart;
   const std::vector<PoseCoordinate>* coordinates;
@@ -50,7 +51,7 @@ std::vector<PoseHeader> pose_headers(const ModelDescription& model) {
   return list;
 }
 
-/// What columns may be called.
+/// The titles that columns of a table of measurements may have.
 class KnownTitles {
  public:
   explicit KnownTitles(const ModelDescription& model) {
@@ -129,7 +130,7 @@ std::vector<FileColumn> read_titles(CsvLines& lines, const ModelDescription& mod
   for (const CsvCell& cell : lines.next()) {
     FileColumn column = known.column_of(cell, model);
     if (std::ranges::find(columns, column.title, &FileColumn::title) != columns.end()) {
-      throw InputError(cell.place, "column '" + column.title + "' stands here a second time", "remove it");
+      throw InputError(cell.place, "column '" + column.title + "' appears a second time", "remove it");
     }
     columns.push_back(std::move(column));
   }
@@ -140,7 +141,7 @@ bool has(const std::vector<FileColumn>& columns, FileColumn::Role role) {
   return std::ranges::find(columns, role, &FileColumn::role) != columns.end();
 }
 
-/// Throws for columns that are of no use, or lack others.
+/// Throws InputError for columns that have no use, or that need another column that is missing.
 void check_columns(const std::vector<FileColumn>& columns, const Place& header) {
   using Role = FileColumn::Role;
   if (std::ranges::none_of(columns, &FileColumn::is_measured)) {
@@ -165,7 +166,7 @@ void check_columns(const std::vector<FileColumn>& columns, const Place& header) 
   }
 }
 
-/// The coordinates that the columns give.
+/// The pose coordinates or chart whose columns the file has. Throws InputError if some are missing or mixed.
 PoseHeader header_of(const std::vector<FileColumn>& columns, const ModelDescription& model, const Place& place) {
   std::vector<std::string_view> given;
   for (const FileColumn& column : columns) {
@@ -200,7 +201,7 @@ double number_in(const CsvCell& cell, const FileColumn& column) {
                    "write a plain number, or leave the cell empty if it was not measured");
 }
 
-/// A row while it is read.
+/// A line of a table of measurements, before the names of other lines in it are resolved.
 struct FileRow {
   Place place;
   std::map<std::string, double> pose;
@@ -255,7 +256,7 @@ FileRow read_row(CsvLines& lines, const std::vector<FileColumn>& columns) {
   return row;
 }
 
-/// The rows with their names, which must differ.
+/// Reads the rows. Throws InputError unless their names differ.
 std::vector<FileRow> read_rows_of_machine(CsvLines& lines, const std::vector<FileColumn>& columns) {
   if (lines.done()) {
     throw InputError(lines.next_place(), "there is no data below the column names", "write a row for each pose");
@@ -268,14 +269,14 @@ std::vector<FileRow> read_rows_of_machine(CsvLines& lines, const std::vector<Fil
     if (row.name.empty()) continue;
     const auto [first, is_new] = line_of.try_emplace(row.name, row.place.line);
     if (is_new) continue;
-    throw InputError(row.place,
-                     fmt::format("name '{}' stands here a second time, after line {}", row.name, first->second),
+    throw InputError(row.place, fmt::format("name '{}' appears a second time, after line {}", row.name, first->second),
                      "give each row a name of its own");
   }
   return rows;
 }
 
-/// The row that `to` names. Throws if there is none, or it is the row itself.
+/// The index of the row that the cell `to` names. Throws InputError if there is no such row, or if it is the row
+/// itself.
 std::size_t other_row(const FileRow& row, const std::vector<FileRow>& rows) {
   const std::string wanted(row.to->text);
   const auto found = std::ranges::find(rows, wanted, &FileRow::name);
@@ -288,7 +289,7 @@ std::size_t other_row(const FileRow& row, const std::vector<FileRow>& rows) {
   return static_cast<std::size_t>(found - rows.begin());
 }
 
-/// Adds the values of a row, its distance to another list.
+/// Adds the values of a row to the file, except for its distance, which is added to `distances`.
 void add_values(const std::vector<FileRow>& rows, std::size_t at, MachineFile& file,
                 std::vector<MachineValue>& distances) {
   const FileRow& row = rows[at];
@@ -348,7 +349,9 @@ MachineFile read_machine_file(const std::string& path, const ModelDescription& m
   }
   file.poses = {header.chart, PoseSet(header.coordinates->size(), std::move(points))};
   for (const FileColumn& column : columns) {
-    if (column.role == FileColumn::Role::pose && column.is_bare) file.poses.bare.push_back(column.title);
+    if (!column.is_bare) continue;
+    if (column.role == FileColumn::Role::pose) file.poses.bare.push_back(column.title);
+    if (column.is_measured() || column.role == FileColumn::Role::sd) file.bare.push_back(column.title);
   }
   return file;
 }

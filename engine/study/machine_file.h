@@ -13,43 +13,52 @@ namespace poesy {
 
 /// What a column of a table of measurements holds.
 enum class MachineColumn {
-  deviation,  ///< a response as measured, less what was commanded
-  actual,     ///< a coordinate of the place itself
-  distance    ///< the distance to the platform at another row's pose
+  deviation,  ///< deviation of a response: its measured value minus its commanded value
+  actual,     ///< a measured coordinate of the platform itself
+  distance    ///< the distance from the platform at this row's pose to the platform at the pose of another row
 };
 
-/// A value that was measured of a machine, SI.
+/// A value that was measured of a machine.
 struct MachineValue {
-  MachineColumn column;                     ///< its kind
-  std::string quantity;                     ///< "z", "tip_x", or "distance"
-  std::size_t row;                          ///< position of its row
-  std::size_t other = 0;                    ///< position of the row to which a distance is measured
-  double value = 0.0;                       ///< SI
-  std::optional<double> sd = std::nullopt;  ///< its standard deviation; none: that of [analysis.calibration] noise
+  MachineColumn column;   ///< kind of the column
+  std::string quantity;   ///< what was measured: "z", "tip_x", or "distance"
+  std::size_t row;        ///< index of the row
+  std::size_t other = 0;  ///< index of the row to which a distance is measured
+  double value = 0.0;     ///< measured value, SI
+  /// Standard deviation of the measured value, SI; none: the key `noise` of [analysis.calibration] states it.
+  std::optional<double> sd = std::nullopt;
 
-  std::string column_name() const;  ///< "deviation_z", "actual_z" or "distance"
+  std::string column_name() const;  ///< The title of the value's column: "deviation_z", "actual_z" or "distance".
 };
 
-/// Measurements of one machine: W rows, each a pose and what was measured there.
+/// Measurements of one machine: W rows. Each row has a pose and the values that were measured there.
 struct MachineFile {
-  PoseTable poses;                   ///< [W], as the file gives them
-  std::vector<std::string> names;    ///< [W] names of the rows: "p4", or "row 5" without one
-  std::vector<MachineValue> values;  ///< row by row, in the order of the columns; distances behind all others
+  PoseTable poses;                   ///< [W] poses of the rows, in the coordinates of the file
+  std::vector<std::string> names;    ///< [W] names of the rows: "p4", or "row 5" for a row without a name
+  std::vector<MachineValue> values;  ///< values row by row, in the order of the columns; then all distances
+  std::vector<std::string> bare;     ///< titles of columns of values or standard deviations that state no unit
 
-  std::string name_of(const MachineValue& value) const;  ///< "deviation_z of p4", "distance p1 p4"
+  /// The value's name in messages: "deviation_z of p4", "distance p1 p4".
+  std::string name_of(const MachineValue& value) const;
 };
 
-/// The responses that can be measured as deviation_R: the components of the platform's displacement that the model
+/// The responses R that a column deviation_R can have: the components of the platform's displacement that the model
 /// reports.
 std::vector<std::string_view> measurable(const ModelDescription& model);
 
-/// Reads measurements from CSV. The first line names all of the model's pose coordinates or all coordinates of a chart,
-/// and any of: deviation_R for a response R, actual_C for a coordinate x, y, z, tip_x, tip_y or tip_z, sd_R and sd_C
-/// and sd_distance for standard deviations, name, to, distance. A name may have a unit in brackets; otherwise numbers
-/// are SI. An empty cell, or nan, is a missing value. Throws InputError with line and column for a column that is
-/// unknown, repeated, missing or of no use, a unit that does not fit, a cell without a number, a pose that is not
-/// whole, a name that is taken or unknown, a distance without its other end, and a file without any measured value;
-/// FileError if the file cannot be read.
+/// Reads measurements from a CSV file. Its first line names all of the model's pose coordinates, or all coordinates of
+/// a chart. It may also name these columns:
+/// - deviation_R for a response R,
+/// - actual_C for a coordinate C of x, y, z, tip_x, tip_y and tip_z,
+/// - sd_R, sd_C and sd_distance for standard deviations,
+/// - name for the name of the row, and distance with to for the distance to the row of that name.
+///
+/// A title may have a unit in brackets; numbers without a unit are SI. A cell that is empty or has the text nan is a
+/// missing value.
+///
+/// Throws InputError with line and column for a column that is unknown, repeated, missing or unused, a unit of another
+/// dimension, a cell without a number, an incomplete pose, a row name that is taken or unknown, a distance without the
+/// row to which it leads, and a file without any measured value. Throws FileError if the file cannot be read.
 MachineFile read_machine_file(const std::string& path, const ModelDescription& model);
 
 }  // namespace poesy

@@ -34,7 +34,7 @@ void read_file(const StudyValue& value, Study& study, const Reading& reading) {
   if (reading.catalog.from_text == nullptr) value.fail("cannot be read here", "name a model");
   MechanismText file{.name = value.text(), .text = {}, .entry = {}};
   const bool kept = reading.mechanism_text != nullptr;
-  const std::string path = kept ? file.name : beside_study(reading.root, file.name);
+  const std::string path = kept ? file.name : named_file(value);
   file.text = kept ? *reading.mechanism_text : read_text(path, "mechanism", kMostBytes);
   file.entry = std::make_shared<const CatalogEntry>(reading.catalog.from_text(file.text, path));
   take_entry(file.entry.get(), study.mechanism);
@@ -57,7 +57,7 @@ void read_geometry(const StudyValue& value, Study& study, const Reading&) {
   });
 }
 
-/// Selects the entry of the mechanism with other loads.
+/// Reads loads that replace those of the mechanism file, and selects the catalog entry with these loads.
 void read_load(const StudyValue& value, Study& study, const Reading&) {
   MechanismChoice& choice = study.mechanism;
   if (!choice.entry->with_load) {
@@ -72,7 +72,7 @@ std::string load_lines(const Study& study) {
   return load.empty() ? "" : "\n[mechanism.load]\n" + load;
 }
 
-/// Sets `fidelity`; for "both", which needs a model with two fidelities, also `compared`.
+/// Reads the key `fidelity`. The word "both" needs a model with two fidelities; it also sets `compared`.
 void read_fidelity(const StudyValue& value, Study& study, const Reading& reading) {
   const ModelDescription& model = study.model();
   if (model.fidelities.empty()) {

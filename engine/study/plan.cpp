@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/random/normal_quantile.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
@@ -15,23 +16,36 @@ std::size_t slots_of(const Analysis& analysis) {
   return analysis.kind->varies == Varies::together ? 1 : analysis.factors.size();
 }
 
+/// The positions of factors among the factors that the analysis varies. Precondition: it varies all of them.
+std::vector<std::size_t> slots_of(std::span<const FactorIndex> factors, const Analysis& analysis) {
+  std::vector<std::size_t> slots;
+  for (const FactorIndex factor : factors) {
+    const auto place = std::ranges::find(analysis.factors, factor);
+    POESY_EXPECTS(place != analysis.factors.end());
+    slots.push_back(static_cast<std::size_t>(place - analysis.factors.begin()));
+  }
+  return slots;
+}
+
 std::vector<CorrelatedSlots> correlated_slots(const Study& study) {
-  const std::vector<FactorIndex>& varied = study.analysis.factors;
   std::vector<CorrelatedSlots> blocks;
   if (study.analysis.kind->varies != Varies::together) return blocks;
   for (const CorrelatedErrors& block : study.errors.correlated) {
-    std::vector<std::size_t> slots;
-    for (const FactorIndex factor : block.factors) {
-      const auto place = std::ranges::find(varied, factor);
-      POESY_EXPECTS(place != varied.end());
-      slots.push_back(static_cast<std::size_t>(place - varied.begin()));
-    }
-    blocks.push_back({std::move(slots), NormalCopula(block.correlation)});
+    blocks.push_back({slots_of(block.factors, study.analysis), NormalCopula(block.correlation)});
   }
   return blocks;
 }
 
-/// [rows] The uniforms of which the distribution of a given error makes its values, row by row; empty if it is drawn.
+std::vector<ZoneSlots> zone_slots(const Study& study) {
+  std::vector<ZoneSlots> blocks;
+  for (const Feature& feature : features_drawn_together(study)) {
+    blocks.push_back({slots_of(feature.errors(), study.analysis), {feature, *study.errors.zones}});
+  }
+  return blocks;
+}
+
+/// [rows] Uniforms from which the distribution of a given error computes its values in the rows of given machines;
+/// empty if the error is drawn.
 std::vector<double> given_uniforms(const ErrorModel& errors, FactorIndex factor) {
   if (errors.by_factor[factor.value].shape() != Distribution::Shape::given) return {};
   const std::vector<double> values = errors.machines->column(factor);
@@ -51,6 +65,7 @@ Plan::Plan(const Study& study, PoseSet poses)
     : poses_(std::move(poses)),
       factors_(study.analysis.factors),
       correlated_(correlated_slots(study)),
+      zones_(zone_slots(study)),
       background_(background_errors(study.analysis.background, study.model())),
       slots_(slots_of(study.analysis)),
       samples_(study.analysis.samples),
@@ -84,6 +99,12 @@ bool Plan::is_correlated(std::size_t slot) const {
   });
 }
 
+bool Plan::is_drawn_alone(std::size_t slot) const {
+  return !is_correlated(slot) && std::ranges::none_of(zones_, [&](const ZoneSlots& feature) {
+    return std::ranges::find(feature.slots, slot) != feature.slots.end();
+  });
+}
+
 template <class Chosen>
 void Plan::transform_if(std::span<double> uniforms, std::size_t count, const Chosen& is_chosen) const {
   POESY_EXPECTS(uniforms.size() == factors_.size() * count);
@@ -99,8 +120,14 @@ void Plan::transform_if(std::span<double> uniforms, std::size_t count, const Cho
     block.copula.correlate(rows);
     for (const std::size_t slot : block.slots) distributions_[slot].transform_scores(row(slot));
   }
+  for (const ZoneSlots& feature : zones_) {
+    if (!is_chosen(feature.slots.front())) continue;
+    rows.clear();
+    for (const std::size_t slot : feature.slots) rows.push_back(row(slot));
+    feature.draws.transform(rows);
+  }
   for (std::size_t slot = 0; slot < factors_.size(); ++slot) {
-    if (is_chosen(slot) && !is_correlated(slot)) distributions_[slot].transform(row(slot));
+    if (is_chosen(slot) && is_drawn_alone(slot)) distributions_[slot].transform(row(slot));
   }
 }
 

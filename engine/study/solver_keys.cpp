@@ -37,14 +37,14 @@ std::string points_text(std::span<const PlatformPoint> points, ValueText value) 
   return list_text(list);
 }
 
-/// Throws if the mechanism has no metric.
+/// Throws InputError if the model has no metric, because its responses then do not weigh angles against lengths.
 void require_metric(std::string_view key, const Study& study, const Reading& reading) {
   if (!study.model().metric.empty()) return;
   reading.root.section("solver").refuse(
       key, "model \"" + study.model().name + "\", whose responses weigh no angles against lengths");
 }
 
-/// Selects the entry of the mechanism with the metric that the study names.
+/// Reads the key `metric`, and replaces the mechanism's catalog entry by the one with this metric.
 void read_metric(const StudyValue& value, Study& study, const Reading& reading) {
   require_metric("metric", study, reading);
   const std::vector<std::string_view> known = names(row_of(solver_keys(), "metric").value.words);
@@ -82,8 +82,16 @@ void read_points(const StudyValue& value, Study& study, const Reading& reading) 
   }
 }
 
+/// Returns true if the study asks for the platform's metric in order to leave out the mechanism's stiffness, and the
+/// model then has no metric, because the mechanism is not over-constrained.
+bool leaves_out_stiffness(const Study& study) {
+  const std::optional<MechanismText>& file = study.mechanism.file;
+  return study.model().metric.empty() && file && file->entry && !file->entry->description.metric.empty();
+}
+
 std::string metric_line(const Study& study) {
-  return study.model().metric.empty() ? "" : "metric = " + in_quotes(study.model().metric) + "\n";
+  const std::string metric = leaves_out_stiffness(study) ? "platform" : study.model().metric;
+  return metric.empty() ? "" : "metric = " + in_quotes(metric) + "\n";
 }
 
 std::string points_line(const Study& study) {
@@ -96,7 +104,7 @@ std::string shown_metric(const TemplateLines& lines, const Study& study) {
   return metric.empty() ? "" : lines.explained("solver", "metric", "metric = " + in_quotes(metric));
 }
 
-/// The points of the published mechanism.
+/// The template's line of the key `points`, with the points of the published mechanism.
 std::string shown_points(const TemplateLines& lines, const Study& study) {
   if (study.model().metric.empty()) return {};
   std::vector<double> geometry;
@@ -109,7 +117,7 @@ std::string shown_tolerance(const TemplateLines& lines, const Study& study) {
   return lines.explained("solver", "tolerance", "tolerance = " + shortest(study.model().tolerance));
 }
 
-/// Reads `not_converged`. "fail" means "exclude" with a limit of 0.
+/// Reads the key `not_converged`. "fail" means "exclude" with a limit of 0 on the share of failed samples.
 void read_not_converged(const StudyValue& value, Study& study, const Reading& reading) {
   const std::vector<std::string_view> known = names(row_of(solver_keys(), "not_converged").value.words);
   const std::string_view word = known[value.word(known)];
@@ -145,12 +153,13 @@ std::vector<StudyRow> solver_rows() {
                .reader = read_points,
                .lines = points_line,
                .shown = shown_points},
-      StudyRow{
-          .name = "method",
-          .value = word_at<Method>({{Method::newton, "the model's own, fast and far-reaching"},
-                                    {Method::gauss_newton, "as published: slower, and more samples do not converge"}},
-                                   &Study::solver, &SolverOptions::method),
-          .meaning = "The iteration."},
+      StudyRow{.name = "method",
+               .value = word_at<Method>({{Method::newton, "the model's own, fast and far-reaching"},
+                                         {Method::gauss_newton,
+                                          "as published: slower, and more samples do not converge; with metric = "
+                                          "\"platform\" or \"stiffness\" the same as newton"}},
+                                        &Study::solver, &SolverOptions::method),
+               .meaning = "The iteration."},
       StudyRow{.name = "tolerance",
                .value = number_at(above_zero("1e-15"), &Study::solver, &SolverOptions::tolerance),
                .besides = "; with metric = \"platform\" `1e-14`",
@@ -174,7 +183,7 @@ std::vector<StudyRow> solver_rows() {
                .meaning = "Share of all samples; if more fail, the run ends with exit code 5, its result kept."}};
 }
 
-/// A row for a table of the file that has its own reader.
+/// The row (description and functions) of a table of the study file that a function of its own reads.
 StudyRow table_row(std::string_view name, std::string missing, std::string usual, std::string_view meaning) {
   return {.name = name,
           .value = {.type = "table"},

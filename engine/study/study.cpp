@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/model/calibrated.h"
+#include "engine/study/calibration.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
@@ -29,7 +30,7 @@ std::string_view name_among(const std::array<std::string_view, kCount>& names, E
   return names.at(static_cast<std::size_t>(value));
 }
 
-/// The errors of the background that neither vary nor are zero.
+/// The background's errors that are neither varied nor zero.
 std::vector<FactorIndex> held_errors(const Study& study) {
   const std::vector<double> errors = background_errors(study.analysis.background, study.model());
   std::vector<FactorIndex> held;
@@ -40,8 +41,8 @@ std::vector<FactorIndex> held_errors(const Study& study) {
   return held;
 }
 
-/// The errors in words: "30 errors of set 'benign'", "2 of the 30 errors of set 'benign'", "delta_1 and delta_2", "12
-/// errors".
+/// The constant errors in words: "30 errors of set 'benign'", "2 of the 30 errors of set 'benign'", "delta_1 and
+/// delta_2", "12 errors".
 std::string owners_text(const std::vector<FactorIndex>& held, const Study& study) {
   const std::vector<FactorIndex>& named = study.analysis.background->factors;
   const std::string all = held.size() == named.size() ? "" : fmt::format("{} of the ", held.size());
@@ -55,7 +56,7 @@ std::string owners_text(const std::vector<FactorIndex>& held, const Study& study
   return fmt::format("{}", fmt::join(names, " and "));
 }
 
-/// The sizes in words, for the dimensions that the constant errors have: "1 mm and 1 deg".
+/// The sizes of the constant errors in words, one for each of their dimensions: "1 mm and 1 deg".
 std::string sizes_text(const std::vector<FactorIndex>& held, const Study& study) {
   const Background& background = *study.analysis.background;
   std::vector<std::string> sizes;
@@ -117,7 +118,7 @@ MechanismChoice at_compared_fidelity(MechanismChoice mechanism) {
 
 namespace {
 
-/// Builds the mechanism without correction of its actuators.
+/// Builds the mechanism without a calibration of its actuators.
 std::unique_ptr<Model> build_uncorrected(const MechanismChoice& mechanism) {
   const CatalogEntry& entry = *mechanism.entry;
   if (mechanism.points.empty()) {
@@ -133,7 +134,8 @@ std::unique_ptr<Model> build_uncorrected(const MechanismChoice& mechanism) {
   } catch (const std::invalid_argument& reason) {
     MechanismChoice without_points = mechanism;
     without_points.points.clear();
-    static_cast<void>(build_uncorrected(without_points));  // throws if the geometry itself is impossible
+    // Throws if the geometry is impossible with the usual points, too.
+    static_cast<void>(build_uncorrected(without_points));
     throw InputError(
         mechanism.points_place, reason.what(),
         "name points around the platform, such as its joints' centres, or leave the key out to take these");
@@ -182,7 +184,18 @@ std::string held_errors_text(const Study& study) {
 }
 
 std::string calibration_text(const Study& study) {
-  return study.mechanism.calibrated ? fmt::format("calibrated: responses are {}", kLeftByCalibration) : "";
+  if (study.mechanism.calibrated) return fmt::format("calibrated: responses are {}", kLeftByCalibration);
+  if (study.analysis.calibration == nullptr) return {};
+  const CalibrationTable& table = *study.analysis.calibration;
+  constexpr std::size_t kMost = 8;
+  std::vector<std::string_view> fitted;
+  for (const FittedErrors& one : table.fit) fitted.push_back(one.name);
+  const std::size_t more = fitted.size() - std::min(fitted.size(), kMost);
+  fitted.resize(fitted.size() - more);
+  return fmt::format(
+      "calibrated: {}{} of each machine {} fitted to measured {} at {}; responses are what its controller leaves",
+      fmt::join(fitted, ", "), more == 0 ? "" : fmt::format(" and {} more", more), table.fit.size() == 1 ? "is" : "are",
+      fmt::join(table.measured, ", "), table.poses ? "poses of their own" : "the study's poses");
 }
 
 }  // namespace poesy

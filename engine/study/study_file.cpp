@@ -8,6 +8,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/plain_file.h"
 #include "engine/base/text.h"
+#include "engine/schema/keys_given.h"
 #include "engine/schema/toml_text.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/text_file.h"
@@ -17,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostStudyBytes = 1 << 20;
 
-/// Whether a plain file has the signature of HDF5.
+/// Returns true if a plain file has the signature of HDF5.
 bool begins_like_hdf5(const std::string& path) {
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
   const PlainFile file(path);
@@ -25,7 +26,7 @@ bool begins_like_hdf5(const std::string& path) {
   return file.is_open() && file.read(0, std::as_writable_bytes(std::span(begin))) && begin == kSignature;
 }
 
-/// Throws if there are more cells or solves than memory and 64-bit counts allow.
+/// Throws InputError if the study has more cells or solves than memory and 64-bit counts allow.
 void check_size(const StudySection& root, const Study& study) {
   const bool from_file = study.poses.select == PoseSelection::Select::file;
   const double poses = static_cast<double>(from_file ? study.poses.from_file.points.size() : study.poses.count);
@@ -45,7 +46,7 @@ void check_size(const StudySection& root, const Study& study) {
   }
 }
 
-/// Throws if "both" is used with a kind that compares no fidelities, or with adaptive samples.
+/// Throws InputError if two fidelities are compared by a kind that cannot compare them, or with adaptive samples.
 void check_fidelities(const Study& study, const Reading& reading) {
   if (!study.mechanism.compared) return;
   if (!study.analysis.kind->compares_fidelities) {
@@ -64,7 +65,7 @@ void check_fidelities(const Study& study, const Reading& reading) {
   }
 }
 
-/// Throws if the background names only errors that vary, alone or as a set, because it has no effect on them.
+/// Throws InputError if the background names only errors that vary, because then it has no effect.
 void check_background(const Study& study, const Reading& reading) {
   if (!study.analysis.background || study.analysis.kind->varies == Varies::none) return;
   const auto varies = [&](FactorIndex factor) {
@@ -85,15 +86,6 @@ void check_background(const Study& study, const Reading& reading) {
   }
 }
 
-/// Throws if the study is calibrated, and its kind has no machines that could be.
-void check_calibration(const Study& study, const Reading& reading) {
-  if (study.analysis.calibration == nullptr || study.analysis.kind->has_key("calibration")) return;
-  reading.root.section("analysis")
-      .require("calibration")
-      .fail("is set, but kind = " + in_quotes(study.analysis.kind->name) + " calibrates no machine",
-            "'poesy calibrate' takes it as it is; remove it to run this study");
-}
-
 Study study_from(const Reading& reading) {
   const StudySection& root = reading.root;
   Study study;
@@ -111,17 +103,17 @@ Study study_from(const Reading& reading) {
   if (reading.use == StudyUse::run) {
     check_fidelities(study, reading);
     check_correlated(study, reading);
+    check_zones(study, reading);
     check_machines(study, reading);
     check_background(study, reading);
     check_other_poses(study, reading);
-    check_calibration(study, reading);
   }
   check_size(root, study);
   return study;
 }
 
-/// The keys of [analysis] for the study's kind. A calibration is kept by all kinds, because `poesy calibrate` takes it
-/// from a study of any.
+/// The keys of [analysis] for the study's kind. Every kind keeps a calibration, because `poesy calibrate` reads it from
+/// studies of all kinds.
 StudyRows analysis_keys_of(const Study& study) {
   const StudyKind& kind = *study.analysis.kind;
   StudyRows keys = analysis_keys(kind);
@@ -158,19 +150,21 @@ std::vector<std::string_view> names(const StudyKinds& kinds) {
   return list;
 }
 
-Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, const StudyKinds& kinds) {
+Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, const StudyKinds& kinds,
+                 std::span<const GivenKey> given) {
   if (begins_like_hdf5(path)) {
     throw InputError({path}, "is an HDF5 file, such as a result of poesy, and no study", "give its study, a TOML file");
   }
-  return study_of_text(read_text(path, "study", kMostStudyBytes), path, catalog, use, kinds);
+  return study_of_text(read_text(path, "study", kMostStudyBytes), path, catalog, use, kinds, nullptr, given);
 }
 
 Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use,
-                    const StudyKinds& kinds, const std::string* mechanism_text) {
+                    const StudyKinds& kinds, const std::string* mechanism_text, std::span<const GivenKey> given) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     throw InputError({path, 1, 1}, "the study is empty", "'poesy template MODEL' writes one to start from");
   }
-  const toml::table table = parse_toml(text, path, "correct this line; 'poesy template MODEL' shows a complete study");
+  toml::table table = parse_toml(text, path, "correct this line; 'poesy template MODEL' shows a complete study");
+  for (const GivenKey& key : given) set_key(table, key);
   const StudySection root(table, "", {path, 1, 1}, kinds.tables);
   Study study = study_from({root, catalog, kinds, use, mechanism_text});
   const std::unique_ptr<Model> model = build_model(study.mechanism);

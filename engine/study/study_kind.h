@@ -10,13 +10,13 @@
 #include "engine/schema/keys.h"
 #include "engine/study/study_file.h"
 
-/// The tables of a study file, as rows of keys. Each table of the file has a source file with the functions that read
-/// and write keys that are more than a value. A kind of study adds one row of data and functions; null or empty members
-/// add nothing. The rows of kinds are in engine/kinds; this code knows none of them.
+/// The tables of a study file, as rows (one for each key, with its description and functions). For each table a source
+/// file has the functions that read and write its longer keys. A kind of study adds a StudyKind: data and functions, of
+/// which null or empty members add nothing. The kinds are in engine/kinds; this code knows none of them.
 
 namespace poesy {
 
-/// The word for comparing a model's two fidelities.
+/// The word in a study file that asks to compare a model's two fidelities.
 inline constexpr std::string_view kBothFidelities = "both";
 
 /// Limits on the size of a study: far above any use, and safe for memory and arithmetic.
@@ -26,56 +26,57 @@ inline constexpr std::int64_t kMostSolves = 1'000'000'000'000'000;  ///< solves 
 
 struct StudyKinds;
 
-/// What a row's reader may use in addition to the value.
+/// What the reader of a key may use in addition to the key's value.
 struct Reading {
-  const StudySection& root;  ///< the whole file
+  const StudySection& root;  ///< the whole study file
   const Catalog& catalog;    ///< catalog of mechanisms
-  const StudyKinds& kinds;   ///< kinds of studies
-  StudyUse use;              ///< which parts the command needs
-  /// The content of the mechanism file, for a study stored beside it; null: the file is read.
+  const StudyKinds& kinds;   ///< kinds of studies in the program
+  StudyUse use;              ///< purpose for which the study is read
+  /// The content of the mechanism file, if it is stored with the study; null: the file is read.
   const std::string* mechanism_text = nullptr;
 };
 
-/// The scope of tables whose rows need only the value.
+/// The scope of keys whose readers need only the value.
 struct Nothing {};
 
-using StudyRow = Key<Study, Reading>;    ///< A row of a study's own tables.
+using StudyRow = Key<Study, Reading>;    ///< A key of a study's own tables: description and functions.
 using StudyRows = Keys<Study, Reading>;  ///< A table of a study.
-/// A row of a table inside a table.
+/// A key of a table inside a section: description and functions.
 template <class Object>
 using InnerRow = Key<Object, Nothing>;
-/// A table inside a table.
+/// A table inside a section.
 template <class Object>
 using InnerRows = Keys<Object, Nothing>;
 
-/// Which factors of a study vary together.
+/// Which factors of a study vary at the same time.
 enum class Varies {
   none,        ///< every error has fixed values
-  one_by_one,  ///< each alone, drawn from its distribution
+  one_by_one,  ///< each alone, while the others are constant; drawn from its distribution
   together     ///< all together, drawn from their distributions
 };
 
-/// The size of a study at each pose, and the words for the products from which it results.
+/// The numbers of values and solves of a study at each pose, and words that say how they are computed.
 struct AtPose {
-  double values;               ///< numbers of one response in the result
-  std::string_view of_values;  ///< words for these: "factors"
-  double solves;               ///< solves of the mechanism
-  std::string_view of_solves;  ///< words for these: "factors times samples"
+  double values;               ///< number of values of one response in the result
+  std::string_view of_values;  ///< the product that gives `values`, in words: "factors"
+  double solves;               ///< number of solves of the mechanism
+  std::string_view of_solves;  ///< the product that gives `solves`, in words: "factors times samples"
 };
 
-/// The reason why something is not possible.
+/// Why something is not possible, and what to do.
 struct Refusal {
-  std::string problem;  ///< a clause
-  std::string remedy;   ///< advice
+  std::string problem;  ///< reason, as a clause
+  std::string remedy;   ///< advice to the user
 };
 
-/// A kind of study: the part that study files use.
+/// A kind of study, as far as study files need it.
 struct StudyKind {
   std::string_view name;                   ///< the word in a study file
-  std::string_view asks;                   ///< a clause: "what each error does on its own"
-  std::span<const std::string_view> keys;  ///< keys of [analysis], in the order of templates
+  std::string_view asks;                   ///< what the kind asks, as a clause: "what each error does on its own"
+  std::span<const std::string_view> keys;  ///< keys of [analysis] that the kind has, in the order of templates
   Varies varies = Varies::none;            ///< which factors vary together
   bool compares_fidelities = false;        ///< whether it can compare two fidelities
+  Draws draws = Draws::per_pose;           ///< where errors are drawn unless a study says so
   bool draws_machines_anew = false;        ///< whether it tries several sets of machines, which cannot be given
   bool has_pose_before = false;            ///< whether the same errors are solved at all poses, whatever `draws` is
   bool decides_by_samples = false;         ///< whether changing `samples` invalidates a checkpoint
@@ -84,31 +85,32 @@ struct StudyKind {
   std::string_view overrides = {};         ///< where a constant error may get another value: "a case sets"
   /// The rows of [analysis] that only this kind has. One with the name of a shared key replaces that key.
   std::vector<StudyRow> (*rows)() = nullptr;
-  StudyTables (*tables)() = nullptr;  ///< tables inside [analysis]
-  /// The reason why a study of this model cannot run.
+  StudyTables (*tables)() = nullptr;  ///< tables inside [analysis] that only this kind has
+  /// The reason why a study of this kind cannot run with this model; none if it can.
   std::optional<Refusal> (*refusal)(const ModelDescription& model) = nullptr;
-  /// The reason why there is no template for this model.
+  /// The reason why there is no template of this kind for this model; none if there is one.
   std::optional<Refusal> (*no_template)(const ModelDescription& model) = nullptr;
   /// Completes the study and checks keys that depend on each other. Throws InputError.
   void (*complete)(Study& study, const Reading& reading) = nullptr;
-  /// Throws InputError if an error in the kind's own keys makes no sense for this model (Model::error_bound).
+  /// Throws InputError if an error in the kind's own keys is too large for this model (Model::error_bound).
   void (*check_errors)(const StudySection& analysis, const Study& study, const Model& model) = nullptr;
   AtPose (*at_pose)(const Study& study);  ///< the size of a study at each pose
-  /// Turns a study of this kind into one that judges this yield; null: the kind judges no machines.
+  /// Turns a study of this kind into one that judges whether machines reach this yield; null: the kind judges no
+  /// machines.
   void (*ask_yield)(Study& study, double yield) = nullptr;
 
-  /// Whether the kind has this key of [analysis], except `kind` itself.
+  /// Returns true if the kind has this key of [analysis]. The key `kind`, which all kinds have, does not count.
   bool has_key(std::string_view key) const;
 };
 
-/// The kinds of studies in a program, and the tables of their study files.
+/// The kinds of studies in a program, and all tables of their study files.
 struct StudyKinds {
   std::vector<const StudyKind*> all;  ///< in the order in which users see them; the first one is the default
   StudyTables tables;                 ///< all tables of a study file, with all keys
 };
 
-/// The tables of these kinds. order: the keys of [analysis] in the order of the reference; keys that it lacks come
-/// last.
+/// Makes the tables of these kinds. order: names of the keys of [analysis] in the order of the reference; other keys
+/// come last.
 StudyKinds study_kinds_of(std::vector<const StudyKind*> all, std::span<const std::string_view> order);
 
 /// The kind of this name; null if there is none.
@@ -116,7 +118,7 @@ const StudyKind* find(const StudyKinds& kinds, std::string_view name);
 
 std::vector<std::string_view> names(const StudyKinds& kinds);  ///< The names of the kinds, in order.
 
-/// A value of the kind's options as a value of the study.
+/// Makes a value of the study from a value of the kind's options (asked_of()).
 template <class Options>
 KeyValue<Study> asked_value(KeyValue<Options> value) {
   KeyValue<Study> whole{.type = value.type, .bounds = value.bounds, .words = value.words};
@@ -131,7 +133,7 @@ KeyValue<Study> asked_value(KeyValue<Options> value) {
   return whole;
 }
 
-/// The rows of the study's own tables; [analysis] has those of this kind.
+/// The keys of the tables that each study has, as rows; analysis_keys() gives the keys of [analysis] for this kind.
 /// @{
 const StudyRows& file_keys();
 const StudyRows& mechanism_keys();
@@ -142,7 +144,7 @@ const StudyRows& solver_keys();
 const StudyRows& run_keys();
 /// @}
 
-/// The same with their inner tables, for the reference.
+/// The tables of a study together with the tables inside them, for the reference.
 /// @{
 StudyTables mechanism_tables();
 StudyTables response_tables();
@@ -151,15 +153,17 @@ StudyTables errors_tables();
 StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<const std::string_view> order);
 /// @}
 
-/// The shared row of [analysis] with this name, from which a kind makes its own row. Precondition: the row exists.
+/// The row of the shared key of [analysis] with this name. A kind makes its own row (for the same key) from it.
+/// Precondition: the row exists.
 StudyRow shared_analysis_row(std::string_view name);
 
-/// Each of these functions reads a part of a study file. Throws InputError for the first problem.
+/// Each of these functions reads a part of a study file. They throw InputError at the first problem.
 /// @{
 void read_mechanism(Study& study, const Reading& reading);
-void read_responses(Study& study, const Reading& reading);  ///< After the solver, whose metric they are of.
+/// Follows read_solver(), because responses may use the metric.
+void read_responses(Study& study, const Reading& reading);
 void read_poses_section(Study& study, const Reading& reading);
-/// Reads a table as [poses] into the study's selection of poses.
+/// Reads a table with the keys of [poses] into the study's selection of poses.
 void read_pose_selection(const StudySection& section, Study& study, const Reading& reading);
 void read_errors_section(Study& study, const Reading& reading);
 void read_analysis(Study& study, const Reading& reading);
@@ -168,37 +172,53 @@ void read_solver(Study& study, const Reading& reading);
 
 /// The key [[response]].
 StudyRow response_row();
-/// Throws InputError if a response is relative to the pose before in a study without machines, or to any other pose if
-/// machines draw errors anew at each pose.
+/// Throws InputError if a response is relative to the previous pose, but different errors are solved at each pose. Also
+/// throws if a response is relative to any other pose, and machines draw varied errors anew at each pose.
 void check_other_poses(const Study& study, const Reading& reading);
 
-/// The distribution of errors of this dimension that have none of their own.
+/// The study's distribution of errors of this dimension, for errors that have none of their own.
 Distribution usual_distribution(const Reading& reading, Dimension dimension);
-/// The row of `correlated` in [errors]. Precondition of reading: the distributions were read.
+/// The row of the key `correlated` in [errors]. Its reader needs a study whose distributions have been read.
 /// @{
 StudyRow correlated_row();
 StudyTable correlated_table();
 /// @}
-/// The row of `zones` in [errors]. Precondition of reading: the distributions of all lengths were read.
+/// The row of the key `zones` in [errors]. Its reader needs a study whose distributions of lengths have been read.
 /// @{
 StudyRow zones_row();
 StudyTable zones_table();
 /// @}
-/// The errors of clearances, ascending, which a machine has anew at each pose.
+/// The errors that are clearances, ascending. A machine draws them anew at each pose.
 std::vector<FactorIndex> clearance_errors(const ModelDescription& model);
-/// Sets the errors of features by errors.zones, and those of clearances, which are drawn anew at each pose.
+/// Sets the distributions of features' errors as errors.zones asks. Sets those of clearances, too, and lets machines
+/// draw them anew at each pose.
 void set_by_zones(Study& study);
-/// [F] the standard deviations (m) that errors.zones and clearances give; none of an error without them.
-std::vector<std::optional<double>> sigmas_by_zones(const Study& study);
+/// [F] The distribution that errors.zones gives to each error, or that it has as a clearance; none for other errors.
+/// Errors of a feature that are drawn together get normal distributions with their standard deviations.
+std::vector<std::optional<Distribution>> distributions_by_zones(const Study& study);
+/// The features of a study whose errors vary and are drawn together (drawing::ZoneDraws).
+std::vector<Feature> features_drawn_together(const Study& study);
+/// Throws InputError if the errors of a feature that are drawn together do not all vary, are correlated, or are drawn
+/// partly per pose and partly per machine.
+void check_zones(const Study& study, const Reading& reading);
+/// Whether [errors] states the size of an error, by its dimension or by a key of [errors.override].
+bool states_size(const StudySection& errors, const Factor& factor);
+/// Throws InputError if an error of a feature varies to which the study gives no size, neither by errors.zones nor by
+/// another key. The default size of a length is not that of a drawing.
+void check_sizes_of_features(const Study& study, const Reading& reading);
 /// Throws InputError at the block's place if correlated errors do not vary together.
 void check_correlated(const Study& study, const Reading& reading);
-/// Throws InputError if machines are given to a study that does not draw machines, or more samples are asked for.
+/// Throws InputError at errors.machines if machines are given to a study that does not take them, if a column is an
+/// error that the study does not vary, or if the study asks for more samples than there are machines.
 void check_machines(const Study& study, const Reading& reading);
-/// The path of a file that the study names relative to its folder.
-std::string beside_study(const StudySection& section, const std::string& file);
+/// The path of a file that the study names relative to its folder. place: any place in the study.
+std::string beside_study(const Place& place, const std::string& file);
+/// The path of the file that a value names relative to the study's folder. Throws at the value's place: FileError if
+/// the file cannot be opened, InputError if it is a folder or a device.
+std::string named_file(const StudyValue& value);
 /// Reads a factor set, "all", or a list of names without repetition.
 std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescription& model);
-/// Reads `name`, or returns `usual` if there is none. Throws if the name is taken.
+/// Reads the key `name`, or returns `usual` if the section has none. Throws InputError if the name is taken.
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual);
 /// The factors as TOML: the name of their set in quotes, or a list of names.
 std::string factors_text(std::span<const FactorIndex> factors, const ModelDescription& model);
@@ -206,21 +226,22 @@ std::string factors_text(std::span<const FactorIndex> factors, const ModelDescri
 std::string factor_list_text(std::span<const FactorIndex> factors, const ModelDescription& model);
 /// The factor sets of a model, as comment lines of a template.
 std::string sets_comment(const ModelDescription& model);
-/// A limit as a TOML table, on the displacement of the tool or of the platform (leading_rank), or else on the first
-/// response that is a length, or on the first; empty for a model without responses.
+/// An example of a limit as a TOML table. It limits the displacement of the tool or of the platform (leading_rank),
+/// else the first response that is a length, else the first response. Empty for a model without responses.
 std::string example_limits(const ModelDescription& model);
-/// A comment line of a template with the model's responses, and its line of limits after `sign`; empty without
-/// responses.
+/// Lines of a template that list the model's responses in a comment and show example_limits(). Each line begins with
+/// `sign`. Empty for a model without responses.
 std::string template_limits(const TemplateLines& lines, const ModelDescription& model, std::string_view sign);
-/// A length or an angle of this many millimetres or degrees, as templates show it: "1 mm" in quotes.
+/// A length or an angle of this number of millimetres or degrees, as templates show it: "1 mm" in quotes.
 std::string example_size(Dimension dimension, double units);
 
-/// Throws InputError at its place if an error of the study makes no sense for this model (Model::error_bound). Checks
-/// the standard deviation of errors that vary, and the size of errors that are constant or that the kind sets.
+/// Throws InputError at its place if an error of the study is too large for this model (Model::error_bound). Checks the
+/// standard deviations of errors that vary, and the sizes of errors that are constant or that the kind sets.
 void check_error_bounds(const StudySection& root, const Study& study, const Model& model);
-/// The same for one error of this size, which `linear`, `angular` or `relative` of a section sets.
+/// Checks one error of this size (SI), which the key `linear`, `angular` or `relative` of the section sets. Throws
+/// InputError if it is too large for this model.
 void check_error_size(const Model& model, FactorIndex factor, double size, const StudySection& section);
-/// Throws for an error that is too large, at the value of this key, or at the section if it has no such key.
+/// Throws InputError for an error that is too large, at the value of this key, or at the section if it lacks the key.
 [[noreturn]] void refuse_error(const StudySection& section, std::string_view key, const std::string& problem);
 /// The advice for an error that is too large.
 inline constexpr std::string_view kTooLargeRemedy = "write a smaller one";

@@ -25,38 +25,39 @@ bool contains(const Names& list, std::string_view name) { return std::ranges::fi
 
 /// A known column of numbers.
 struct KnownColumn {
-  std::string_view name;   ///< name in the header
-  Dimension dimension;     ///< of its numbers
-  std::string_view meant;  ///< its own name, or the name of which it is a synonym
+  std::string_view name;  ///< name in the header
+  Dimension dimension;    ///< dimension of the column's numbers
+  /// Name of the coordinate or factor that the column gives: `name` itself, or the name of which it is a synonym.
+  std::string_view meant;
 };
 
 /// The columns that the header of a table may name.
 struct KnownColumns {
   std::vector<KnownColumn> numbers;  ///< columns that are read
-  Names facts = {};                  ///< other columns that `poesy export` writes, which are ignored
-  Names labels = {};                 ///< columns of which one may name the rows
-  bool has_texts = false;            ///< whether it may also have columns of text, which are ignored
-  std::string_view what;             ///< a column of numbers, for messages: "pose coordinate"
+  Names facts = {};                  ///< columns that are ignored because `poesy export` writes them
+  Names labels = {};                 ///< names of columns of labels, of which a table may have one
+  bool has_texts = false;            ///< true if columns of text are allowed; they are ignored
+  std::string_view what;             ///< what a column of numbers is, for messages: "pose coordinate"
 };
 
 /// A column of a table, while it is read.
 struct TableColumn {
-  /// The role of its cells.
+  /// What the cells of a column hold.
   enum class Role { number, fact, label, text };
-  Role role;                                ///< of its cells
+  Role role;                                ///< what the cells hold
   std::string_view name;                    ///< KnownColumn::meant, or one of KnownColumns::labels; a view of these
   std::string_view title;                   ///< title in the header, with its unit; a view of the lines
   Dimension dimension = Dimension::number;  ///< dimension of its numbers
   double si = 1.0;                          ///< factor that converts its numbers to SI
-  Place place = {};                         ///< for a text: place of the title
-  bool bare = false;                        ///< whether it states no unit
+  Place place = {};                         ///< place of the title, for a column of text
+  bool bare = false;                        ///< true if the title states no unit
 
-  /// The title with the unit that people read: "z [mm]".
+  /// The title with the unit in which results show this dimension: "z [mm]".
   std::string with_unit() const { return std::string(name) + " [" + std::string(display_unit(dimension).name) + "]"; }
 };
 
 [[noreturn]] void refuse_unknown(const Place& place, std::string_view name, const KnownColumns& known) {
-  throw InputError(place, fmt::format("column '{}' is no {} of the model", printable(name), known.what),
+  throw InputError(place, fmt::format("column '{}' is not a {} of the model", printable(name), known.what),
                    suggestion(name, names(known.numbers)));
 }
 
@@ -79,15 +80,15 @@ TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
   return {.role = text, .name = title.name, .title = cell.text, .place = cell.place};
 }
 
-/// Reads the first line. The unit of a column may follow its name in brackets, "z [mm]"; without it numbers are SI.
-/// Throws InputError with its place for a column that is unknown or repeated, for a unit that is unknown or of another
-/// dimension, and for two columns that name the rows.
+/// Reads the first line. The unit of a column may follow its name in brackets, "z [mm]"; numbers without a unit are SI.
+/// Throws InputError at its place for an unknown or repeated column, for a unit that is unknown or of another
+/// dimension, and for two columns of labels.
 std::vector<TableColumn> read_header(CsvLines& lines, const KnownColumns& known) {
   std::vector<TableColumn> columns;
   for (const CsvCell& cell : lines.next()) {
     const TableColumn column = column_of(cell, known);
     if (std::ranges::find(columns, column.name, &TableColumn::name) != columns.end()) {
-      throw InputError(cell.place, "column '" + std::string(column.name) + "' stands here a second time", "remove it");
+      throw InputError(cell.place, "column '" + std::string(column.name) + "' appears a second time", "remove it");
     }
     if (column.role == TableColumn::Role::label &&
         std::ranges::find(columns, column.role, &TableColumn::role) != columns.end()) {
@@ -108,13 +109,13 @@ Names names_of_numbers(std::span<const TableColumn> columns) {
   return list;
 }
 
-/// Whether a table of poses has a column of times.
+/// Whether a table of poses must have a column of times, or need not have one.
 enum class Timed { no, yes };
 
 constexpr std::string_view kTime = "t";
 constexpr std::string_view kExportedTime = "time";
 
-/// The headers that a table of poses may have: the pose's own coordinates, then those of each chart.
+/// The sets of columns that a table of poses may have: the pose's own coordinates, then the coordinates of each chart.
 std::vector<Names> possible_headers(const ModelDescription& model, Timed timed) {
   const auto header = [&](const std::vector<PoseCoordinate>& coordinates) {
     Names columns;
@@ -133,7 +134,7 @@ std::string one_of(const std::vector<Names>& headers) {
   return fmt::format("{}", fmt::join(list, " | "));
 }
 
-/// The position of the header with these column names, in any order.
+/// The position in `headers` of the set of columns that has these names, in any order.
 std::size_t header_of(const Names& columns, const std::vector<Names>& headers, const std::string& path) {
   const Names* unfinished = nullptr;
   for (std::size_t k = 0; k < headers.size(); ++k) {
@@ -151,7 +152,7 @@ std::size_t header_of(const Names& columns, const std::vector<Names>& headers, c
                    "name every pose coordinate of the model in the first line" + possible);
 }
 
-/// The cells below a header.
+/// The cells of all lines below the first.
 struct Rows {
   std::vector<double> values;       ///< row-major, SI, in the order of the columns of numbers
   std::vector<std::string> labels;  ///< labels of the rows; empty without a column of labels
@@ -168,7 +169,7 @@ double number(const CsvCell& cell, const TableColumn& column) {
       fmt::format("write a plain number, in SI units unless the first line names another: '{}'", column.with_unit()));
 }
 
-/// Whether a cell begins like a number, or is a number that is not finite.
+/// Returns true if a cell begins like a number, or is a word for infinity or not a number.
 bool is_like_a_number(std::string_view cell) {
   const std::string_view body = cell.substr(std::min(cell.find_first_not_of("+-."), cell.size()));
   if (!body.empty() && body.front() >= '0' && body.front() <= '9') return true;
@@ -176,14 +177,15 @@ bool is_like_a_number(std::string_view cell) {
   return word == "nan" || word == "inf" || word == "infinity";
 }
 
-/// Whether the cell has a letter of any language.
+/// Returns true if the cell has a letter of any language.
 bool has_letter(std::string_view cell) {
   return std::ranges::any_of(cell, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) > 127;
   });
 }
 
-/// Adds the label of a row.
+/// Reads the label of a row of the table from this cell, and adds it to `rows`. Throws InputError if the label breaks a
+/// rule or is taken.
 void read_label(const CsvCell& cell, const TableColumn& column, Rows& rows) {
   const std::string what = std::string(column.name) + " '" + printable(cell.text) + "'";
   if (const auto problem = label_problem(cell.text)) {
@@ -191,16 +193,16 @@ void read_label(const CsvCell& cell, const TableColumn& column, Rows& rows) {
   }
   const auto [first, is_new] = rows.line_of.try_emplace(cell.text, cell.place.line);
   if (!is_new) {
-    throw InputError(cell.place, what + " stands here a second time, after line " + std::to_string(first->second),
+    throw InputError(cell.place, what + " appears a second time, after line " + std::to_string(first->second),
                      "give each row a name of its own");
   }
   rows.labels.emplace_back(cell.text);
 }
 
-/// Throws if a number (SI) is not allowed in its column, the n-th of the columns of numbers.
+/// Checks a number (SI) in a column of numbers, the n-th one. Throws InputError if the number is not allowed there.
 using CheckCell = std::function<void(const Place& place, std::size_t n, const TableColumn& column, double value)>;
 
-/// Reads one line.
+/// Reads one line and adds its cells to `rows`.
 void read_row(CsvLines& lines, std::span<const TableColumn> columns, const KnownColumns& known, const CheckCell& check,
               Rows& rows) {
   const Place line = lines.next_place();
@@ -241,8 +243,8 @@ Rows read_rows(CsvLines& lines, std::span<const TableColumn> columns, const Know
   return rows;
 }
 
-/// The columns of a table of poses or a trajectory. `poesy export` names the time "time", and adds the numbers of the
-/// poses and their condition numbers.
+/// The columns that a table of poses or a trajectory may have. `poesy export` names the column of times "time", and
+/// adds the columns "pose" and "condition".
 KnownColumns pose_columns(const ModelDescription& model, Timed timed) {
   KnownColumns known{.numbers = {}, .facts = {"pose", "condition"}, .what = "pose coordinate"};
   const auto add = [&](std::string_view name, Dimension dimension, std::string_view meant) {
@@ -263,7 +265,7 @@ KnownColumns pose_columns(const ModelDescription& model, Timed timed) {
   return known;
 }
 
-/// Throws unless the last time is finite and larger than the one before.
+/// Throws InputError unless the last time is finite and larger than the time before it.
 void check_last(const std::vector<double>& time, const std::string& path) {
   if (!time.empty() && std::abs(time.back()) > kLatestTime) {
     throw InputError({path, time.size() + 1, 1}, "t = " + shortest(time.back()) + " s is more than 1e9 s from 0",
@@ -274,7 +276,7 @@ void check_last(const std::vector<double>& time, const std::string& path) {
   throw InputError(
       {path, time.size() + 1, 1},
       time.back() == time.end()[-2]
-          ? fmt::format("t = {} s stands here a second time, after line {}", shortest(time.back()), time.size())
+          ? fmt::format("t = {} s appears a second time, after line {}", shortest(time.back()), time.size())
           : fmt::format("t = {} s follows t = {} s of line {}", shortest(time.back()), before, time.size()),
       "sort the rows by t, each time once");
 }
@@ -285,7 +287,7 @@ TimedPoints read_points(CsvLines& lines, const std::string& path, const ModelDes
   const Names columns = names_of_numbers(all);
   const std::vector<Names> headers = possible_headers(model, timed);
   const std::size_t kind = header_of(columns, headers, path);
-  std::vector<std::size_t> order;  // order of the header's columns in the file
+  std::vector<std::size_t> order;  // position in the file of each coordinate's column
   for (const std::string_view name : headers[kind]) {
     order.push_back(static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin()));
   }
@@ -386,7 +388,7 @@ MeasuredColumn read_column(const std::string& path, std::string_view column, Dim
       continue;
     }
     if (found) {
-      throw InputError(cell.place, "column '" + printable(column) + "' stands here a second time", "remove it");
+      throw InputError(cell.place, "column '" + printable(column) + "' appears a second time", "remove it");
     }
     found = true;
     read.name = title.name;

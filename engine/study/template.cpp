@@ -12,7 +12,8 @@
 namespace poesy {
 namespace {
 
-/// The units in which a study of this model may state values: of lengths, angles, times and responses.
+/// The units in which a study of this model may state values. Lengths, angles and times are always listed, other
+/// dimensions if the model has them.
 std::string model_units(const ModelDescription& model) {
   std::string list;
   for (const Dimension dimension : all_dimensions()) {
@@ -63,7 +64,7 @@ std::string mechanism_section(const TemplateLines& lines, const Study& shown) {
   return text;
 }
 
-/// How a response of one's own is written, in comment lines.
+/// Comment lines of a template that show how a user defines a response.
 std::string response_section(const TemplateLines& lines, const ModelDescription& model) {
   if (model.responses.empty()) return {};
   std::string example;
@@ -77,7 +78,7 @@ std::string response_section(const TemplateLines& lines, const ModelDescription&
          "# [[response]]\n# name = \"own\"\n" + example;
 }
 
-/// A comment on other coordinates in which a file may give poses.
+/// Comment lines of a template about charts, in whose coordinates a file may give poses.
 std::string charts_comment(const ModelDescription& model) {
   std::string text;
   for (const PoseChart& chart : model.charts) {
@@ -152,6 +153,7 @@ std::string template_text(const CatalogEntry& entry, const StudyKind& kind, cons
   Study shown;
   shown.mechanism.entry = entry.description.metric == "published" ? &by_metric(entry, "platform") : &entry;
   shown.analysis.kind = &kind;
+  shown.analysis.draws = kind.draws;
   POESY_EXPECTS(kind.no_template == nullptr || !kind.no_template(shown.model()));
   return head(lines, shown) + mechanism_section(lines, shown) + response_section(lines, shown.model()) + "\n[poses]\n" +
          charts_comment(shown.model()) + template_lines(lines, poses_keys(), shown) + "\n" +

@@ -2,36 +2,46 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "engine/base/text.h"
+#include "engine/drawing/zone_draws.h"
+#include "engine/drawing/zone_moments.h"
 #include "engine/drawing/zone_scatter.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
 
+using drawing::ScatterShape;
 using drawing::ZoneScatter;
 
-/// How features scatter in their zones, as written.
+/// The keys of [errors.zones] as the study states them.
 struct WrittenScatter {
+  ScatterShape shape = ScatterShape::normal;
   std::optional<double> sigmas;
   std::optional<double> cpk;
   std::optional<double> within;
 };
 
-/// The word for a normal.
-constexpr std::array<std::string_view, 1> kShapes{"normal"};
+/// The words for ScatterShape, in its order.
+constexpr std::array<std::string_view, 4> kShapes{"normal", "uniform", "boundary", "inspected"};
 
-void read_shape(const StudyValue& value, WrittenScatter&) { static_cast<void>(value.word(kShapes)); }
+std::string_view name(ScatterShape shape) { return kShapes[static_cast<std::size_t>(shape)]; }
 
-/// A zone of any size divided by more is too small for the standard deviation of an error.
+void read_shape(const StudyValue& value, WrittenScatter& written) {
+  written.shape = static_cast<ScatterShape>(value.word(kShapes));
+}
+
+/// The range in which a number of standard deviations must be. A larger number would make the standard deviation of an
+/// error too small.
 NumberBounds above_zero_to_a_million(std::string_view example) {
   return {0.0, 1e6, false, "greater than 0 and less than 1e6",
           fmt::format("it must lie between 0 and 1e6, e.g. {}", example)};
 }
 
-/// A number within bounds, for a member that may have none.
+/// A key that is a number within bounds, and that may be absent.
 KeyValue<WrittenScatter> number(std::optional<double> WrittenScatter::*member, const NumberBounds& bounds) {
   return {
       .type = bounds.percent ? "number or percent" : "number",
@@ -44,18 +54,30 @@ const InnerRows<WrittenScatter>& scatter_keys() {
   static const InnerRows<W> keys{
       .paths = {"errors.zones"},
       .meaning =
-          "How features scatter in the zones of their drawing: at its extreme points, the ends of an axis and the "
-          "corners of a plane, each coordinate is a normal. A location whose use the drawing does not say is shared "
-          "evenly by the errors that move an extreme point.",
-      .rows = {InnerRow<W>{.name = "distribution",
-                           .value = {.type = "text", .words = {{kShapes[0], "of each coordinate"}}, .read = read_shape},
-                           .missing = "write {}",
-                           .example = "\"normal\"",
-                           .meaning = "Shape of the distribution."},
+          "How features scatter in the zones of their drawing. Normals: at its extreme points, the ends of an axis and "
+          "the corners of a plane, each coordinate is one; a location whose use the drawing does not say is shared "
+          "evenly by the errors that move an extreme point. With any other distribution a feature is drawn as a whole "
+          "in studies in which errors vary together; a study of one error at a time takes normals of the same standard "
+          "deviations.",
+      .rows = {InnerRow<W>{
+                   .name = "distribution",
+                   .value = {.type = "text",
+                             .words = {{kShapes[0], "of each coordinate, also outside the zone"},
+                                       {kShapes[1], "every place in the zone alike"},
+                                       {kShapes[2],
+                                        "every part just passes: the ends of an axis, a point or a distance "
+                                        "are on the boundary of the zone, in any direction alike; not for "
+                                        "planes and orientations"},
+                                       {kShapes[3], "normals, of which those outside are sorted out and made again"}},
+                             .read = read_shape},
+                   .missing = "write {}",
+                   .example = "\"normal\"",
+                   .meaning = "Shape of the distribution."},
                InnerRow<W>{.name = "sigmas",
                            .value = number(&W::sigmas, above_zero_to_a_million("3")),
                            .usual = "",
-                           .meaning = "Half a zone in standard deviations of a coordinate of an extreme point. 3 of "
+                           .meaning = "Of \"normal\" and \"inspected\": half a zone in standard deviations of a "
+                                      "coordinate of an extreme point; of \"inspected\" at least 1.5. 3 of "
                                       "them keep 99.73 % of distances, 98.89 % of points in a disc and 97.07 % in a "
                                       "ball."},
                InnerRow<W>{.name = "cpk",
@@ -73,19 +95,40 @@ const InnerRows<WrittenScatter>& scatter_keys() {
 ZoneScatter scatter_of(const StudyValue& value) {
   WrittenScatter written;
   read_keys(scatter_keys(), value.section(), written, Nothing());
+  ZoneScatter scatter{.shape = written.shape, .within = written.within};
   const int count = (written.sigmas ? 1 : 0) + (written.cpk ? 1 : 0) + (written.within ? 1 : 0);
+  if (!scatter.has_sigmas()) {
+    if (count == 0) return scatter;
+    value.fail(fmt::format("has distribution = \"{}\", which fills the zone itself, and a size of normals",
+                           name(scatter.shape)),
+               "remove sigmas, cpk and within, or write distribution = \"inspected\"");
+  }
   if (count != 1) {
     value.fail(count == 0 ? "does not say how much of a zone is used" : "says twice how much of a zone is used",
                "write one of sigmas = 3, cpk = 1.33 and within = 0.9973, because no drawing says it");
   }
-  if (written.within) return {.within = *written.within};
-  return {.sigmas = written.sigmas ? *written.sigmas : 3.0 * *written.cpk};
+  if (!written.within) scatter.sigmas = written.sigmas ? *written.sigmas : 3.0 * *written.cpk;
+  return scatter;
 }
 
-/// Sets those entries of a list over all errors.
-void set_sigma(const std::vector<FactorIndex>& errors, std::optional<double> sigma,
-               std::vector<std::optional<double>>& list) {
-  for (const FactorIndex error : errors) list[error.value] = sigma;
+/// Throws InputError if a feature's zone does not allow the shape of the scatter.
+void check_shape(const StudyValue& value, const ZoneScatter& scatter, const std::vector<Feature>& features) {
+  constexpr double kLeastInspected = 1.5;  // below this, inspection would reject too many parts
+  for (const Feature& feature : features) {
+    if (feature.clearance || (!feature.location && !feature.orientation)) continue;
+    if (scatter.shape == ScatterShape::boundary && !drawing::can_touch(feature)) {
+      value.fail(fmt::format("has distribution = \"boundary\", but '{}' {}, whose boundary has many meanings",
+                             feature.name, feature.orientation ? "has an orientation" : "is a plane"),
+                 "write \"uniform\" or \"inspected\"");
+    }
+    if (scatter.shape != ScatterShape::inspected) continue;
+    const double sigmas = drawing::sigmas_of(feature, scatter);
+    if (sigmas >= kLeastInspected) continue;
+    value.fail(
+        fmt::format("has half a zone of '{}' in {} standard deviations, of which inspection would sort out too many",
+                    feature.name, shortest(sigmas)),
+        "write sigmas = 1.5 or more, or distribution = \"uniform\"");
+  }
 }
 
 void read_zones(const StudyValue& value, Study& study, const Reading&) {
@@ -95,20 +138,78 @@ void read_zones(const StudyValue& value, Study& study, const Reading&) {
                "write features = [...] with zones in its limbs, or remove it");
   }
   study.errors.zones = scatter_of(value);
+  check_shape(value, *study.errors.zones, features);
   set_by_zones(study);
 }
 
 std::string zones_line(const Study& study) {
   if (!study.errors.zones) return {};
   const ZoneScatter& scatter = *study.errors.zones;
-  return fmt::format("zones = {{ distribution = \"normal\", {} }}\n",
-                     scatter.within ? "within = " + shortest(*scatter.within) : "sigmas = " + shortest(scatter.sigmas));
+  std::string size;
+  if (scatter.has_sigmas()) {
+    size = scatter.within ? ", within = " + shortest(*scatter.within) : ", sigmas = " + shortest(scatter.sigmas);
+  }
+  return fmt::format("zones = {{ distribution = {}{} }}\n", in_quotes(name(scatter.shape)), size);
 }
 
 std::string shown_zones(const TemplateLines& lines, const Study& study) {
   if (study.model().features.empty()) return {};
   return lines.explanation_lines("errors", "zones") + lines.keys_lines("errors.zones") +
          "zones = { distribution = \"normal\", sigmas = 3 }\n";
+}
+
+/// The distribution of one error of a feature. sigma: standard deviation of the error, m. If the errors of the feature
+/// are not drawn together, the error has the shape of the scatter; otherwise it gets a normal distribution.
+Distribution distribution_of(const Feature& feature, const ZoneScatter& scatter, double sigma) {
+  const bool has_shape = !feature.clearance && !drawing::are_drawn_together(feature, scatter);
+  if (has_shape && scatter.shape == ScatterShape::uniform) {
+    return Distribution::uniform(drawing::half_width_alone(feature));
+  }
+  if (has_shape && scatter.shape == ScatterShape::inspected) {
+    const double half = drawing::half_width_alone(feature);
+    return Distribution::truncated_normal(half / drawing::sigmas_of(feature, scatter), half);
+  }
+  return Distribution::normal(sigma);
+}
+
+/// Returns true if the study varies an error with the distribution that its zone gives.
+bool varies_by_zone(const Study& study, const std::vector<std::optional<Distribution>>& by_zones, FactorIndex error) {
+  const std::vector<FactorIndex>& varied = study.analysis.factors;
+  return by_zones[error.value] && study.errors.by_factor[error.value] == *by_zones[error.value] &&
+         std::ranges::find(varied, error) != varied.end();
+}
+
+/// Throws InputError if the errors of a feature that are drawn together do not all vary by their zone, are drawn partly
+/// per pose and partly per machine, or are correlated.
+void check_feature(const StudyValue& zones, const Feature& feature, const Study& study,
+                   const std::vector<std::optional<Distribution>>& by_zones) {
+  const auto name_of = [&](FactorIndex error) { return study.model().factors[error.value].name; };
+  const auto is_own = [&](FactorIndex error) { return varies_by_zone(study, by_zones, error); };
+  const std::vector<FactorIndex> errors = feature.errors();
+  const auto own = std::ranges::find_if(errors, is_own);
+  if (own == errors.end()) return;
+  const std::string shape(name(study.errors.zones->shape));
+  const auto other = std::ranges::find_if_not(errors, is_own);
+  if (other != errors.end()) {
+    zones.fail(fmt::format("has distribution = \"{}\", which draws all errors of '{}' together, but '{}' does not vary "
+                           "by its zone and '{}' does",
+                           shape, feature.name, name_of(*other), name_of(*own)),
+               "name all of them or none in analysis.factors and errors.override, or write distribution = \"normal\"");
+  }
+  for (const FactorIndex error : errors) {
+    if (study.errors.is_per_pose(error) != study.errors.is_per_pose(errors.front())) {
+      zones.fail(
+          fmt::format("has distribution = \"{}\", which draws all errors of '{}' together, but only some of them "
+                      "are drawn per pose",
+                      shape, feature.name),
+          "give all of them the same draws");
+    }
+    for (const CorrelatedErrors& block : study.errors.correlated) {
+      if (std::ranges::find(block.factors, error) == block.factors.end()) continue;
+      zones.fail(fmt::format("has distribution = \"{}\", but errors.correlated has '{}'", shape, name_of(error)),
+                 "write distribution = \"normal\", or leave the errors of features out of errors.correlated");
+    }
+  }
 }
 
 }  // namespace
@@ -137,11 +238,11 @@ std::vector<FactorIndex> clearance_errors(const ModelDescription& model) {
 }
 
 void set_by_zones(Study& study) {
-  const std::vector<std::optional<double>> sigmas = sigmas_by_zones(study);
+  const std::vector<std::optional<Distribution>> by_zones = distributions_by_zones(study);
   std::vector<FactorIndex>& per_pose = study.errors.per_pose;
-  for (std::size_t f = 0; f < sigmas.size(); ++f) {
-    if (!sigmas[f]) continue;
-    study.errors.by_factor[f] = Distribution::normal(*sigmas[f]);
+  for (std::size_t f = 0; f < by_zones.size(); ++f) {
+    if (!by_zones[f]) continue;
+    study.errors.by_factor[f] = *by_zones[f];
     std::erase(per_pose, FactorIndex(f));
   }
   const std::vector<FactorIndex> loose = clearance_errors(study.model());
@@ -149,16 +250,45 @@ void set_by_zones(Study& study) {
   std::ranges::sort(per_pose);
 }
 
-std::vector<std::optional<double>> sigmas_by_zones(const Study& study) {
-  std::vector<std::optional<double>> list(study.model().factors.size());
+std::vector<std::optional<Distribution>> distributions_by_zones(const Study& study) {
+  std::vector<std::optional<Distribution>> list(study.model().factors.size());
   for (const Feature& feature : study.model().features) {
     if (!study.errors.zones && !feature.clearance) continue;
-    const double sigmas = study.errors.zones ? drawing::sigmas_of(feature, *study.errors.zones) : 0.0;
-    const drawing::FeatureSigmas found = drawing::feature_sigmas(feature, sigmas);
-    set_sigma(feature.middle, found.middle, list);
-    set_sigma(feature.tilt, found.tilt, list);
+    const ZoneScatter scatter = study.errors.zones.value_or(ZoneScatter());
+    const drawing::FeatureSigmas found = drawing::scatter_sigmas(feature, scatter);
+    for (const auto& [errors, sigma] :
+         {std::pair(&feature.middle, found.middle), std::pair(&feature.tilt, found.tilt)}) {
+      for (const FactorIndex error : *errors) {
+        if (sigma) list[error.value] = distribution_of(feature, scatter, *sigma);
+      }
+    }
   }
   return list;
+}
+
+std::vector<Feature> features_drawn_together(const Study& study) {
+  std::vector<Feature> list;
+  if (!study.errors.zones || study.errors.zones->is_normal()) return list;
+  if (study.analysis.kind->varies != Varies::together) return list;
+  const std::vector<std::optional<Distribution>> by_zones = distributions_by_zones(study);
+  for (const Feature& feature : study.model().features) {
+    if (!drawing::are_drawn_together(feature, *study.errors.zones)) continue;
+    const std::vector<FactorIndex> errors = feature.errors();
+    if (std::ranges::all_of(errors, [&](FactorIndex error) { return varies_by_zone(study, by_zones, error); })) {
+      list.push_back(feature);
+    }
+  }
+  return list;
+}
+
+void check_zones(const Study& study, const Reading& reading) {
+  if (!study.errors.zones || study.errors.zones->is_normal()) return;
+  if (study.analysis.kind->varies != Varies::together) return;
+  const StudyValue zones = reading.root.section("errors").require("zones");
+  const std::vector<std::optional<Distribution>> by_zones = distributions_by_zones(study);
+  for (const Feature& feature : study.model().features) {
+    if (drawing::are_drawn_together(feature, *study.errors.zones)) check_feature(zones, feature, study, by_zones);
+  }
 }
 
 }  // namespace poesy

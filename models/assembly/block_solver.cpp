@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
-#include "models/chain/assembly.h"
+#include "models/assembly/details.h"
 
 namespace poesy::assembly {
 
@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t kTerms = KernelStart::kTerms;
 
-/// If one of the last coefficients of series is larger, states are not smooth
-/// over the range. In units of the reach and rad.
+/// If one of the last coefficients of a series is larger than this (in rad, or in units of the reach), the states do
+/// not vary smoothly with the error, and the series is not used.
 constexpr double kTrustedTail = 1e-6;
 
 double chebyshev(std::size_t n, std::size_t node) {
@@ -26,8 +26,8 @@ double chebyshev(std::size_t n, std::size_t node) {
                   (static_cast<double>(node) + 0.5));
 }
 
-/// Series through states at the nodes, [rows x kTerms] both; empty if they are
-/// not smooth.
+/// [rows x kTerms] The Chebyshev series through the states [rows x kTerms] at the nodes; empty if the states are not
+/// smooth.
 std::vector<double> series_of(std::span<const double> states) {
   std::array<double, kTerms * kTerms> weights;
   for (std::size_t n = 0; n < kTerms; ++n) {
@@ -49,37 +49,21 @@ std::vector<double> series_of(std::span<const double> states) {
 
 }  // namespace
 
-ErrorFrames::ErrorFrames(const AssemblyModel& model) : model_(&model) {
-  for (const Limb& limb : model.assembly.limbs) {
-    frames_.push_back(limb.chain.home);
-    errors_.emplace_back(limb.chain.frames(), chain::FrameError<double>::Zero());
-  }
-}
-
-const std::vector<std::vector<Transform>>& ErrorFrames::with(std::span<const double> errors,
-                                                             std::span<const double> displacements) {
-  for (auto& limb : errors_) std::ranges::fill(limb, chain::FrameError<double>::Zero());
-  for (std::size_t f = 0; f < errors.size(); ++f) {
-    for (const chain::ErrorTerm& term : model_->terms[f]) {
-      errors_[term.limb][term.frame][static_cast<Index>(term.component)] += term.at(displacements) * errors[f];
-    }
-  }
-  for (std::size_t e = 0; e < frames_.size(); ++e) {
-    const chain::Limb& limb = model_->assembly.limbs[e].chain;
-    for (std::size_t j = 0; j < limb.frames(); ++j) {
-      frames_[e][j] = errors_[e][j].isZero(0.0) ? limb.home[j] : chain::frame_with_error(limb, j, errors_[e][j]);
-    }
-  }
-  return frames_;
-}
-
 BlockSolver::BlockSolver(const AssemblyModel& model, const SolverOptions& options)
     : model_(&model),
       kernels_(simd::for_selected_isa([]<simd::Isa isa>() { return kernels<isa>(); })),
       solver_(model.assembly, model.ranks, options),
+      continuation_(model, options),
       frames_(model) {}
 
-/// Responses, ends and iterations by a kernel.
+/// Writes the additional outputs (mismatch of pairs of limbs) of one sample.
+void put_details(std::span<const double> values, std::size_t sample, const OutcomeBlock& outcomes) {
+  const std::size_t count = outcomes.status.size();
+  for (std::size_t d = 0; d < values.size(); ++d) outcomes.details[d * count + sample] = values[d];
+}
+
+/// Computes, with a kernel, responses, how each sample ended and iterations; also the mismatch of limbs if the caller
+/// wants additional outputs.
 void BlockSolver::run(KernelWork work, PoseProblem& problem, const SampleBlock& samples, const OutcomeBlock& outcomes) {
   const KernelProblem& solved = problem.with(samples, values_);
   const std::size_t stride = padded(samples.count);
@@ -90,15 +74,16 @@ void BlockSolver::run(KernelWork work, PoseProblem& problem, const SampleBlock& 
   ends_.resize(stride);
   iterations_.resize(stride);
   double* responses = is_whole ? outcomes.responses.data() : responses_.data();
-  work(solved, {samples.count, stride, problem.values(), responses, ends_.data(), iterations_.data()});
+  if (!outcomes.details.empty()) mismatch_.resize(6 * solved.limbs.size() * stride);
+  work(solved, {samples.count, stride, problem.values(), responses, ends_.data(), iterations_.data(), nullptr,
+                outcomes.details.empty() ? nullptr : mismatch_.data()});
   if (is_whole) return;
   for (std::size_t row = 0; row < rows; ++row) {
     std::copy_n(responses + row * stride, samples.count, outcomes.responses.data() + row * samples.count);
   }
 }
 
-/// Solves samples at the nodes of series over the range of the varied error, so
-/// that others start nearly solved.
+/// Solves samples at the Chebyshev nodes of the varied error's range. Other samples then start near their solutions.
 void BlockSolver::predict_starts(PoseProblem& problem, const SampleBlock& samples) {
   if (problem.has_starts(samples)) return;
   std::array<double, kTerms> nodes;
@@ -110,57 +95,97 @@ void BlockSolver::predict_starts(PoseProblem& problem, const SampleBlock& sample
   states_.resize(solved.rows_of_state() * kTerms);
   kernels_.solve(
       solved, {kTerms, kTerms, problem.values(), responses_.data(), ends_.data(), iterations_.data(), states_.data()});
-  const bool are_solved = std::ranges::all_of(ends_, [](KernelEnd end) { return end == KernelEnd::converged; });
+  const bool are_solved = std::ranges::all_of(ends_, [](KernelEnd end) { return end != KernelEnd::left; });
   problem.set_starts(samples, are_solved ? series_of(states_) : std::vector<double>());
 }
 
 void BlockSolver::solve(PoseProblem& problem, const SampleBlock& samples, const OutcomeBlock& outcomes) {
   solver_.prepare(problem.pose());
-  // By stiffness results keep their bits, which depend on where solves start.
+  // With stiffness, starting points are not predicted, because another start changes the last bits of a result.
   const bool is_predicted =
       model_->assembly.metric == Metric::platform && samples.varied.size() == 1 && samples.range > 0.0;
   if (is_predicted) predict_starts(problem, samples);
   run(kernels_.solve, problem, samples, outcomes);
-  nearing_.assign(samples.count, 0.0);
-  const bool may_hold_open = model_->over_constrained || model_->assembly.metric == Metric::stiffness;
-  if (may_hold_open) problem.closure().find_nearing(samples, nearing_);
+  find_details(problem, chain::Fidelity::exact, outcomes);
+  nearing_.resize(samples.count);
+  problem.closure().find_nearing(samples, nearing_);
   std::vector<double> errors(samples.errors.begin(), samples.errors.end());
   for (std::size_t b = 0; b < samples.count; ++b) {
     outcomes.status[b] = SolveStatus::converged;
     outcomes.iterations[b] = iterations_[b];
-    const bool is_near = nearing_[b] < chain::kNearing;
-    if (ends_[b] == KernelEnd::converged && !is_near) continue;
+    if (is_sure(b)) continue;
     for (std::size_t v = 0; v < samples.varied.size(); ++v) {
       errors[samples.varied[v].value] = samples.values[v * samples.count + b];
     }
-    const std::vector<std::vector<Transform>>& frames = frames_.with(errors, problem.pose().displacements);
-    if (ends_[b] != KernelEnd::converged) solve_one(problem, frames, b, outcomes);
-    const bool is_asked = is_near || !solved(outcomes.status[b]);
-    if (is_asked && problem.closure().is_impossible(frames)) outcomes.status[b] = SolveStatus::not_assembled;
+    solve_one(problem, errors, b, outcomes);
   }
 }
 
-/// A sample that the kernel left. Where no stiffness is known and limbs do not deform each other, a machine in which
-/// loops stay open comes to rest with a mismatch.
-void BlockSolver::solve_one(PoseProblem& problem, std::span<const std::vector<Transform>> frames, std::size_t sample,
+/// Whether the kernel solved a sample, and no other solver has to look at it.
+bool BlockSolver::is_sure(std::size_t sample) const {
+  if (ends_[sample] == KernelEnd::left || Closure::may_open(nearing_[sample])) return false;
+  return ends_[sample] == KernelEnd::converged || model_->over_constrained;
+}
+
+/// A sample of which the kernel is not sure.
+void BlockSolver::solve_one(PoseProblem& problem, std::span<const double> errors, std::size_t sample,
                             const OutcomeBlock& outcomes) {
+  if (!model_->over_constrained && problem.closure().is_regular()) {
+    const Solution found = continuation_.solve(problem.pose(), errors);
+    return put(problem, found, sample, outcomes);
+  }
+  const std::vector<std::vector<Transform>>& frames = frames_.with(errors, problem.pose().displacements);
+  // Solver takes hundreds of steps where no loop closes, so the way down comes first.
+  if (problem.closure().opens(nearing_[sample], frames)) {
+    outcomes.status[sample] = SolveStatus::not_assembled;
+  } else if (ends_[sample] == KernelEnd::left) {
+    Solution found = solver_.solve(frames);
+    found.status = problem.closure().judged(found, frames);
+    put(problem, found, sample, outcomes);
+  }
+}
+
+/// Writes a solution as the outcome of a sample.
+void BlockSolver::put(const PoseProblem& problem, const Solution& found, std::size_t sample,
+                      const OutcomeBlock& outcomes) const {
   const Nominal& pose = problem.pose();
-  const Solution found = solver_.solve(frames);
+  outcomes.status[sample] = found.status;
+  outcomes.iterations[sample] = found.iterations;
   const std::vector<double> values = response_values(model_->assembly, model_->report, model_->deforms, pose,
                                                      outcome_of(model_->assembly, pose, found));
   const std::size_t count = outcomes.status.size();
   for (std::size_t r = 0; r < values.size(); ++r) outcomes.responses[r * count + sample] = values[r];
-  outcomes.status[sample] = found.status;
-  outcomes.iterations[sample] = found.iterations;
-  const bool may_be_open = !model_->over_constrained && model_->assembly.metric == Metric::platform;
-  if (may_be_open && solved(found.status) && problem.closure().is_open(found.mismatch)) {
-    outcomes.status[sample] = SolveStatus::not_assembled;
+  if (!outcomes.details.empty()) {
+    put_details(pair_mismatch(*model_, found.mismatch, chain::Fidelity::exact), sample, outcomes);
+  }
+}
+
+/// Computes the additional outputs (mismatch of pairs of limbs) from the mismatch of each limb that a kernel wrote.
+void BlockSolver::find_details(const PoseProblem& problem, chain::Fidelity fidelity, const OutcomeBlock& outcomes) {
+  if (outcomes.details.empty()) return;
+  const std::size_t stride = padded(outcomes.status.size());
+  std::vector<Screw> mismatch(model_->assembly.limbs.size());
+  for (std::size_t b = 0; b < outcomes.status.size(); ++b) {
+    for (std::size_t e = 0; e < mismatch.size(); ++e) {
+      Screw in_units;
+      for (std::size_t k = 0; k < 6; ++k) in_units[static_cast<Index>(k)] = mismatch_[(6 * e + k) * stride + b];
+      mismatch[e] = problem.twists_from_units() * in_units;
+    }
+    put_details(pair_mismatch(*model_, mismatch, fidelity), b, outcomes);
   }
 }
 
 void BlockSolver::map(PoseProblem& problem, const SampleBlock& samples, const OutcomeBlock& outcomes) {
   run(kernels_.map, problem, samples, outcomes);
-  std::ranges::fill(outcomes.status, problem.is_regular() ? SolveStatus::converged : SolveStatus::singular);
+  find_details(problem, chain::Fidelity::first_order, outcomes);
+  if (problem.is_regular()) {
+    const auto status = [](KernelEnd end) {
+      return end == KernelEnd::converged ? SolveStatus::converged : SolveStatus::non_finite;
+    };
+    std::ranges::transform(std::span(ends_).first(samples.count), outcomes.status.begin(), status);
+  } else {
+    std::ranges::fill(outcomes.status, SolveStatus::singular);
+  }
   std::ranges::fill(outcomes.iterations, 1u);
 }
 

@@ -12,18 +12,16 @@ namespace {
 using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 
-/// A drive that moves the platform by less than this share of what the others
-/// do corrects nothing.
+/// A drive corrects nothing if it moves the platform by less than this share of the largest motion by a drive.
 constexpr double kNothing = 1e-9;
 
 Index index(std::size_t value) { return static_cast<Index>(value); }
 
-/// Twists of limbs' ends by a unit of each drive, with all joints that it
-/// moves: [6 limbs x drives].
+/// [6 limbs x drives] The twists of limbs' ends by a unit of each drive. A drive moves all of its joints.
 Matrix driven_twists(const AssemblyModel& model, const Nominal& at) {
   const Index rows = 6 * index(at.limbs.size());
   Matrix twists(rows, 0);
-  std::map<std::size_t, Index> shared;  // columns of drives that move several joints
+  std::map<std::size_t, Index> shared;  // column of each drive that moves several joints
   for (std::size_t e = 0; e < at.limbs.size(); ++e) {
     const std::vector<chain::Joint>& joints = model.assembly.limbs[e].chain.joints;
     for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -41,8 +39,7 @@ Matrix driven_twists(const AssemblyModel& model, const Nominal& at) {
   return twists;
 }
 
-/// From the platform's twist to the twists of all bodies by which the best
-/// correction moves them, [6 bodies x 6].
+/// [6 bodies x 6] The matrix from the platform's twist to the twists by which the best correction moves the bodies.
 Matrix taken_by_drives(const AssemblyModel& model, const Nominal& at) {
   const FirstOrder first_order(model.assembly, at, model.ranks);
   Matrix moved = first_order.effect(driven_twists(model, at)).twists;
@@ -57,13 +54,13 @@ Matrix taken_by_drives(const AssemblyModel& model, const Nominal& at) {
   return moved * linalg::pseudo_inverse(measured) * root;
 }
 
-/// What a pose's corrections follow from.
+/// The nominal state and the correction at one pose.
 struct Correction {
   Nominal at;
-  Matrix taken;  ///< see taken_by_drives()
+  Matrix taken;  ///< matrix from a displacement to the part that the best correction by the drives takes away
 };
 
-/// Row by row the values of one body's displacement in a block of outcomes.
+/// The rows of a sample's responses that state the displacement of one body.
 class Rows {
  public:
   /// first: row of the displacement of the body's origin along x.
@@ -85,7 +82,7 @@ class CalibratedEvaluator final : public Evaluator {
  public:
   CalibratedEvaluator(const AssemblyModel& model, chain::Fidelity fidelity, std::unique_ptr<Evaluator> uncorrected)
       : model_(&model), fidelity_(fidelity), uncorrected_(std::move(uncorrected)) {
-    std::size_t row = model.deforms ? 3 : 0;
+    std::size_t row = model.deforms ? kDeformations : 0;
     for (std::size_t b = kPlatform; b < model.assembly.bodies.size(); ++b) {
       first_rows_.push_back(row);
       row += 8 + (b == kPlatform && model.assembly.tool ? 4 : 0);
@@ -103,7 +100,7 @@ class CalibratedEvaluator final : public Evaluator {
   }
 
  private:
-  static constexpr std::size_t kMostPoses = 256;  ///< that are remembered
+  static constexpr std::size_t kMostPoses = 256;  ///< largest number of poses whose correction is kept
 
   const Correction& correction_at(std::span<const double> pose) {
     if (corrections_.size() > kMostPoses) corrections_.clear();
@@ -117,7 +114,7 @@ class CalibratedEvaluator final : public Evaluator {
 
   void correct(const Matrix& taken, const Nominal& at, std::size_t sample, const OutcomeBlock& outcomes) const {
     Rows platform(outcomes, first_rows_.front(), sample);
-    Screw twist;  // about the base's origin
+    Screw twist;  // twist of the platform about the base's origin
     twist.head<3>() = platform.triple(3);
     twist.tail<3>() = platform.triple(0) - Vector3(twist.head<3>()).cross(at.bodies[kPlatform].p);
     const Eigen::VectorXd by_drives = taken * twist;
@@ -153,8 +150,8 @@ class CalibratedEvaluator final : public Evaluator {
   const AssemblyModel* model_;
   chain::Fidelity fidelity_;
   std::unique_ptr<Evaluator> uncorrected_;
-  std::vector<std::size_t> first_rows_;                    ///< of each body but the base
-  std::map<std::vector<double>, Correction> corrections_;  ///< by pose
+  std::vector<std::size_t> first_rows_;                    ///< first response row of each body except the base
+  std::map<std::vector<double>, Correction> corrections_;  ///< corrections by pose
 };
 
 }  // namespace

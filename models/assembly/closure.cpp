@@ -8,27 +8,29 @@
 #include "engine/base/nan.h"
 #include "engine/linalg/decompositions.h"
 #include "engine/linalg/downhill.h"
+#include "models/chain/assembly.h"
 
 namespace poesy::assembly {
 namespace {
 
 using Eigen::Index;
 
-constexpr double kRest = 1e-10;   ///< a step that moves bodies by less, over the reach, is rest
-constexpr double kClosed = 1e-8;  ///< a mismatch up to this, over the reach, is rounding
+/// The descent has come to rest if a step moves bodies by less than this share of the reach.
+constexpr double kRest = 1e-8;
+constexpr double kClosed = 1e-8;  ///< a mismatch up to this share of the reach counts as rounding
 
-/// Where bodies and joints are, and what is left open there.
+/// The places of bodies and joints, and the remaining mismatch of the limbs.
 struct Configuration {
   std::vector<Transform> bodies;
   std::vector<double> displacements;
   std::vector<LimbState> limbs;
-  Eigen::VectorXd open;  ///< [6 limbs] W^(1/2) xi
+  Eigen::VectorXd open;  ///< [6 limbs] mismatch xi of each limb, multiplied by the root W^(1/2) of the metric
 };
 
-/// Whether a symmetric matrix is positive definite.
+/// Returns true if a symmetric matrix is positive definite.
 bool is_positive(const Eigen::MatrixXd& matrix) { return matrix.allFinite() && linalg::eigenvalues(matrix)[0] > 0.0; }
 
-/// See linalg::comes_to_rest().
+/// The descent of bodies and joints to the least mismatch, for linalg::comes_to_rest().
 class Descent {
  public:
   Descent(const Assembly& assembly, const Nominal& pose, std::span<const std::vector<Transform>> frames)
@@ -42,7 +44,7 @@ class Descent {
   double tried_sum_of_squares() const { return tried_.open.squaredNorm(); }
   void take_step() { here_ = tried_; }
 
-  /// Whether N - 2 C(r) is not positive definite here.
+  /// Returns true if N - 2 C(r) is not positive definite at this configuration (N, C and r: see Closure).
   bool bends_away(const Loops& loops) const {
     const Eigen::VectorXd part = loops.taken_away(here_.open);
     std::vector<Screw> r;
@@ -62,7 +64,7 @@ class Descent {
     const std::optional<Eigen::VectorXd> step =
         linalg::solve_positive_definite(normal, Eigen::VectorXd(B.transpose() * here_.open));
     tried_ = here_;
-    if (!step) return kNaN;
+    if (!step || !step->allFinite()) return kNaN;
     double length = 0.0;
     const Index joints = step->size() - 6 * bodies();
     for (Index b = 0; b < bodies(); ++b) {
@@ -104,7 +106,12 @@ class Descent {
 
 }  // namespace
 
-/// From then on slopes are known at this pose.
+bool is_open(const AssemblyModel& model, const Nominal& pose, std::span<const Screw> mismatch) {
+  double sum = 0.0;
+  for (const Screw& xi : mismatch) sum += xi.dot(pose.W * xi);
+  return std::sqrt(sum) > kClosed * model.assembly.reach;
+}
+
 bool Closure::is_regular() {
   if (loops_) return loops_->is_regular();
   loops_.emplace(model_->assembly, *pose_, model_->idle);
@@ -121,7 +128,7 @@ bool Closure::is_regular() {
 
 void Closure::find_nearing(const SampleBlock& samples, std::span<double> nearing) {
   std::ranges::fill(nearing, 0.0);
-  if (!is_regular()) return;
+  if (!may_hold_open() || !is_regular()) return;
   std::vector<double> constant(samples.errors.begin(), samples.errors.end());
   for (const FactorIndex factor : samples.varied) constant[factor.value] = 0.0;
   std::ranges::fill(nearing, std::inner_product(constant.begin(), constant.end(), nearing_.begin(), 0.0));
@@ -132,10 +139,12 @@ void Closure::find_nearing(const SampleBlock& samples, std::span<double> nearing
   }
 }
 
-bool Closure::is_open(std::span<const Screw> mismatch) const {
-  double sum = 0.0;
-  for (const Screw& xi : mismatch) sum += xi.dot(pose_->W * xi);
-  return std::sqrt(sum) > kClosed * model_->assembly.reach;
+bool Closure::may_open(double nearing) { return nearing < chain::kNearing; }
+
+SolveStatus Closure::judged(const Solution& found, std::span<const std::vector<Transform>> frames) {
+  const bool is_open_at_rest = !may_hold_open() && solved(found.status) && is_open(*model_, *pose_, found.mismatch);
+  const bool is_not_assembled = is_open_at_rest || (!solved(found.status) && is_impossible(frames));
+  return is_not_assembled ? SolveStatus::not_assembled : found.status;
 }
 
 bool Closure::is_impossible(std::span<const std::vector<Transform>> frames) {

@@ -9,36 +9,56 @@
 
 namespace poesy::assembly {
 
-/// Whether the loops of an assembly with errors can be closed at all: bodies and passive joints go downhill from the
-/// nominal pose to where the limbs' mismatch is least, sum of |xi|_W^2. With r the part of the mismatch that is left
-/// there and that bodies and joints could take away from the perfect assembly, and C(r) what it adds to N = B^T W B
-/// (bend), a machine cannot be assembled where N - 2 C(r) is not positive definite: the rule of chain::Assembly.
-/// Stiffness plays no part in it.
+/// Whether this mismatch [limbs] by the metric of the platform's points is more than rounding.
+bool is_open(const AssemblyModel& model, const Nominal& pose, std::span<const Screw> mismatch);
+
+/// Decides whether the loops of an assembly with errors can be closed at all, if limbs deform each other. Otherwise
+/// Continuation decides. Bodies and passive joints descend from the nominal pose to where the sum of |xi|_W^2 over the
+/// limbs is least; xi is the mismatch of a limb, and W the metric of the platform's points. Let r be the part of the
+/// remaining mismatch that bodies and joints of the perfect assembly could take away. C(r) is what r adds to the matrix
+/// N = B^T W B of the loops (bend(), Loops). A machine cannot be assembled where N - 2 C(r) is not positive definite.
+/// This is the rule of chain::Assembly; stiffness has no influence on it.
 ///
-/// Plain double arithmetic, for samples that a solver did not solve or whose errors bring loops near their end.
+/// Uses plain double arithmetic. It is meant for two sorts of samples: those that a solver did not solve, and those
+/// whose errors may open a loop.
 class Closure {
  public:
-  /// At this pose. Both must outlive it.
+  /// Decides for machines at this pose. Both arguments must outlive this object.
   Closure(const AssemblyModel& model, const Nominal& pose) : model_(&model), pose_(&pose) {}
 
-  /// The first-order change of ln det N by the errors of each sample, [B]: machines with less than chain::kNearing may
-  /// be ones that cannot be assembled. 0 where the perfect loops are singular.
+  /// [B] Computes the first-order change of ln det N by the errors of each of B samples. If the change is less than
+  /// chain::kNearing, the machine may be impossible to assemble. The result is 0 if the perfect loops are singular. It
+  /// is also 0 if limbs cannot hold a loop open, because they have no stiffness and do not deform each other.
   void find_nearing(const SampleBlock& samples, std::span<double> nearing);
 
-  /// Whether this mismatch [limbs] is more than rounding.
-  bool is_open(std::span<const Screw> mismatch) const;
+  /// Returns true if errors may open a loop. nearing: from find_nearing().
+  static bool may_open(double nearing);
 
-  /// frames: of each limb with errors, [limbs][n + 1]. False where the way down comes to no end, and where the perfect
-  /// loops are singular.
+  /// Returns true if the errors of a machine may open a loop and the machine cannot be assembled. nearing: from
+  /// find_nearing(). frames: [limbs][n + 1] fixed frames with errors.
+  bool opens(double nearing, std::span<const std::vector<Transform>> frames) {
+    return may_open(nearing) && is_impossible(frames);
+  }
+
+  /// The status of a sample that Solver has tried. It becomes not_assembled if the sample is not solved and
+  /// is_impossible(). It also becomes not_assembled if limbs cannot hold a loop open, but Solver came to rest with a
+  /// mismatch. frames: as for opens().
+  SolveStatus judged(const Solution& found, std::span<const std::vector<Transform>> frames);
+
+  /// Returns true if a machine cannot be assembled. frames: [limbs][n + 1] fixed frames with errors. Returns false if
+  /// the descent does not come to rest, or if the perfect loops are singular.
   bool is_impossible(std::span<const std::vector<Transform>> frames);
 
- private:
+  /// Whether the perfect loops are regular. The first call computes the loops and their slopes.
   bool is_regular();
+
+ private:
+  bool may_hold_open() const { return model_->over_constrained || model_->assembly.metric == Metric::stiffness; }
 
   const AssemblyModel* model_;
   const Nominal* pose_;
-  std::optional<Loops> loops_;   ///< once asked for
-  std::vector<double> nearing_;  ///< [F] of a unit of each error
+  std::optional<Loops> loops_;   ///< perfect loops, computed when they are first needed
+  std::vector<double> nearing_;  ///< [F] first-order change of ln det N per unit of each error
 };
 
 }  // namespace poesy::assembly

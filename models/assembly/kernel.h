@@ -1,6 +1,6 @@
 #pragma once
 
-// Included only by kernels.cpp, which is compiled once for each instruction set.
+// Only kernels.cpp includes this file. It is compiled once for each instruction set.
 
 #include "models/assembly/kernel_constant.h"
 #include "models/assembly/kernel_meet.h"
@@ -8,14 +8,14 @@
 
 namespace poesy::assembly {
 
-/// Limbs against bodies, for batches of samples: the equations of Solver, from where first order leads, in which p is
-/// carried as an unknown: in its place C^-1 xi would turn rounding into force, and converge for small errors alone.
-/// Step: ConstantStep, MeetStep or OwnStep. A lane depends on its own sample only: one that has settled stays where it
-/// is.
+/// Solves batches of samples of an assembly: the equations of Solver, which start at the first-order solution. The
+/// wrenches p are unknowns of their own. If they were replaced by C^-1 xi, rounding would appear as force, and only
+/// samples with small errors would converge. Step is ConstantStep, MeetStep or OwnStep. A lane depends only on its own
+/// sample; a lane that has settled no longer moves.
 template <class T, class Step>
 class AssemblyKernel {
  public:
-  /// Both must outlive it.
+  /// Both arguments must outlive this object.
   AssemblyKernel(const KernelProblem& problem, const KernelBlock& block)
       : problem_(problem),
         block_(block),
@@ -24,7 +24,7 @@ class AssemblyKernel {
         state_(problem, block),
         step_(problem) {}
 
-  void solve() {  ///< Writes what every sample gives.
+  void solve() {  ///< Solves all samples and writes their outcomes.
     for (std::size_t at = 0; at < block_.count; at += T::kLanes) solve_batch(at);
   }
 
@@ -36,23 +36,31 @@ class AssemblyKernel {
     before_ = {.places = T(problem_.start.is_used ? 1e300 : 1.0), .wrenches = T(1e300)};
     Mask active = T(0.0) < T(1.0);
     Mask left = active;
+    Mask doubtful = state_.start_move() > T(kFarStart);
     T iterations(0.0);
     for (int n = 0; n < problem_.most_rounds && any(active); ++n) {
       iterations = select(active, iterations + T(1.0), iterations);
       const LaneChange<T> change = step_.round(state_, active, n);
       const Mask settled = active & has_settled(change) & !change.refused;
+      if (n > 0) doubtful = doubtful | (active & is_slow(change));
       before_ = change;
       left = left & !settled;
       active = active & !(settled | change.refused);
     }
+    left = left | !state_.is_finite();  // the largest change may hide a change that is not a number
     if (block_.states != nullptr) state_.store(block_.states + at);
     state_.report(outcome_);
     reporter_.write(outcome_, at);
-    end(at, left, iterations);
+    end(at, left, doubtful, iterations);
   }
 
-  /// Whether the next round would change no more than rounding: by this one's change, or where that is small enough to
-  /// shrink on as it did in this round.
+  /// Whether this round moved bodies or joints, and not much less than the one before.
+  Mask is_slow(const LaneChange<T>& change) const {
+    return (change.places > T(kMoves)) & (change.places > T(kSlow) * before_.places);
+  }
+
+  /// The lanes in which the next round would change no more than rounding. In such a lane this round changed no more
+  /// than rounding, or its change is small and the changes shrink fast enough.
   Mask has_settled(const LaneChange<T>& change) const {
     const T tolerance(problem_.tolerance * problem_.tolerance);
     const auto rests = [](T now, T before, T limit, T small) {
@@ -67,21 +75,27 @@ class AssemblyKernel {
     return settled & (change.places < T(kFarthest));
   }
 
-  void end(std::size_t at, Mask left, T iterations) const {
-    const unsigned lanes = bits(left);
+  void end(std::size_t at, Mask left, Mask doubtful, T iterations) const {
+    // The series through solved nodes is smooth, so it leads to no other solution.
+    put_ends(bits(left), problem_.start.is_used ? 0 : bits(doubtful), T::kLanes, block_.ends + at);
     double counted[T::kLanes];
     iterations.store(counted);
     for (std::size_t lane = 0; lane < T::kLanes; ++lane) {
-      block_.ends[at + lane] = (lanes >> lane & 1u) != 0 ? KernelEnd::left : KernelEnd::converged;
       block_.iterations[at + lane] = static_cast<std::uint32_t>(counted[lane]);
     }
   }
 
-  static constexpr double kWrenches = 1e-24;       ///< square of the share of all wrenches that is rounding
-  static constexpr double kShortWrenches = 1e-14;  ///< square of such a share up to which the next one is foreseen
-  static constexpr double kNext = 1e-2;       ///< square of the share of the tolerance that a next round may change
-  static constexpr double kShort = 1e12;      ///< square of a change over the tolerance up to which it is foreseen
-  static constexpr double kFarthest = 100.0;  ///< square of a move beyond which a lane has diverged
+  /// Change of the wrenches that counts as rounding, as a share of all wrenches; squared.
+  static constexpr double kWrenches = 1e-24;
+  /// Change of the wrenches below which the next change is predicted, as a share of all wrenches; squared.
+  static constexpr double kShortWrenches = 1e-14;
+  /// Predicted change at which a lane settles, as a share of the tolerance; squared.
+  static constexpr double kNext = 1e-2;
+  static constexpr double kShort = 1e12;  ///< change over the tolerance below which the next one is predicted; squared
+  static constexpr double kFarStart = 0.25;   ///< move to the start from which on a lane is doubtful; squared
+  static constexpr double kMoves = 1e-20;     ///< change below which a round is near its end; squared
+  static constexpr double kSlow = 0.5625;     ///< share of the change before from which on a round is slow; squared
+  static constexpr double kFarthest = 100.0;  ///< a larger move means that a lane has diverged; squared
 
   const KernelProblem& problem_;
   const KernelBlock& block_;
@@ -89,10 +103,10 @@ class AssemblyKernel {
   LaneOutcome<T> outcome_;
   LaneAssembly<T> state_;
   Step step_;
-  LaneChange<T> before_;  ///< of the last round
+  LaneChange<T> before_;  ///< changes of the previous round
 };
 
-/// Solves a block with batches of T.
+/// Solves a block of samples with batches of T.
 template <class T>
 void solve_assemblies(const KernelProblem& problem, const KernelBlock& block) {
   if (problem.start.is_used) return AssemblyKernel<T, ConstantStep<T>>(problem, block).solve();

@@ -1,6 +1,6 @@
 #pragma once
 
-// Included only by kernels.cpp, which is compiled once for each instruction set.
+// Only kernels.cpp includes this file. It is compiled once for each instruction set.
 
 #include <algorithm>
 #include <utility>
@@ -9,20 +9,21 @@
 
 namespace poesy::assembly {
 
-/// The first order of batches of samples.
+/// Computes the first-order outcomes of batches of samples; see KernelMap.
 template <class T>
 class KernelMapper {
  public:
-  static constexpr std::size_t kAllRows = static_cast<std::size_t>(-1);  ///< all coordinates
+  /// Value of `rows` that means that all coordinates are wanted.
+  static constexpr std::size_t kAllRows = static_cast<std::size_t>(-1);
 
-  /// Both must outlive it. rows: coordinates that are wanted.
+  /// Both arguments must outlive this object. rows: number of coordinates that are wanted.
   KernelMapper(const KernelProblem& problem, const KernelBlock& block, std::size_t rows)
       : problem_(problem),
         map_(problem.map),
         block_(block),
         coordinates_(std::min(rows, first_joint() + problem.joints)) {}
 
-  /// Of the lanes from sample `at` on, until the next call.
+  /// The coordinates for the lanes from sample `at` on. They are valid until the next call.
   const T* coordinates(std::size_t at) {
     for (std::size_t row = 0; row < coordinates_.size(); row += kRows) {
       multiply_some(row, at, std::make_index_sequence<kRows>());
@@ -30,7 +31,7 @@ class KernelMapper {
     return coordinates_.data();
   }
 
-  /// The limbs' wrenches [6 x limbs] at coordinates.
+  /// Computes the limbs' wrenches [6 x limbs] from coordinates.
   void wrenches(const T* coordinates, T* made) const {
     const T* stress = coordinates + first_stress();
     const double* of = map_.wrenches.data();
@@ -41,20 +42,22 @@ class KernelMapper {
     }
   }
 
-  std::size_t first_stress() const { return 6 * (problem_.bodies.size() - 1); }  ///< among coordinates
-  std::size_t first_joint() const { return first_stress() + map_.stresses; }     ///< among coordinates
+  /// Position of the first stress among the coordinates of KernelMap.
+  std::size_t first_stress() const { return 6 * (problem_.bodies.size() - 1); }
+  /// Position of the first joint among these coordinates.
+  std::size_t first_joint() const { return first_stress() + map_.stresses; }
 
  private:
   static constexpr std::size_t kRows = KernelMap::kRows;
 
-  /// As many rows from one on as there are, at most kRows.
+  /// Computes the rows from `row` on: kRows rows, or the remaining ones if there are fewer.
   template <std::size_t... n>
   void multiply_some(std::size_t row, std::size_t at, std::index_sequence<n...>) {
     const std::size_t count = std::min(kRows, coordinates_.size() - row);
     ((count == n + 1 ? multiply<n + 1>(row, at) : void()), ...);
   }
 
-  /// Rows at once, so that each value is read once for them.
+  /// Computes several rows together, so that each value is read only once.
   template <std::size_t rows>
   void multiply(std::size_t row, std::size_t at) {
     T sum[rows];
@@ -74,7 +77,7 @@ class KernelMapper {
   std::vector<T> coordinates_;
 };
 
-/// How a twist displaces a point, to first order.
+/// Computes the displacement of a point by a twist, to first order.
 template <class T>
 void displace(const T* twist, const double* point, T* moved) {
   const T p[3] = {T(point[0]), T(point[1]), T(point[2])};
@@ -82,7 +85,7 @@ void displace(const T* twist, const double* point, T* moved) {
   simd::add_cross(twist, p, moved);
 }
 
-/// A block to first order, with batches of T.
+/// Computes a block of samples to first order, with batches of T.
 template <class T>
 void map_assemblies(const KernelProblem& problem, const KernelBlock& block) {
   KernelMapper<T> mapper(problem, block, 6 * (problem.bodies.size() - 1) + problem.map.stresses);
@@ -93,6 +96,9 @@ void map_assemblies(const KernelProblem& problem, const KernelBlock& block) {
   }
   for (std::size_t at = 0; at < block.count; at += T::kLanes) {
     const T* coordinates = mapper.coordinates(at);
+    T sum(0.0);
+    for (std::size_t k = 0; k < mapper.first_stress(); ++k) sum = sum + abs(coordinates[k]);
+    put_ends(~bits(sum < T(1e300)), 0, T::kLanes, block.ends + at);
     for (std::size_t b = 1; b < problem.bodies.size(); ++b) {
       const T* twist = coordinates + 6 * (b - 1);
       displace(twist, problem.bodies[b].p, outcome.bodies[b].moved);

@@ -4,190 +4,212 @@
 #include <cstdint>
 #include <vector>
 
-/// What the kernel of assemblies solves, as plain numbers: no type of another room, so that it is compiled for each
-/// instruction set. Lengths are in units of the reach, about the middle of the platform's points and along the axes in
-/// which their metric is diagonal; compliances in units of the largest.
+/// The problem that the kernels of assemblies solve. It consists of plain numbers and uses no types of other folders,
+/// because the kernels are compiled for each instruction set. Lengths are in units of the reach. The origin is the
+/// centroid of the platform's points, and the axes are those in which their metric is diagonal. The unit of compliances
+/// is the largest compliance.
 namespace poesy::assembly {
 
-/// A rigid motion: rotation by rows, then translation.
+/// A rigid motion.
 struct KernelMotion {
-  double r[9];  ///< rotation
+  double r[9];  ///< rotation matrix, row by row
   double p[3];  ///< translation
 };
 
-/// A constant motion that others are multiplied by.
+/// A constant factor of a product of motions.
 struct KernelConstant {
-  /// What a motion may be.
+  /// Whether a motion is the identity, only a translation, or any motion.
   enum class Shape : std::uint8_t { identity, translation, any };
-  KernelMotion motion;  ///< all of it
-  Shape shape;          ///< which parts of it are not those of the identity
+  KernelMotion motion;  ///< the whole motion
+  Shape shape;          ///< form of the motion, by which a product skips the parts that change nothing
 };
 
-/// The error of a fixed frame, rotation exp(omega) and translation v, or the inverse of that.
+/// The error of a fixed frame, with rotation exp(omega) and translation v, or its inverse.
 struct KernelError {
-  bool turns;          ///< whether an angle varies or is not 0
-  bool inverted;       ///< the limb's last one
-  int varied[6];       ///< row of the values of each entry of [omega; v]; -1: it is constant
-  double unit[6];      ///< by which these values are multiplied
-  double constant[6];  ///< of entries that do not vary
+  bool turns;          ///< true if the error has a rotation: an angle varies or is not zero
+  bool inverted;       ///< true if the inverse is applied, as in the limb's last frame
+  int varied[6];       ///< row of KernelBlock::values for each component of [omega; v]; -1 if the component is constant
+  double unit[6];      ///< factor of each varied value
+  double constant[6];  ///< value of each constant component
 };
 
-/// before * error
+/// A constant motion, followed by the error of a frame.
 struct KernelPiece {
-  KernelConstant before;  ///< of the error
-  KernelError error;      ///< of one frame
+  KernelConstant before;  ///< motion before the error
+  KernelError error;      ///< error of one frame
 };
 
-/// What is between two joints of a limb: pieces * behind. Frames without error and joints that keep their place are in
-/// the constants.
+/// The motion between two joints of a limb: the product of all pieces and of `behind`. The constant motions include
+/// frames without errors, and joints that do not move.
 struct KernelSegment {
-  std::vector<KernelPiece> pieces;  ///< one for each frame with an error
-  KernelConstant behind;            ///< of the last error
+  std::vector<KernelPiece> pieces;  ///< a piece for each frame with an error
+  KernelConstant behind;            ///< motion behind the last error
 };
 
-/// A joint that moves, or whose frame is reported.
+/// A joint that moves, or a joint whose frame is reported.
 struct KernelJoint {
-  bool slides;          ///< along z; else it turns about z
-  double advance;       ///< of one that turns, along z per rad
-  int passive;          ///< its place among the limb's passive joints; -1: it keeps its place
-  int mark;             ///< its place among the frames that are reported; -1: it is not
-  double displacement;  ///< nominal
+  bool slides;          ///< true: it slides along z; false: it rotates about z
+  double advance;       ///< displacement along z per rad of a rotating joint
+  int passive;          ///< position among the limb's passive joints; -1 if it does not move
+  int mark;             ///< position among the reported frames; -1 if its frame is not reported
+  double displacement;  ///< nominal displacement
 };
 
-/// Passive joints of a limb in a matrix of its own.
+/// The largest number of passive joints of a limb in problems whose samples have matrices of their own.
 inline constexpr std::size_t kMostOwnJoints = 6;
 
-/// A limb from one body to another, and what its linear equations are made of; see Equilibrium.
+/// A limb from one body to another, with the data of its linear equations; see Equilibrium.
 struct KernelLimb {
-  std::size_t from;                     ///< body
-  std::size_t to;                       ///< body
-  std::vector<KernelJoint> joints;      ///< [n]
-  std::vector<KernelSegment> segments;  ///< [n + 1]; the base's place is in the first one of a limb that begins there
-  std::size_t passive;                  ///< how many joints are
-  std::size_t first_joint;              ///< where they begin among those of all limbs
-  std::size_t first_wrench;             ///< where its lambda begins
-  std::size_t carried;                  ///< how many it has
-  std::vector<double> carry;            ///< [6 x carried] N, row by row
-  std::vector<double> give;             ///< [passive x 6] dq of least norm from a twist
-  double compliance[36];                ///< C
-  double stiffness[36];                 ///< C^-1, where limbs have matrices of their own
-  bool is_diagonal;                     ///< whether C^-1 is
-  std::vector<double> idle;             ///< [passive squared] what keeps freedoms that move nothing where they are
+  std::size_t from;                 ///< position of the body at which the limb begins
+  std::size_t to;                   ///< position of the body at which the limb ends
+  std::vector<KernelJoint> joints;  ///< [n] joints that move or are reported
+  /// [n + 1] Motions between joints. The first one includes the place of the base if the limb begins at the base.
+  std::vector<KernelSegment> segments;
+  std::size_t passive;       ///< number of passive joints
+  std::size_t first_joint;   ///< position of the limb's first passive joint among those of all limbs
+  std::size_t first_wrench;  ///< position of the limb's first lambda (coordinate of its wrench) among all lambda
+  std::size_t carried;       ///< number of the limb's lambda
+  /// [6 x carried] Basis of the wrenches that the limb can carry (N of Equilibrium), row by row.
+  std::vector<double> carry;
+  std::vector<double> give;  ///< [passive x 6] matrix from a twist to displacements of the passive joints of least norm
+  double compliance[36];     ///< compliance of the limb, row by row
+  double stiffness[36];      ///< inverse of the compliance, row by row, if samples have matrices of their own
+  bool is_diagonal;          ///< true if the inverse of the compliance is diagonal
+  /// [passive squared] Terms that make the limb's matrix regular in spite of idle freedoms.
+  std::vector<double> idle;
 };
 
-/// A joint's frame in the report.
+/// A joint whose frame is reported.
 struct KernelMark {
-  std::size_t limb;   ///< whose wrench acts there
-  std::size_t mark;   ///< place of the frame
-  KernelJoint joint;  ///< at which it is
+  std::size_t limb;   ///< position of the limb whose wrench acts on the joint
+  std::size_t mark;   ///< position among the reported frames
+  KernelJoint joint;  ///< the joint itself
 };
 
-/// What is reported of a sample, in the order of response_values().
+/// The data that a sample's responses need, in the order of response_values().
 struct KernelReport {
-  bool deforms;                             ///< whether mismatch is
-  bool has_tool;                            ///< whether the tool's point is
-  bool has_forces;                          ///< whether energy, forces and moments are
-  double metric[6];                         ///< diagonal of W: a twist's square (m^2)
-  double origin[3];                         ///< of the platform, nominal
-  double share;                             ///< 2 / independent loops
-  double axes[9];                           ///< the base's axes from the kernel's
-  double arm[3];                            ///< from the platform's origin to the tool, nominal
-  double length;                            ///< unit (m)
-  double force;                             ///< unit (N)
-  double moment;                            ///< unit (N m); also that of energy (J)
-  std::size_t marks;                        ///< frames of joints that are reported
-  std::vector<KernelMotion> nominal_marks;  ///< [marks]
-  std::vector<std::size_t> moments;         ///< [limbs] mark of the point about which its moment is
-  std::vector<KernelMark> drives;           ///< in order
-  std::vector<KernelMark> reactions;        ///< in order
+  bool deforms;                             ///< true if mismatch is reported
+  bool has_motions;                         ///< true if displacements of bodies are reported
+  bool has_tool;                            ///< true if the displacement of the tool point is reported
+  bool has_forces;                          ///< true if energy, forces and moments are reported
+  double metric[6];                         ///< diagonal of the metric, which gives the square (m^2) of a twist
+  double origin[3];                         ///< nominal origin of the platform
+  double share;                             ///< 2 / number of independent loops
+  double axes[9];                           ///< rotation from the kernel's axes to the base's axes
+  double arm[3];                            ///< nominal vector from the platform's origin to the tool point
+  double length;                            ///< unit of lengths (m)
+  double force;                             ///< unit of forces (N)
+  double moment;                            ///< unit of moments (N m) and of energy (J)
+  std::size_t marks;                        ///< number of joint frames that are reported
+  std::vector<KernelMotion> nominal_marks;  ///< [marks] nominal joint frames
+  std::vector<std::size_t> moments;         ///< [limbs] mark at whose point the limb's moment is taken
+  std::vector<KernelMark> drives;           ///< driven joints, in order
+  std::vector<KernelMark> reactions;        ///< joints whose reactions are reported, in order
 
-  /// Responses of an assembly of that many bodies, with the base, and limbs.
+  /// The number of responses (rows of KernelBlock::responses) of an assembly with this number of bodies (including the
+  /// base) and limbs.
   std::size_t rows(std::size_t bodies, std::size_t limbs) const {
     const std::size_t of_forces = has_forces ? 1 + 2 * limbs + drives.size() + 6 * reactions.size() : 0;
-    return (deforms ? 3 : 0) + 8 * (bodies - 1) + (has_tool ? 4 : 0) + of_forces;
+    const std::size_t of_motions = has_motions ? 8 * (bodies - 1) + (has_tool ? 4 : 0) : 0;
+    return (deforms ? 3 : 0) + of_motions + of_forces;
   }
 };
 
-/// The first order of samples: coordinates = offset + matrix * values that vary. Coordinates are the twists of bodies
-/// without the base [6 x (bodies - 1)], stresses, displacements of passive joints.
+/// The map from the varied values to first-order outcomes: coordinates = offset + matrix * values. The coordinates are,
+/// in this order, the twists of the bodies without the base [6 x (bodies - 1)], the stresses, and the displacements of
+/// passive joints.
 struct KernelMap {
-  static constexpr std::size_t kRows = 12;  ///< that are multiplied at once
-  std::size_t entries;                      ///< values that vary
-  std::size_t stresses;                     ///< coordinates of the wrenches that limbs put on each other
-  std::vector<double> units;                ///< [entries] by which values are multiplied
-  std::vector<double> offset;               ///< [rows, padded]
-  std::vector<double> matrix;               ///< [rows / kRows, padded][entries][kRows]
-  std::vector<double> wrenches;             ///< [6 limbs x stresses] of a unit of each stress, row by row
-  std::vector<double> by_load;              ///< [6 limbs] of the load
+  static constexpr std::size_t kRows = 12;  ///< number of coordinates that are computed together
+  std::size_t entries;                      ///< number of varied values
+  std::size_t stresses;        ///< number of stresses: the coordinates of wrenches by which limbs load each other
+  std::vector<double> units;   ///< [entries] factor of each varied value
+  std::vector<double> offset;  ///< [coordinates, padded] coordinates without the varied errors
+  /// [coordinates / kRows, padded][entries][kRows] coordinates per unit of each varied value.
+  std::vector<double> matrix;
+  std::vector<double> wrenches;  ///< [6 limbs x stresses] wrenches per unit of each stress, row by row
+  std::vector<double> by_load;   ///< [6 limbs] wrenches caused by the load
 };
 
-/// Where solves with one varied error start: Chebyshev series of the state in t
-/// = scale (value - centre), for |t| <= 1. A state has the twists of bodies
-/// without the base [6 x (bodies - 1)], the wrenches of limbs [6 x limbs], and
-/// what passive joints are displaced by from the nominal pose.
+/// Starting points of solves with one varied error: Chebyshev series of the state in t = scale (value - centre), for
+/// |t| <= 1. A state consists of the twists of the bodies without the base [6 x (bodies - 1)], the wrenches of the
+/// limbs [6 x limbs], and the displacements of the passive joints from the nominal pose.
 struct KernelStart {
-  static constexpr std::size_t kTerms = 16;  ///< of a series
-  bool is_used;                              ///< by these samples
-  double centre;                             ///< of the error's range
-  double scale;                              ///< 1 / half of its width
-  std::vector<double> coefficients;          ///< [rows of a state x kTerms]
+  static constexpr std::size_t kTerms = 16;  ///< number of terms of a series
+  bool is_used;                              ///< true if the samples start from the series
+  double centre;                             ///< centre of the error's range
+  double scale;                              ///< 1 / (half the width of the range)
+  std::vector<double> coefficients;          ///< [numbers of a state x kTerms] coefficients of the series
 };
 
-/// With which matrices rounds step.
+/// The kind of matrix with which a round makes its steps.
 enum class KernelStep : std::uint8_t {
-  constant,  ///< the inverse of the nominal pose
-  meet,      ///< projections of each sample, where limbs have no wrenches
-  own        ///< matrices of each sample
+  constant,  ///< the inverse matrix of the nominal pose: ConstantStep
+  meet,      ///< projections of each sample, if limbs have no wrenches: MeetStep
+  own        ///< matrices of each sample: OwnStep
 };
 
-/// An assembly at a pose, with its errors.
+/// An assembly at a pose, with errors.
 struct KernelProblem {
-  std::vector<KernelMotion> bodies;  ///< nominal; the base too
-  std::vector<KernelLimb> limbs;     ///< in the order of the file
-  std::size_t joints;                ///< that are passive, of all limbs
-  std::size_t size;                  ///< of the linear equations: all lambda, then 6 for each body but the base
-  std::vector<double> inverse;       ///< [size x size] of their nominal matrix, row by row
-  std::vector<double> load;          ///< [6 x bodies]
-  bool carries;                      ///< whether there are wrenches: limbs deform each other, or a load acts
-  KernelStep step;                   ///< of rounds
-  double measured[6];                ///< from a twist to that by which its mismatch is measured, at most 1
-  double unmeasured[6];              ///< and back
-  bool wants_wrenches;               ///< whether wrenches must have settled too
-  double tolerance;                  ///< of a body's move
-  int most_rounds;                   ///< then a sample is left to another solver
-  KernelReport report;               ///< of each sample
-  KernelMap map;                     ///< first order
-  KernelStart start;                 ///< of one varied error
+  std::vector<KernelMotion> bodies;  ///< nominal places of all bodies, including the base
+  std::vector<KernelLimb> limbs;     ///< limbs, in the order of the file
+  std::size_t joints;                ///< number of passive joints of all limbs
+  std::size_t size;                  ///< number of linear equations: all lambda, then 6 for each body except the base
+  std::vector<double> inverse;       ///< [size x size] inverse of the nominal matrix, row by row
+  std::vector<double> load;          ///< [6 x bodies] wrench of the load on each body
+  bool carries;                      ///< true if limbs have wrenches, because they deform each other or a load acts
+  KernelStep step;                   ///< the matrix with which rounds make their steps
+  /// Factors, at most 1, from a twist to measured coordinates, whose sum of squares is that of the metric.
+  double measured[6];
+  double unmeasured[6];  ///< inverses of the factors
+  bool wants_wrenches;   ///< true if wrenches must settle too
+  double tolerance;      ///< tolerance of the changes of bodies and joints, in units of the reach
+  int most_rounds;       ///< number of rounds after which a sample is left to another solver
+  KernelReport report;   ///< what is reported of each sample
+  KernelMap map;         ///< the first-order outcomes
+  KernelStart start;     ///< starting points of samples with one varied error
 
-  /// Rows of a state.
+  /// The number of rows of a state, see KernelStart.
   std::size_t rows_of_state() const { return 6 * (bodies.size() - 1 + limbs.size()) + joints; }
 };
 
-/// How the kernel left a sample.
-enum class KernelEnd : std::uint8_t { converged, left };
+/// How the kernel ended a sample: converged; converged, but at one time so slowly that it may have gone to another
+/// solution than the one that grows from the nominal pose; or left to another solver.
+enum class KernelEnd : std::uint8_t { converged, doubtful, left };
 
-/// A block of samples. stride: at least count, and a multiple of the lanes of every instruction set.
+/// A block of samples. The stride is at least count, and a multiple of the number of lanes of every instruction set.
 struct KernelBlock {
-  std::size_t count;          ///< samples
-  std::size_t stride;         ///< from row to row
-  const double* values;       ///< [entries x stride] errors that vary
-  double* responses;          ///< [responses x stride] SI; of samples that are left, anything
-  KernelEnd* ends;            ///< [stride]; first order does not write it
-  std::uint32_t* iterations;  ///< [stride]; first order does not write it
-  double* states = nullptr;   ///< [rows of a state x stride] where solves ended;
-                              ///< null: nobody asks
+  std::size_t count;     ///< number of samples
+  std::size_t stride;    ///< distance between rows, in numbers
+  const double* values;  ///< [entries x stride] values of the varied errors
+  /// [responses x stride] Responses, SI; arbitrary for samples with KernelEnd::left, which another solver must solve.
+  double* responses;
+  /// [stride] End of each sample; to first order, `left` means that errors are not finite.
+  KernelEnd* ends;
+  std::uint32_t* iterations;  ///< [stride] iterations of each sample; not written to first order
+  double* states = nullptr;   ///< [rows of a state x stride] states at the end of solves; null if not wanted
+  /// [6 limbs x stride] Mismatch xi of each limb, in the kernel's units and axes; null if not wanted.
+  double* mismatch = nullptr;
 };
 
-/// Lanes of the widest instruction set.
+/// Writes how the samples in these lanes ended. Bit k of `left` or `doubtful` is set if the sample in lane k ended in
+/// this way; if neither is set, the sample converged.
+static inline void put_ends(unsigned left, unsigned doubtful, std::size_t lanes, KernelEnd* ends) {
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const auto is_set = [lane](unsigned bits) { return (bits >> lane & 1u) != 0; };
+    ends[lane] = is_set(left) ? KernelEnd::left : is_set(doubtful) ? KernelEnd::doubtful : KernelEnd::converged;
+  }
+}
+
+/// The number of lanes of the widest instruction set.
 inline constexpr std::size_t kKernelLanes = 8;
 
-/// Works on a block.
+/// A function that computes the outcomes of a block of samples.
 using KernelWork = void (*)(const KernelProblem& problem, const KernelBlock& block);
 
-/// Of one instruction set.
+/// The kernels of one instruction set.
 struct Kernels {
-  KernelWork solve;  ///< exactly
-  KernelWork map;    ///< to first order
+  KernelWork solve;  ///< solves blocks exactly
+  KernelWork map;    ///< solves blocks to first order
 };
 
 }  // namespace poesy::assembly

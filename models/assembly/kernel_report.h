@@ -1,47 +1,46 @@
 #pragma once
 
-// Included only by kernels.cpp, which is compiled once for each instruction set.
+// Only kernels.cpp includes this file. It is compiled once for each instruction set.
 
 #include "models/assembly/kernel_motion.h"
 
 namespace poesy::assembly {
 
-/// How a body is displaced, in the kernel's units and axes.
+/// The displacement of a body, in the kernel's units and axes.
 template <class T>
 struct LaneDisplacement {
-  T moved[3];  ///< its origin
+  T moved[3];  ///< displacement of the body's origin
   T theta[3];  ///< rotation vector
 };
 
-/// What a batch of samples gives, and what every response follows from.
+/// The outcome of a batch of samples, from which all responses follow.
 template <class T>
 struct LaneOutcome {
-  /// For an assembly of that many bodies, limbs and reported frames.
+  /// Allocates memory for the bodies, limbs and reported frames of this problem.
   explicit LaneOutcome(const KernelProblem& problem)
       : bodies(problem.bodies.size()), wrenches(6 * problem.limbs.size()), marks(problem.report.marks) {}
 
-  std::vector<LaneDisplacement<T>> bodies;  ///< [bodies]; the base's is not read
-  T tool[3];                                ///< displacement of the tool's point, where there is one
-  std::vector<T> wrenches;                  ///< [6 x limbs] p
-  std::vector<LaneMotion<T>> marks;         ///< [marks] frames of joints before their motion
+  std::vector<LaneDisplacement<T>> bodies;  ///< [bodies] displacements; the base's is not read
+  T tool[3];                                ///< displacement of the tool point, if there is a tool
+  std::vector<T> wrenches;                  ///< [6 x limbs] wrench of each limb on the body at its end
+  std::vector<LaneMotion<T>> marks;         ///< [marks] frames of joints before the joints move
 };
 
-/// Writes the responses of a batch, as response_values() does for one sample.
+/// Writes the responses of a batch of samples, like response_values() for one sample.
 template <class T>
 class KernelReporter {
  public:
-  /// Both must outlive it.
+  /// Both arguments must outlive this object.
   KernelReporter(const KernelProblem& problem, const KernelBlock& block)
       : problem_(problem), report_(problem.report), block_(block) {}
 
-  /// Of the lanes from sample `at` on.
+  /// Writes the responses of the lanes from sample `at` on.
   void write(const LaneOutcome<T>& outcome, std::size_t at) {
     row_ = block_.responses + at;
     if (report_.deforms) put_deformation(outcome);
-    put(outcome.bodies[1]);
-    if (report_.has_tool) put_vector(outcome.tool, report_.length, true);
-    for (std::size_t b = 2; b < outcome.bodies.size(); ++b) put(outcome.bodies[b]);
+    if (report_.has_motions) put_motions(outcome);
     if (report_.has_forces) put_forces(outcome);
+    if (block_.mismatch != nullptr) write_mismatch(outcome, at);
   }
 
  private:
@@ -50,7 +49,7 @@ class KernelReporter {
     row_ += block_.stride;
   }
 
-  /// Along the base's axes, in SI; its length behind it on demand.
+  /// Writes a vector along the base's axes, in SI. with_norm: also writes its length behind it.
   void put_vector(const T* vector, double unit, bool with_norm) {
     for (int row = 0; row < 3; ++row) {
       const double* axis = report_.axes + 3 * row;
@@ -68,7 +67,22 @@ class KernelReporter {
     put(norm(body.theta, 1.0));
   }
 
-  /// C p: what is left open between a limb and its body.
+  void put_motions(const LaneOutcome<T>& outcome) {
+    put(outcome.bodies[1]);
+    if (report_.has_tool) put_vector(outcome.tool, report_.length, true);
+    for (std::size_t b = 2; b < outcome.bodies.size(); ++b) put(outcome.bodies[b]);
+  }
+
+  void write_mismatch(const LaneOutcome<T>& outcome, std::size_t at) const {
+    double* row = block_.mismatch + at;
+    for (std::size_t e = 0; e < problem_.limbs.size(); ++e) {
+      T xi[6];
+      mismatch(e, &outcome.wrenches[6 * e], xi);
+      for (int k = 0; k < 6; ++k, row += block_.stride) xi[k].store(row);
+    }
+  }
+
+  /// Computes the mismatch xi = C p between the end of limb e and its body, from the limb's compliance C and wrench p.
   void mismatch(std::size_t e, const T* p, T* xi) const {
     const double* of = problem_.limbs[e].compliance;
     for (int row = 0; row < 6; ++row, of += 6) {
@@ -97,7 +111,7 @@ class KernelReporter {
     put(T(report_.length) * sqrt(share * linear));
   }
 
-  /// The moment of a wrench about a point.
+  /// Computes the moment of a wrench about a point.
   static void moment_about(const T* point, const T* wrench, T* moment) {
     simd::cross(wrench + 3, point, moment);
     for (int k = 0; k < 3; ++k) moment[k] = moment[k] + wrench[k];
@@ -127,7 +141,7 @@ class KernelReporter {
     for (const KernelMark& joint : report_.reactions) put_reaction(joint, outcome);
   }
 
-  /// Force and moment along the axes of the joint's frame.
+  /// Writes the force and the moment of a joint along the axes of its frame.
   void put_reaction(const KernelMark& joint, const LaneOutcome<T>& outcome) {
     const LaneMotion<T>& frame = outcome.marks[joint.mark];
     const T* wrench = &outcome.wrenches[6 * joint.limb];
@@ -147,7 +161,7 @@ class KernelReporter {
   const KernelProblem& problem_;
   const KernelReport& report_;
   const KernelBlock& block_;
-  double* row_ = nullptr;  ///< where the next response goes
+  double* row_ = nullptr;  ///< where the next response is written
 };
 
 }  // namespace poesy::assembly

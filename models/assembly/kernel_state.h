@@ -1,19 +1,19 @@
 #pragma once
 
-// Included only by kernels.cpp, which is compiled once for each instruction set.
+// Only kernels.cpp includes this file. It is compiled once for each instruction set.
 
 #include "models/assembly/kernel_map.h"
 
 namespace poesy::assembly {
 
-/// An assembly with errors in each lane: where its bodies and joints are, and the wrenches of its limbs.
+/// An assembly with errors in each lane: the places of its bodies and joints, and the wrenches of its limbs.
 template <class T>
 class LaneAssembly {
  public:
-  using Mask = typename T::MaskType;  ///< of lanes
-  using Motion = LaneMotion<T>;       ///< of lanes
+  using Mask = typename T::MaskType;  ///< a truth value for each lane
+  using Motion = LaneMotion<T>;       ///< a motion in each lane
 
-  /// Both must outlive it.
+  /// Both arguments must outlive this object.
   LaneAssembly(const KernelProblem& problem, const KernelBlock& block)
       : bodies(problem.bodies.size()),
         displacements(problem.joints),
@@ -30,7 +30,8 @@ class LaneAssembly {
     bodies[0] = in_lanes<T>(problem.bodies[0]);
   }
 
-  /// With the errors of the lanes from sample `at` on, where first order leads.
+  /// Sets the errors of the lanes from sample `at` on, and their starting points: from the series of KernelStart if it
+  /// is used, else from the first-order solution.
   void begin(std::size_t at) {
     const LaneErrors<T> errors(block_, at);
     std::size_t segment = 0;
@@ -45,8 +46,11 @@ class LaneAssembly {
     start_by_series(t, !outside);
   }
 
-  /// Writes where bodies, wrenches and joints are, from the lanes' first row
-  /// on; see KernelStart.
+  /// The square of the largest move of a body from the nominal pose to the start by first order.
+  const T& start_move() const { return start_move_; }
+
+  /// Writes the places of bodies, the wrenches and the displacements of joints, from the lanes' first row on; see
+  /// KernelStart.
   void store(double* row) const {
     const auto put = [&](T value) {
       value.store(row);
@@ -61,7 +65,8 @@ class LaneAssembly {
     for_each_joint([&](const KernelJoint& one, std::size_t joint) { put(displacements[joint] - T(one.displacement)); });
   }
 
-  /// Where the limb's end would be without forces. at_joint(joint, frame): called for each joint before its motion.
+  /// The pose of the end of limb e if no forces act. The function calls at_joint(joint, frame) for each joint before
+  /// that joint moves.
   template <class AtJoint>
   Motion walk(std::size_t e, AtJoint at_joint) const {
     const KernelLimb& limb = problem_.limbs[e];
@@ -78,7 +83,7 @@ class LaneAssembly {
     return g;
   }
 
-  /// Moves the bodies by twists [6 x bodies] in the lanes that go on. Returns the largest square of a twist.
+  /// Moves the bodies by twists [6 x bodies] in the active lanes. Returns the largest square of a twist.
   T move_bodies(const std::vector<T>& twists, Mask active) {
     T largest(0.0);
     for (std::size_t b = 1; b < bodies.size(); ++b) {
@@ -91,10 +96,23 @@ class LaneAssembly {
     return largest;
   }
 
-  /// What is reported of it.
+  /// The lanes in which all unknowns are finite.
+  Mask is_finite() const {
+    T sum(0.0);
+    for (std::size_t b = 1; b < bodies.size(); ++b) {
+      for (int k = 0; k < 3; ++k) sum = sum + abs(bodies[b].p[k]);
+    }
+    for (const T& entry : wrenches) sum = sum + abs(entry);
+    for (const T& entry : displacements) sum = sum + abs(entry);
+    return sum < T(1e300);
+  }
+
+  /// Sets the outcome that is reported.
   void report(LaneOutcome<T>& outcome) const {
-    for (std::size_t b = 1; b < bodies.size(); ++b) displaced(b, outcome.bodies[b]);
-    if (problem_.report.has_tool) displace_tool(outcome);
+    if (problem_.report.has_motions) {
+      for (std::size_t b = 1; b < bodies.size(); ++b) displaced(b, outcome.bodies[b]);
+      if (problem_.report.has_tool) displace_tool(outcome);
+    }
     outcome.wrenches = wrenches;
     for (std::size_t e = 0; problem_.report.has_forces && e < problem_.limbs.size(); ++e) {
       walk(e, [&](const KernelJoint& joint, const Motion& g) {
@@ -103,12 +121,12 @@ class LaneAssembly {
     }
   }
 
-  std::vector<Motion> bodies;    ///< [bodies]
-  std::vector<T> displacements;  ///< of passive joints
-  std::vector<T> wrenches;       ///< [6 x limbs] p
+  std::vector<Motion> bodies;    ///< [bodies] poses of the bodies
+  std::vector<T> displacements;  ///< displacements of the passive joints of all limbs
+  std::vector<T> wrenches;       ///< [6 x limbs] wrench of each limb on the body at its end
 
  private:
-  /// visit(joint, its place among passive joints of all limbs)
+  /// Calls visit(joint, position) for each passive joint, with its position among those of all limbs.
   template <class Visit>
   void for_each_joint(Visit visit) const {
     std::size_t joint = 0;
@@ -121,8 +139,11 @@ class LaneAssembly {
 
   void start_by_map(std::size_t at) {
     const T* coordinates = mapper_.coordinates(at);
+    start_move_ = T(0.0);
     for (std::size_t b = 1; b < bodies.size(); ++b) {
-      bodies[b] = product(motion_of(coordinates + 6 * (b - 1)), in_lanes<T>(problem_.bodies[b]));
+      const T* twist = coordinates + 6 * (b - 1);
+      start_move_ = max(start_move_, dot6(twist, twist));
+      bodies[b] = product(motion_of(twist), in_lanes<T>(problem_.bodies[b]));
     }
     if (problem_.carries) mapper_.wrenches(coordinates, wrenches.data());
     const T* dq = coordinates + mapper_.first_joint();
@@ -130,7 +151,7 @@ class LaneAssembly {
         [&](const KernelJoint& one, std::size_t joint) { displacements[joint] = T(one.displacement) + dq[joint]; });
   }
 
-  /// In these lanes.
+  /// Sets the starting points of these lanes from the series.
   void start_by_series(T t, Mask lanes) {
     constexpr std::size_t kTerms = KernelStart::kTerms;
     T terms[kTerms] = {T(1.0), t};
@@ -173,7 +194,7 @@ class LaneAssembly {
     for (int k = 0; k < 3; ++k) made.theta[k] = turn.w[k];
   }
 
-  /// The displacement of the tool's point by that of the platform.
+  /// Sets the displacement of the tool point from that of the platform.
   void displace_tool(LaneOutcome<T>& outcome) const {
     const LaneDisplacement<T>& platform = outcome.bodies[1];
     const auto turn = simd::exp_coefficients(simd::dot3(platform.theta, platform.theta));
@@ -189,16 +210,18 @@ class LaneAssembly {
   const KernelProblem& problem_;
   const KernelBlock& block_;
   KernelMapper<T> mapper_;
-  std::vector<std::size_t> first_segment_;  ///< [limbs] among all
-  std::vector<Motion> segments_;            ///< of all limbs, with errors
+  std::vector<std::size_t> first_segment_;  ///< [limbs] position of each limb's first segment among all
+  std::vector<Motion> segments_;            ///< motions between the joints of all limbs, with errors
+  T start_move_{0.0};                       ///< see start_move()
 };
 
-/// What a round changed, and where it must not be trusted.
+/// The changes of a round, and the lanes in which it must not be trusted.
 template <class T>
 struct LaneChange {
-  T places{0.0};                                   ///< square of the largest change of a body or joint
-  T wrenches{0.0};                                 ///< sum of squares of the wrenches' changes
-  typename T::MaskType refused = T(1.0) < T(0.0);  ///< where the equations are not those of a stable equilibrium
+  T places{0.0};    ///< square of the largest change of a body or joint
+  T wrenches{0.0};  ///< sum of the squared changes of the wrenches
+  /// Lanes in which the equations are not those of a stable equilibrium.
+  typename T::MaskType refused = T(1.0) < T(0.0);
 };
 
 }  // namespace poesy::assembly

@@ -8,6 +8,7 @@
 #include "engine/base/contract.h"
 #include "engine/linalg/decompositions.h"
 #include "models/assembly/block_solver.h"
+#include "models/assembly/closure.h"
 #include "models/chain/metric.h"
 
 namespace poesy::assembly {
@@ -34,7 +35,7 @@ class AssemblyEvaluator final : public Evaluator {
   }
 
  private:
-  static constexpr std::size_t kMostPoses = 256;  ///< that are remembered
+  static constexpr std::size_t kMostPoses = 256;  ///< largest number of poses whose problem is kept
 
   PoseProblem& problem_of(std::span<const double> pose) {
     if (problems_.size() > kMostPoses) problems_.clear();
@@ -50,6 +51,22 @@ class AssemblyEvaluator final : public Evaluator {
   BlockSolver solver_;
   std::map<std::vector<double>, PoseProblem> problems_;
 };
+
+/// The solution of one sample without varied errors, by the solvers to which the kernel leaves samples.
+Solution exact_solution(const AssemblyModel& model, const Nominal& at, const SampleBlock& sample,
+                        const SolverOptions& options) {
+  Closure closure(model, at);
+  if (!model.over_constrained && closure.is_regular()) return Continuation(model, options).solve(at, sample.errors);
+  Solver solver(model.assembly, model.ranks, options);
+  solver.prepare(at);
+  ErrorFrames frames(model);
+  const std::vector<std::vector<Transform>>& with_errors = frames.with(sample.errors, at.displacements);
+  Solution found = solver.solve(with_errors);
+  double nearing = 0.0;
+  closure.find_nearing(sample, {&nearing, 1});
+  found.status = closure.opens(nearing, with_errors) ? SolveStatus::not_assembled : closure.judged(found, with_errors);
+  return found;
+}
 
 }  // namespace
 
@@ -114,10 +131,7 @@ SolveTrace assembly_trace(const AssemblyModel& model, std::span<const double> po
   }
   trace.solver = "Newton on the equilibrium of the bodies, in plain double precision, from the nominal pose";
   trace.columns = {{"step over reach", "1"}};
-  Solver solver(model.assembly, model.ranks, options);
-  solver.prepare(at);
-  ErrorFrames frames(model);
-  const Solution solution = solver.solve(frames.with(errors, at.displacements));
+  const Solution solution = exact_solution(model, at, {pose, errors, {}, {}, 1}, options);
   trace.rows = solution.steps;
   trace.status = solution.status;
   trace.iterations = solution.iterations;
@@ -127,10 +141,12 @@ SolveTrace assembly_trace(const AssemblyModel& model, std::span<const double> po
 
 double condition(const AssemblyModel& model, std::span<const double> pose) {
   const Nominal at = model.at(pose);
-  Matrix B = motion_columns(model.assembly, at.limbs, linalg::cholesky_root(at.W));
-  B.colwise().normalize();
-  const Eigen::VectorXd values = linalg::singular_values(B);
-  const double smallest = values[values.size() - 1 - index(model.idle)];
+  const Matrix B = motion_columns(model.assembly, at.limbs, linalg::cholesky_root(at.W));
+  const Index bodies = 6 * index(at.bodies.size() - 1);
+  Matrix joints = linalg::orthogonal_complement(B.rightCols(bodies)).transpose() * B.leftCols(B.cols() - bodies);
+  joints.colwise().normalize();
+  const Eigen::VectorXd values = linalg::singular_values(joints);
+  const double smallest = values[joints.cols() - 1 - index(model.idle)];
   const double rounding = static_cast<double>(values.size()) * std::numeric_limits<double>::epsilon();
   return smallest > rounding * values[0] ? values[0] / smallest : std::numeric_limits<double>::infinity();
 }
@@ -142,7 +158,7 @@ double effect_rounding(const AssemblyModel& model, const Response& response) {
   if (response.dimension == Dimension::angle) return rounding * reach / chain::radius_of(model.assembly.points);
   if (response.dimension == Dimension::force) return rounding * reach * model.stiffness;
   if (response.dimension == Dimension::moment) return rounding * reach * reach * model.stiffness;
-  return 0.0;  // energy is a product of what rounds
+  return 0.0;  // energy is a product of two numbers, each of which may be rounding
 }
 
 double largest_stiffness(const AssemblyModel& model, const Nominal& pose) {

@@ -13,15 +13,16 @@ using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 using Shape = KernelConstant::Shape;
 
-/// Rounds of the kernel; a sample that needs more has its own matrices made.
+/// The largest number of rounds of the kernel. Solver solves the samples that need more.
 constexpr int kMostRounds = 30;
 
-/// A limb whose smallest compliance is below this share of its largest is rigid there, for rounding.
+/// A limb counts as rigid in a direction if its smallest compliance is below this share of its largest, because such a
+/// compliance may be rounding.
 constexpr double kRigid = 1e-9;
 
 Index index(std::size_t value) { return static_cast<Index>(value); }
 
-/// Rotation by rows, lengths in this unit.
+/// The motion with lengths in units of `length` (m).
 KernelMotion in_units(const Transform& transform, double length) {
   KernelMotion made{};
   for (Index row = 0; row < 3; ++row) {
@@ -43,7 +44,7 @@ void copy_rows(const Matrix& matrix, std::vector<double>& to) {
   }
 }
 
-/// Elementary joints, limb by limb, whose frames are reported.
+/// The elementary joints whose frames are reported, limb by limb.
 std::vector<JointPlace> reported_joints(const AssemblyModel& model) {
   if (model.assembly.metric != Metric::stiffness) return {};
   std::vector<JointPlace> joints;
@@ -57,7 +58,7 @@ std::vector<JointPlace> reported_joints(const AssemblyModel& model) {
   return joints;
 }
 
-/// What is before and behind a frame's error.
+/// The constant motions before and behind a frame's error.
 std::pair<Transform, Transform> parts_of(const chain::Limb& limb, std::size_t j, const KernelError& error) {
   if (limb.errors_at_joints && error.turns) return {limb.before_error(j), limb.behind_error(j)};
   if (error.inverted) return {limb.home[j], Transform()};
@@ -72,6 +73,7 @@ PoseProblem::PoseProblem(const AssemblyModel& model, Nominal pose, const SolverO
     : model_(&model),
       pose_(std::move(pose)),
       frame_(frame_of_metric(pose_.W)),
+      from_units_(linalg::inverse(twists_in_units(frame_, model.assembly.reach))),
       marks_(reported_joints(model)),
       problem_{} {
   const Assembly& assembly = model.assembly;
@@ -99,7 +101,7 @@ PoseProblem::PoseProblem(const AssemblyModel& model, Nominal pose, const SolverO
   problem_.most_rounds = std::min(kMostRounds, options.max_iterations);
 }
 
-/// Errors of one entry of one frame add up.
+/// Finds the components of frames' errors (entries) that errors change. Several errors may add to the same component.
 void PoseProblem::find_entries() {
   first_.push_back(0);
   for (const Limb& limb : model_->assembly.limbs) first_.push_back(first_.back() + limb.chain.frames());
@@ -119,13 +121,13 @@ void PoseProblem::find_entries() {
   }
 }
 
-/// The place of a joint's frame among those that are reported; -1: it is not.
+/// The position of a joint's frame among the reported frames; -1 if it is not reported.
 int PoseProblem::mark_of(const JointPlace& place) const {
   const auto at = std::ranges::find(marks_, place);
   return at == marks_.end() ? -1 : static_cast<int>(at - marks_.begin());
 }
 
-/// passive: how many joints of the limb before it are.
+/// The kernel's data of a joint. passive: number of passive joints of the limb before this joint.
 KernelJoint PoseProblem::kernel_joint(const JointPlace& place, std::size_t passive) const {
   const Assembly& assembly = model_->assembly;
   const chain::Joint& joint = assembly.limbs[place.limb].chain.joints[place.joint];
@@ -142,7 +144,7 @@ KernelMark PoseProblem::kernel_mark(const JointPlace& place) const {
   return {place.limb, static_cast<std::size_t>(mark_of(place)), kernel_joint(place, 0)};
 }
 
-/// What of a limb its errors leave as it is: joints that move or are reported, and the limb's equations.
+/// Sets the data of a limb that do not depend on errors: joints that move or are reported, and the limb's equations.
 void PoseProblem::set_limb(const Equilibrium& equations, std::size_t e) {
   const Assembly& assembly = model_->assembly;
   const Limb& limb = assembly.limbs[e];
@@ -164,8 +166,8 @@ void PoseProblem::set_limb(const Equilibrium& equations, std::size_t e) {
   problem_.limbs.push_back(std::move(made));
 }
 
-/// What samples need for matrices of their own: limbs have wrenches, and none of them is rigid in any direction; or
-/// limbs have no wrenches.
+/// Sets what samples need if each has matrices of its own. They have such matrices if limbs have no wrenches, or if
+/// limbs have wrenches and no limb is rigid in any direction.
 void PoseProblem::set_own_matrices(const Equilibrium& equations) {
   problem_.step = KernelStep::constant;
   for (const KernelLimb& limb : problem_.limbs) {
@@ -193,7 +195,7 @@ void PoseProblem::set_own_matrices(const Equilibrium& equations) {
   }
 }
 
-/// Whether no limb is rigid in any direction.
+/// Returns true if no limb is rigid in any direction.
 bool PoseProblem::is_soft(const Equilibrium& equations) const {
   for (std::size_t e = 0; e < problem_.limbs.size(); ++e) {
     const Eigen::VectorXd softness = linalg::eigenvalues(equations.compliance(e));
@@ -202,11 +204,12 @@ bool PoseProblem::is_soft(const Equilibrium& equations) const {
   return true;
 }
 
-/// What keeps a limb's freedoms that move nothing where they are, as large as other entries of S^T weight S.
+/// Sets the terms for a limb's idle freedoms. They are about as large as the other numbers in the matrix S^T weight S,
+/// where the columns of S are the twists of the limb's passive joints.
 void PoseProblem::set_idle(const Equilibrium& equations, std::size_t e, const Matrix& weight) {
   const Matrix& give = equations.give(e);
   const Matrix columns = equations.twists_in_units() * pose_.limbs[e].passive;
-  const Matrix idle = Matrix::Identity(give.rows(), give.rows()) - give * columns;  // onto what moves nothing
+  const Matrix idle = Matrix::Identity(give.rows(), give.rows()) - give * columns;  // projection onto idle freedoms
   const double size = (columns.transpose() * weight * columns).trace() / static_cast<double>(give.rows());
   const bool has_idle = equations.carry(e).cols() + give.rows() > 6;
   copy_rows(has_idle ? Matrix(size * idle) : Matrix::Zero(give.rows(), give.rows()), problem_.limbs[e].idle);
@@ -217,9 +220,9 @@ void PoseProblem::set_report() {
   KernelReport& report = problem_.report;
   report.deforms = model_->deforms;
   report.has_forces = assembly.metric == Metric::stiffness;
+  report.has_motions = model_->report.motions;
   report.has_tool = assembly.tool.has_value();
-  const Matrix6 back = linalg::inverse(twists_in_units(frame_, assembly.reach));
-  const Matrix6 W = back.transpose() * pose_.W * back;
+  const Matrix6 W = from_units_.transpose() * pose_.W * from_units_;
   for (Index k = 0; k < 6; ++k) report.metric[k] = W(k, k);
   report.share = 2.0 / static_cast<double>(assembly.loops());
   const Transform& platform = pose_.bodies[kPlatform];
@@ -244,7 +247,7 @@ void PoseProblem::set_report() {
   }
 }
 
-/// Twists of limbs' ends by a unit of each entry, in the kernel's units.
+/// [6 limbs x entries] The twists of limbs' ends per unit of each changed component (entry), in the kernel's units.
 Matrix PoseProblem::twists_of_entries(const Equilibrium& equations) const {
   const Assembly& assembly = model_->assembly;
   Matrix twists = Matrix::Zero(6 * index(assembly.limbs.size()), index(entries_.size()));
@@ -259,7 +262,7 @@ Matrix PoseProblem::twists_of_entries(const Equilibrium& equations) const {
   return twists;
 }
 
-/// Coordinates of first order, and the inverse of the equations' matrix.
+/// Computes the first-order coordinates, and the inverse of the equations' matrix.
 void PoseProblem::solve_first_order(const Equilibrium& equations) {
   const std::size_t limbs = problem_.limbs.size();
   const Index size = equations.matrix().rows();
@@ -281,7 +284,7 @@ void PoseProblem::solve_first_order(const Equilibrium& equations) {
   problem_.size = static_cast<std::size_t>(size);
   copy_rows(found.rightCols(size), problem_.inverse);
 
-  // Wrenches that keep each other in balance: what of lambda the rows of bodies leave.
+  // Stresses are wrenches that balance at every body: the combinations of lambda that the bodies' equations leave free.
   const Index stresses = std::max<Index>(lambdas - moves, 0);
   const Matrix stress = stresses > 0 ? linalg::orthogonal_complement(equations.matrix().topRightCorner(lambdas, moves))
                                      : Matrix(lambdas, 0);
@@ -308,12 +311,12 @@ void PoseProblem::solve_first_order(const Equilibrium& equations) {
   }
 }
 
-/// Where the values of an entry begin that varies.
+/// The address of the first value of a component that varies.
 double* PoseProblem::row_of(const Entry& entry, std::size_t stride, std::vector<double>& values) {
   return values.data() + static_cast<std::size_t>(entry.row) * stride;
 }
 
-/// What does not vary of entries.
+/// Sets the constant parts of all changed components.
 void PoseProblem::set_constants(const SampleBlock& samples) {
   for (Entry& entry : entries_) {
     entry.constant = 0.0;
@@ -328,8 +331,9 @@ void PoseProblem::set_constants(const SampleBlock& samples) {
   }
 }
 
-/// Entries take the values of samples in whole batches as they are, if each error is an entry of its own. Returns
-/// whether they are.
+/// Makes the changed components read the values of the samples without a copy. Returns false if that is not possible:
+/// it requires that the samples fill whole batches, and that each varied error changes one component, which nothing
+/// else changes.
 bool PoseProblem::take_values(const SampleBlock& samples) {
   if (samples.count != padded(samples.count)) return false;
   int rows = 0;
@@ -345,7 +349,7 @@ bool PoseProblem::take_values(const SampleBlock& samples) {
   return true;
 }
 
-/// The values of entries that vary, as sums.
+/// Computes the values of the components that vary, as sums over the errors.
 void PoseProblem::add_values(const SampleBlock& samples, std::vector<double>& values) {
   const std::size_t stride = padded(samples.count);
   for (Entry& entry : entries_) {
@@ -373,7 +377,7 @@ void PoseProblem::add_values(const SampleBlock& samples, std::vector<double>& va
   values_ = values.data();
 }
 
-/// Segments between the limb's joints.
+/// Sets the segments between the joints of limb e.
 void PoseProblem::set_segments(std::size_t e) {
   const Assembly& assembly = model_->assembly;
   const chain::Limb& limb = assembly.limbs[e].chain;
@@ -408,7 +412,7 @@ void PoseProblem::set_segments(std::size_t e) {
 void PoseProblem::set_map() {
   constexpr std::size_t kRows = KernelMap::kRows;
   KernelMap& map = problem_.map;
-  std::vector<Index> column;  // of each row of values
+  std::vector<Index> column;  // changed component of each row of values
   Eigen::VectorXd offset = coordinates_.rightCols(1);
   for (std::size_t n = 0; n < entries_.size(); ++n) {
     if (entries_[n].row >= 0) {
@@ -463,12 +467,13 @@ void PoseProblem::set_starts(const SampleBlock& samples, std::vector<double> coe
   problem_.start.coefficients = std::move(coefficients);
 }
 
-/// The series are in the first of the values that vary.
+/// Decides whether these samples start from the series of KernelStart, and sets how the argument of the series follows
+/// from the first varied value.
 void PoseProblem::use_starts(const SampleBlock& samples) {
   problem_.start.is_used = !problem_.start.coefficients.empty() && has_starts(samples);
   if (!problem_.start.is_used) return;
   const std::span<const Addition> of = additions(samples.varied.front().value);
-  double scale = 0.0;  // of the error in its first entry
+  double scale = 0.0;  // change of the first changed component per unit of the error
   for (const Addition& one : of) scale += one.entry == of.front().entry ? one.scale : 0.0;
   problem_.start.is_used = scale != 0.0;
   problem_.start.centre = entries_[of.front().entry].constant;

@@ -11,66 +11,69 @@
 
 namespace poesy::assembly {
 
-/// An elementary joint of a limb.
+/// The position of an elementary joint.
 struct JointPlace {
-  std::size_t limb;   ///< position
-  std::size_t joint;  ///< of the limb's joints
+  std::size_t limb;   ///< position of the limb
+  std::size_t joint;  ///< position of the joint in the limb
 
-  /// Limb by limb.
+  /// The order limb by limb, then joint by joint.
   auto operator<=>(const JointPlace&) const = default;
 };
 
-/// What the kernel solves at one pose.
+/// The problem that the kernels solve at one pose.
 class PoseProblem {
  public:
-  /// The model must outlive it.
+  /// The model must outlive this object.
   PoseProblem(const AssemblyModel& model, Nominal pose, const SolverOptions& options);
 
-  const Nominal& pose() const { return pose_; }  ///< The perfect assembly.
+  const Nominal& pose() const { return pose_; }  ///< The perfect assembly at the pose.
 
-  /// Whether loops close there. From the first call on the problem must stay where it is.
+  /// The object that decides whether loops close at this pose. The problem must not be moved after the first call.
   Closure& closure() { return closure_ ? *closure_ : closure_.emplace(*model_, pose_); }
 
-  /// Whether the linear equations of the nominal pose have a unique solution.
+  /// Returns true if the linear equations of the nominal pose have a unique solution.
   bool is_regular() const { return coordinates_.allFinite(); }
 
-  /// The problem with the errors of these samples, until the next call. scratch: for the values, if those of the
-  /// samples are not what the kernel reads.
+  /// The problem with the errors of these samples, valid until the next call. scratch: receives the values if the
+  /// kernel cannot read them from the samples.
   const KernelProblem& with(const SampleBlock& samples, std::vector<double>& scratch);
 
-  /// What the kernel reads since the last call of with(), [entries x padded(samples)].
+  /// [varied components x padded(samples)] The varied values of the last call of with().
   const double* values() const { return values_; }
 
-  /// Whether starts are known of samples with the varied error, its range and
-  /// the constant errors of these.
+  /// [6 x 6] The matrix from twists in the kernel's units and axes to twists in the base frame (rad, m).
+  const Matrix6& twists_from_units() const { return from_units_; }
+
+  /// Returns true if a series of starting points is known for samples with this varied error, range and constant
+  /// errors.
   bool has_starts(const SampleBlock& samples) const;
 
-  /// Samples like these start by these series, see KernelStart; empty: by first
-  /// order, as others do.
+  /// Sets the series from which samples like these start; see KernelStart. If it is empty, they start
+  /// from the first-order solution.
   void set_starts(const SampleBlock& samples, std::vector<double> coefficients);
 
  private:
-  /// An entry of a frame's error, in rad or units of the reach.
+  /// A component of a frame's error, in rad or units of the reach.
   struct Entry {
     std::size_t limb;
     std::size_t frame;
-    std::size_t component;  ///< of [omega; v]
-    double constant = 0.0;  ///< what does not vary of it
-    int row = -1;           ///< among the values; -1: it does not vary
-    double unit = 1.0;      ///< by which its values are multiplied
+    std::size_t component;  ///< position in [omega; v]
+    double constant = 0.0;  ///< part of the component that does not vary
+    int row = -1;           ///< row of the component's values; -1 if it does not vary
+    double unit = 1.0;      ///< factor of the component's values
   };
 
-  /// Samples for which starts were computed.
+  /// The kind of samples for which a series of starting points was computed.
   struct Started {
-    FactorIndex factor;          ///< that varies
-    double range;                ///< of it
-    std::vector<double> errors;  ///< of samples
+    FactorIndex factor;          ///< the only varied error
+    double range;                ///< range of the varied error
+    std::vector<double> errors;  ///< constant errors of the samples
   };
 
-  /// What an error adds to an entry.
+  /// What an error of the model adds to a component of a frame's error.
   struct Addition {
-    std::size_t entry;  ///< position
-    double scale;       ///< in the entry's unit per unit of the error
+    std::size_t entry;  ///< position of the component in entries_
+    double scale;       ///< change of the component, in its unit, per unit of the model's error
   };
 
   void find_entries();
@@ -97,21 +100,23 @@ class PoseProblem {
 
   const AssemblyModel* model_;
   Nominal pose_;
-  Transform frame_;                  ///< base_T_kernel
+  Transform frame_;                  ///< frame of the kernel's axes, base_T_kernel
+  Matrix6 from_units_;               ///< from twists in the kernel's units to twists in the base frame and SI
   std::vector<JointPlace> marks_;    ///< joints whose frames are reported
-  std::vector<Entry> entries_;       ///< that errors have
-  std::vector<Addition> additions_;  ///< of all errors, one error after the other
-  std::vector<std::size_t> added_;   ///< [F + 1] where those of an error begin
-  std::vector<std::size_t> first_;   ///< [limbs + 1] where the frames of a limb begin among all
-  std::vector<KernelError> errors_;  ///< [frames of all limbs]
-  Eigen::MatrixXd coordinates_;      ///< [coordinates x (entries + 1)] of a unit of each, and of the load
-  const double* values_ = nullptr;   ///< see values()
-  std::optional<Started> started_;   ///< of the last call of set_starts()
+  std::vector<Entry> entries_;       ///< components of frames' errors that errors of the model change
+  std::vector<Addition> additions_;  ///< additions of all errors, error by error
+  std::vector<std::size_t> added_;   ///< [F + 1] position of each error's first addition
+  std::vector<std::size_t> first_;   ///< [limbs + 1] position of each limb's first frame among all frames
+  std::vector<KernelError> errors_;  ///< [frames of all limbs] error of each frame
+  /// [coordinates x (entries + 1)] First-order coordinates per unit of each of entries_, then by the load.
+  Eigen::MatrixXd coordinates_;
+  const double* values_ = nullptr;  ///< see values()
+  std::optional<Started> started_;  ///< samples of the last call of set_starts()
   KernelProblem problem_;
   std::optional<Closure> closure_;
 };
 
-/// A number of samples, filled up to whole batches.
+/// The number of samples rounded up to whole batches.
 std::size_t padded(std::size_t samples);
 
 }  // namespace poesy::assembly

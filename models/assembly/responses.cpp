@@ -13,27 +13,28 @@ constexpr auto kForce = Dimension::force;
 constexpr auto kMoment = Dimension::moment;
 constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
 
-/// Adds rows in order, with names.
+/// Builds the list of responses, one after the other.
 class Rows {
  public:
   void add(std::string name, Dimension dimension, std::string description) {
     list.push_back({std::move(name), dimension, std::move(description)});
   }
 
-  /// What has no sign.
+  /// Adds a response that has no sign.
   void add_magnitude(std::string name, Dimension dimension, std::string description) {
     add(std::move(name), dimension, std::move(description));
     list.back().has_no_sign = true;
   }
 
-  /// Three components.
+  /// Adds to the list three responses, the components NAME_x, NAME_y and NAME_z of a vector.
   void add_vector(const std::string& name, Dimension dimension, const std::string& description) {
     for (const std::string_view axis : kAxes) {
       add(name + std::string(axis), dimension, description + " " + std::string(axis));
     }
   }
 
-  /// The norm of the three components that begin `back` rows before it.
+  /// Adds to the list a response that is the norm of three others. back: how many places before the end of the list the
+  /// first of these is.
   void add_norm(std::string name, Dimension dimension, std::string description, std::size_t back) {
     const std::size_t first = list.size() - back;
     add(std::move(name), dimension, std::move(description));
@@ -48,6 +49,17 @@ void add_motion(Rows& rows, const std::string& prefix, const std::string& whose)
   rows.add_vector(prefix + "theta_", kAngle, "rotation vector of " + whose + " about the base's");
   rows.add_norm(prefix + "position", kLength, "length of the displacement of " + whose + "'s origin", 6);
   rows.add_norm(prefix + "rotation", kAngle, "angle by which " + whose + " is rotated", 4);
+}
+
+void add_motions(Rows& rows, const Assembly& assembly) {
+  add_motion(rows, "", "the platform");
+  if (assembly.tool) {
+    rows.add_vector("tip_", kLength, "displacement of the tool's point along the base's");
+    rows.add_norm("tip_position", kLength, "length of the displacement of the tool's point", 3);
+  }
+  for (std::size_t b = kPlatform + 1; b < assembly.bodies.size(); ++b) {
+    add_motion(rows, assembly.bodies[b].name + "_", assembly.bodies[b].name);
+  }
 }
 
 void add_forces(Rows& rows, const Assembly& assembly, const Report& report) {
@@ -91,10 +103,21 @@ class Values {
   std::vector<double> list = {};
 };
 
+void add_motions(Values& values, const Assembly& assembly, const Outcome& outcome) {
+  values.add(outcome.bodies[kPlatform]);
+  if (assembly.tool) {
+    values.add(outcome.tool);
+    values.add(outcome.tool.norm());
+  }
+  for (std::size_t b = kPlatform + 1; b < assembly.bodies.size(); ++b) values.add(outcome.bodies[b]);
+}
+
 void add_forces(Values& values, const Assembly& assembly, const Report& report, const Nominal& pose,
                 const Outcome& outcome) {
   double energy = 0.0;
-  for (std::size_t e = 0; e < assembly.limbs.size(); ++e) {  // xi = C p, but has the rounding of places
+  // The mismatch is computed as C p, from compliance C and wrench p. Computed from poses, it would contain their
+  // rounding.
+  for (std::size_t e = 0; e < assembly.limbs.size(); ++e) {
     energy += 0.5 * outcome.wrenches[e].dot(pose.compliance[e] * outcome.wrenches[e]);
   }
   values.add(energy);
@@ -183,14 +206,7 @@ std::vector<Response> responses_of(const Assembly& assembly, const Report& repor
     rows.add_magnitude("linear_deformation", kLength,
                        "mismatch of position at the platform's origin, root mean square over the independent loops");
   }
-  add_motion(rows, "", "the platform");
-  if (assembly.tool) {
-    rows.add_vector("tip_", kLength, "displacement of the tool's point along the base's");
-    rows.add_norm("tip_position", kLength, "length of the displacement of the tool's point", 3);
-  }
-  for (std::size_t b = kPlatform + 1; b < assembly.bodies.size(); ++b) {
-    add_motion(rows, assembly.bodies[b].name + "_", assembly.bodies[b].name);
-  }
+  if (report.motions) add_motions(rows, assembly);
   if (assembly.metric == Metric::stiffness) add_forces(rows, assembly, report);
   return std::move(rows.list);
 }
@@ -199,12 +215,7 @@ std::vector<double> response_values(const Assembly& assembly, const Report& repo
                                     const Outcome& outcome) {
   Values values;
   if (deforms) add_deformation(values, assembly, pose, outcome);
-  values.add(outcome.bodies[kPlatform]);
-  if (assembly.tool) {
-    values.add(outcome.tool);
-    values.add(outcome.tool.norm());
-  }
-  for (std::size_t b = kPlatform + 1; b < assembly.bodies.size(); ++b) values.add(outcome.bodies[b]);
+  if (report.motions) add_motions(values, assembly, outcome);
   if (assembly.metric == Metric::stiffness) add_forces(values, assembly, report, pose, outcome);
   return std::move(values.list);
 }

@@ -10,48 +10,54 @@
 
 namespace poesy::assembly {
 
-/// A joint whose reaction, or whose drive's force, is a response.
+/// A joint whose reaction, or whose drive force, is a response.
 struct ReportedJoint {
-  std::size_t limb;   ///< position
-  std::size_t joint;  ///< of the limb's elementary joints: the first of the joint, or the driven one
-  std::string name;   ///< of the joint, as the file has it
+  std::size_t limb;   ///< position of the limb
+  std::size_t joint;  ///< position in the limb of an elementary joint: the first of the joint, or the driven one
+  std::string name;   ///< name of the joint in the file
 };
 
-/// What of an assembly is reported, beside what every assembly has.
+/// The number of responses that state mismatch. They come first in the list of an assembly that deforms.
+inline constexpr std::size_t kDeformations = 3;
+
+/// What is reported of an assembly, in addition to the responses that every assembly has.
 struct Report {
-  std::vector<ReportedJoint> drives;     ///< actuated joints
-  std::vector<ReportedJoint> reactions;  ///< joints whose reactions are wanted
+  std::vector<ReportedJoint> drives;     ///< actuated joints whose drive forces are responses
+  std::vector<ReportedJoint> reactions;  ///< joints whose reactions are responses
+  bool motions = true;                   ///< true if displacements of bodies are responses
 };
 
-/// What errors do to an assembly: what every response follows from.
+/// The effects of errors on an assembly, from which all responses follow.
 struct Outcome {
-  /// A body's displacement D = T T_nominal^-1.
+  /// The displacement D = T T_nominal^-1 of a body with pose T.
   struct Motion {
-    Vector3 moved = Vector3::Zero();  ///< of its origin (m)
-    Vector3 theta = Vector3::Zero();  ///< rotation vector
+    Vector3 moved = Vector3::Zero();  ///< displacement of the body's origin (m)
+    Vector3 theta = Vector3::Zero();  ///< rotation vector (rad)
   };
-  std::vector<Motion> bodies;             ///< [bodies]; the base's is 0
-  Vector3 tool = Vector3::Zero();         ///< displacement of the tool's point, if there is one
-  std::vector<Screw> mismatch;            ///< [limbs] xi
-  std::vector<Screw> wrenches;            ///< [limbs] p
-  std::span<const LimbState> limbs = {};  ///< [limbs] where forces are taken
+  std::vector<Motion> bodies;             ///< [bodies] displacements; 0 for the base
+  Vector3 tool = Vector3::Zero();         ///< displacement of the tool point (m), if there is one
+  std::vector<Screw> mismatch;            ///< [limbs] mismatch between the end of each limb and its body
+  std::vector<Screw> wrenches;            ///< [limbs] wrench of each limb on the body at its end
+  std::span<const LimbState> limbs = {};  ///< [limbs] states at which forces are evaluated
 };
 
-/// The limb's last joint that moves; its last joint where none does: about its point the limb's moment is taken.
+/// The position of the limb's last joint that moves, or of its last joint if none moves. The limb's moment is taken
+/// about its point.
 std::size_t last_moving(const Limb& limb);
 
-/// Of an exact solution, which must outlive it.
+/// The outcome of an exact solution. The solution must outlive it.
 Outcome outcome_of(const Assembly& assembly, const Nominal& pose, const Solution& solution);
 
-/// Of one column of first order.
+/// The outcome of one column of a first-order result.
 Outcome outcome_of(const Assembly& assembly, const Nominal& pose, const Balance& balance, Eigen::Index column);
 
-/// Names, dimensions and meanings in the order of response_values(): deformation (gap, angular_deformation,
-/// linear_deformation) unless nothing ever deforms, the platform's displacement, other bodies', and with stiffness
-/// strain_energy, forces and moments of limbs, of drives, reactions.
+/// Names, dimensions and meanings of the responses, in the order of response_values(). First comes the deformation
+/// (gap, angular_deformation, linear_deformation), if the assembly can deform. Then come the displacements of the
+/// platform and of the other bodies. With stiffness follow strain_energy, the forces and moments of limbs, the forces
+/// of drives, and the reactions.
 std::vector<Response> responses_of(const Assembly& assembly, const Report& report, bool deforms);
 
-/// The values of the responses, SI.
+/// The values of the responses in the order of responses_of(), SI.
 std::vector<double> response_values(const Assembly& assembly, const Report& report, bool deforms, const Nominal& pose,
                                     const Outcome& outcome);
 

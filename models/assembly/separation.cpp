@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Index;
 
-/// By how much twists of a limb's end move the platform.
+/// [6 x 6] The matrix from a twist of a limb's end to the twist of the platform.
 Matrix6 platform_by_limb(const FirstOrder& first_order, Index limbs, Index limb) {
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(6 * limbs, 6);
   unit.middleRows<6>(6 * limb).setIdentity();
@@ -44,7 +44,10 @@ Separation separation(const AssemblyModel& model, std::span<const double> pose) 
 
 SeparationDescription separation_description(const AssemblyModel& model) {
   std::string measure = "root mean square displacement of the platform's points";
-  if (model.deforms) measure += ", without the gap between limbs and bodies";
+  if (model.deforms) {
+    measure +=
+        model.pairs.empty() ? ", without the gap between limbs and bodies" : ", without the gap between its limbs";
+  }
   return {std::move(measure), std::vector<std::string>(model.terms.size())};
 }
 

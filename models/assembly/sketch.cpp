@@ -7,15 +7,29 @@ namespace {
 
 SketchVector sketched(const Vector3& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
+/// The motions in a column of effects: those of all limbs' ends if limbs are paired, else that of the platform alone.
+std::vector<Screw> ends_of(const AssemblyModel& model, const Nominal& pose, const Balance& effects,
+                           Eigen::Index column) {
+  const Screw platform = effects.twists.block<6, 1>(6 * static_cast<Eigen::Index>(kPlatform), column);
+  if (model.pairs.empty()) return {platform};
+  std::vector<Screw> motions;
+  for (std::size_t e = 0; e < pose.limbs.size(); ++e) {
+    const Screw wrench = effects.wrenches.block<6, 1>(6 * static_cast<Eigen::Index>(e), column);
+    motions.emplace_back(platform + pose.compliance[e] * wrench);
+  }
+  return motions;
+}
+
 void add_errors(Sketch& sketch, const AssemblyModel& model, const Nominal& pose) {
   const FirstOrder first_order(model.assembly, pose, model.ranks);
-  const Balance effects = first_order.effect(error_twists(model, pose));
+  const Eigen::MatrixXd alone = error_twists(model, pose);
+  const Balance effects = first_order.effect(alone);
   for (std::size_t f = 0; f < model.terms.size(); ++f) {
+    const auto column = static_cast<Eigen::Index>(f);
     sketch.errors.push_back(chain::sketched_error(sketch, model.terms[f].front()));
     if (!first_order.is_regular()) continue;
-    const Screw twist = effects.twists.block<6, 1>(6 * kPlatform, static_cast<Eigen::Index>(f));
-    SketchTwist& motion = sketch.errors.back().motions.emplace_back();
-    for (std::size_t c = 0; c < motion.size(); ++c) motion[c] = twist[static_cast<Eigen::Index>(c)];
+    sketch.errors.back().motions =
+        chain::sketched_motions(ends_of(model, pose, effects, column), alone.col(column).norm());
   }
 }
 

@@ -1,14 +1,16 @@
 #include "models/assembly/solver.h"
 
-#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace poesy::assembly {
 namespace {
 
-/// A step up to this, over the reach, is rounding where the next one is no smaller.
+/// A step up to this share of the reach counts as rounding if the next step is not smaller.
 constexpr double kRounding = 1e-11;
 constexpr double kDamped = 0.25;
+constexpr double kLong = 0.5;   ///< first step, over the reach, that is long
+constexpr double kSlow = 0.25;  ///< share of the step before from which on a step is not much shorter
 
 Eigen::VectorXd stacked(std::span<const Screw> screws) {
   return Eigen::Map<const Eigen::VectorXd>(screws.front().data(), 6 * static_cast<Eigen::Index>(screws.size()));
@@ -25,7 +27,7 @@ Solver::Solver(const Assembly& assembly, std::vector<std::size_t> ranks, const S
 
 void Solver::prepare(const Nominal& pose) { pose_ = &pose; }
 
-/// Brings limbs and mismatch to the present bodies and displacements.
+/// Updates limbs and mismatch for the present places of bodies and displacements of joints.
 void Solver::place(std::span<const std::vector<Transform>> frames, Solution& at) const {
   at.limbs = limb_states(*assembly_, at.bodies, frames, at.displacements);
   for (std::size_t e = 0; e < frames.size(); ++e) {
@@ -33,17 +35,19 @@ void Solver::place(std::span<const std::vector<Transform>> frames, Solution& at)
   }
 }
 
-Solution Solver::attempt(std::span<const std::vector<Transform>> frames, double damping) const {
+Solution Solver::attempt(std::span<const std::vector<Transform>> frames, const SolverStart& start,
+                         const Manner& manner) const {
   const std::size_t limbs = frames.size();
-  Solution at{.bodies = pose_->bodies,
-              .displacements = pose_->displacements,
+  const double damping = manner.damping;
+  Solution at{.bodies = {start.bodies.begin(), start.bodies.end()},
+              .displacements = {start.displacements.begin(), start.displacements.end()},
               .limbs = std::vector<LimbState>(limbs),
               .mismatch = std::vector<Screw>(limbs),
               .wrenches = std::vector<Screw>(limbs, Screw::Zero()),
               .status = SolveStatus::iteration_cap,
               .steps = {}};
   Equilibrium equations(*assembly_, *pose_);
-  const Eigen::VectorXd load = stacked(pose_->load);
+  const Eigen::VectorXd load = (manner.is_loaded ? 1.0 : 0.0) * stacked(pose_->load);
   place(frames, at);
   const auto most = static_cast<std::uint32_t>(static_cast<double>(options_.max_iterations) / damping);
   double before = std::numeric_limits<double>::infinity();
@@ -52,9 +56,12 @@ Solution Solver::attempt(std::span<const std::vector<Transform>> frames, double 
     equations.set(at.limbs, ranks_);
     const Balance step = equations.solve(stacked(at.mismatch), load);
     double moved = 0.0;
+    const auto note = [&moved](double length) {  // a length that is not a number stays
+      if (!std::isnan(moved) && !(length <= moved)) moved = length;
+    };
     for (std::size_t b = kPlatform; b < at.bodies.size(); ++b) {
       const Screw twist = damping * part(step.twists, b);
-      moved = std::max(moved, equations.size(twist));
+      note(equations.size(twist));
       at.bodies[b] = lie::exp(twist) * at.bodies[b];
     }
     std::size_t joint = 0;
@@ -63,7 +70,7 @@ Solution Solver::attempt(std::span<const std::vector<Transform>> frames, double 
       at.wrenches[e] = part(step.wrenches, e);
       const Screw given = part(step.twists, limb.to) - part(step.twists, limb.from) - at.mismatch[e] +
                           pose_->compliance[e] * at.wrenches[e];
-      moved = std::max(moved, damping * equations.size(given));  // an error across a rod turns it and moves no body
+      note(damping * equations.size(given));  // counts too: an error across a rod rotates the rod and moves no body
       const Eigen::VectorXd dq = damping * equations.displacements(e, given);
       Eigen::Index k = 0;
       for (const chain::Joint& one : limb.chain.joints) {
@@ -76,6 +83,7 @@ Solution Solver::attempt(std::span<const std::vector<Transform>> frames, double 
       at.status = SolveStatus::non_finite;
       return at;
     }
+    if (manner.must_shrink && moved > kRounding && !(moved <= (at.iterations == 1 ? kLong : kSlow * before))) return at;
     place(frames, at);
     if (moved <= options_.tolerance) {
       at.status = SolveStatus::converged;
@@ -91,10 +99,18 @@ Solution Solver::attempt(std::span<const std::vector<Transform>> frames, double 
 }
 
 Solution Solver::solve(std::span<const std::vector<Transform>> frames) const {
-  Solution found = attempt(frames, 1.0);
+  return solve(frames, {pose_->bodies, pose_->displacements});
+}
+
+Solution Solver::solve(std::span<const std::vector<Transform>> frames, const SolverStart& start) const {
+  Solution found = attempt(frames, start, {});
   if (solved(found.status)) return found;
-  Solution again = attempt(frames, kDamped);
+  Solution again = attempt(frames, start, {.damping = kDamped});
   return solved(again.status) ? again : found;
+}
+
+Solution Solver::approach(std::span<const std::vector<Transform>> frames, const SolverStart& start) const {
+  return attempt(frames, start, {.is_loaded = false, .must_shrink = true});
 }
 
 }  // namespace poesy::assembly

@@ -8,38 +8,62 @@
 
 namespace poesy::assembly {
 
-/// An assembly with errors, in equilibrium.
+/// The equilibrium of an assembly with errors.
 struct Solution {
   std::vector<Transform> bodies;                ///< [bodies] base_T_body
-  std::vector<double> displacements;            ///< [joints] (rad, m)
-  std::vector<LimbState> limbs;                 ///< [limbs] at these
-  std::vector<Screw> mismatch;                  ///< [limbs] xi = log(T_a g_e T_b^-1)
-  std::vector<Screw> wrenches;                  ///< [limbs] p
+  std::vector<double> displacements;            ///< [joints] displacements (rad, m)
+  std::vector<LimbState> limbs;                 ///< [limbs] states of the limbs
+  std::vector<Screw> mismatch;                  ///< [limbs] mismatch xi = log(T_a g_e T_b^-1)
+  std::vector<Screw> wrenches;                  ///< [limbs] wrench p of each limb on the body at its end
   SolveStatus status = SolveStatus::converged;  ///< how the solve ended
-  std::uint32_t iterations = 0;                 ///< that it took
-  std::vector<double> steps;  ///< [iterations] of each, the largest move of a body or joint over the reach
+  std::uint32_t iterations = 0;                 ///< number of iterations
+  /// [iterations] Largest move of a body or joint in each iteration, divided by the reach.
+  std::vector<double> steps;
+};
+
+/// Where a solve begins.
+struct SolverStart {
+  std::span<const Transform> bodies;      ///< [bodies] base_T_body
+  std::span<const double> displacements;  ///< [joints] (rad, m)
 };
 
 /// Newton's method on
 ///
 ///     C_e p_e = xi_e,     sum of wrenches on each body + load = 0,     J_e^T p_e = 0,
 ///
-/// with C and load of the nominal pose and J where the joints are: each step solves the linear equations (Equilibrium)
-/// at the present state, T_b <- exp(V_b) T_b, q <- q + dq. Plain double arithmetic: the reference.
+/// with C and load of the nominal pose, and J in the present state. Each step solves the linear equations (Equilibrium)
+/// in the present state and sets T_b <- exp(V_b) T_b, q <- q + dq. Uses plain double arithmetic: the reference for the
+/// kernels.
 class Solver {
  public:
-  /// The assembly must outlive it. ranks: of each limb's passive columns, [limbs].
+  /// The assembly must outlive this object. ranks: [limbs] rank of each limb's passive columns.
   Solver(const Assembly& assembly, std::vector<std::size_t> ranks, const SolverOptions& options);
 
-  /// At this pose, which must outlive what follows.
+  /// Sets the nominal pose, which must outlive the solves.
   void prepare(const Nominal& pose);
 
-  /// frames: of each limb with errors, [limbs][n + 1]. Converged when no body and no joint moves a point by more
-  /// than the tolerance times the reach. Where full steps come to no end, steps of a quarter are tried once.
+  /// Solves for frames with errors [limbs][n + 1]. The solve has converged if no body and no joint moves a point by
+  /// more than the tolerance times the reach. If full steps do not converge, quarter steps are tried once.
   Solution solve(std::span<const std::vector<Transform>> frames) const;
 
+  /// Solves for frames with errors like the function above, but begins at `start` instead of the nominal pose.
+  Solution solve(std::span<const std::vector<Transform>> frames, const SolverStart& start) const;
+
+  /// Solves for frames with errors from `start`, without load and only by full steps. The status is iteration_cap if
+  /// the first step is long, or if a later step is not much shorter than the step before. Then the solution may belong
+  /// to another way to assemble the machine.
+  Solution approach(std::span<const std::vector<Transform>> frames, const SolverStart& start) const;
+
  private:
-  Solution attempt(std::span<const std::vector<Transform>> frames, double damping) const;
+  /// How an attempt proceeds.
+  struct Manner {
+    double damping = 1.0;      ///< factor of each step
+    bool is_loaded = true;     ///< whether the load acts
+    bool must_shrink = false;  ///< whether each step must be much shorter than the one before, as in approach()
+  };
+
+  Solution attempt(std::span<const std::vector<Transform>> frames, const SolverStart& start,
+                   const Manner& manner) const;
   void place(std::span<const std::vector<Transform>> frames, Solution& at) const;
 
   const Assembly* assembly_;

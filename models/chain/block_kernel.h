@@ -1,26 +1,18 @@
 #pragma once
 
-#include "models/chain/block_kernel_meeting.h"
-#include "models/chain/block_kernel_metric.h"
 #include "models/chain/block_kernel_passes.h"
 #include "models/chain/block_kernel_platform.h"
 
 namespace poesy::chain {
 
-/// Calls work with the KernelClass that is specialised most for this chain.
+/// Calls work with the KernelClass of the most specialised kernel that fits the chain.
 template <class T, class Work>
 void with_kernel(const KernelChain& chain, Work work) {
-  const bool is_fixed = ThreeLimbs<3>::fits(chain);
-  if (chain.metric == nullptr) {
-    is_fixed ? work(KernelClass<BlockKernel<T, ThreeLimbs<3>, Published>>())
-             : work(KernelClass<BlockKernel<T, AnyShape, Published>>());
-  } else {
-    is_fixed ? work(KernelClass<BlockKernel<T, ThreeLimbs<3>, Weighted>>())
-             : work(KernelClass<BlockKernel<T, AnyShape, Weighted>>());
-  }
+  ThreeLimbs<3>::fits(chain) ? work(KernelClass<BlockKernel<T, ThreeLimbs<3>>>())
+                             : work(KernelClass<BlockKernel<T, AnyShape>>());
 }
 
-/// Solves a block; see KernelSolve.
+/// Solves a block of samples; see KernelSolve.
 template <class T>
 void solve_block(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
                  const KernelOptions& options, const KernelOutcome& outcome, double* scratch) {
@@ -29,7 +21,7 @@ void solve_block(const KernelChain& chain, const KernelSamples& samples, const K
   });
 }
 
-/// Maps a block to first order; see KernelMapBlock.
+/// Maps a block of samples to first order; see KernelMapBlock.
 template <class T>
 void map_block(const KernelChain& chain, const KernelSamples& samples, const KernelMap& map,
                const KernelOutcome& outcome, double* scratch) {
@@ -37,7 +29,7 @@ void map_block(const KernelChain& chain, const KernelSamples& samples, const Ker
       chain, [&](auto kernel) { typename decltype(kernel)::Type(chain, samples, {}, {}, outcome, scratch).map(map); });
 }
 
-/// Finds the motion of the platform in a block; see KernelMovePlatform.
+/// Finds the motion of the platform for a block of samples; see KernelMovePlatform.
 template <class T>
 void move_platform_block(const KernelChain& chain, const KernelSamples& samples, const KernelPlatform& platform,
                          const KernelOutcome& outcome, double* scratch) {

@@ -4,9 +4,10 @@
 
 namespace poesy::chain {
 
-/// f = J^T W delta_mu, from the signed sum of each limb's residuals.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::gradient() {
+/// Computes f = J^T delta_mu. The residuals delta_mu of the pairs that contain a limb are first summed for each limb,
+/// with the sign + where it is limb i of the pair and - where it is limb k.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::gradient() {
   for (std::size_t i = 0; i < limbs(); ++i) {
     for (int k = 0; k < 3; ++k) pull_[i].w[k] = pull_[i].v[k] = T(0.0);
   }
@@ -20,9 +21,6 @@ void BlockKernel<T, Shape, Measure>::gradient() {
       minus.v[k] = minus.v[k] - mu_[n].v[k];
     }
   }
-  if constexpr (Measure::kWeighted) {
-    for (std::size_t i = 0; i < limbs(); ++i) pull_[i] = weighted(pull_[i]);
-  }
   for (std::size_t i = 0; i < limbs(); ++i) {
     for (std::size_t a = first_joint(i); a < first_joint(i + 1); ++a) {
       f_[a] = kernel::dot(column_[a], pull_[i]);
@@ -30,13 +28,12 @@ void BlockKernel<T, Shape, Measure>::gradient() {
   }
 }
 
-/// The whole matrix N = J^T W J.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::gauss_newton_matrix() {
+/// Computes all entries of the Gauss-Newton matrix N = J^T J, [joints x joints], plus a term for each idle freedom.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::gauss_newton_matrix() {
   const std::size_t size = joints();
   T* __restrict matrix = n_;
   const Screw* column = column_;
-  const Screw* row = row_;
   if constexpr (!Shape::kEveryPairOnce) {
     for (std::size_t n = 0; n < size * size; ++n) matrix[n] = T(0.0);
   }
@@ -45,7 +42,7 @@ void BlockKernel<T, Shape, Measure>::gauss_newton_matrix() {
     const std::size_t first = first_joint(i);
     for (std::size_t a = first; a < first_joint(i + 1); ++a) {
       for (std::size_t b = first; b <= a; ++b) {
-        matrix[a * size + b] = matrix[b * size + a] = meetings * kernel::dot(row[a], column[b]);
+        matrix[a * size + b] = matrix[b * size + a] = meetings * kernel::dot(column[a], column[b]);
       }
     }
   }
@@ -53,7 +50,7 @@ void BlockKernel<T, Shape, Measure>::gauss_newton_matrix() {
     const std::size_t i = chain_.pair[n].i, k = chain_.pair[n].k;
     for (std::size_t a = first_joint(i); a < first_joint(i + 1); ++a) {
       for (std::size_t b = first_joint(k); b < first_joint(k + 1); ++b) {
-        T product = -kernel::dot(row[a], column[b]);
+        T product = -kernel::dot(column[a], column[b]);
         if constexpr (!Shape::kEveryPairOnce) product = product + matrix[a * size + b];
         matrix[a * size + b] = matrix[b * size + a] = product;
       }
@@ -67,16 +64,18 @@ void BlockKernel<T, Shape, Measure>::gauss_newton_matrix() {
   }
 }
 
-/// M = N + curvature of the logarithm - rotation of the columns.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::newton_matrix() {
+/// Computes Newton's matrix M = N + C - R [joints x joints] for the equations J^T delta_mu = 0, with N = J^T J. C comes
+/// from the derivative of the logarithm in delta_mu. R comes from the change of J, because a joint moves the axes of
+/// the joints after it in its limb.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::newton_matrix() {
   const std::size_t size = joints();
   T* __restrict matrix = m_;
   const T* __restrict symmetric = n_;
   const Screw* column = column_;
-  const Screw* row = row_;
   const Screw* __restrict mu = mu_;
-  // Where each entry changes once, it is read from N and written to M; otherwise M starts as a copy of N.
+  // If each entry of the matrix changes only once, it is read from the Gauss-Newton matrix N and written to Newton's
+  // matrix M. Otherwise M starts as a copy of N.
   const T* __restrict source = symmetric;
   if constexpr (!Shape::kEveryPairOnce) {
     for (std::size_t n = 0; n < size * size; ++n) matrix[n] = symmetric[n];
@@ -89,8 +88,8 @@ void BlockKernel<T, Shape, Measure>::newton_matrix() {
       for (std::size_t n = 0; n < pairs(); ++n) {
         const bool is_i = chain_.pair[n].i == b_limb;
         if (!is_i && chain_.pair[n].k != b_limb) continue;
-        // d delta_mu / d q_b = -sign_b (1 + ad^2/12) column_b - ad/2 column_b, with sign + in limb i and - in limb k;
-        // row a takes it with -sign_a.
+        // The derivative of delta_mu by q_b is -sign_b (1 + ad^2/12) column_b - ad/2 column_b, with sign + in limb i
+        // and - in limb k. Row a multiplies it by -sign_a.
         const Screw once = kernel::bracket(mu[n], column[b]);
         const T half(is_i ? 0.5 : -0.5);
         const T twelfth(1.0 / 12.0);
@@ -106,11 +105,11 @@ void BlockKernel<T, Shape, Measure>::newton_matrix() {
         }
         const std::size_t other = is_i ? chain_.pair[n].k : chain_.pair[n].i;
         for (std::size_t a = first_joint(other); a < first_joint(other + 1); ++a) {
-          matrix[a * size + b] = source[a * size + b] - kernel::dot(row[a], bend);
+          matrix[a * size + b] = source[a * size + b] - kernel::dot(column[a], bend);
         }
       }
       for (std::size_t a = first_joint(b_limb); a < first_joint(b_limb + 1); ++a) {
-        T entry = source[a * size + b] + kernel::dot(row[a], own);
+        T entry = source[a * size + b] + kernel::dot(column[a], own);
         if (a > b) entry = entry - kernel::dot(kernel::bracket(column[b], column[a]), pull_[b_limb]);
         matrix[a * size + b] = entry;
       }
@@ -118,12 +117,12 @@ void BlockKernel<T, Shape, Measure>::newton_matrix() {
   }
 }
 
-/// L D L^T factors of a symmetric matrix whose entry (a, b), b <= a, is entry(a, b). Stores L D below the diagonal of
-/// work_, L^T above it and 1 / D behind the matrix. Returns the smallest difference of a pivot and ratio x its diagonal
-/// entry.
-template <class T, class Shape, class Measure>
+/// Factorises a symmetric matrix as L D L^T. entry(a, b), b <= a, gives its entries. Stores L D below the diagonal of
+/// work_, L^T above it and 1 / D behind the matrix. Returns the smallest difference between a pivot and ratio x its
+/// diagonal entry.
+template <class T, class Shape>
 template <class Entry>
-T BlockKernel<T, Shape, Measure>::factor(Entry entry, double ratio) {
+T BlockKernel<T, Shape>::factor(Entry entry, double ratio) {
   const std::size_t size = joints();
   T* __restrict l = work_;
   T* __restrict inverse = work_ + size * size;
@@ -151,9 +150,9 @@ T BlockKernel<T, Shape, Measure>::factor(Entry entry, double ratio) {
   return margin;
 }
 
-/// The lanes where of_n N - of_m M is positive definite.
-template <class T, class Shape, class Measure>
-typename T::MaskType BlockKernel<T, Shape, Measure>::is_positive(double of_n, double of_m) {
+/// The lanes in which of_n N - of_m M is positive definite, with the Gauss-Newton matrix N and Newton's matrix M.
+template <class T, class Shape>
+typename T::MaskType BlockKernel<T, Shape>::is_positive(double of_n, double of_m) {
   const std::size_t size = joints();
   const auto entry = [&](std::size_t a, std::size_t b) {
     return nmadd(T(0.5 * of_m), m_[a * size + b] + m_[b * size + a], T(of_n) * n_[a * size + b]);
@@ -161,19 +160,16 @@ typename T::MaskType BlockKernel<T, Shape, Measure>::is_positive(double of_n, do
   return factor(entry, 0.0) > T(0.0);
 }
 
-/// The lanes where 2 N - M is positive definite, so that Gauss-Newton contracts. Tests 3 N - 2 M = N - 2 C first, whose
-/// positive definiteness implies it and holds in nearly every lane.
-template <class T, class Shape, class Measure>
-typename T::MaskType BlockKernel<T, Shape, Measure>::contracts() {
-  if constexpr (!Measure::kWeighted) return is_positive(2.0, 1.0);
-  const auto clear = is_positive(3.0, 2.0);
-  clear_ &= bits(clear);
-  return bits(clear) == kAllLanes ? clear : clear | is_positive(2.0, 1.0);
+/// The lanes in which Gauss-Newton contracts, because 2 N - M is positive definite (N: Gauss-Newton matrix, M: Newton's
+/// matrix).
+template <class T, class Shape>
+typename T::MaskType BlockKernel<T, Shape>::contracts() {
+  return is_positive(2.0, 1.0);
 }
 
-/// Solves N x = f. Returns the lanes where all pivots are above rounding.
-template <class T, class Shape, class Measure>
-typename T::MaskType BlockKernel<T, Shape, Measure>::gauss_newton_step(T* __restrict x) {
+/// Solves N x = f for the Gauss-Newton step x. Returns the lanes in which all pivots are above rounding.
+template <class T, class Shape>
+typename T::MaskType BlockKernel<T, Shape>::gauss_newton_step(T* __restrict x) {
   const std::size_t size = joints();
   const double rounding = 4.0 * static_cast<double>(size) * 2.220446049250313e-16;
   const T margin = factor([&](std::size_t a, std::size_t b) { return n_[a * size + b]; }, rounding);
@@ -192,10 +188,10 @@ typename T::MaskType BlockKernel<T, Shape, Measure>::gauss_newton_step(T* __rest
   return margin > T(0.0);
 }
 
-/// Solves M x = f by elimination without pivoting and overwrites M with its factors. Returns the lanes where all pivots
-/// are safely positive.
-template <class T, class Shape, class Measure>
-typename T::MaskType BlockKernel<T, Shape, Measure>::newton_step(T* __restrict x) {
+/// Solves M x = f for the Newton step x by elimination without pivoting, and overwrites Newton's matrix M with its
+/// factors. Returns the lanes in which all pivots are safely positive.
+template <class T, class Shape>
+typename T::MaskType BlockKernel<T, Shape>::newton_step(T* __restrict x) {
   const std::size_t size = joints();
   T* __restrict m = m_;
   T* __restrict inverse = pivot_;
@@ -222,27 +218,10 @@ typename T::MaskType BlockKernel<T, Shape, Measure>::newton_step(T* __restrict x
   return margin > T(0.0);
 }
 
-/// Solves M x = f with the factors that newton_step() left.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::newton_step_again(T* __restrict x) const {
-  const std::size_t size = joints();
-#pragma GCC unroll 9
-  for (std::size_t a = 0; a < size; ++a) {
-    T value = f_[a];
-    for (std::size_t k = 0; k < a; ++k) value = nmadd(m_[a * size + k], x[k], value);
-    x[a] = value * pivot_[a];  // all rows below use this quotient
-  }
-  for (std::size_t a = size; a-- > 0;) {
-    T sum(0.0);
-    for (std::size_t b = a + 1; b < size; ++b) sum = madd(m_[a * size + b], x[b], sum);
-    x[a] = nmadd(pivot_[a], sum, x[a]);
-  }
-}
-
-/// Updates the residual of these lanes for the step x, to first order: V_k - V_i - ad/2 (V_k + V_i) + ad^2/12 (V_k -
+/// Updates the residual of these lanes to first order for the step x, by V_k - V_i - ad/2 (V_k + V_i) + ad^2/12 (V_k -
 /// V_i), where V are the motions of the limbs.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::carry_residual(const T* x, typename T::MaskType lanes) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::carry_residual(const T* x, typename T::MaskType lanes) {
   for (std::size_t i = 0; i < limbs(); ++i) {
     Screw motion;
     for (int k = 0; k < 3; ++k) motion.w[k] = motion.v[k] = T(0.0);

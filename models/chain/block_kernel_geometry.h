@@ -11,7 +11,7 @@ using simd::add_cross;
 using simd::cross;
 using simd::dot3;
 
-/// Lie bracket of screws [w; v].
+/// The Lie bracket of two screws [w; v].
 template <class Screw>
 inline Screw bracket(const Screw& a, const Screw& b) {
   Screw c;
@@ -29,7 +29,7 @@ inline auto dot(const Screw& a, const Screw& b) {
   return sum;
 }
 
-/// rest -= share a
+/// Subtracts a multiple of a screw: rest -= share a.
 template <class T, class Screw>
 inline void subtract(T share, const Screw& a, Screw& rest) {
   for (int n = 0; n < 3; ++n) {
@@ -38,7 +38,7 @@ inline void subtract(T share, const Screw& a, Screw& rest) {
   }
 }
 
-/// p += r shift
+/// Adds a rotated vector: p += r shift, with the rotation matrix r.
 template <class T>
 inline void add_turned(const T* r, const T* shift, T* p) {
   for (int row = 0; row < 3; ++row) {
@@ -46,7 +46,7 @@ inline void add_turned(const T* r, const T* shift, T* p) {
   }
 }
 
-/// g = a b; g may be a.
+/// The product of motions g = a b; g may be the object a.
 template <class Motion>
 inline void multiply(const Motion& a, const Motion& b, Motion& g) {
   Motion c;
@@ -60,7 +60,7 @@ inline void multiply(const Motion& a, const Motion& b, Motion& g) {
   g = c;
 }
 
-/// a b^-1
+/// The motion a b^-1.
 template <class Motion>
 inline Motion divide(const Motion& a, const Motion& b) {
   Motion c;
@@ -76,16 +76,16 @@ inline Motion divide(const Motion& a, const Motion& b) {
 
 }  // namespace kernel
 
-/// An entry of an error's [omega; v].
-template <class T, class Shape, class Measure>
-T BlockKernel<T, Shape, Measure>::varied(const KernelPiece& piece, int entry, std::size_t at) const {
+/// A component of a frame's error [omega; v] in these lanes.
+template <class T, class Shape>
+T BlockKernel<T, Shape>::varied(const KernelPiece& piece, int entry, std::size_t at) const {
   const int row = piece.varied_row[entry];
   return row < 0 ? T(piece.error[entry]) : value(static_cast<std::size_t>(row), at);
 }
 
-/// Delta g of Eq. 26, or its inverse.
-template <class T, class Shape, class Measure>
-auto BlockKernel<T, Shape, Measure>::error_motion(const KernelPiece& piece, std::size_t at) const -> Motion {
+/// The motion Delta g of a frame's error (Du et al. 2022, Eq. 26), or its inverse.
+template <class T, class Shape>
+auto BlockKernel<T, Shape>::error_motion(const KernelPiece& piece, std::size_t at) const -> Motion {
   T e[6];
   for (int n = 0; n < 6; ++n) e[n] = varied(piece, n, at);
   const T x = kernel::dot3(e, e);
@@ -99,18 +99,18 @@ auto BlockKernel<T, Shape, Measure>::error_motion(const KernelPiece& piece, std:
   return g;
 }
 
-template <class T, class Shape, class Measure>
-auto BlockKernel<T, Shape, Measure>::constant_motion(const KernelPiece& piece) -> Motion {
+template <class T, class Shape>
+auto BlockKernel<T, Shape>::constant_motion(const KernelPiece& piece) -> Motion {
   Motion g;
   for (int k = 0; k < 9; ++k) g.r[k] = T(piece.constant[k]);
   for (int k = 0; k < 3; ++k) g.p[k] = T(piece.constant[9 + k]);
   return g;
 }
 
-/// The motion of a segment: the product of its pieces. An error without a rotation only shifts the pieces before and
-/// behind it.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::vary_segment(const KernelSegment& segment, std::size_t at, Motion& product) const {
+/// Computes the motion of a segment, which is the product of its pieces. An error without a rotation only shifts the
+/// pieces before and after it.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::vary_segment(const KernelSegment& segment, std::size_t at, Motion& product) const {
   T shift[3] = {T(0.0), T(0.0), T(0.0)};
   bool is_empty = true;
   for (std::size_t n = 0; n < segment.pieces; ++n) {
@@ -136,31 +136,31 @@ void BlockKernel<T, Shape, Measure>::vary_segment(const KernelSegment& segment, 
   }
 }
 
-/// Computes the segments before `end` that are not constant.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::vary_segments(std::size_t at, std::size_t end) {
+/// Computes the motions of the first `end` segments, except those that are the same in all samples.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::vary_segments(std::size_t at, std::size_t end) {
   for (std::size_t s = 0; s < end; ++s) {
     if (!is_constant(chain_.segment[s])) vary_segment(chain_.segment[s], at, segment_[s]);
   }
 }
 
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::load_constant_segments() {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::load_constant_segments() {
   for (std::size_t s = 0; s < chain_.segments; ++s) {
     const KernelSegment& segment = chain_.segment[s];
     if (is_constant(segment)) segment_[s] = constant_motion(chain_.piece[segment.first_piece]);
   }
 }
 
-template <class T, class Shape, class Measure>
-bool BlockKernel<T, Shape, Measure>::is_constant(const KernelSegment& segment) const {
+template <class T, class Shape>
+bool BlockKernel<T, Shape>::is_constant(const KernelSegment& segment) const {
   return segment.pieces == 1 && !chain_.piece[segment.first_piece].is_error;
 }
 
-/// The spatial Jacobian column of Eqs. 32-39: the screw of a joint about or along this axis through this point.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::set_column(const KernelJoint& joint, const T* axis, const T* point,
-                                                Screw& column) const {
+/// Sets a column of the spatial Jacobian (Du et al. 2022, Eqs. 32-39): the screw of a joint about or along this axis
+/// through this point.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::set_column(const KernelJoint& joint, const T* axis, const T* point, Screw& column) const {
   if (!joint.revolute) {
     for (int k = 0; k < 3; ++k) {
       column.w[k] = T(0.0);
@@ -174,18 +174,17 @@ void BlockKernel<T, Shape, Measure>::set_column(const KernelJoint& joint, const 
   for (int k = 0; k < 3; ++k) column.v[k] = madd(T(joint.advance), axis[k], column.v[k]);
 }
 
-/// The platform pose of a limb by Eq. 28; also its spatial Jacobian columns, if wanted. A joint changes two columns of
-/// R, or p.
-template <class T, class Shape, class Measure>
-template <bool with_columns>
-void BlockKernel<T, Shape, Measure>::limb_pose(std::size_t i, Motion& pose) {
-  // Each limb has one segment more than joints.
+/// Computes the platform pose of a limb by Eq. 28 of Du et al. 2022, and its spatial Jacobian columns. A revolute joint
+/// changes two columns of R, a prismatic joint p.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::limb_pose(std::size_t i, Motion& pose) {
+  // Each limb has one more segment than it has joints.
   const Motion* segment = segment_ + i;
   Motion g = segment[first_joint(i)];
   for (std::size_t j = first_joint(i); j < first_joint(i + 1); ++j) {
     const T axis[3] = {g.r[2], g.r[5], g.r[8]};
     const T q = joint_[j];
-    if constexpr (with_columns) set_column(chain_.joint[j], axis, g.p, column_[j]);
+    set_column(chain_.joint[j], axis, g.p, column_[j]);
     if (chain_.joint[j].revolute) {
       const auto [s, c] = simd::sin_cos(q);
       for (int row = 0; row < 3; ++row) {
@@ -204,16 +203,16 @@ void BlockKernel<T, Shape, Measure>::limb_pose(std::size_t i, Motion& pose) {
   pose = g;
 }
 
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::residuals() {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::residuals() {
   for (std::size_t i = 0; i < limbs(); ++i) limb_pose(i, pose_[i]);
   for (std::size_t n = 0; n < pairs(); ++n) {
     mu_[n] = log(kernel::divide(pose_[chain_.pair[n].k], pose_[chain_.pair[n].i]));
   }
 }
 
-template <class T, class Shape, class Measure>
-auto BlockKernel<T, Shape, Measure>::log(const Motion& g) -> Screw {
+template <class T, class Shape>
+auto BlockKernel<T, Shape>::log(const Motion& g) -> Screw {
   const auto turn = simd::rotation_log(g.r);
   Screw screw;
   for (int k = 0; k < 3; ++k) screw.w[k] = turn.w[k];

@@ -4,10 +4,9 @@
 
 namespace poesy::chain {
 
-template <class T, class Shape, class Measure>
-BlockKernel<T, Shape, Measure>::BlockKernel(const KernelChain& chain, const KernelSamples& samples,
-                                            const KernelStart& start, const KernelOptions& options,
-                                            const KernelOutcome& outcome, double* scratch)
+template <class T, class Shape>
+BlockKernel<T, Shape>::BlockKernel(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
+                                   const KernelOptions& options, const KernelOutcome& outcome, double* scratch)
     : chain_(chain),
       samples_(samples),
       start_(start),
@@ -23,8 +22,6 @@ BlockKernel<T, Shape, Measure>::BlockKernel(const KernelChain& chain, const Kern
   segment_ = reinterpret_cast<Motion*>(take_lanes(12 * chain.segments));
   pose_ = reinterpret_cast<Motion*>(take_lanes(12 * chain.limbs));
   column_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.joints));
-  row_ = Measure::kWeighted ? reinterpret_cast<Screw*>(take_lanes(6 * chain.joints)) : column_;
-  rows_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.joints));
   mu_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.pairs));
   pull_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.limbs));
   joint_ = reinterpret_cast<T*>(take_lanes(chain.joints));
@@ -44,16 +41,12 @@ BlockKernel<T, Shape, Measure>::BlockKernel(const KernelChain& chain, const Kern
   left_ = index_ + capacity_;
 }
 
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::solve() {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::solve() {
   load_constant_segments();
   for (std::size_t b = 0; b < samples_.count; ++b) left_[b] = static_cast<std::uint32_t>(b);
   const std::uint32_t cap = options_.max_iterations;
-  if (chain_.meets) {
-    solve_meeting();
-  } else if constexpr (Measure::kWeighted) {
-    solve_by_metric();
-  } else if (options_.method == KernelMethod::gauss_newton) {
+  if (options_.method == KernelMethod::gauss_newton) {
     run<KernelPass::published>(samples_.count, cap);
   } else {
     std::size_t left = run<KernelPass::direct>(samples_.count, cap < kDirectIterations ? cap : kDirectIterations);
@@ -62,12 +55,13 @@ void BlockKernel<T, Shape, Measure>::solve() {
       run<KernelPass::rescue>(left, cap);
     }
   }
-  for (std::size_t at = 0; !chain_.meets && at < samples_.count; at += kLanes) judge(at);
+  for (std::size_t at = 0; at < samples_.count; at += kLanes) judge(at);
 }
 
-/// Computes the rows of a map, of all samples, into memory_.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::map_rows(const KernelMap& map) {
+/// Computes the coordinates y of a first-order map for all samples and stores them in memory_, one row for each
+/// coordinate.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::map_rows(const KernelMap& map) {
   load_all();
   for (std::size_t first = 0; first < map.rows; first += kMapRows) {
     for (std::size_t row = first; row < first + kMapRows; ++row) {
@@ -81,19 +75,19 @@ void BlockKernel<T, Shape, Measure>::map_rows(const KernelMap& map) {
   }
 }
 
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::map(const KernelMap& map) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::map(const KernelMap& map) {
   map_rows(map);
   for (std::size_t at = 0; at < samples_.count; at += kLanes) {
     map.rows == kMapRows ? finish_mapped<kMapRows>(map, at) : finish_mapped<0>(map, at);
   }
 }
 
-/// Adds the effects of `errors` errors, from the v-th on, to these rows of all samples. Reads few rows of samples at a
-/// time, so that the hardware prefetcher can follow them.
-template <class T, class Shape, class Measure>
+/// Adds the first-order effects of varied errors v to v + errors - 1 to kMapRows coordinates of all samples. It reads
+/// few rows of sample values at a time, so that the hardware prefetcher can follow them.
+template <class T, class Shape>
 template <std::size_t errors>
-void BlockKernel<T, Shape, Measure>::add_mapped(const KernelMap& map, std::size_t first, std::size_t v) {
+void BlockKernel<T, Shape>::add_mapped(const KernelMap& map, std::size_t first, std::size_t v) {
   T effect[errors][kMapRows];
   for (std::size_t e = 0; e < errors; ++e) {
     for (std::size_t n = 0; n < kMapRows; ++n) effect[e][n] = T(map.effects[(v + e) * map.rows + first + n]);
@@ -114,11 +108,11 @@ void BlockKernel<T, Shape, Measure>::add_mapped(const KernelMap& map, std::size_
   if (at < samples_.count) add(value_ + v * capacity_ + at, capacity_, at);
 }
 
-/// Computes residuals, if wanted, responses and status of one batch from its coordinates. known_rows: number of rows if
-/// known at compile time, else 0.
-template <class T, class Shape, class Measure>
+/// Computes residuals, responses and status of one batch of samples from its coordinates y. known_rows: number of
+/// coordinates if it is known at compile time, else 0.
+template <class T, class Shape>
 template <std::size_t known_rows>
-void BlockKernel<T, Shape, Measure>::finish_mapped(const KernelMap& map, std::size_t at) {
+void BlockKernel<T, Shape>::finish_mapped(const KernelMap& map, std::size_t at) {
   const std::size_t rows = known_rows != 0 ? known_rows : map.rows;
   const auto y = [&](std::size_t row) { return T::load(memory_ + row * capacity_ + at); };
   T size(0.0);
@@ -129,29 +123,18 @@ void BlockKernel<T, Shape, Measure>::finish_mapped(const KernelMap& map, std::si
     outcome_.status[at + lane] = is_finite ? SolveStatus::converged : SolveStatus::non_finite;
     outcome_.iterations[at + lane] = 1;
   }
-  for (std::size_t n = 0; map.delta_mu != nullptr && n < 6 * pairs(); ++n) {
+  for (std::size_t n = 0; n < 6 * pairs(); ++n) {
     T sum(0.0);
     for (std::size_t row = 0; row < rows; ++row) sum = madd(T(map.delta_mu[n * rows + row]), y(row), sum);
     sum.store(outcome_.delta_mu + n * outcome_.stride + at);
   }
-  if constexpr (!Measure::kWeighted) return judge(at);
-  for (std::size_t response = 0; response < 3; ++response) {
-    const double* R = map.norms + response * rows * rows;
-    T square(0.0);
-    for (std::size_t row = 0; row < rows; ++row) {
-      T sum(0.0);
-      for (std::size_t column = row; column < rows; ++column) sum = madd(T(R[row * rows + column]), y(column), sum);
-      square = madd(sum, sum, square);
-    }
-    sqrt(square).store(outcome_.responses + response * outcome_.stride + at);
-  }
+  judge(at);
 }
 
-/// Responses of a batch. By a metric see judge_by_metric(). As published (Eqs. 45-50): the mean of the angular and of
-/// the linear norms over the pairs, and the largest norm of both together.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::judge(std::size_t at) {
-  if constexpr (Measure::kWeighted) return judge_by_metric(at);
+/// Computes the responses of a batch of samples (Du et al. 2022, Eqs. 45-50): the means over the pairs of the angular
+/// and of the linear norms, and the largest norm of the whole mismatch.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::judge(std::size_t at) {
   T angular(0.0), linear(0.0), largest(0.0);
   for (std::size_t n = 0; n < pairs(); ++n) {
     T mu[6];
@@ -168,18 +151,18 @@ void BlockKernel<T, Shape, Measure>::judge(std::size_t at) {
   sqrt(largest).store(outcome_.responses + 2 * outcome_.stride + at);
 }
 
-/// Solves the samples listed in left_[0 .. count), replaces them by those that it did not solve, and returns the number
-/// of these.
-template <class T, class Shape, class Measure>
+/// Solves the samples listed in left_[0 .. count). Replaces the list by the samples that were not solved, and returns
+/// their number.
+template <class T, class Shape>
 template <KernelPass pass>
-std::size_t BlockKernel<T, Shape, Measure>::run(std::size_t count, std::uint32_t rounds) {
+std::size_t BlockKernel<T, Shape>::run(std::size_t count, std::uint32_t rounds) {
   constexpr bool published = pass == KernelPass::published;
   constexpr bool last_pass = published || pass == KernelPass::rescue;
   if (count == 0) return 0;
   begin(count, pass == KernelPass::direct);
   std::size_t left = 0;
   std::size_t active = count;
-  // The published rule also evaluates the residual after the last step.
+  // The published rule evaluates the residual once more after the last step.
   const std::uint32_t evaluations = published ? rounds + 1 : rounds;
   for (std::uint32_t round = 0; round < evaluations && active > 0; ++round) {
     const bool last_round = round + 1 == evaluations;
@@ -209,9 +192,10 @@ std::size_t BlockKernel<T, Shape, Measure>::run(std::size_t count, std::uint32_t
   return left;
 }
 
-/// Takes all samples in their order. Whole batches are read in place; the last lanes are copies of the last sample.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::load_all() {
+/// Loads all samples in their order. Whole batches are read in place; the remaining lanes are copies of the last
+/// sample.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::load_all() {
   const std::size_t count = samples_.count;
   in_place_ = count - count % kLanes;
   for (std::size_t v = 0; v < samples_.varied; ++v) {
@@ -223,14 +207,14 @@ void BlockKernel<T, Shape, Measure>::load_all() {
   for (std::size_t b = 0; b < count; ++b) index_[b] = static_cast<std::uint32_t>(b);
 }
 
-/// The values of the v-th varied error in these lanes.
-template <class T, class Shape, class Measure>
-T BlockKernel<T, Shape, Measure>::value(std::size_t v, std::size_t at) const {
+/// The values of the v-th varied error in the lanes from `at` on.
+template <class T, class Shape>
+T BlockKernel<T, Shape>::value(std::size_t v, std::size_t at) const {
   return at < in_place_ ? T::load(samples_.values + v * samples_.stride + at) : T::load(value_ + v * capacity_ + at);
 }
 
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::begin(std::size_t count, bool predicted) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::begin(std::size_t count, bool predicted) {
   in_place_ = 0;
   for (std::size_t b = 0; b < count; ++b) {
     index_[b] = left_[b];
@@ -250,27 +234,11 @@ void BlockKernel<T, Shape, Measure>::begin(std::size_t count, bool predicted) {
   }
 }
 
-/// Sets the starts of `count` joints, from the given one on: in proportion to the errors where slopes are known.
-template <class T, class Shape, class Measure>
-template <std::size_t count>
-void BlockKernel<T, Shape, Measure>::follow_slopes(std::size_t at, std::size_t first) {
-  T q[count];
-  for (std::size_t j = 0; j < count; ++j) q[j] = T(chain_.joint[first + j].start);
-  for (std::size_t v = 0; start_.slopes != nullptr && v < samples_.varied; ++v) {
-    const T own = value(v, at);
-    const double* slope = start_.slopes + v * joints() + first;
-    for (std::size_t j = 0; j < count; ++j) q[j] = madd(T(slope[j]), own, q[j]);
-  }
-  for (std::size_t j = 0; j < count; ++j) joint_[first + j] = q[j];
-}
-
-/// Sets the starts of a batch: in proportion to the errors where slopes are known; by the Chebyshev series of the fit
-/// in whose range a sample lies, summed by Clenshaw's recurrence.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::predict(std::size_t at) {
-  std::size_t done = 0;
-  for (; done + kStartJoints <= joints(); done += kStartJoints) follow_slopes<kStartJoints>(at, done);
-  for (; done < joints(); ++done) follow_slopes<1>(at, done);
+/// Sets the starting points of a batch. A sample within the range of a fit starts at the sum of the fit's Chebyshev
+/// series, by Clenshaw's recurrence. Samples outside all ranges start from nominal displacements.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::predict(std::size_t at) {
+  for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T(chain_.joint[j].start);
   for (std::size_t n = 0; n < start_.fits; ++n) {
     const KernelFit& fit = start_.fit[n];
     const T x = (value(0, at) - T(fit.center)) * T(1.0 / fit.half_width);
@@ -292,9 +260,9 @@ void BlockKernel<T, Shape, Measure>::predict(std::size_t at) {
   for (std::size_t j = 0; j < joints(); ++j) joint_[j].store(q_ + j * capacity_ + at);
 }
 
-/// Fills the lanes behind the last sample with copies of it, whose results are not used.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::pad(std::size_t count) {
+/// Fills the lanes behind the last sample with copies of this sample, whose results are not used.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::pad(std::size_t count) {
   const std::size_t rows = samples_.varied + joints() + kernel_memory(chain_) + 2;
   for (std::size_t b = count; b % kLanes != 0; ++b) {
     // value_, q_, memory_, smallest_ and flat_ are contiguous.
@@ -302,8 +270,8 @@ void BlockKernel<T, Shape, Measure>::pad(std::size_t count) {
   }
 }
 
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::evaluate(std::size_t at) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::evaluate(std::size_t at) {
   for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T::load(q_ + j * capacity_ + at);
   vary_segments(at, chain_.segments);
   residuals();
@@ -311,8 +279,8 @@ void BlockKernel<T, Shape, Measure>::evaluate(std::size_t at) {
   gauss_newton_matrix();
 }
 
-template <class T, class Shape, class Measure>
-typename T::MaskType BlockKernel<T, Shape, Measure>::finite_residual() const {
+template <class T, class Shape>
+typename T::MaskType BlockKernel<T, Shape>::finite_residual() const {
   T sum(0.0);
   for (std::size_t n = 0; n < pairs(); ++n) {
     for (int k = 0; k < 3; ++k) sum = sum + abs(mu_[n].w[k]) + abs(mu_[n].v[k]);
@@ -320,27 +288,20 @@ typename T::MaskType BlockKernel<T, Shape, Measure>::finite_residual() const {
   return sum < T(1e300);
 }
 
-template <class T, class Shape, class Measure>
-T BlockKernel<T, Shape, Measure>::largest(const T* x) const {
+template <class T, class Shape>
+T BlockKernel<T, Shape>::largest(const T* x) const {
   T size(0.0);
   for (std::size_t j = 0; j < joints(); ++j) size = max(size, abs(x[j]));
   return size;
 }
 
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::take_step(std::size_t at, const T* x) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::take_step(std::size_t at, const T* x) {
   for (std::size_t j = 0; j < joints(); ++j) (joint_[j] + x[j]).store(q_ + j * capacity_ + at);
 }
 
-/// Adds the step of a batch to its displacements.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::advance(std::size_t at) {
-  take_step(at, step_);
-  for (std::size_t j = 0; j < joints(); ++j) joint_[j] = joint_[j] + step_[j];
-}
-
-template <class T, class Shape, class Measure>
-auto BlockKernel<T, Shape, Measure>::published_round(std::size_t at, std::uint32_t round, bool last_round) -> Verdict {
+template <class T, class Shape>
+auto BlockKernel<T, Shape>::published_round(std::size_t at, std::uint32_t round, bool last_round) -> Verdict {
   evaluate(at);
   T change(0.0);
   for (std::size_t n = 0; n < pairs(); ++n) {
@@ -368,9 +329,9 @@ auto BlockKernel<T, Shape, Measure>::published_round(std::size_t at, std::uint32
   return verdict;
 }
 
-template <class T, class Shape, class Measure>
+template <class T, class Shape>
 template <KernelPass pass>
-auto BlockKernel<T, Shape, Measure>::newton_round(std::size_t at, std::uint32_t round) -> Verdict {
+auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) -> Verdict {
   evaluate(at);
   const auto finite = finite_residual();
   Verdict verdict;
@@ -383,7 +344,7 @@ auto BlockKernel<T, Shape, Measure>::newton_round(std::size_t at, std::uint32_t 
     verdict.stagnated = bits(size < T(kRestingStep));
     near = size < T(kNearStep);
     if (!any(near)) {
-      // Far from a root Newton's equations would not be used.
+      // Far from a root, Newton's equations would not be used.
       take_step(at, gauss_newton_);
       return verdict;
     }
@@ -391,7 +352,7 @@ auto BlockKernel<T, Shape, Measure>::newton_round(std::size_t at, std::uint32_t 
   newton_matrix();
   auto safe = near & finite;
   if constexpr (pass == KernelPass::direct) {
-    // The first step from a fit is small and stays on the branch of the fit's nodes, all of which were safe.
+    // The first step from a fit is small. It stays on the branch of the fit's nodes, all of which were safe.
     const auto fitted = T::load(flat_ + at) * T(round == 0 ? 1.0 : 0.0) < T(0.0);
     if (any(!fitted)) safe = safe & (fitted | contracts());
   } else if constexpr (pass == KernelPass::follow) {
@@ -425,9 +386,10 @@ auto BlockKernel<T, Shape, Measure>::newton_round(std::size_t at, std::uint32_t 
   return verdict;
 }
 
-/// The lanes that have returned to their displacements at the last power of two of rounds: Gauss-Newton cycles.
-template <class T, class Shape, class Measure>
-typename T::MaskType BlockKernel<T, Shape, Measure>::cycles(std::size_t at, std::uint32_t round) {
+/// The lanes in which the displacements are again those of an earlier round: the last round whose number is a power of
+/// two. There, Gauss-Newton cycles.
+template <class T, class Shape>
+typename T::MaskType BlockKernel<T, Shape>::cycles(std::size_t at, std::uint32_t round) {
   const bool remember = (round & (round - 1)) == 0;
   T distance(0.0);
   for (std::size_t j = 0; j < joints(); ++j) {
@@ -439,12 +401,11 @@ typename T::MaskType BlockKernel<T, Shape, Measure>::cycles(std::size_t at, std:
   return distance < T(kSamePlace);
 }
 
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::finish(std::size_t at, std::size_t lane, SolveStatus status,
-                                            std::uint32_t iterations) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::finish(std::size_t at, std::size_t lane, SolveStatus status, std::uint32_t iterations) {
   const std::size_t sample = index_[at + lane];
   const double* mu = reinterpret_cast<const double*>(mu_);
-  for (std::size_t n = 0; !chain_.meets && n < 6 * pairs(); ++n) {
+  for (std::size_t n = 0; n < 6 * pairs(); ++n) {
     outcome_.delta_mu[n * outcome_.stride + sample] = mu[n * kLanes + lane];
   }
   if (outcome_.displacements != nullptr) {
@@ -456,10 +417,10 @@ void BlockKernel<T, Shape, Measure>::finish(std::size_t at, std::size_t lane, So
   outcome_.iterations[sample] = iterations;
 }
 
-/// Moves the samples that are not done together.
-template <class T, class Shape, class Measure>
+/// Moves a sample that is not done from one position to another, so that these samples lie together.
+template <class T, class Shape>
 template <KernelPass pass>
-void BlockKernel<T, Shape, Measure>::move(std::size_t from, std::size_t to) {
+void BlockKernel<T, Shape>::move(std::size_t from, std::size_t to) {
   if (from == to) return;
   index_[to] = index_[from];
   const std::size_t needed = samples_.varied + joints();

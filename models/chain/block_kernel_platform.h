@@ -4,8 +4,8 @@
 
 namespace poesy::chain {
 
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::move_platform(const KernelPlatform& platform) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::move_platform(const KernelPlatform& platform) {
   if (platform.map != nullptr) {
     map_rows(*platform.map);
   } else {
@@ -17,9 +17,10 @@ void BlockKernel<T, Shape, Measure>::move_platform(const KernelPlatform& platfor
   }
 }
 
-/// xi of one batch, from its coordinates to first order, or from the limbs at their displacements.
-template <class T, class Shape, class Measure>
-auto BlockKernel<T, Shape, Measure>::platform_motion(const KernelPlatform& platform, std::size_t at) -> Screw {
+/// The motion xi of the platform for one batch of samples. To first order it is computed from the coordinates of the
+/// samples, otherwise from the poses of the limbs at their solved displacements.
+template <class T, class Shape>
+auto BlockKernel<T, Shape>::platform_motion(const KernelPlatform& platform, std::size_t at) -> Screw {
   Screw sum;
   if (platform.map != nullptr) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -32,11 +33,9 @@ auto BlockKernel<T, Shape, Measure>::platform_motion(const KernelPlatform& platf
   for (int k = 0; k < 9; ++k) nominal.r[k] = T(platform.nominal[k]);
   for (int k = 0; k < 3; ++k) nominal.p[k] = T(platform.nominal[9 + k]);
   for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T::load(platform.displacements + j * outcome_.stride + at);
-  // Limbs that meet all move the platform as the first one does.
-  const std::size_t count = chain_.meets ? 1 : limbs();
-  vary_segments(at, first_joint(count) + count);
+  vary_segments(at, chain_.segments);
   for (int k = 0; k < 3; ++k) sum.w[k] = sum.v[k] = T(0.0);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < limbs(); ++i) {
     limb_pose(i, pose_[i]);
     const Screw own = log(kernel::divide(pose_[i], nominal));
     for (int k = 0; k < 3; ++k) {
@@ -44,7 +43,7 @@ auto BlockKernel<T, Shape, Measure>::platform_motion(const KernelPlatform& platf
       sum.v[k] = sum.v[k] + own.v[k];
     }
   }
-  const T share(1.0 / static_cast<double>(count));
+  const T share(1.0 / static_cast<double>(limbs()));
   for (int k = 0; k < 3; ++k) {
     sum.w[k] = share * sum.w[k];
     sum.v[k] = share * sum.v[k];
@@ -52,11 +51,11 @@ auto BlockKernel<T, Shape, Measure>::platform_motion(const KernelPlatform& platf
   return sum;
 }
 
-/// The displacement D p - p = V (w x p + v) of a point and its length; V = 1 + b hat(w) + c hat(w)^2 is the left
-/// Jacobian, 1 to first order. rows: the place of x for this batch; y and z follow at the distance of a stride.
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::displace(const Screw& motion, const double* point, bool is_linear, double* rows,
-                                              double* length) const {
+/// Computes the displacement D p - p = V (w x p + v) of a point, and its length. V = 1 + b hat(w) + c hat(w)^2 is the
+/// left Jacobian, or 1 to first order. rows: address of x for this batch; y and z follow, one stride apart.
+template <class T, class Shape>
+void BlockKernel<T, Shape>::displace(const Screw& motion, const double* point, bool is_linear, double* rows,
+                                     double* length) const {
   const T p[3] = {T(point[0]), T(point[1]), T(point[2])};
   T d[3] = {motion.v[0], motion.v[1], motion.v[2]};
   kernel::add_cross(motion.w, p, d);
@@ -71,9 +70,8 @@ void BlockKernel<T, Shape, Measure>::displace(const Screw& motion, const double*
   sqrt(kernel::dot3(d, d)).store(length);
 }
 
-template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::finish_platform(const KernelPlatform& platform, const Screw& motion,
-                                                     std::size_t at) const {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::finish_platform(const KernelPlatform& platform, const Screw& motion, std::size_t at) const {
   const auto row = [&](std::size_t n) { return platform.responses + n * outcome_.stride + at; };
   const bool is_linear = platform.map != nullptr;
   displace(motion, platform.nominal + 9, is_linear, row(0), row(6));

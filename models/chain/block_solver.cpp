@@ -9,20 +9,23 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
-#include "engine/linalg/decompositions.h"
 #include "models/chain/deformation_solver.h"
 #include "models/chain/nominal.h"
 
 namespace poesy::chain {
 namespace {
 
-/// Largest Newton step (rad, m) from a start. A larger step may lead to another root than that of Gauss-Newton.
+/// The largest Newton step (rad, m) that is taken from a start. A larger step may lead to another root than the one
+/// that Gauss-Newton finds.
 constexpr double kLargestStep = 0.15;
-/// Largest Newton step (rad, m) for the nodes of a fit. A fit is used only if its roots lie on one smooth branch.
+/// The largest Newton step (rad, m) of the solves at the nodes of a fit. It may be larger than kLargestStep, because a
+/// fit is used only if its roots lie on one smooth branch.
 constexpr double kLargestNodeStep = 0.4;
-/// If the last coefficients (rad, m) of a fit are below this, nearly every start is within one step of its root.
+/// If the last coefficients (rad, m) of a fit are below this, nearly every starting point is so good that one step
+/// leads to its root.
 constexpr double kGoodTail = 1e-6;
-/// A fit with larger last coefficients (rad, m) is not used, because displacements are not smooth over its range.
+/// A fit whose last coefficients (rad, m) are above this is not used, because displacements are not smooth over its
+/// range.
 constexpr double kTrustedTail = 1e-4;
 /// The number of times that a range may be halved for better fits.
 constexpr int kSplits = 2;
@@ -59,7 +62,7 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
       options_{options.method == SolverOptions::Method::newton ? KernelMethod::newton : KernelMethod::gauss_newton,
                options.tolerance,
                rounding_level(chain),
-               0.0,
+               std::max(std::sqrt(options.tolerance / 10.0), 1e-10),
                kLargestStep,
                static_cast<std::uint32_t>(options.max_iterations)},
       kernels_(simd::for_selected_isa([]<simd::Isa isa> { return kernels<isa>(); })),
@@ -88,33 +91,24 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
 }
 
 void BlockSolver::prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
-                          std::span<const FrameEntry> varied, double range, const Metric* metric,
-                          const PlatformPoints* platform, const Metric* held) {
+                          std::span<const FrameEntry> varied, double range, const PlatformPoints* platform,
+                          const Metric* held) {
   POESY_EXPECTS(displacements.size() == chain_->joints() && errors.size() == chain_->frames());
   varied_ = varied.size();
-  metric_ = metric;
   platform_ = platform;
-  const bool is_linear = fidelity_ == Fidelity::first_order;
-  is_singular_ = !first_order_.prepare(displacements, metric == nullptr ? nullptr : &metric->W);
-  if (is_linear) {
+  if (fidelity_ == Fidelity::first_order) {
+    is_singular_ = !first_order_.prepare(displacements, nullptr);
     if (is_singular_) return;
     find_map(displacements, errors, varied);
     if (platform != nullptr) find_platform_map(errors, varied);
     return;
   }
+  first_order_.prepare(displacements, nullptr);
   find_segments(displacements, errors, varied);
-  assembly_.prepare(displacements, held == nullptr ? metric : held);
+  assembly_.prepare(displacements, held);
   find_nearing(errors, varied);
   errors_.assign(errors.begin(), errors.end());
   entries_.assign(varied.begin(), varied.end());
-  if (metric != nullptr) find_spread(metric->W);
-  options_.rounding_level = metric == nullptr ? rounding_level(*chain_) : kRelativeRounding;
-  // The error after a Newton step is about the square of the step; rounding alone makes steps of about 1e-14. By a
-  // metric the bound is lower, because near a singular pose the error may be a thousand times that square.
-  const double last = metric == nullptr ? std::sqrt(options_.tolerance / 10.0) : std::sqrt(options_.tolerance) / 100.0;
-  options_.last_step = std::max(last, 1e-10);
-  if (!is_singular_) find_nominal();
-  if ((metric != nullptr || chain_->meets) && !is_singular_) find_slopes(errors, varied);
   fits_.clear();
   fits_made_ = 0;
   if (options_.method == KernelMethod::newton && varied.size() == 1 && range > 0.0) {
@@ -122,8 +116,8 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   }
 }
 
-/// Computes the motions between the passive joints, whose displacements count from their positions without errors: they
-/// are small, so that sines and cosines are fast.
+/// Computes the motions between the passive joints. Displacements are counted from the joints' positions without
+/// errors, so they are small, and their sines and cosines are fast.
 void BlockSolver::find_segments(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                                 std::span<const FrameEntry> varied) {
   joints_.clear();
@@ -149,17 +143,7 @@ void BlockSolver::find_segments(std::span<const double> displacements, std::span
   }
 }
 
-/// Sets middle_ and spread_ from W, whose blocks are the moment of the points about the base's origin and the cross
-/// product with their middle.
-void BlockSolver::find_spread(const lie::Matrix6<double>& W) {
-  const lie::Vector3<double> middle(W(2, 4), W(0, 5), W(1, 3));
-  const lie::Matrix3<double> cross = lie::hat<double>(middle);
-  const lie::Matrix3<double> U = linalg::cholesky_root(W.topLeftCorner<3, 3>() + cross * cross);
-  std::copy_n(middle.data(), 3, middle_.begin());
-  spread_ = {U(0, 0), U(0, 1), U(0, 2), U(1, 1), U(1, 2), U(2, 2)};
-}
-
-/// Adds a constant motion, multiplied to the preceding piece if that is constant too.
+/// Adds a constant motion. If the preceding piece is constant too, the motion is multiplied to it.
 void BlockSolver::add_piece(const lie::Transform<double>& motion) {
   lie::Transform<double> product = motion;
   if (pieces_.size() > first_piece_ && !pieces_.back().is_error) {
@@ -215,33 +199,11 @@ void for_each_constant(std::span<const FrameError<double>> errors, std::span<con
   }
 }
 
-/// Computes inverse and diagonal of the matrix at nominal displacements.
-void BlockSolver::find_nominal() {
-  inverse_.resize(joints_.size() * joints_.size());
-  diagonal_.resize(joints_.size());
-  first_order_.matrix(inverse_, diagonal_);
-}
-
-/// Computes the first-order displacement of the joints per unit of each varied entry, for the starts of solves by a
-/// metric. Adds the displacement by constant errors to the nominal ones.
-void BlockSolver::find_slopes(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied) {
-  effect_.resize(6 * pairs_.size());
-  slope_.resize(joints_.size());
-  slopes_.assign(varied.size() * joints_.size(), 0.0);
-  for (std::size_t v = 0; v < varied.size(); ++v) {
-    first_order_.effect(varied[v], effect_, std::span(slopes_).subspan(v * joints_.size(), joints_.size()));
-  }
-  for_each_constant(errors, varied, [&](const FrameEntry& entry, double error) {
-    first_order_.effect(entry, effect_, slope_);
-    for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].start += error * slope_[j];
-  });
-}
-
-/// Computes the first-order effects in coordinates of the residual space, padded to whole groups of rows, with the
-/// mismatch that rounded numbers of perfect limbs leave.
+/// Computes the first-order effects of errors in coordinates of the residual space, padded to a multiple of kMapRows.
+/// If rounded numbers leave a mismatch between perfect limbs, it is included.
 void BlockSolver::find_map(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                            std::span<const FrameEntry> varied) {
-  residual_space_.prepare(first_order_, metric_);
+  residual_space_.prepare(first_order_);
   const std::size_t used = residual_space_.dimensions();
   const std::size_t rows = (used + kMapRows - 1) / kMapRows * kMapRows;
   const auto first_of = [used](std::vector<double>& numbers, std::size_t at) {
@@ -250,7 +212,6 @@ void BlockSolver::find_map(std::span<const double> displacements, std::span<cons
   map_constant_.assign(rows, 0.0);
   map_effects_.assign(varied.size() * rows, 0.0);
   map_delta_mu_.assign(6 * pairs_.size() * rows, 0.0);
-  map_norms_.assign(3 * rows * rows, 0.0);
   for (std::size_t v = 0; v < varied.size(); ++v) {
     residual_space_.add(first_order_, varied[v], 1.0, first_of(map_effects_, v * rows));
   }
@@ -269,10 +230,10 @@ void BlockSolver::find_map(std::span<const double> displacements, std::span<cons
     }
   };
   copy(residual_space_.delta_mu(), map_delta_mu_, 0);
-  for (std::size_t r = 0; r < 3; ++r) copy(residual_space_.norms()[r], map_norms_, r * rows * rows);
 }
 
-/// Adds the first-order motion of the platform under an error of this size: the mean of its limbs' motions.
+/// Adds to xi [6] the first-order motion of the platform by an error of this size (rad, m). It is the mean of the
+/// motions of its limbs.
 void BlockSolver::add_platform_motion(const FrameEntry& entry, double error, std::span<double> xi) {
   first_order_.effect(entry, effect_, slope_);
   lie::Screw<double> sum = first_order_.motion(entry);
@@ -294,11 +255,13 @@ void BlockSolver::find_platform_map(std::span<const FrameError<double>> errors, 
   });
 }
 
-/// Fits a range of the varied error. If the fit is not good enough, fits both halves.
+/// Fits starting points over a range of the varied error. If the fit is not good enough, the function fits both halves
+/// of the range instead.
 void BlockSolver::predict_starts(double center, double half_width, int splits_left) {
   const double tail = fit_starts(center, half_width);
   if (tail < kGoodTail || (splits_left == 0 && tail < kTrustedTail)) return;
-  // The nodes of the halves start from this fit if it is usable; their own fits then replace it.
+  // If this fit is usable, the solves at the nodes of both halves start from it. Then the fits of the halves replace
+  // it.
   const bool useful = tail < kTrustedTail;
   if (!useful) fits_.pop_back();
   if (splits_left == 0) return;
@@ -308,8 +271,8 @@ void BlockSolver::predict_starts(double center, double half_width, int splits_le
   if (useful) fits_.erase(fits_.begin() + static_cast<std::ptrdiff_t>(parent) - 1);
 }
 
-/// Interpolates the displacements at Chebyshev nodes. Returns the largest of the last coefficients (rad, m), infinity
-/// if a node is not solved.
+/// Interpolates the passive displacements at Chebyshev nodes. Returns the largest of the last three coefficients (rad,
+/// m), or infinity if a node is not solved.
 double BlockSolver::fit_starts(double center, double half_width) {
   std::array<double, kStartTerms> nodes;
   for (std::size_t k = 0; k < kStartTerms; ++k) nodes[k] = center + half_width * cosines_[kStartTerms + k];
@@ -332,15 +295,14 @@ double BlockSolver::fit_starts(double center, double half_width) {
         sum += node_displacements_[j * stride + k] * cosines_[n * kStartTerms + k];
       }
       coefficients[j * kStartTerms + n] = (n == 0 ? 1.0 : 2.0) / kStartTerms * sum;
-      const double unit = metric_ == nullptr || joints_[j].revolute ? 1.0 : metric_->reach;
-      if (n + 3 >= kStartTerms) tail = std::max(tail, std::abs(coefficients[j * kStartTerms + n]) / unit);
+      if (n + 3 >= kStartTerms) tail = std::max(tail, std::abs(coefficients[j * kStartTerms + n]));
     }
   }
   return tail;
 }
 
-void BlockSolver::solve(std::span<const double> values, std::size_t count, bool wants_residuals) {
-  if (fidelity_ == Fidelity::first_order) return map(values, count, wants_residuals);
+void BlockSolver::solve(std::span<const double> values, std::size_t count) {
+  if (fidelity_ == Fidelity::first_order) return map(values, count);
   if (platform_ != nullptr) platform_displacements_.resize(joints_.size() * kernel_capacity(count));
   run(values, count, options_, platform_ == nullptr ? nullptr : platform_displacements_.data());
   review(values);
@@ -350,12 +312,11 @@ void BlockSolver::solve(std::span<const double> values, std::size_t count, bool 
   move_platform(chain, samples, nullptr, make_room(chain, samples));
 }
 
-/// Computes nearing_. A solve that weighs radians against metres may open loops that cannot be closed, so that its root
-/// cannot decide.
+/// Computes nearing_ and nearing_constant_. They are also needed for samples that the kernel solved: where 1 rad weighs
+/// as much as 1 m, a solve may find a root although the loops cannot be closed.
 void BlockSolver::find_nearing(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied) {
   nearing_.clear();
   nearing_constant_ = 0.0;
-  if (metric_ != nullptr || chain_->meets) return;
   for (const FrameEntry& entry : varied) nearing_.push_back(assembly_.nearing(entry));
   for_each_constant(errors, varied, [&](const FrameEntry& entry, double error) {
     nearing_constant_ += error * assembly_.nearing(entry);
@@ -363,8 +324,6 @@ void BlockSolver::find_nearing(std::span<const FrameError<double>> errors, std::
 }
 
 void BlockSolver::add_up_nearing(std::span<const double> values) {
-  nearing_of_.clear();
-  if (metric_ != nullptr || chain_->meets) return;
   nearing_of_.assign(count_, nearing_constant_);
   for (std::size_t v = 0; v < nearing_.size(); ++v) {
     const double* of_one = values.data() + v * count_;
@@ -372,27 +331,19 @@ void BlockSolver::add_up_nearing(std::span<const double> values) {
   }
 }
 
-/// Finds the samples that cannot be assembled among those that are not solved, doubted, near by the published rule, or
-/// solved slowly by Gauss-Newton.
+/// Finds the samples that cannot be assembled. It looks only at samples that are not solved, or whose errors bring
+/// loops near to opening.
 void BlockSolver::review(std::span<const double> values) {
   add_up_nearing(values);
-  const bool may_be_slow = options_.method == KernelMethod::gauss_newton && metric_ != nullptr && !chain_->meets;
   for (std::size_t b = 0; b < count_; ++b) {
-    using enum SolveStatus;
     SolveStatus& status = status_[b];
-    const bool is_slow = may_be_slow && iterations_[b] > kSlowIterations;
-    const bool is_near = !nearing_of_.empty() && nearing_of_[b] < kNearing;
-    if (status == non_finite || (solved(status) && !is_slow && !is_near)) continue;
+    if (status == SolveStatus::non_finite || (solved(status) && !(nearing_of_[b] < kNearing))) continue;
     set_frames(values, b);
-    if (assembly_.is_impossible(frames_)) {
-      status = not_assembled;
-    } else if (status == not_assembled) {
-      status = converged;
-    }
+    if (assembly_.is_impossible(frames_)) status = SolveStatus::not_assembled;
   }
 }
 
-/// Sets the fixed frames of a sample, with its errors.
+/// Sets the fixed frames of one sample, with its errors.
 void BlockSolver::set_frames(std::span<const double> values, std::size_t sample) {
   for (std::size_t v = 0; v < entries_.size(); ++v) {
     errors_[entries_[v].frame][static_cast<Eigen::Index>(entries_[v].component)] = values[v * count_ + sample];
@@ -413,7 +364,7 @@ void BlockSolver::move_platform(const KernelChain& chain, const KernelSamples& s
   kernels_.move_platform(chain, samples, platform, outcome(nullptr), scratch);
 }
 
-void BlockSolver::map(std::span<const double> values, std::size_t count, bool wants_residuals) {
+void BlockSolver::map(std::span<const double> values, std::size_t count) {
   const KernelChain chain = kernel_chain();
   POESY_EXPECTS(values.size() == varied_ * count);
   const KernelSamples samples{values.data(), varied_, count, count};
@@ -426,12 +377,10 @@ void BlockSolver::map(std::span<const double> values, std::size_t count, bool wa
     if (platform_ != nullptr) platform_responses_.assign(platform_->rows() * kernel_capacity(count), kNaN);
     return;
   }
-  const bool maps_residuals = metric_ == nullptr || wants_residuals;
-  const KernelMap map{map_constant_.size(), map_constant_.data(), map_effects_.data(),
-                      maps_residuals ? map_delta_mu_.data() : nullptr, map_norms_.data()};
+  const KernelMap map{map_constant_.size(), map_constant_.data(), map_effects_.data(), map_delta_mu_.data()};
   kernels_.map(chain, samples, map, outcome(nullptr), scratch);
   if (platform_ == nullptr) return;
-  const KernelMap of_platform{6, platform_constant_.data(), platform_effects_.data(), nullptr, nullptr};
+  const KernelMap of_platform{6, platform_constant_.data(), platform_effects_.data(), nullptr};
   move_platform(chain, samples, &of_platform, scratch);
 }
 
@@ -441,23 +390,13 @@ void BlockSolver::run(std::span<const double> values, std::size_t count, const K
   const KernelChain chain = kernel_chain();
   const KernelSamples samples{values.data(), varied_, count, count};
   double* scratch = make_room(chain, samples);
-  KernelStart start{fits_.data(), fits_.size(), nullptr, nullptr, nullptr};
-  if (!is_singular_) {
-    if (metric_ != nullptr || chain_->meets) start.slopes = slopes_.data();
-    start.inverse = inverse_.data();
-    start.diagonal = diagonal_.data();
-  }
-  kernels_.solve(chain, samples, start, options, outcome(displacements), scratch);
-  if ((metric_ == nullptr && !chain_->meets) || !is_singular_) return;
-  // Errors make an equation regular that is singular without them, but its solution is not meaningful.
-  std::ranges::replace_if(
-      status_, [](SolveStatus status) { return status != SolveStatus::non_finite; }, SolveStatus::singular);
+  kernels_.solve(chain, samples, {fits_.data(), fits_.size()}, options, outcome(displacements), scratch);
 }
 
-/// Resizes the buffers for these samples; returns scratch.
+/// Resizes the buffers for these samples. Returns the aligned scratch memory.
 double* BlockSolver::make_room(const KernelChain& chain, const KernelSamples& samples) {
   const std::size_t stride = kernel_capacity(samples.count);
-  // One alignment more than needed, so that an aligned start fits.
+  // The extra kMostLanes numbers leave room to begin at an aligned address.
   scratch_.resize(std::max(scratch_.size(), kernel_scratch(chain, samples) + kMostLanes));
   delta_mu_.resize(6 * chain.pairs * stride);
   responses_.resize(3 * stride);
@@ -473,30 +412,9 @@ KernelOutcome BlockSolver::outcome(double* displacements) {
 }
 
 KernelChain BlockSolver::kernel_chain() const {
-  KernelChain chain{limbs_.data(),
-                    limbs_.size(),
-                    pairs_.data(),
-                    pairs_.size(),
-                    joints_.data(),
-                    joints_.size(),
-                    segments_.data(),
-                    segments_.size(),
-                    pieces_.data(),
-                    first_order_.idle().data(),
-                    chain_->idle,
-                    nullptr,
-                    {},
-                    {},
-                    {},
-                    chain_->reach(),
-                    chain_->meets};
-  if (metric_ == nullptr) return chain;
-  chain.metric = metric_->W.data();  // symmetric: by columns is by rows
-  std::copy_n(metric_->origin.data(), 3, chain.origin);
-  std::ranges::copy(middle_, chain.middle);
-  std::ranges::copy(spread_, chain.spread);
-  chain.reach = metric_->reach;
-  return chain;
+  return {limbs_.data(),  limbs_.size(),    pairs_.data(),    pairs_.size(),  joints_.data(),
+          joints_.size(), segments_.data(), segments_.size(), pieces_.data(), first_order_.idle().data(),
+          chain_->idle};
 }
 
 }  // namespace poesy::chain

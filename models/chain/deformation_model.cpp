@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "engine/base/contract.h"
-#include "engine/linalg/decompositions.h"
 #include "models/chain/deformation_solver.h"
 #include "models/chain/nominal.h"
 
@@ -17,28 +16,27 @@ namespace {
 
 constexpr std::size_t kResponses = 3;
 
-/// A pose without errors.
+/// The model at a nominal pose, without errors.
 struct Nominal {
-  std::vector<double> displacements;       ///< [all joints]
-  std::optional<Metric> metric;            ///< at these displacements
-  std::optional<Metric> held;              ///< at these displacements
-  std::optional<PlatformPoints> platform;  ///< at these displacements
+  std::vector<double> displacements;       ///< [all joints] nominal displacements (rad, m)
+  std::optional<Metric> held;              ///< metric at these displacements
+  std::optional<PlatformPoints> platform;  ///< reported points at these displacements
 };
 
-/// Arguments of the last preparation of a solver, which many blocks of samples may share.
+/// The arguments of the last preparation of the solver. Many blocks of samples may share them.
 struct Prepared {
-  const Nominal* nominal = nullptr;        ///< of the pose
+  const Nominal* nominal = nullptr;        ///< model at the nominal pose
   std::vector<FrameError<double>> errors;  ///< [frames] constant errors
-  std::vector<FrameEntry> varied;          ///< entries that vary
-  double range = 0.0;                      ///< range of the one varied entry
+  std::vector<FrameEntry> varied;          ///< components of frames' errors that vary
+  double range = 0.0;                      ///< range of the varied component, if only one varies
 
   bool operator==(const Prepared&) const = default;
 };
 
-/// What the values of a varied error add to those of a varied entry.
+/// The contribution of a varied error to a varied component of a frame's error.
 struct Addition {
-  std::size_t value;  ///< position of the error among the varied ones
-  std::size_t row;    ///< position of the entry among the varied ones
+  std::size_t value;  ///< position of the error among the varied errors
+  std::size_t row;    ///< position of the component among the varied components
   double scale;
 };
 
@@ -49,13 +47,12 @@ class DeformationEvaluator final : public Evaluator {
 
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
     const Nominal& nominal = nominal_at(samples.pose);
-    const std::size_t deformations = model_->chain.meets ? 0 : kResponses;
     const std::size_t motions = nominal.platform ? nominal.platform->rows() : 0;
-    POESY_EXPECTS(outcomes.responses.size() == (deformations + motions) * samples.count);
+    POESY_EXPECTS(outcomes.responses.size() == (kResponses + motions) * samples.count);
     const std::span<const double> values = prepare(nominal, samples);
-    solver_.solve(values, samples.count, !outcomes.details.empty());
+    solver_.solve(values, samples.count);
     double* to = outcomes.responses.data();
-    for (std::size_t r = 0; r < deformations; ++r, to += samples.count) std::ranges::copy(solver_.response(r), to);
+    for (std::size_t r = 0; r < kResponses; ++r, to += samples.count) std::ranges::copy(solver_.response(r), to);
     for (std::size_t r = 0; r < motions; ++r, to += samples.count) std::ranges::copy(solver_.platform(r), to);
     std::ranges::copy(solver_.status(), outcomes.status.begin());
     std::ranges::copy(solver_.iterations(), outcomes.iterations.begin());
@@ -66,7 +63,8 @@ class DeformationEvaluator final : public Evaluator {
   }
 
  private:
-  /// The number of remembered poses: inverse kinematics may be iterative, and samples return to a pose.
+  /// The largest number of poses whose Nominal is kept. Inverse kinematics may be iterative, and later samples use the
+  /// same poses again.
   static constexpr std::size_t kMostPoses = 1024;
 
   const Nominal& nominal_at(std::span<const double> pose) {
@@ -77,8 +75,7 @@ class DeformationEvaluator final : public Evaluator {
     const auto [place, is_new] = nominal_.try_emplace(std::vector<double>(pose.begin(), pose.end()));
     if (!is_new) return place->second;
     const std::vector<double> displacements = model_->joint_displacements(pose);
-    place->second = {displacements, model_->metric(displacements), model_->held(displacements),
-                     model_->platform_points(displacements)};
+    place->second = {displacements, model_->held(displacements), model_->platform_points(displacements)};
     return place->second;
   }
 
@@ -96,7 +93,8 @@ class DeformationEvaluator final : public Evaluator {
     }
   }
 
-  /// Finds the entries that vary and what is added to them. Returns whether their values are those of the samples.
+  /// Finds the components of frames' errors that vary, and what each error adds to them. Returns true if no sums are
+  /// needed: each varied component then has the values of exactly one varied error.
   bool find_varied(const Nominal& nominal, const SampleBlock& samples) {
     varied_.clear();
     additions_.clear();
@@ -116,21 +114,23 @@ class DeformationEvaluator final : public Evaluator {
     return is_plain;
   }
 
-  /// Prepares the solver. Returns the values of the varied entries [varied entries x B]: those of the samples, unless
-  /// several errors add to an entry, or an error is scaled or adds to several.
+  /// Prepares the solver. Returns the values [varied components x B] of the varied components for B samples. They are
+  /// the values of the samples' errors, unless several errors add to a component, or an error is scaled or adds to
+  /// several components.
   std::span<const double> prepare(const Nominal& nominal, const SampleBlock& samples) {
     set_constant(nominal, samples);
     const auto values = find_varied(nominal, samples) ? samples.values : combined(samples);
     const double range = additions_.size() == 1 ? samples.range * std::abs(additions_.front().scale) : 0.0;
     Prepared wanted{&nominal, errors_, varied_, range};
     if (wanted == prepared_) return values;
-    solver_.prepare(nominal.displacements, errors_, varied_, wanted.range, nominal.metric ? &*nominal.metric : nullptr,
+    solver_.prepare(nominal.displacements, errors_, varied_, wanted.range,
                     nominal.platform ? &*nominal.platform : nullptr, nominal.held ? &*nominal.held : nullptr);
     prepared_ = std::move(wanted);
     return values;
   }
 
-  /// The values of the varied entries [varied entries x B]: the constant part of each, and all additions.
+  /// [varied components x B] The values of the varied components: the constant part of each component plus all
+  /// additions.
   std::span<const double> combined(const SampleBlock& samples) {
     values_.resize(varied_.size() * samples.count);
     for (std::size_t row = 0; row < varied_.size(); ++row) {
@@ -147,49 +147,46 @@ class DeformationEvaluator final : public Evaluator {
   const DeformationModel* model_;
   BlockSolver solver_;
   Prepared prepared_;
-  std::map<std::vector<double>, Nominal> nominal_;  ///< by pose
-  std::vector<bool> varies_;                        ///< [F]
+  std::map<std::vector<double>, Nominal> nominal_;  ///< nominal models, by pose
+  std::vector<bool> varies_;                        ///< [F] true for each error that varies
   std::vector<FrameError<double>> errors_;
   std::vector<FrameEntry> varied_;
   std::vector<Addition> additions_;
-  std::vector<double> values_;  ///< [varied entries x B]
+  std::vector<double> values_;  ///< [varied components x B] values of the varied components
 };
 
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// The matrix [k x 6] whose product with the mismatch [omega; v] of one pair has the norm that defines a response.
-/// metric: none for the published weight, where linear mismatch is at the base's origin.
-RowMatrix judged_of_pair(const std::optional<Metric>& metric, std::size_t response) {
-  const bool is_angular = response == (metric ? 1 : 0);
-  const bool is_linear = response == (metric ? 2 : 1);
-  if (is_angular) return RowMatrix::Identity(3, 6);
-  RowMatrix all = lie::Matrix6<double>::Identity();
-  if (metric && is_linear) all.bottomLeftCorner(3, 3) = -lie::hat<double>(metric->origin);  // v + omega x origin
-  if (is_linear) return all.bottomRows(3);
-  if (metric) all = linalg::cholesky_root(metric->W);  // the gap
-  return all;
+/// [k x 6] A matrix. The norm of its product with the mismatch [omega; v] of one pair is the number that the response
+/// takes from this pair.
+Eigen::MatrixXd judged_of_pair(std::size_t response) {
+  const Eigen::MatrixXd all = lie::Matrix6<double>::Identity();
+  if (response == 0) return all.topRows(3);  // angular deformation
+  return response == 1 ? Eigen::MatrixXd(all.bottomRows(3)) : all;
 }
 
 }  // namespace
 
-std::vector<double> norm_of_details(const DeformationModel& model, std::size_t response, std::span<const double> pose) {
-  if (model.chain.meets || response >= kResponses) return {};
-  const std::optional<Metric> metric =
-      model.points.empty() ? std::nullopt : model.metric(model.joint_displacements(pose));
-  const RowMatrix one = judged_of_pair(metric, response);
-  const auto pairs = static_cast<Eigen::Index>(model.chain.pairs.size());
-  // By a metric responses are root mean squares over the pairs. As published they are a mean of norms or the largest
-  // one, which are about as large.
-  const bool is_largest = !metric && response == 2;
-  const double share = is_largest ? 1.0 / std::numbers::sqrt2 : 1.0 / std::sqrt(static_cast<double>(pairs));
-  RowMatrix all = RowMatrix::Zero(pairs * one.rows(), 6 * pairs);
-  for (Eigen::Index n = 0; n < pairs; ++n) all.block(n * one.rows(), 6 * n, one.rows(), 6) = share * one;
+std::vector<double> repeated(const Eigen::MatrixXd& of_pair, std::size_t pairs, double share) {
+  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto count = static_cast<Eigen::Index>(pairs);
+  RowMatrix all = RowMatrix::Zero(count * of_pair.rows(), 6 * count);
+  for (Eigen::Index n = 0; n < count; ++n) {
+    all.block(n * of_pair.rows(), 6 * n, of_pair.rows(), 6) = share * of_pair;
+  }
   return {all.data(), all.data() + all.size()};
 }
 
+std::vector<double> norm_of_details(const DeformationModel& model, std::size_t response) {
+  if (response >= kResponses) return {};
+  const std::size_t pairs = model.chain.pairs.size();
+  // A mean of norms is about as large as their root mean square. The largest norm is about 1.2 times as large.
+  const bool is_largest = response == 2;
+  const double share = is_largest ? 1.0 / std::numbers::sqrt2 : 1.0 / std::sqrt(static_cast<double>(pairs));
+  return repeated(judged_of_pair(response), pairs, share);
+}
+
 std::vector<Response> deformation_responses() {
-  // The sum Q of the three n^2 is additive over independent errors. In a triangle 2 Q <= (sum of n)^2 <= 3 Q, so the
-  // square of the mean is between 2 Q / 9 and 3 Q / 9; and Q / 3 <= (largest n)^2 <= 2 Q / 3.
+  // The sum Q of the three squared norms n^2 is additive over independent errors. In a triangle 2 Q <= (sum of n)^2 <=
+  // 3 Q, so the square of the mean is between 2 Q / 9 and 3 Q / 9. Also Q / 3 <= (largest n)^2 <= 2 Q / 3.
   constexpr double kMeanOfSides = 3.0 / 2.0;
   constexpr double kLargestSide = 2.0;
   return {
@@ -218,28 +215,6 @@ std::vector<Response> deformation_responses() {
        true}};
 }
 
-std::vector<Response> responses_by_metric() {
-  return {{"gap",
-           Dimension::length,
-           "how far apart the limbs hold the platform's points: root mean square over the points and the pairs of "
-           "limbs, whose errors keep them from holding one rigid platform",
-           1.0,
-           {},
-           true},
-          {"angular_deformation",
-           Dimension::angle,
-           "mismatch of angle between pairs of limbs, root mean square over the pairs",
-           1.0,
-           {},
-           true},
-          {"linear_deformation",
-           Dimension::length,
-           "mismatch of position at the platform's origin between pairs of limbs, root mean square over the pairs",
-           1.0,
-           {},
-           true}};
-}
-
 std::vector<Response> platform_responses(const PlatformReport& report, std::size_t first) {
   constexpr auto kLength = Dimension::length;
   constexpr auto kAngle = Dimension::angle;
@@ -265,8 +240,7 @@ std::vector<Response> platform_responses(const PlatformReport& report, std::size
 }
 
 std::vector<Response> responses_of(const DeformationModel& model) {
-  std::vector<Response> list;
-  if (!model.chain.meets) list = model.points.empty() ? deformation_responses() : responses_by_metric();
+  std::vector<Response> list = deformation_responses();
   if (!model.platform) return list;
   for (Response& response : platform_responses(*model.platform, list.size())) list.push_back(std::move(response));
   return list;
@@ -287,32 +261,23 @@ std::optional<PlatformPoints> DeformationModel::platform_points(std::span<const 
   return reported;
 }
 
-std::optional<Metric> DeformationModel::metric(std::span<const double> displacements) const {
-  if (points.empty()) return std::nullopt;
-  return platform_metric(chain, points, displacements);
-}
-
 std::optional<Metric> DeformationModel::held(std::span<const double> displacements) const {
   if (held_at.empty()) return std::nullopt;
   return platform_metric(chain, held_at, displacements);
 }
 
 DeformationMeasure deformation_measure(const DeformationModel& model) {
-  if (model.points.empty()) return {kResponses - 1, rounding_level(model.chain)};
-  return {0, kRelativeRounding * model.chain.reach()};
+  return {kResponses - 1, rounding_level(model.chain)};
 }
 
-double effect_rounding(const DeformationModel& model, std::size_t response) {
+double effect_rounding(const DeformationModel& model) {
   constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
-  const double reach = model.chain.reach();
-  if (model.points.empty()) return kRounding * std::max(1.0, reach);
-  if (responses_of(model)[response].dimension == Dimension::length) return kRounding * reach;
-  return kRounding * reach / radius_of(model.points);
+  return kRounding * std::max(1.0, model.chain.reach());
 }
 
-std::vector<Detail> deformation_details(const ParallelChain& chain) {
+std::vector<Detail> deformation_details(std::span<const LimbPair> pairs) {
   std::vector<Detail> details;
-  for (const LimbPair& pair : chain.pairs) {
+  for (const LimbPair& pair : pairs) {
     const std::string k = std::to_string(pair.k + 1);
     const std::string i = std::to_string(pair.i + 1);
     details.push_back({"delta_mu_" + k + i,

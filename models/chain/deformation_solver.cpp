@@ -21,15 +21,6 @@ double rounding_level(const ParallelChain& chain) {
   return 64.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, chain.reach());
 }
 
-double gap(const Metric& metric, std::span<const double> delta_mu) {
-  double sum = 0.0;
-  for (std::size_t n = 0; n < delta_mu.size(); n += 6) {
-    const Eigen::Map<const lie::Screw<double>> screw(delta_mu.data() + n);
-    sum += screw.dot(metric.W * screw);
-  }
-  return std::sqrt(6.0 * sum / static_cast<double>(delta_mu.size()));
-}
-
 DeformationSolver::DeformationSolver(const ParallelChain& chain, const SolverOptions& options)
     : chain_(&chain),
       options_(options),
@@ -41,42 +32,35 @@ DeformationSolver::DeformationSolver(const ParallelChain& chain, const SolverOpt
       assembly_(chain) {}
 
 Deformation DeformationSolver::solve(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
-                                     std::span<double> delta_mu, const Metric* metric,
-                                     const DeformationObserver& observe, const Metric* held) {
+                                     std::span<double> delta_mu, const DeformationObserver& observe,
+                                     const Metric* held) {
   POESY_EXPECTS(frames.size() == chain_->frames());
   POESY_EXPECTS(displacements.size() == chain_->joints());
   POESY_EXPECTS(delta_mu.size() == previous_.size());
   const std::vector<double> nominal(displacements.begin(), displacements.end());
-  Deformation end = iterate(frames, displacements, delta_mu, metric, observe);
-  const bool is_sure = metric != nullptr && solved(end.status) && end.iterations <= kSlowIterations;
-  if (end.status == SolveStatus::non_finite || is_sure) return end;
-  assembly_.prepare(nominal, held == nullptr ? metric : held);
+  Deformation end = iterate(frames, displacements, delta_mu, observe);
+  if (end.status == SolveStatus::non_finite) return end;
+  assembly_.prepare(nominal, held);
   if (assembly_.is_impossible(frames)) end.status = SolveStatus::not_assembled;
   return end;
 }
 
 Deformation DeformationSolver::iterate(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
-                                       std::span<double> delta_mu, const Metric* metric,
-                                       const DeformationObserver& observe) {
+                                       std::span<double> delta_mu, const DeformationObserver& observe) {
   loops_.evaluate(frames, displacements, delta_mu);
-  equations_.hold_idle(loops_.columns(), metric == nullptr ? nullptr : &metric->W);
+  equations_.hold_idle(loops_.columns(), nullptr);
   double smallest = std::numeric_limits<double>::infinity();
   int flat = 0;
   for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
     const auto done = static_cast<std::uint32_t>(iteration);
     if (!all_finite(delta_mu)) return {SolveStatus::non_finite, done - 1};
-    if (!equations_.solve(loops_.columns(), delta_mu, metric == nullptr ? nullptr : &metric->W))
-      return {SolveStatus::singular, done - 1};
+    if (!equations_.solve(loops_.columns(), delta_mu, nullptr)) return {SolveStatus::singular, done - 1};
     for (std::size_t k = 0; k < passive_.size(); ++k) displacements[passive_[k]] += equations_.solution()[k];
     std::copy(delta_mu.begin(), delta_mu.end(), previous_.begin());
     loops_.evaluate(frames, displacements, delta_mu);
-    const double change = metric == nullptr ? largest_change(delta_mu) : relative_change(*metric, delta_mu);
+    const double change = largest_change(delta_mu);
     if (observe) observe({equations_.solution(), delta_mu, change});
     if (change < options_.tolerance) return {SolveStatus::converged, done};
-    if (metric != nullptr) {
-      if (change <= kRelativeRounding) return {SolveStatus::stagnated, done};
-      continue;
-    }
     flat = change < smallest ? 0 : flat + 1;
     smallest = std::min(smallest, change);
     if (change <= rounding_level_ && flat >= kFlatIterations) return {SolveStatus::stagnated, done};
@@ -89,16 +73,10 @@ double DeformationSolver::largest_change(std::span<const double> delta_mu) const
   double largest = 0.0;
   for (std::size_t k = 0; k < delta_mu.size(); ++k) {
     const double change = std::abs(delta_mu[k] - previous_[k]);
-    // NaN compares false with everything; this form keeps it.
+    // NaN compares false with everything, so this negated condition is true for NaN and keeps it.
     if (!(change <= largest)) largest = change;
   }
   return largest;
-}
-
-/// The change of the residual since the last iteration, relative to the reach. Overwrites the stored residual.
-double DeformationSolver::relative_change(const Metric& metric, std::span<const double> delta_mu) {
-  for (std::size_t k = 0; k < delta_mu.size(); ++k) previous_[k] = delta_mu[k] - previous_[k];
-  return gap(metric, previous_) / metric.reach;
 }
 
 }  // namespace poesy::chain

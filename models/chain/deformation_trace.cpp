@@ -20,7 +20,7 @@ double largest(std::span<const double> values) {
   return most;
 }
 
-/// All fixed frames with these errors, limb by limb, where joints are nominally so displaced.
+/// All fixed frames with errors [F], limb by limb. displacements: nominal ones of all joints (rad, m).
 std::vector<lie::Transform<double>> frames_with(const DeformationModel& model, std::span<const double> displacements,
                                                 std::span<const double> errors) {
   std::vector<FrameError<double>> of_frames(model.chain.frames(), FrameError<double>::Zero());
@@ -49,7 +49,7 @@ std::vector<JointType> passive_types(const ParallelChain& chain) {
   return types;
 }
 
-/// Largest step of a passive joint of this type.
+/// The largest step of a passive joint of this type (rad or m).
 double largest_step(const std::vector<JointType>& types, JointType type, std::span<const double> step) {
   double most = 0.0;
   for (std::size_t k = 0; k < step.size(); ++k) {
@@ -58,25 +58,13 @@ double largest_step(const std::vector<JointType>& types, JointType type, std::sp
   return most;
 }
 
-/// Condition number of the passive joints; NaN if the iterate is not finite.
-double condition(const ParallelChain& chain, std::span<const double> displacements, const Metric* metric) {
+/// The condition number of the passive joints; NaN if the displacements are not finite.
+double condition(const ParallelChain& chain, std::span<const double> displacements) {
   const bool is_finite = std::ranges::all_of(displacements, [](double value) { return std::isfinite(value); });
-  return is_finite ? passive_condition(chain, displacements, metric) : std::numeric_limits<double>::quiet_NaN();
+  return is_finite ? passive_condition(chain, displacements) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// By a metric: gap, angular and linear deformation.
-std::vector<double> responses_by(const Metric& metric, std::span<const double> delta_mu) {
-  double angular = 0.0, linear = 0.0;
-  for (std::size_t n = 0; n < delta_mu.size(); n += 6) {
-    const Eigen::Map<const lie::Screw<double>> screw(delta_mu.data() + n);
-    angular += screw.head<3>().squaredNorm();
-    linear += (screw.tail<3>() + screw.head<3>().cross(metric.origin)).squaredNorm();
-  }
-  const double pairs = static_cast<double>(delta_mu.size()) / 6.0;
-  return {gap(metric, delta_mu), std::sqrt(angular / pairs), std::sqrt(linear / pairs)};
-}
-
-/// The published responses: Eqs. 49, 50 and 45.
+/// The published responses (Du et al. 2022, Eqs. 49, 50 and 45).
 std::vector<double> responses_of(std::span<const double> delta_mu) {
   const std::size_t pairs = delta_mu.size() / 6;
   std::vector<double> responses(3, 0.0);
@@ -89,13 +77,6 @@ std::vector<double> responses_of(std::span<const double> delta_mu) {
   return responses;
 }
 
-/// The model's deformation responses, by its metric or as published.
-std::vector<double> deformations(const DeformationModel& model, const Metric* metric,
-                                 std::span<const double> delta_mu) {
-  if (model.chain.meets) return {};
-  return metric == nullptr ? responses_of(delta_mu) : responses_by(*metric, delta_mu);
-}
-
 void append(const std::vector<double>& responses, SolveTrace& trace) {
   trace.responses.insert(trace.responses.end(), responses.begin(), responses.end());
 }
@@ -106,12 +87,11 @@ SolveTrace first_order_trace(const DeformationModel& model, std::span<const doub
                              std::span<const double> errors) {
   POESY_EXPECTS(errors.size() == model.terms.size());
   const std::vector<double> displacements = model.joint_displacements(pose);
-  const std::optional<Metric> metric = model.metric(displacements);
   SolveTrace trace;
   trace.solver = "the closed form of first order, in plain double precision, which iterates nothing";
   trace.iterations = 1;
   FirstOrder first_order(model.chain);
-  if (!first_order.prepare(displacements, metric ? &metric->W : nullptr)) trace.status = SolveStatus::singular;
+  if (!first_order.prepare(displacements, nullptr)) trace.status = SolveStatus::singular;
   std::vector<double> delta_mu(6 * model.chain.pairs.size(), 0.0);
   if (model.chain.rounded) delta_mu = nominal_mismatch(model.chain, displacements);
   std::vector<double> effect(delta_mu.size());
@@ -126,7 +106,7 @@ SolveTrace first_order_trace(const DeformationModel& model, std::span<const doub
       xi += error / static_cast<double>(model.chain.limbs.size()) * first_order.sum_of_motions(entry, moved);
     }
   }
-  trace.responses = deformations(model, metric ? &*metric : nullptr, delta_mu);
+  trace.responses = responses_of(delta_mu);
   if (const auto points = model.platform_points(displacements)) append(platform_displacement(xi, *points, true), trace);
   return trace;
 }
@@ -138,29 +118,23 @@ SolveTrace deformation_trace(const DeformationModel& model, std::span<const doub
   std::vector<double> delta_mu(6 * model.chain.pairs.size());
   const std::vector<JointType> types = passive_types(model.chain);
   SolveTrace trace;
-  const std::optional<Metric> by_points = model.metric(displacements);
-  const Metric* metric = by_points ? &*by_points : nullptr;
-  trace.solver = metric ? "Gauss-Newton by the platform's metric, in plain double precision, from nominal displacements"
-                        : "Gauss-Newton as published, in plain double precision, from nominal displacements";
-  trace.columns = {{"change", metric ? "1" : "rad, m"},
-                   {"residual", "rad, m"},
-                   {"step_angle", "rad"},
-                   {"step_length", "m"},
-                   {"condition", "1"}};
+  trace.solver = "Gauss-Newton as published, in plain double precision, from nominal displacements";
+  trace.columns = {
+      {"change", "rad, m"}, {"residual", "rad, m"}, {"step_angle", "rad"}, {"step_length", "m"}, {"condition", "1"}};
   const auto observe = [&](const DeformationIteration& iteration) {
     trace.rows.insert(
         trace.rows.end(),
         {iteration.change, largest(iteration.delta_mu), largest_step(types, JointType::revolute, iteration.step),
-         largest_step(types, JointType::prismatic, iteration.step), condition(model.chain, displacements, metric)});
+         largest_step(types, JointType::prismatic, iteration.step), condition(model.chain, displacements)});
   };
   DeformationSolver solver(model.chain, options);
   const std::optional<PlatformPoints> points = model.platform_points(displacements);
   const std::vector<lie::Transform<double>> frames = frames_with(model, displacements, errors);
   const std::optional<Metric> held = model.held(displacements);
-  const Deformation end = solver.solve(frames, displacements, delta_mu, metric, observe, held ? &*held : nullptr);
+  const Deformation end = solver.solve(frames, displacements, delta_mu, observe, held ? &*held : nullptr);
   trace.status = end.status;
   trace.iterations = end.iterations;
-  trace.responses = deformations(model, metric, delta_mu);
+  trace.responses = responses_of(delta_mu);
   if (points) {
     const lie::Screw<double> xi = mean_motion(model.chain, frames, displacements, points->platform);
     append(platform_displacement(xi, *points, false), trace);

@@ -12,10 +12,6 @@ FirstOrder::FirstOrder(const ParallelChain& chain)
     limb_of_frame_.insert(limb_of_frame_.end(), chain.limbs[i].frames(), i);
     limb_of_joint_.insert(limb_of_joint_.end(), chain.limbs[i].passive_joints(), i);
   }
-  for (const std::size_t limb : limb_of_joint_) {
-    meetings_.push_back(static_cast<double>(
-        std::ranges::count_if(chain.pairs, [limb](const LimbPair& pair) { return pair.k == limb || pair.i == limb; })));
-  }
   from_error_.resize(limb_of_frame_.size());
   columns_.resize(limb_of_joint_.size());
 }
@@ -33,7 +29,7 @@ bool FirstOrder::prepare(std::span<const double> displacements, const lie::Matri
       if (!limb.joints[j].actuated) columns_[column++] = spatial_column(limb.joints[j], g);
       move_joint(limb.joints[j], displacements[joint], g);
     }
-    // The last frame's error is inverted, and most of the frame precedes it.
+    // The error of the last frame is inverted, and multiplies from the right: most of that frame precedes it.
     from_error_[frame++] = -lie::adjoint(g * limb.before_error(limb.joints.size()));
   }
   W_ = W == nullptr ? lie::Matrix6<double>(lie::Matrix6<double>::Identity()) : *W;
@@ -68,20 +64,7 @@ lie::Screw<double> FirstOrder::sum_of_motions(const FrameEntry& entry, std::span
   return sum;
 }
 
-void FirstOrder::matrix(std::span<double> inverse, std::span<double> diagonal) {
-  const std::size_t size = columns_.size();
-  POESY_EXPECTS(inverse.size() == size * size && diagonal.size() == size);
-  unit_.assign(size, 0.0);
-  for (std::size_t a = 0; a < size; ++a) {
-    unit_[a] = 1.0;
-    equations_.solve_for(unit_);
-    std::ranges::copy(equations_.solution(), inverse.begin() + static_cast<std::ptrdiff_t>(a * size));
-    unit_[a] = 0.0;
-    diagonal[a] = meetings_[a] * columns_[a].dot(W_ * columns_[a]);
-  }
-}
-
-/// Computes pull_, the sum of W delta_mu over the pairs of each limb, for the mismatch by these displacements.
+/// Computes pull_: for each limb, the sum over its pairs of W times the mismatch that these displacements cause.
 void FirstOrder::pull_of(std::span<const double> displacements) {
   mismatch_.assign(no_mismatch_.size(), 0.0);
   for (std::size_t a = 0; a < columns_.size(); ++a) {
@@ -95,8 +78,9 @@ void FirstOrder::pull_of(std::span<const double> displacements) {
   }
 }
 
-/// d ln det N = trace(N^-1 dN) = 2 sum over a of D_a . dc_a, with D_a the sum of W delta_mu on the limb of joint a for
-/// column a of N^-1. A motion m of the part before a joint changes the joint's column c by [m, c].
+/// d ln det N = trace(N^-1 dN) = 2 sum over a of D_a . dc_a. Here c_a is the column of joint a. D_a is the sum of W
+/// delta_mu on the limb of joint a, for column a of N^-1. A motion m of the part before a joint changes the joint's
+/// column c by [m, c].
 void FirstOrder::determinant_slopes(std::span<lie::Screw<double>> slopes) {
   using Screw = lie::Screw<double>;
   POESY_EXPECTS(slopes.size() == limb_of_frame_.size());
@@ -125,8 +109,8 @@ void FirstOrder::determinant_slopes(std::span<lie::Screw<double>> slopes) {
   for (std::size_t f = 0; f < slopes.size(); ++f) slopes[f] -= pull_[limb_of_frame_[f]];
 }
 
-/// Adds the motion of a limb's platform to the pairs in which the limb is k, and subtracts it from those in which it is
-/// i.
+/// Changes the residuals delta_mu of the pairs (k, i) by a motion of a limb's platform: adds it where the limb is k,
+/// and subtracts it where the limb is i.
 void FirstOrder::add_motion(std::size_t limb, const lie::Screw<double>& motion, std::span<double> delta_mu) const {
   for (std::size_t n = 0; n < chain_->pairs.size(); ++n) {
     Eigen::Map<lie::Screw<double>> mu(delta_mu.data() + 6 * n);

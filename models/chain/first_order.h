@@ -8,24 +8,26 @@
 
 namespace poesy::chain {
 
-/// The closed-form effects of small errors: delta_mu = (1 - J (J^T W J)^-1 J^T W) G eps, where G eps is the mismatch by
-/// errors if no joint moves, and (J^T W J)^-1 J^T W G eps is the reaction of the passive joints to it. All matrices are
-/// taken at nominal displacements.
+/// The closed-form effects of small errors eps on the mismatch of pairs of limbs: delta_mu = (1 - J (J^T W J)^-1 J^T W)
+/// G eps. G eps is the mismatch that errors cause if no joint moves. J is the Jacobian of the passive joints, W the
+/// weight of the mismatch, and (J^T W J)^-1 J^T W G eps the reaction of the passive joints. All matrices are taken at
+/// nominal displacements.
 class FirstOrder {
  public:
-  /// Allocates scratch for the chain, which must outlive it.
+  /// Allocates scratch memory for the chain, which must outlive this object.
   explicit FirstOrder(const ParallelChain& chain);
 
-  /// Sets the nominal displacements [all joints] (rad, m) and the weight W (null: W = 1). Returns false if the passive
-  /// joints' Jacobian is singular; then the first order does not exist.
+  /// Sets the nominal displacements [all joints] (rad, m) and the weight W (null: W = 1). Returns false if the Jacobian
+  /// of the passive joints is singular; then there is no first order.
   bool prepare(std::span<const double> displacements, const lie::Matrix6<double>* W);
 
-  /// The effect per unit of one entry of a frame's error (SI per rad or m): delta_mu [6 x pairs] and the displacements
-  /// of the passive joints [passive joints]. Precondition: prepare() returned true.
+  /// Computes the effect per unit of one component of a frame's error (SI per rad or m): delta_mu [6 x pairs] and
+  /// displacements of the passive joints [passive joints]. Precondition: prepare() returned true.
   void effect(const FrameEntry& entry, std::span<double> delta_mu, std::span<double> displacements);
 
-  /// The twist of the limb's platform per unit of an entry of a frame's error if no joint moves, the column of J of a
-  /// passive joint, and the limb of either; [omega; v] at the base's origin. Precondition: as above.
+  /// motion(): the twist of the limb's platform per unit of a component of a frame's error, if no joint moves.
+  /// column(): the column of J of a passive joint. Both are [omega; v] at the base's origin. limb_of_...(): the limb of
+  /// a frame or of a passive joint. Precondition: prepare() returned true.
   /// @{
   lie::Screw<double> motion(const FrameEntry& entry) const {
     return from_error_[entry.frame].col(static_cast<Eigen::Index>(entry.component));
@@ -35,25 +37,21 @@ class FirstOrder {
   std::size_t limb_of_joint(std::size_t joint) const { return limb_of_joint_[joint]; }
   /// @}
 
-  /// The sum of the motions of all limbs' platforms by a unit of that entry and these displacements [passive joints] of
-  /// effect(). Precondition: as above.
+  /// The sum over all limbs of the motions of their platforms. The motions are caused by a unit of the component
+  /// `entry` and by the displacements [passive joints] that effect() found. Precondition: prepare() returned true.
   lie::Screw<double> sum_of_motions(const FrameEntry& entry, std::span<const double> displacements) const;
 
-  /// The part of a mismatch delta_mu [6 x pairs] that passive joints could remove: J (J^T W J)^-1 J^T W delta_mu.
-  /// Precondition: as above.
+  /// Sets `part` to the part of a mismatch delta_mu [6 x pairs] that passive joints could remove: J (J^T W J)^-1 J^T W
+  /// delta_mu. Precondition: prepare() returned true.
   void taken_away(std::span<const double> delta_mu, std::span<double> part);
 
-  /// The gradient of ln det(J^T W J) with respect to errors, a screw for each frame [frames]: its product with motion()
-  /// of an entry is the first-order change per unit of that entry, including the reaction of the passive joints.
-  /// Precondition: as above.
+  /// The gradient of ln det(J^T W J), which is small where loops are near to opening, with respect to errors: a screw
+  /// for each frame [frames]. The product of this screw with motion() of a component is the first-order change per unit
+  /// of that component, including the reaction of the passive joints. Precondition: prepare() returned true.
   void determinant_slopes(std::span<lie::Screw<double>> slopes);
 
-  /// See NormalEquations::idle().
+  /// [idle x passive joints] The directions of idle freedoms; see NormalEquations::idle().
   std::span<const double> idle() const { return equations_.idle(); }
-
-  /// (J^T W J)^-1 [passive joints x passive joints] and the diagonal of J^T W J [passive joints]. Precondition: as
-  /// above.
-  void matrix(std::span<double> inverse, std::span<double> diagonal);
 
  private:
   void add_motion(std::size_t limb, const lie::Screw<double>& motion, std::span<double> delta_mu) const;
@@ -61,15 +59,15 @@ class FirstOrder {
 
   const ParallelChain* chain_;
   std::vector<std::size_t> limb_of_frame_;
-  std::vector<std::size_t> limb_of_joint_;        ///< [passive joints]
-  std::vector<lie::Matrix6<double>> from_error_;  ///< [frames] from the error to the motion of the limb's platform
-  std::vector<lie::Screw<double>> columns_;       ///< [passive joints]
-  std::vector<double> meetings_;                  ///< [passive joints] number of pairs that contain the joint's limb
-  std::vector<double> no_mismatch_;               ///< [6 x pairs] zeros
-  std::vector<double> unit_;                      ///< [passive joints] a unit vector
-  std::vector<double> by_joint_;                  ///< [passive joints] scratch
-  std::vector<double> mismatch_;                  ///< [6 x pairs] scratch
-  std::vector<lie::Screw<double>> pull_;          ///< [limbs] scratch
+  std::vector<std::size_t> limb_of_joint_;  ///< [passive joints] limb of each joint
+  /// [frames] Matrix from a frame's error to the motion of the limb's platform.
+  std::vector<lie::Matrix6<double>> from_error_;
+  std::vector<lie::Screw<double>> columns_;  ///< [passive joints] columns of the Jacobian J of the passive joints
+  std::vector<double> no_mismatch_;          ///< [6 x pairs] zeros
+  std::vector<double> unit_;                 ///< [passive joints] scratch: a unit displacement of one joint
+  std::vector<double> by_joint_;             ///< [passive joints] scratch
+  std::vector<double> mismatch_;             ///< [6 x pairs] scratch
+  std::vector<lie::Screw<double>> pull_;     ///< [limbs] scratch
   lie::Matrix6<double> W_;
   NormalEquations equations_;
 };

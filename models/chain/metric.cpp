@@ -13,8 +13,8 @@ namespace {
 using Vector3 = lie::Vector3<double>;
 using Matrix3 = lie::Matrix3<double>;
 
-/// A point counts as on a line if its distance from the line is below this share of the largest distance from the
-/// middle.
+/// A point counts as on a line if its distance from the line is below this share of the points' largest distance from
+/// their centroid.
 constexpr double kOnLine = 1e-6;
 
 Vector3 middle_of(std::span<const Vector3> points) {
@@ -80,7 +80,7 @@ Metric platform_metric(const ParallelChain& chain, std::span<const Vector3> poin
       limb, limb.home, displacements.first(limb.joints.size()), [](std::size_t, const lie::Screw<double>&) {});
   std::vector<Vector3> in_base;
   for (const Vector3& point : points) in_base.emplace_back(platform.R * point + platform.p);
-  return {metric_of_points(in_base), platform.p, chain.reach()};
+  return {metric_of_points(in_base), chain.reach()};
 }
 
 }  // namespace poesy::chain

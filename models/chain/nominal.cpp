@@ -4,7 +4,6 @@
 
 #include "engine/base/contract.h"
 #include "models/chain/deformation_solver.h"
-#include "models/chain/metric.h"
 #include "models/chain/platform_motion.h"
 
 namespace poesy::chain {
@@ -12,9 +11,10 @@ namespace {
 
 using Transform = lie::Transform<double>;
 
-/// The metric moves with the platform, so the second solve uses the metric at the end of the first one.
+/// Number of solves. The second solve begins at the end of the first, so that it ends at rounding.
 constexpr int kSolves = 2;
-/// Steps of Newton's method on the platform's pose; each multiplies the error by about the mismatch.
+constexpr double kTolerance = 1e-14;  ///< tolerance of a solve (rad, m)
+/// Number of Newton steps for the pose of the platform. Each step multiplies the error by about the mismatch.
 constexpr int kSteps = 8;
 
 std::vector<Transform> frames_of(const ParallelChain& chain) {
@@ -23,7 +23,7 @@ std::vector<Transform> frames_of(const ParallelChain& chain) {
   return frames;
 }
 
-/// The platform poses of all limbs.
+/// [limbs] The platform poses of all limbs.
 std::vector<Transform> platforms(const ParallelChain& chain, std::span<const double> displacements) {
   POESY_EXPECTS(displacements.size() == chain.joints());
   std::vector<Transform> list;
@@ -38,18 +38,15 @@ std::vector<Transform> platforms(const ParallelChain& chain, std::span<const dou
 
 }  // namespace
 
-std::vector<double> settled(const ParallelChain& chain, std::span<const lie::Vector3<double>> points,
-                            std::vector<double> displacements) {
+std::vector<double> settled(const ParallelChain& chain, std::vector<double> displacements) {
   const std::vector<Transform> frames = frames_of(chain);
   std::vector<double> delta_mu(6 * chain.pairs.size());
   SolverOptions options;
-  options.tolerance = kToleranceByMetric;
+  options.tolerance = kTolerance;
   DeformationSolver solver(chain, options);
   for (int n = 0; n < kSolves; ++n) {
-    std::optional<Metric> metric;
-    if (!points.empty()) metric = platform_metric(chain, points, displacements);
     std::vector<double> end = displacements;
-    const Deformation found = solver.solve(frames, end, delta_mu, metric ? &*metric : nullptr);
+    const Deformation found = solver.solve(frames, end, delta_mu);
     if (!solved(found.status)) return displacements;
     displacements = std::move(end);
   }

@@ -8,7 +8,7 @@
 namespace poesy::chain {
 namespace {
 
-/// A joint's screw with lengths in units of the reach.
+/// The screw of a joint with lengths in units of the reach.
 lie::Screw<double> in_reaches(const lie::Screw<double>& spatial, double reach) {
   const bool prismatic = spatial.head<3>().isZero(0.0);
   lie::Screw<double> scaled = spatial;
@@ -16,17 +16,16 @@ lie::Screw<double> in_reaches(const lie::Screw<double>& spatial, double reach) {
   return scaled;
 }
 
-/// J of Eq. 43 with the screws column_of the passive joints. A motion of limb i enters pair (k, i) with +, one of limb
-/// k with -.
-template <class ColumnOf>
-Eigen::MatrixXd passive_jacobian(const ParallelChain& chain, std::span<const double> displacements,
-                                 ColumnOf&& column_of) {
+/// The dimensionless Jacobian J of Du et al. 2022, Eq. 43. A motion of limb i enters pair (k, i) with +, one of limb k
+/// with -.
+Eigen::MatrixXd passive_jacobian(const ParallelChain& chain, std::span<const double> displacements) {
+  const double reach = chain.reach();
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(chain.pairs.size()),
                                                    static_cast<Eigen::Index>(chain.passive_joints()));
   std::size_t joint = 0;
   Eigen::Index column = 0;
   const auto add = [&](std::size_t limb, const lie::Screw<double>& spatial) {
-    const lie::Screw<double> scaled = column_of(spatial);
+    const lie::Screw<double> scaled = in_reaches(spatial, reach);
     for (std::size_t n = 0; n < chain.pairs.size(); ++n) {
       const auto row = 6 * static_cast<Eigen::Index>(n);
       if (chain.pairs[n].i == limb) jacobian.block<6, 1>(row, column) += scaled;
@@ -44,28 +43,11 @@ Eigen::MatrixXd passive_jacobian(const ParallelChain& chain, std::span<const dou
   return jacobian;
 }
 
-/// The published J, dimensionless.
-Eigen::MatrixXd jacobian_in_reaches(const ParallelChain& chain, std::span<const double> displacements) {
-  const double reach = chain.reach();
-  return passive_jacobian(chain, displacements,
-                          [&](const lie::Screw<double>& spatial) { return in_reaches(spatial, reach); });
-}
-
-/// W^(1/2) J with columns of length 1.
-Eigen::MatrixXd jacobian_by(const Metric& metric, const ParallelChain& chain, std::span<const double> displacements) {
-  const lie::Matrix6<double> root = linalg::cholesky_root(metric.W);
-  Eigen::MatrixXd jacobian = passive_jacobian(
-      chain, displacements, [&](const lie::Screw<double>& spatial) -> lie::Screw<double> { return root * spatial; });
-  jacobian.colwise().normalize();
-  return jacobian;
-}
-
 }  // namespace
 
-double passive_condition(const ParallelChain& chain, std::span<const double> displacements, const Metric* metric) {
+double passive_condition(const ParallelChain& chain, std::span<const double> displacements) {
   POESY_EXPECTS(displacements.size() == chain.joints());
-  const Eigen::VectorXd values = linalg::singular_values(
-      metric == nullptr ? jacobian_in_reaches(chain, displacements) : jacobian_by(*metric, chain, displacements));
+  const Eigen::VectorXd values = linalg::singular_values(passive_jacobian(chain, displacements));
   const double rounding = static_cast<double>(values.size()) * std::numeric_limits<double>::epsilon();
   const double largest = values[0];
   const double smallest = values[values.size() - 1 - static_cast<Eigen::Index>(chain.idle)];

@@ -8,7 +8,7 @@
 namespace poesy::chain {
 namespace {
 
-/// The incidence matrix [pairs, L]: 1 where a limb is k, -1 where it is i.
+/// The incidence matrix [pairs, limbs]: 1 if the limb is limb k of the pair, -1 if it is limb i, else 0.
 Eigen::MatrixXd incidence_of(const ParallelChain& chain) {
   Eigen::MatrixXd incidence = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(chain.pairs.size()),
                                                     static_cast<Eigen::Index>(chain.limbs.size()));
@@ -19,7 +19,8 @@ Eigen::MatrixXd incidence_of(const ParallelChain& chain) {
   return incidence;
 }
 
-/// N [L - 1, L] with N^T N = incidence^T incidence: removes the common part of the motions of the limbs.
+/// For L limbs, the matrix N [L - 1, L] with N^T N = incidence^T incidence. It removes the motion that all limbs have
+/// in common.
 Eigen::MatrixXd independent_rows(const Eigen::MatrixXd& incidence) {
   const auto [values, vectors] = linalg::eigen_decomposition(incidence.transpose() * incidence);
   const Eigen::Index limbs = incidence.cols();
@@ -44,58 +45,34 @@ ResidualSpace::ResidualSpace(const ParallelChain& chain)
   columns_.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(joints));
   for (Eigen::MatrixXd& of_limb : of_limb_) of_limb.resize(static_cast<Eigen::Index>(dimensions_), 6);
   delta_mu_.resize(6 * of_pairs_.rows(), static_cast<Eigen::Index>(dimensions_));
-  rows_.resize(3 * of_pairs_.rows(), static_cast<Eigen::Index>(dimensions_));
-  for (Eigen::MatrixXd& R : norms_)
-    R.setZero(static_cast<Eigen::Index>(dimensions_), static_cast<Eigen::Index>(dimensions_));
 }
 
-void ResidualSpace::prepare(const FirstOrder& first_order, const Metric* metric) {
+void ResidualSpace::prepare(const FirstOrder& first_order) {
   if (dimensions_ == 0) return;
-  root_ = lie::Matrix6<double>::Identity();
-  if (metric != nullptr) root_ = linalg::cholesky_root(metric->W);
-  inverse_ = linalg::inverse(root_);
   find_basis(first_order);
   for (std::size_t limb = 0; limb < of_limb_.size(); ++limb) {
     of_limb_[limb].setZero();
     for (Eigen::Index row = 0; row < independent_.rows(); ++row) {
-      of_limb_[limb].noalias() += independent_(row, static_cast<Eigen::Index>(limb)) *
-                                  (basis_.middleRows<6>(6 * row).transpose().lazyProduct(root_));
+      of_limb_[limb] += independent_(row, static_cast<Eigen::Index>(limb)) * basis_.middleRows<6>(6 * row).transpose();
     }
   }
   delta_mu_.setZero();
   for (Eigen::Index n = 0; n < of_pairs_.rows(); ++n) {
     for (Eigen::Index row = 0; row < of_pairs_.cols(); ++row) {
-      delta_mu_.middleRows<6>(6 * n).noalias() +=
-          of_pairs_(n, row) * (inverse_.lazyProduct(basis_.middleRows<6>(6 * row)));
+      delta_mu_.middleRows<6>(6 * n) += of_pairs_(n, row) * basis_.middleRows<6>(6 * row);
     }
   }
-  if (metric != nullptr) find_norms(*metric);
 }
 
 void ResidualSpace::find_basis(const FirstOrder& first_order) {
   for (Eigen::Index a = 0; a < columns_.cols(); ++a) {
-    const lie::Screw<double> column = root_ * first_order.column(static_cast<std::size_t>(a));
+    const lie::Screw<double>& column = first_order.column(static_cast<std::size_t>(a));
     const auto limb = static_cast<Eigen::Index>(first_order.limb_of_joint(static_cast<std::size_t>(a)));
     for (Eigen::Index row = 0; row < independent_.rows(); ++row) {
       columns_.col(a).segment<6>(6 * row) = independent_(row, limb) * column;
     }
   }
   basis_ = linalg::orthogonal_complement(columns_);
-}
-
-void ResidualSpace::find_norms(const Metric& metric) {
-  const double share = std::sqrt(1.0 / static_cast<double>(chain_->pairs.size()));
-  norms_[0].setIdentity();
-  norms_[0] *= share;
-  for (Eigen::Index n = 0; n < of_pairs_.rows(); ++n) rows_.middleRows<3>(3 * n) = delta_mu_.middleRows<3>(6 * n);
-  norms_[1] = share * linalg::upper_triangle(rows_);
-  for (Eigen::Index n = 0; n < of_pairs_.rows(); ++n) {
-    for (Eigen::Index y = 0; y < rows_.cols(); ++y) {
-      const auto screw = delta_mu_.col(y).segment<6>(6 * n);
-      rows_.col(y).segment<3>(3 * n) = screw.tail<3>() + screw.head<3>().cross(metric.origin);
-    }
-  }
-  norms_[2] = share * linalg::upper_triangle(rows_);
 }
 
 void ResidualSpace::add(const FirstOrder& first_order, const FrameEntry& entry, double error,

@@ -21,13 +21,13 @@ using Screw = lie::Screw<double>;
 using Matrix6 = lie::Matrix6<double>;
 using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// A part smaller than this share of the whole is rounding.
+/// A part of a vector that is smaller than this share of the whole is rounding.
 constexpr double kRounding = 1e-12;
 
-/// A unit column depends on others if less than this remains after projecting them out.
+/// A unit column depends on others if less than this remains after it is projected onto their complement.
 constexpr double kDependent = 1e-9;
 
-/// Appends a column and returns it.
+/// Appends a column and returns a reference to it.
 auto next_column(Columns& columns) {
   columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
   return columns.rightCols<1>();
@@ -51,21 +51,21 @@ Matrix6 beyond(const Columns& columns) {
   return rest * rest.transpose();
 }
 
-/// The projection of x. A part of x that is rounding becomes exactly zero.
+/// The projection of x. If the projection or the removed part is only rounding, it is set to exactly zero.
 Screw left_of(const Screw& x, const Matrix6& projection) {
   const Screw left = projection * x;
   if (left.norm() <= kRounding * x.norm()) return Screw::Zero();
   return (x - left).norm() <= kRounding * x.norm() ? x : left;
 }
 
-/// B_i: from a motion of the limb to the motion of the platform.
+/// The matrix B_i from a motion of the limb's end to the motion of the platform (see separation()).
 Matrix6 platform_by_limb(const ParallelChain& chain, FirstOrder& first_order, std::size_t limb) {
   std::vector<double> delta_mu(6 * chain.pairs.size());
   std::vector<double> moved(chain.passive_joints());
   Matrix6 B;
   for (std::size_t c = 0; c < 6; ++c) {
-    // The error of the first frame, which is expressed in the base frame. With errors at joints it turns about the
-    // first joint.
+    // The unit error is in the first frame, which is expressed in the base frame. With errors_at_joints it rotates
+    // about the first joint.
     const FrameEntry unit{chain.first_frame(limb), c};
     first_order.effect(unit, delta_mu, moved);
     B.col(static_cast<Eigen::Index>(c)) =
@@ -76,16 +76,16 @@ Matrix6 platform_by_limb(const ParallelChain& chain, FirstOrder& first_order, st
   return B;
 }
 
-/// Parts of the displacement of the platform, scaled so that norms are those of the points.
+/// The two parts of a displacement of the platform, scaled so that their norms are those of separation().
 struct Parts {
-  Screw drive;       ///< B_i A_i a
-  Screw constraint;  ///< B_i n
+  Screw drive;       ///< drive part: the displacement through the directions of the drives
+  Screw constraint;  ///< constraint part: the remaining displacement, through constrained directions
 };
 
-/// Splits the effects of errors of one limb into parts.
+/// Splits the effects of errors of one limb into their drive and constraint parts.
 class LimbSeparation {
  public:
-  /// root, radius: see separation_of().
+  /// root, radius: as for separation_of().
   LimbSeparation(const LimbMotions& joints, const Matrix6& root, double radius) {
     lengths_ << radius * lie::Matrix3<double>::Identity(), lie::Matrix3<double>::Zero(), -lie::hat<double>(joints.end),
         lie::Matrix3<double>::Identity();
@@ -106,14 +106,14 @@ class LimbSeparation {
     drives_ = joints.drives;
   }
 
-  /// Joint::drive of each column of motions().
+  /// The drive (Joint::drive) of each column of motions().
   const std::vector<std::size_t>& drives() const { return drives_; }
-  /// B_i A_i, each column divided by its |A_i|_i.
+  /// The columns of B_i A_i, each divided by its |A_i|_i.
   const Columns& motions() const { return motions_; }
-  /// |A_i|_i of each column.
+  /// The length |A_i|_i of a column.
   double driven_length(Eigen::Index column) const { return driven_lengths_[column]; }
 
-  /// The parts of an error that moves the limb's platform by this twist.
+  /// The parts of an error that moves the limb's end by the twist xi.
   Parts parts(const Screw& xi) const {
     const Screw not_passive = left_of(lengths_ * xi, beyond_passive_);
     const Screw rest = left_of(not_passive, beyond_drives_);
@@ -121,10 +121,10 @@ class LimbSeparation {
   }
 
  private:
-  Matrix6 lengths_;         ///< |lengths xi| = |xi|_i
-  Matrix6 from_lengths_;    ///< from these lengths to displacements of the platform
-  Matrix6 beyond_passive_;  ///< projection that removes the passive joints' part
-  Matrix6 beyond_drives_;   ///< projection that also removes the drives' part
+  Matrix6 lengths_;         ///< matrix for which |lengths xi| is the norm |xi|_i of separation()
+  Matrix6 from_lengths_;    ///< matrix from these lengths to displacements of the platform
+  Matrix6 beyond_passive_;  ///< projection that removes the part of the passive joints
+  Matrix6 beyond_drives_;   ///< projection that also removes the part of the drives
   Columns motions_;
   Eigen::RowVectorXd driven_lengths_;
   std::vector<std::size_t> drives_;
@@ -153,10 +153,11 @@ std::vector<LimbSeparation> separations(const std::vector<LimbMotions>& limbs, c
   return list;
 }
 
-/// The motions of drives shared by several limbs, as columns comparable with LimbSeparation::motions().
+/// The motions of drives that several limbs share, as columns like those of LimbSeparation::motions().
 class SharedDrives {
  public:
-  /// Adds the motion of a drive in one limb. Returns whether the drive is new.
+  /// Adds to the sums of a drive its motion of the platform through one limb. column: position of the drive in this
+  /// limb. Returns whether the drive is new.
   bool add(const LimbSeparation& limb, Eigen::Index column) {
     const auto [place, is_new] = sums_.try_emplace(limb.drives()[static_cast<std::size_t>(column)]);
     const double length = limb.driven_length(column);
@@ -165,7 +166,8 @@ class SharedDrives {
     return is_new;
   }
 
-  /// The sum of B_k A_k over the limbs, divided by the root of the sum of |A_k|_k^2; zero if limbs cancel each other.
+  /// The motion of the platform by the drive: the sum of B_k A_k over the limbs k that the drive moves, divided by the
+  /// square root of the sum of |A_k|_k^2 (symbols as for separation()). Zero if the limbs cancel each other.
   Screw motion(std::size_t drive) const {
     const Sum& sum = sums_.at(drive);
     const Screw motion = sum.motion / std::sqrt(sum.square);
@@ -180,7 +182,7 @@ class SharedDrives {
   std::map<std::size_t, Sum> sums_;
 };
 
-/// The projection of a displacement onto what corrections of all drives leave.
+/// The projection of a displacement onto what corrections of all drives cannot remove.
 Matrix6 beyond_all_drives(const std::vector<LimbSeparation>& limbs) {
   Columns motions;
   SharedDrives shared;
@@ -197,7 +199,7 @@ Matrix6 beyond_all_drives(const std::vector<LimbSeparation>& limbs) {
   return beyond(motions);
 }
 
-/// Whether the limb's drives move no other limb, so that they can correct the whole drive part of its errors.
+/// Returns true if the limb's drives move no other limb. They can then correct the whole drive part of its errors.
 bool drives_are_its_own(const std::vector<LimbSeparation>& limbs, std::size_t limb) {
   for (std::size_t i = 0; i < limbs.size(); ++i) {
     for (const std::size_t drive : limbs[i].drives()) {
@@ -213,9 +215,8 @@ bool drives_are_its_own(const std::vector<LimbSeparation>& limbs, std::size_t li
 Separation separation(const DeformationModel& model, std::span<const double> pose) {
   POESY_EXPECTS(model.platform && model.platform->points.size() >= 3);
   const std::vector<double> displacements = model.joint_displacements(pose);
-  const std::optional<Metric> metric = model.metric(displacements);
   FirstOrder first_order(model.chain);
-  if (!first_order.prepare(displacements, metric ? &metric->W : nullptr)) {
+  if (!first_order.prepare(displacements, nullptr)) {
     const std::vector<double> unknown(model.terms.size(), kNaN);
     return {unknown, unknown, unknown, unknown};
   }
@@ -281,10 +282,10 @@ void add_twist(std::size_t limb, const Screw& twist, std::vector<EndTwist>& twis
 std::optional<Matrix6> left_by_drives(const DeformationModel& model, std::span<const double> pose) {
   POESY_EXPECTS(model.platform && model.platform->points.size() >= 3);
   const std::vector<double> displacements = model.joint_displacements(pose);
-  const std::optional<Metric> metric = model.metric(displacements);
   FirstOrder first_order(model.chain);
-  if (!first_order.prepare(displacements, metric ? &metric->W : nullptr)) return std::nullopt;
-  // From [theta; displacement of the origin] to lengths: first to the twist, whose v is at the base's origin.
+  if (!first_order.prepare(displacements, nullptr)) return std::nullopt;
+  // This matrix maps [theta; displacement of the origin] first to the twist, whose v is at the base's origin, and then
+  // to lengths.
   Matrix6 to_lengths = Matrix6::Identity();
   to_lengths.bottomLeftCorner<3, 3>() = lie::hat<double>(model.platform_points(displacements)->platform.p);
   const Matrix6 root = root_of_metric(model, displacements);
@@ -296,9 +297,9 @@ std::optional<Matrix6> left_by_drives(const DeformationModel& model, std::span<c
 
 std::optional<SeparationDescription> separation_description(const DeformationModel& model) {
   if (!model.platform || model.platform->points.empty()) return std::nullopt;
-  std::string measure = "root mean square displacement of the platform's points";
-  if (!model.chain.meets) measure += ", without the gap between its limbs";
-  return SeparationDescription{std::move(measure), std::vector<std::string>(model.terms.size())};
+  return SeparationDescription{
+      "root mean square displacement of the platform's points, without the gap between its limbs",
+      std::vector<std::string>(model.terms.size())};
 }
 
 }  // namespace poesy::chain

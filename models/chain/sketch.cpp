@@ -1,6 +1,7 @@
 #include "models/chain/sketch.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "models/chain/first_order.h"
 
@@ -33,8 +34,8 @@ LimbFrames frames_of(const Limb& limb, std::span<const double> displacements) {
   return frames;
 }
 
-/// The number, from 1, of the joint to which a frame of a limb belongs; 0 for the base, the number of joints + 1 for
-/// the platform.
+/// The number (from 1) of the joint to which a frame of a limb belongs; 0 for the base, and the number of joints + 1
+/// for the platform.
 std::size_t joint_of(const std::vector<SketchedJoint>& joints, std::size_t frame, std::size_t platform) {
   if (frame == platform) return joints.size() + 1;
   return static_cast<std::size_t>(
@@ -60,25 +61,12 @@ std::vector<SketchTwist> motions(const DeformationModel& model, FirstOrder& firs
     }
     moves = std::max(moves, motion.norm());
   }
-  double largest = 0.0;
-  double apart = 0.0;
-  for (const lie::Screw<double>& twist : twists) {
-    largest = std::max(largest, twist.norm());
-    apart = std::max(apart, (twist - twists.front()).norm());
-  }
-  if (apart <= kAlike * std::max(largest, moves)) twists.resize(1);
-  std::vector<SketchTwist> list;
-  for (const lie::Screw<double>& twist : twists) {
-    SketchTwist& one = list.emplace_back();
-    for (std::size_t c = 0; c < one.size(); ++c) one[c] = twist[static_cast<Eigen::Index>(c)];
-  }
-  return list;
+  return sketched_motions(std::move(twists), moves);
 }
 
 void add_errors(Sketch& sketch, const DeformationModel& model, std::span<const double> displacements) {
-  const std::optional<Metric> metric = model.metric(displacements);
   FirstOrder first_order(model.chain);
-  const bool regular = first_order.prepare(displacements, metric ? &metric->W : nullptr);
+  const bool regular = first_order.prepare(displacements, nullptr);
   for (const ErrorTerms& terms : model.terms) {
     sketch.errors.push_back(sketched_error(sketch, terms.front()));
     if (regular) sketch.errors.back().motions = motions(model, first_order, terms, displacements);
@@ -100,12 +88,29 @@ void place_limb(Sketch& sketch, const LimbFrames& frames, bool errors_at_joints)
   list.back().origin = list[frames.before.size()].origin;
 }
 
+std::vector<SketchTwist> sketched_motions(std::vector<lie::Screw<double>> motions, double moves) {
+  double largest = moves;
+  double apart = 0.0;
+  for (const lie::Screw<double>& motion : motions) {
+    largest = std::max(largest, motion.norm());
+    apart = std::max(apart, (motion - motions.front()).norm());
+  }
+  if (apart <= kAlike * largest) motions.resize(1);
+  std::vector<SketchTwist> list;
+  for (const lie::Screw<double>& motion : motions) {
+    SketchTwist& one = list.emplace_back();
+    for (std::size_t c = 0; c < one.size(); ++c) one[c] = motion[static_cast<Eigen::Index>(c)];
+  }
+  return list;
+}
+
 SketchedError sketched_error(const Sketch& sketch, const ErrorTerm& term) {
   const std::vector<SketchedJoint>& joints = sketch.limbs[term.limb];
-  const std::size_t end = sketch.frames[term.limb].size() - 1;  // of the body at the end of the limb
+  const std::size_t end = sketch.frames[term.limb].size() - 1;  // position of the frame of the limb's last body
   return {.limb = term.limb,
           .frame = term.frame + 1 == end ? end : term.frame,
           .axis = term.component % 3,
+          .turns = term.component < 3,
           .after = joint_of(joints, term.frame, end),
           .before = joint_of(joints, term.frame + 1, end),
           .motions = {}};

@@ -8,23 +8,29 @@
 
 namespace poesy::chain {
 
-/// Completes a sketch with named joints at these nominal displacements [all joints] (rad, m): sets points and axes of
-/// its joints, platform and tool, frames and errors. In a limb of n joints an error of frame j is measured in frame j,
-/// one of frame n in the platform (frame_with_error). With errors_at_joints the frames of base and platform are drawn
-/// at the first and the last joint, where errors turn. Precondition: SketchedJoint::first and frame are those of the
-/// model's chain.
+/// Completes a sketch with named joints at nominal displacements [all joints] (rad, m): sets points and axes of its
+/// joints, platform and tool, frames and errors. In a limb of n joints, an error of frame j < n is measured in frame j,
+/// and an error of frame n in the platform (frame_with_error). With errors_at_joints the frames of base and platform
+/// are drawn at the first and the last joint, about which errors rotate. Precondition: SketchedJoint::first and frame
+/// are those of the model's chain.
 void place(Sketch& sketch, const DeformationModel& model, std::span<const double> displacements);
 
-/// A limb's frames (base_T_frame) before and after each joint has moved.
+/// The frames of a limb (base_T_frame) before and after each joint has moved.
 struct LimbFrames {
-  std::vector<lie::Transform<double>> before;  ///< [n] frames of the joints
-  std::vector<lie::Transform<double>> after;   ///< [n + 2] of the first body, the joints, and the last body
+  std::vector<lie::Transform<double>> before;  ///< [n] joint frames before the joints move
+  /// [n + 2] Frames of the first body, of the joints after they have moved, and of the last body.
+  std::vector<lie::Transform<double>> after;
 };
 
-/// Adds the joints and frames of one limb to the sketch. sketch.frames contains those of the preceding limbs.
+/// Adds the joints and frames of one limb to the sketch. sketch.frames already contains those of the preceding limbs.
 void place_limb(Sketch& sketch, const LimbFrames& frames, bool errors_at_joints);
 
-/// The sketch of an error by its first term, of a limb that place_limb() has added, without its motions.
+/// The motions [omega; v] of the limbs' ends by an error; one motion if all are equal up to rounding. moves: the
+/// largest motion of an end that the error causes if no joint moves. Differences count as rounding if they are small
+/// compared with it.
+std::vector<SketchTwist> sketched_motions(std::vector<lie::Screw<double>> motions, double moves);
+
+/// The sketch of an error by its first term, without its motions. place_limb() must have added the limb of that term.
 SketchedError sketched_error(const Sketch& sketch, const ErrorTerm& term);
 
 }  // namespace poesy::chain

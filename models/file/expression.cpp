@@ -13,9 +13,11 @@
 namespace poesy::file {
 namespace {
 
-constexpr std::size_t kLongest = 1000;  ///< bytes; also limits the depth of recursion
-constexpr int kLargestExponent = 12;    ///< largest exponent after ^
-constexpr int kLargestPower = 100;      ///< largest power of a raised value; keeps powers of powers in the range of int
+/// Largest number of bytes of an expression; it also limits the depth of recursion.
+constexpr std::size_t kLongest = 1000;
+constexpr int kLargestExponent = 12;  ///< largest exponent after ^
+/// Largest power of m, rad, kg or s; it keeps powers of powers in the range of int.
+constexpr int kLargestPower = 100;
 constexpr std::array<std::string_view, 5> kFunctions{"sqrt", "sin", "cos", "tan", "atan2"};
 
 bool is_letter(char c) {
@@ -23,16 +25,17 @@ bool is_letter(char c) {
 }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Whether a name is a unit of length or angle. Names of other units, such as h and N, are free for parameters.
+/// Returns true if a name is a unit of length or angle. The names of other units, such as h and N, may be names of
+/// parameters.
 bool is_unit_of_geometry(std::string_view name) {
   const Unit* unit = find_unit(name);
   return unit != nullptr && (unit->dimension == Dimension::length || unit->dimension == Dimension::angle);
 }
 
-/// A recursive descent parser. Each function consumes what its name says from the front of the text.
+/// A recursive descent parser. Each function reads from the front of the text what its name says.
 class Parser {
  public:
-  /// due: powers of the wanted value, as far as they are known; for messages.
+  /// due: the powers of the wanted value, as far as they are known, for messages.
   Parser(const Expression& expression, std::span<const GeometryParameter> parameters, std::span<const double> values,
          const Powers& due)
       : expression_(expression), text_(expression.text), parameters_(parameters), values_(values), due_(due) {}
@@ -81,7 +84,7 @@ class Parser {
     return text_.substr(begin, at_ - begin);
   }
 
-  /// Throws, at the operator, if the two values cannot be added.
+  /// Throws an error at the operator if the two values cannot be added.
   void need_like(const Value& one, const Value& other, std::size_t at, std::string_view done) const {
     if (one.like(other)) return;
     fail(at, std::string(done) + " " + dimension_text(one) + " and " + dimension_text(other),
@@ -114,7 +117,7 @@ class Parser {
     }
   }
 
-  /// The powers of the product of a value and another one raised to an exponent.
+  /// The powers of one x other^exponent.
   static Powers multiplied(const Powers& one, const Powers& other, int exponent) {
     return {one.length + exponent * other.length, one.angle + exponent * other.angle, one.mass + exponent * other.mass,
             one.time + exponent * other.time};
@@ -153,7 +156,7 @@ class Parser {
     at_ = static_cast<std::size_t>(end - text_.data());
     const bool goes_on = at_ < text_.size() && (text_[at_] == '.' || is_letter(text_[at_]));
     if (failure != std::errc() || goes_on || std::abs(exponent) > kLargestExponent) {
-      fail(at, "has an exponent that is no whole number from -12 to 12", "write e.g. d^4; a root is sqrt(x)");
+      fail(at, "has an exponent that is not a whole number from -12 to 12", "write e.g. d^4; a root is sqrt(x)");
     }
     return exponent;
   }
@@ -186,7 +189,7 @@ class Parser {
     return {value * found.si, found.powers};
   }
 
-  /// Reads a unit after a number; a power there belongs to the unit.
+  /// Reads a unit after a number. A power there belongs to the unit.
   WrittenUnit unit() {
     const std::size_t at = at_;
     const auto found = unit_at_begin(text_.substr(at));
@@ -269,7 +272,7 @@ std::string dimension_text(const Value& value) { return dimension_text(value.pow
 std::string why_no_parameter(std::string_view name) {
   const auto allowed = [](char c) { return (is_letter(c) && static_cast<unsigned char>(c) < 0x80) || is_digit(c); };
   if (name.empty() || is_digit(name.front()) || !std::ranges::all_of(name, allowed)) {
-    return "is no name: letters, digits and _, and no digit first";
+    return "is not a name: letters, digits and _, and no digit first";
   }
   if (is_unit_of_geometry(name)) return "is a unit";
   if (name == "pi" || std::ranges::find(kFunctions, name) != kFunctions.end()) return "has a meaning in expressions";

@@ -18,7 +18,7 @@ void check_modifiers(const StudyValue& value, const std::string& text) {
   }
 }
 
-/// What a zone's table says.
+/// The content of a zone's table, as written.
 struct WrittenZone {
   std::optional<Expression> size;
   std::string datums;
@@ -71,10 +71,16 @@ std::string read_along(const StudyValue& value) {
   return std::string(kAxes[value.word(kAxes)]);
 }
 
-/// Throws for the sign of a form.
+/// Throws for a tolerance of form: straightness, roundness or cylindricity.
 void refuse_form(const StudyValue& value, FeatureLines&) {
   value.fail("is the form of one surface, which rigid parts do not have",
              "remove it, or give the location or the orientation of the feature");
+}
+
+/// Throws for concentricity, the name of coaxiality for the centres of circles.
+void refuse_concentricity(const StudyValue& value, FeatureLines&) {
+  value.fail("has the sign of coaxiality, by which it is known here",
+             "write coaxiality of an axis, or position of a point");
 }
 
 std::optional<std::size_t> read_axis(const StudyValue& value) {
@@ -89,7 +95,7 @@ std::vector<Row<FeatureLines>> zone_rows(std::index_sequence<kPositions...>) {
   return {optional("", read_by("length or table", &read_zone_at<kPositions>), "none", kMeaning)...};
 }
 
-/// The kinds of features that a zone may have.
+/// The kinds of features that may have a zone of this name.
 std::vector<std::string_view> bearers(std::string_view zone) {
   if (zone == "tolerance") return {"distance"};
   if (zone == "flatness" || zone == "profile") return {"plane"};
@@ -160,12 +166,14 @@ const Keys<FeatureLines, Nothing>& feature_keys() {
       made.rows.push_back(
           optional(form, read_by("none", refuse_form), "", "Refused, because rigid parts have no form."));
     }
+    made.rows.push_back(optional("concentricity", read_by("none", refuse_concentricity), "",
+                                 "Refused: it is called `coaxiality` here, and `position` of a point."));
     return made;
   }();
   return keys;
 }
 
-/// Throws for two zones of one class, and for a flatness beside another zone.
+/// Throws if a feature has two zones of one class, or a flatness and another zone.
 void check_zones(const FeatureLines& feature) {
   for (std::size_t k = 0; k < feature.zones.size(); ++k) {
     const ZoneLines& zone = feature.zones[k];
@@ -185,7 +193,7 @@ void check_zones(const FeatureLines& feature) {
   }
 }
 
-/// Throws for keys of the size and the shape that do not fit together.
+/// Throws if the keys of a feature's size and shape do not fit together.
 void check_shape(const FeatureLines& feature) {
   const auto fail = [&](const std::string& problem, std::string_view remedy) {
     throw InputError(feature.place, feature.key + " '" + feature.name + "' " + problem, remedy);

@@ -11,6 +11,7 @@
 #include "engine/fits/fit.h"
 #include "models/file/factors.h"
 #include "models/file/general.h"
+#include "models/file/structure.h"
 
 namespace poesy::file {
 namespace {
@@ -18,60 +19,74 @@ namespace {
 using Matrix3 = lie::Matrix3<double>;
 using Eigen::Index;
 
-/// A share of a column below this is rounding.
+/// A component of an error that is smaller than this share of the largest counts as rounding.
 constexpr double kRounding = 1e-13;
 
-constexpr double kSmallestSize = 1e-12;  ///< of a feature, m
+constexpr std::string_view kAxisLetters = "xyz";
+constexpr double kSameAxis = 1e-9;  ///< axes count as equal if they differ by less than this
 
-/// Where a feature is, in the base frame at home.
+constexpr double kSmallestSize = 1e-12;  ///< smallest size of a feature, m
+
+/// The frame of a feature, in the base frame at home.
 struct FeatureFrame {
-  Matrix3 axes;    ///< columns x, y, z
-  Vector3 middle;  ///< m
+  Matrix3 axes;    ///< axes x, y, z as columns
+  Vector3 middle;  ///< middle of the feature, m
 };
 
-/// The frame of a limb that a feature displaces.
+/// The frame of a limb whose error is caused by the errors of a feature.
 struct FeaturePart {
-  std::size_t frame;  ///< position
-  Transform datum;    ///< base_T_part at home
-  bool inverse;       ///< whether the feature moves the part against what is behind it
+  std::size_t frame;  ///< position of the frame in the limb
+  Transform datum;    ///< base_T_part of the feature's part at home
+  bool inverse;       ///< true if the feature moves its part with respect to what is behind it
 };
 
-/// An error of a feature: how it displaces the feature's middle and turns it, per metre, in the feature's axes.
+/// An error of a feature: how the feature's middle moves and how the feature rotates, per metre of the error and in the
+/// feature's axes.
 struct FeatureError {
-  std::string_view name;  ///< "lean_x"; empty: the feature's own
-  Vector3 turn;           ///< rad/m
-  Vector3 shift;          ///< m/m
-  bool is_tilt;           ///< whether it turns
-  std::string text;       ///< "leans to x: its far end against its near end, 500 mm apart"
+  std::string_view name;  ///< name: "lean_x"; empty: the feature's own name
+  Vector3 turn;           ///< rotation, rad/m
+  Vector3 shift;          ///< displacement of the middle, m/m
+  bool is_tilt;           ///< true if the error rotates the feature
+  Index axis;             ///< axis of the feature that is in the name: 0, 1, 2
+  std::string text;       ///< description: "leans to x: its far end against its near end, 500 mm apart"
 };
 
 std::string millimetres(double metres) { return fmt::format("{:.6g} mm", 1e3 * metres); }
 
 FeatureError shift(std::string_view name, Index axis, std::string text) {
-  return {name, Vector3::Zero(), Vector3::Unit(axis), false, std::move(text)};
+  return {name, Vector3::Zero(), Vector3::Unit(axis), false, axis, std::move(text)};
 }
 
-/// The errors of all features of this kind and size, in order.
+/// All possible errors of a feature of this kind and size (m), in order.
 std::vector<FeatureError> all_errors(FeatureKind kind, const std::array<double, 2>& size) {
-  const auto lean = [&](std::string_view name, const Vector3& turn, std::string_view to) {
-    return FeatureError{
-        name, turn / size[0], Vector3::Zero(), true,
-        fmt::format("leans to {}: its far end against its near end, {} apart", to, millimetres(size[0]))};
+  const auto lean = [&](std::string_view name, const Vector3& turn, Index axis) {
+    return FeatureError{name,
+                        turn / size[0],
+                        Vector3::Zero(),
+                        true,
+                        axis,
+                        fmt::format("leans to {}: its far end against its near end, {} apart",
+                                    kAxisLetters[static_cast<std::size_t>(axis)], millimetres(size[0]))};
   };
-  const auto lift = [&](std::string_view name, const Vector3& turn, std::size_t k, std::string_view to) {
-    return FeatureError{name, 2.0 * turn / size[k], Vector3::Zero(), true,
-                        fmt::format("lifts towards {}: the edge up, the other one, {} away, down by as much", to,
-                                    millimetres(size[k]))};
+  const auto lift = [&](std::string_view name, const Vector3& turn, Index axis) {
+    const double across = size[static_cast<std::size_t>(axis)];
+    return FeatureError{name,
+                        2.0 * turn / across,
+                        Vector3::Zero(),
+                        true,
+                        axis,
+                        fmt::format("lifts towards {}: the edge up, the other one, {} away, down by as much",
+                                    kAxisLetters[static_cast<std::size_t>(axis)], millimetres(across))};
   };
   const Vector3 x = Vector3::UnitX();
   const Vector3 y = Vector3::UnitY();
   switch (kind) {
     case FeatureKind::axis:
       return {shift("x", 0, "its middle is off along x"), shift("y", 1, "its middle is off along y"),
-              lean("lean_x", y, "x"), lean("lean_y", -x, "y")};
+              lean("lean_x", y, 0), lean("lean_y", -x, 1)};
     case FeatureKind::rectangle:
     case FeatureKind::round:
-      return {shift("z", 2, "is off along its normal"), lift("lift_x", -y, 0, "x"), lift("lift_y", x, 1, "y")};
+      return {shift("z", 2, "is off along its normal"), lift("lift_x", -y, 0), lift("lift_y", x, 1)};
     case FeatureKind::point:
       return {shift("x", 0, "is off along x"), shift("y", 1, "is off along y"), shift("z", 2, "is off along z")};
     case FeatureKind::distance:
@@ -80,7 +95,17 @@ std::vector<FeatureError> all_errors(FeatureKind kind, const std::array<double, 
   return {shift("", 0, "is too long")};
 }
 
-/// The errors that the zones of a feature let it have.
+/// The text ", where y is (0, 0, -1) at home" for an axis of a feature in the base frame. Empty if it is the base's
+/// axis of the same name.
+std::string axis_text(const FeatureError& error, const Matrix3& axes) {
+  const Vector3 way = axes.col(error.axis);
+  if (error.name.empty() || (way - Vector3::Unit(error.axis)).norm() < kSameAxis) return {};
+  const Vector3 shown = (way.array().abs() < kSameAxis).select(0.0, way);
+  return fmt::format(", where {} is {} at home", kAxisLetters[static_cast<std::size_t>(error.axis)],
+                     triple_text(shown));
+}
+
+/// The errors of a feature that its zones allow.
 std::vector<FeatureError> errors_of(const FeatureLines& lines, const Feature& feature) {
   std::vector<FeatureError> all = all_errors(feature.kind, feature.size);
   const bool only_turns = feature.orientation && !feature.location;
@@ -96,7 +121,8 @@ class FeatureBuilder {
   FeatureBuilder(const Numbers& numbers, const LimbLines& limb, Mechanism& mechanism)
       : numbers_(numbers), limb_(limb), mechanism_(mechanism) {}
 
-  /// Adds the features of the copies, of which the first is limb `first` of the mechanism.
+  /// Adds to the mechanism the features of all copies of the limb. first: position of the first copy among the
+  /// mechanism's limbs.
   void add(std::size_t first) {
     for (std::size_t copy = 0; copy < limb_.copies.count; ++copy) {
       for (const FeatureLines& lines : limb_.features) add_one(lines, described(lines), first, copy);
@@ -105,7 +131,7 @@ class FeatureBuilder {
   }
 
  private:
-  /// The elementary joint of the limb, from 0.
+  /// The position in the limb of the elementary joint to which a feature belongs, counted from 0.
   std::size_t joint_of(const FeatureLines& lines) const {
     std::size_t first = 0;
     for (const JointLines& joint : limb_.joints) {
@@ -125,7 +151,7 @@ class FeatureBuilder {
       return takes_last ? first + count - 1 : first;
     }
     throw InputError(lines.joint->place,
-                     lines.joint->key + " '" + printable(lines.joint->name) + "' is no joint of this limb",
+                     lines.joint->key + " '" + printable(lines.joint->name) + "' is not a joint of this limb",
                      suggestion(lines.joint->name, names(limb_.joints)));
   }
 
@@ -150,7 +176,8 @@ class FeatureBuilder {
       if (found != list->end()) return numbers_.point(found->point);
       for (const NamedPoint& one : *list) known.push_back(one.name);
     }
-    throw InputError(name.place, name.key + " '" + printable(name.name) + "' is no joint of this limb and no point",
+    throw InputError(name.place,
+                     name.key + " '" + printable(name.name) + "' is neither a joint of this limb nor a point",
                      suggestion(name.name, known));
   }
 
@@ -169,8 +196,8 @@ class FeatureBuilder {
                      "write another x");
   }
 
-  /// A size, a zone or a clearance: none that is positive is so small that a slope or a scatter of it leaves the
-  /// doubles.
+  /// A positive size, zone or clearance (m). It must not be so small that slopes or standard deviations derived from it
+  /// leave the range of doubles.
   double size(const Expression& expression) const {
     const double value = numbers_.positive(expression, kLength);
     if (value >= kSmallestSize) return value;
@@ -178,7 +205,7 @@ class FeatureBuilder {
                      "write a size that a drawing may have");
   }
 
-  /// Sizes and zones, without the number of a limb.
+  /// The sizes and zones of a feature, before its limb and frame are known.
   Feature described(const FeatureLines& lines) const {
     Feature feature{.name = {}, .label = lines.name, .limb = 0, .frame = 0, .kind = kind_of(lines)};
     feature.one_direction = lines.shape == ZoneShape::planes;
@@ -213,7 +240,7 @@ class FeatureBuilder {
     return list;
   }
 
-  /// The clearance of a fit by name. All fits that fit() knows have one.
+  /// The clearance of a named fit. Every fit that fit() accepts has a clearance.
   static Clearance by_fit(const ClearanceLines& lines) {
     try {
       const Fit found = fit(lines.fit);
@@ -236,7 +263,8 @@ class FeatureBuilder {
     return {most, mean * mean + sigma * sigma};
   }
 
-  /// An axis with a clearance. Sizes of parts are normal, and three standard deviations are half their zones.
+  /// The axis of a joint with clearance. Sizes of parts are normally distributed, and half a zone is three standard
+  /// deviations.
   Feature loose(const ClearanceLines& lines) const {
     Feature feature = described(lines.axis);
     feature.clearance = lines.fit.empty() ? by_ends(lines) : by_fit(lines);
@@ -260,7 +288,7 @@ class FeatureBuilder {
       std::string name = lines.name;
       if (!error.name.empty()) name += "_" + std::string(error.name);
       Factor factor{name + "_" + number, Dimension::length, feature.limb, part.frame,
-                    fmt::format("{} of limb {} {}", lines.name, limb.label, error.text)};
+                    fmt::format("{} of limb {} {}{}", lines.name, limb.label, error.text, axis_text(error, at.axes))};
       add_error(std::move(factor), terms(error, at, part, first + copy), {lines.name, lines.key, lines.place},
                 mechanism_);
     }

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int64_t kMostCopies = 100;
 
-/// The largest length of a name, so that messages and tables show it whole with its suffixes.
+/// The largest length of a name, so that messages and tables show it in full with its suffixes.
 constexpr std::size_t kLongestName = 48;
 
 const Keys<Copies, Nothing>& copies_keys() {
@@ -71,7 +71,7 @@ void check_name(const Reference& reference) {
   if (!reference.name.empty() && !reference.name.starts_with('-') && std::ranges::all_of(reference.name, allowed)) {
     return;
   }
-  throw InputError(reference.place, reference.key + " '" + printable(reference.name) + "' is no name",
+  throw InputError(reference.place, reference.key + " '" + printable(reference.name) + "' is not a name",
                    "write letters, digits, _ and -, and do not begin with -");
 }
 

@@ -16,13 +16,13 @@
 namespace poesy::file {
 namespace {
 
-/// A joint of a limb before its frame is known.
+/// An elementary joint of a limb before its frame is known.
 struct Element {
   const JointLines* lines;
-  std::size_t position;  ///< position among the elementary joints of its joint
+  std::size_t position;  ///< position of this elementary joint in the joint as written
   Motion motion;
   Vector3 point;
-  Vector3 z = Vector3::Zero();  ///< of S: follows from the preceding joints
+  Vector3 z = Vector3::Zero();  ///< axis; for S it follows from the preceding joints
 };
 
 Motion motion_of(JointKind kind, std::size_t position) {
@@ -43,15 +43,15 @@ Motion motion_of(JointKind kind, std::size_t position) {
   throw std::logic_error("unknown kind of joint");
 }
 
-/// The name of a drive in the n-th copy of a limb.
+/// The name of a drive in the n-th copy of a limb, where n replaces "*".
 std::string of_copy(const std::string& drive, std::size_t n) {
   std::string name;
   for (const char letter : drive) name += letter == '*' ? std::to_string(n) : std::string(1, letter);
   return name;
 }
 
-/// Throws if a drive turns one joint and slides another, or if its name, which is a column of pose files, is also that
-/// of another column.
+/// Throws if a drive rotates one joint and slides another, or if its name, which is a column of pose files, is also the
+/// name of another column.
 void check_drives(const Mechanism& mechanism) {
   const std::vector<const Joint*> joints = moving_joints(mechanism);
   const std::vector<JointDisplacement> displacements = displacement_names(mechanism);
@@ -116,7 +116,7 @@ class Builder {
  private:
   // ---- points
 
-  /// The point of this name of the limb or the file; null if there is none.
+  /// The point with this name among those of the limb and of the file; null if there is none.
   const NamedPoint* named_point(const LimbLines& limb, const std::string& name) const {
     for (const std::vector<NamedPoint>* list : {&limb.points, &file_.points}) {
       const auto found = std::ranges::find(*list, name, &NamedPoint::name);
@@ -133,11 +133,11 @@ class Builder {
     for (const NamedPoint& named : limb.points) known.push_back(named.name);
     for (const NamedPoint& named : file_.points) known.push_back(named.name);
     throw InputError(reference.place,
-                     reference.key + " '" + printable(reference.name) + "' is no joint of this limb and no point",
+                     reference.key + " '" + printable(reference.name) + "' is neither a joint of this limb nor a point",
                      suggestion(reference.name, known));
   }
 
-  /// The point of a joint: `at`, or `from` for P, H and C. depth: number of references followed so far.
+  /// The point of a joint (m): `at`, or for P, H and C `from`. depth: number of references followed so far.
   Vector3 joint_point(const LimbLines& limb, const JointLines& joint, std::size_t depth = 0) const {
     if (depth > limb.joints.size()) {
       throw InputError(joint.place, joint.key + " '" + joint.name + "' takes its point from itself",
@@ -172,7 +172,7 @@ class Builder {
 
   // ---- axes and frames
 
-  /// The axis of a joint other than S: as written, or from one point to another.
+  /// The axis of a joint other than S: as written, or the direction from one point to another.
   Vector3 axis_of(const LimbLines& limb, const JointLines& joint) const {
     if (joint.axis && joint.to) {
       throw InputError(joint.axis->place, joint.axis->key + " is given besides `to`", "remove one of them");
@@ -208,8 +208,9 @@ class Builder {
     return list;
   }
 
-  /// The first axis of S. It points along the line from the last preceding point that differs, or else to the first
-  /// following one; the last point is the origin of the body at the end of the limb.
+  /// The first axis of a joint S. It points along the line from the last preceding point that differs from the joint's
+  /// own point. If all preceding points equal it, the axis points to the first following point that differs. The last
+  /// of all points is the origin of the body at the limb's end.
   Vector3 first_axis_of_s(const std::vector<Element>& elements, std::size_t e, const Vector3& end) const {
     const Vector3& own = elements[e].point;
     for (std::size_t k = e; k-- > 0;) {
@@ -224,7 +225,8 @@ class Builder {
                      "its first axis is along the line to another joint; write three R instead");
   }
 
-  /// The x axis of a joint: as given, or towards the next point, or the first base axis that is not parallel to z.
+  /// The x axis of a joint: as given, or else towards the next point, or else the first base axis that is not parallel
+  /// to z.
   Vector3 x_of(const Element& element, const Vector3& z, const Vector3& next) const {
     const JointLines& joint = *element.lines;
     if (joint.x && element.position == 0) {
@@ -242,7 +244,7 @@ class Builder {
     return perpendicular(Vector3::UnitZ(), z);
   }
 
-  /// The joints of a limb. end: origin of the body at the end of the limb.
+  /// The elementary joints of a limb. end: origin of the body at the limb's end (m).
   std::vector<Joint> joints_of(const LimbLines& limb, const std::vector<Vector3>& points, const Vector3& end) const {
     std::vector<Element> elements = elements_of(limb, points);
     std::vector<Joint> joints;
@@ -270,7 +272,7 @@ class Builder {
     return joints;
   }
 
-  /// The pitch in m/rad.
+  /// The pitch of a joint, m/rad.
   double pitch_of(const JointLines& joint) const {
     if (!joint.pitch) return 0.0;
     const double pitch = numbers_.length(*joint.pitch);
@@ -306,7 +308,7 @@ class Builder {
     }
   }
 
-  /// The label of a copy of a limb. before: number of limbs before it in the file.
+  /// The label of a copy of a limb. before: number of limbs, including copies, that precede this limb in the file.
   static std::string label_of(const LimbLines& lines, std::size_t copy, std::size_t before) {
     if (lines.name.empty()) return std::to_string(before + 1);
     return lines.copies.count == 1 ? lines.name : lines.name + "_" + std::to_string(copy + 1);
@@ -346,7 +348,7 @@ class Builder {
     const std::string why = chain::why_no_metric(made.points, made.reach);
     if (why.empty()) return;
     throw InputError(file_.platform.place, "the metric has no meaning: " + why,
-                     "write points = [...] in [platform], three or more that are on no line");
+                     "write metric_points = [...] in [platform], three or more that are not on one line");
   }
 
   const MechanismFile& file_;
@@ -355,7 +357,7 @@ class Builder {
   Numbers numbers_;
 };
 
-/// The axes of the three rotations, in the order of their product. Precondition: not "vector".
+/// The axes of the three rotations, in the order of their product. Precondition: the rotation is not "vector".
 std::array<int, 3> axes_of(Rotation rotation) {
   const std::string_view letters = name(rotation);
   return {letters[0] - 'x', letters[1] - 'x', letters[2] - 'x'};

@@ -13,8 +13,8 @@
 namespace poesy::file {
 namespace {
 
-/// The limits hold for all limbs together. Rank computations grow with the cube of the axes, descriptions with the
-/// square of the frames.
+/// The limits for all limbs of a mechanism together. The time of rank computations grows with the cube of the moving
+/// axes, the size of descriptions with the square of the frames.
 /// @{
 constexpr std::size_t kMostMovingAxes = 120;
 constexpr std::size_t kMostFrames = 1000;
@@ -40,7 +40,7 @@ void read_at(const StudyValue& value, JointLines& joint) {
   }
 }
 
-/// Reads the name of a drive, where * may replace the number of a copy.
+/// Reads the name of a drive. In a name, "*" stands for the number of a copy.
 void read_drive(const StudyValue& value, JointLines& joint) {
   if (elements(joint.kind) > 1) {
     value.fail("is a text, but a joint of type " + std::string(name(joint.kind)) + " has two axes",
@@ -57,8 +57,8 @@ void read_drive(const StudyValue& value, JointLines& joint) {
   joint.actuated[0] = true;
 }
 
-/// Reads `actuated`: true for joints with one axis and for both axes of C; 1 or 2 for one axis of C or U; the name of a
-/// drive for joints with one axis.
+/// Reads `actuated`. Its value is true for joints with one axis or for both axes of C; 1 or 2 for one axis of C or U;
+/// or, for joints with one axis, the name of a drive.
 void read_actuated(const StudyValue& value, JointLines& joint) {
   if (value.is_text()) return read_drive(value, joint);
   const std::size_t axes = elements(joint.kind);
@@ -87,8 +87,8 @@ const Keys<JointLines, Nothing>& joint_keys() {
   static const Keys<J, Nothing> keys{
       .paths = {"limb.joints"},
       .meaning =
-          "A joint, at home and in the base frame. Inside, every joint becomes revolute, prismatic and helical "
-          "ones about or along their own z axes.",
+          "A joint, at home and in the base frame. poesy replaces each joint by a series of revolute, prismatic and "
+          "helical joints, which act about or along their own z axes.",
       .chooser = "type",
       .rows = {
           needed("type", kinds, "\"R\"", "What the joint does."),
@@ -143,7 +143,7 @@ std::vector<JointLines> joints(const StudyValue& value) {
   return list;
 }
 
-/// The word of [[error]] for all limbs.
+/// The word that means all limbs in [[error]].
 constexpr std::string_view kEach = "each";
 
 std::string read_limb_name(const StudyValue& value) {
@@ -188,11 +188,11 @@ const Keys<LimbLines, Nothing>& limb_keys() {
   return keys;
 }
 
-/// Sums over all limbs.
+/// The numbers of moving axes and frames of all limbs together.
 struct Extent {
   std::size_t limbs = 0;
-  std::size_t axes = 0;    ///< that move
-  std::size_t frames = 0;  ///< of joints
+  std::size_t axes = 0;    ///< number of axes that move
+  std::size_t frames = 0;  ///< number of frames of joints
 
   void add(const LimbLines& limb) {
     limbs += limb.copies.count;
@@ -204,7 +204,7 @@ struct Extent {
   }
 };
 
-/// Fails if the limbs up to this one exceed the limits.
+/// Fails if the limbs up to this one exceed the limits of a mechanism.
 void check_extent(const Extent& extent, const StudyValue& limb) {
   const auto check = [&](std::string_view what, std::size_t count, std::size_t most) {
     if (count <= most) return;
@@ -280,7 +280,7 @@ void read_workspace(const StudyValue& value, PlatformLines& platform) {
   }
 }
 
-/// Names that points of the platform must not have.
+/// Names that points of the platform must not have, because they are in use.
 constexpr std::array<std::string_view, 4> kOtherPoints{"base", "origin", "platform", "tip"};
 
 std::vector<NamedPoint> platform_points(const StudyValue& value) {
@@ -297,10 +297,10 @@ void read_metric_points(const StudyValue& value, PlatformLines& platform) {
   if (!platform.points.empty()) value.fail("is a second list of the metric's points", "remove one of them");
   platform.place = value.place();
   for (const StudyValue& element : value.list()) platform.points.push_back(point(element));
-  if (platform.points.size() < 3) value.fail("has fewer than three points", "give three that are on no line");
+  if (platform.points.size() < 3) value.fail("has fewer than three points", "give three that are not on one line");
 }
 
-/// Reads named points from a table, or those of the metric from a list.
+/// Reads named points from a table, or the metric's points from a list.
 void read_points(const StudyValue& value, PlatformLines& platform) {
   if (!value.is_section()) return read_metric_points(value, platform);
   platform.named = platform_points(value);
@@ -376,7 +376,7 @@ ComponentLines component(const Reference& name, const StudyValue& value) {
   return {static_cast<std::size_t>(known - kComponents.begin()), expression(value)};
 }
 
-/// Reads `components = { delta_x = -0.6, epsilon_y = "2 / L" }`.
+/// Reads a combination of components, such as `components = { delta_x = -0.6, epsilon_y = "2 / L" }`.
 std::vector<ComponentLines> combination(const StudyValue& value) {
   const StudySection section = value.section();
   std::vector<ComponentLines> list;
@@ -385,7 +385,7 @@ std::vector<ComponentLines> combination(const StudyValue& value) {
   return list;
 }
 
-/// A place as written, before its limbs are known.
+/// A place of an error as written, before the program knows which limbs it names.
 struct WrittenPlace {
   std::optional<std::size_t> component;
   Expression scale{"1", "scale", {}, true};
@@ -455,12 +455,13 @@ const Keys<ErrorLines, Nothing>& error_keys() {
   return keys;
 }
 
-/// A limb or a copy of one, as an error may name it.
+/// A limb, or a copy of a limb, to which an error may refer.
 struct NamedLimb {
   const LimbLines* lines;
-  std::size_t copy;  ///< counts from 1
+  std::size_t copy;  ///< number of the copy, counted from 1
 
-  /// The position of the frame behind the joint of this name; none if there is no such joint.
+  /// The position in the limb of the frame behind the joint of this name. Behind means towards the end of the limb.
+  /// None if there is no such joint.
   std::optional<std::size_t> frame_behind(std::string_view joint) const {
     std::size_t frame = 0;
     for (const JointLines& one : lines->joints) {
@@ -470,12 +471,12 @@ struct NamedLimb {
     return std::nullopt;
   }
 
-  /// The label, for example "left_1"; empty if the limb has no name.
+  /// The label of the limb, for example "left_1"; empty if the limb has no name.
   std::string label() const {
     return lines->name.empty() || lines->copies.count == 1 ? lines->name : lines->name + "_" + std::to_string(copy);
   }
 
-  /// The limb's text for messages: "limb 4", or with a name "limb 4 (left_1)". position: counts from 0.
+  /// The limb as text for messages: "limb 4", or with a name "limb 4 (left_1)". position: of the limb, counted from 0.
   std::string text(std::size_t position) const {
     const std::string number = "limb " + std::to_string(position + 1);
     return lines->name.empty() ? number : number + " (" + label() + ")";
@@ -493,7 +494,7 @@ std::vector<NamedLimb> named_limbs(const MechanismFile& file) {
   return list;
 }
 
-/// The limbs' text for messages: "limb 4", "limbs 1, 2 and 3", counted from 1.
+/// Limbs as text for messages: "limb 4", "limbs 1, 2 and 3", counted from 1.
 std::string limbs_text(const std::vector<std::size_t>& limbs) {
   std::string text = limbs.size() == 1 ? "limb " : "limbs ";
   for (std::size_t k = 0; k < limbs.size(); ++k) {
@@ -503,7 +504,7 @@ std::string limbs_text(const std::vector<std::size_t>& limbs) {
   return text;
 }
 
-/// Adds the limbs with this number or name.
+/// Adds to the slot all limbs with this number or name.
 void add_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, SlotLines& slot) {
   const auto add = [&](std::size_t limb) {
     if (std::ranges::find(slot.limbs, limb) != slot.limbs.end()) {
@@ -540,7 +541,7 @@ void read_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, Sl
   for (const std::size_t i : slot.limbs) slot.numbers.push_back(alone ? 0 : by_copy ? known[i].copy : i + 1);
 }
 
-/// Reads the name of a joint; the frame of the error is the one behind that joint, in each limb.
+/// Reads the name of a joint. The frame of the error is the one behind this joint, in each limb of the slot.
 void read_frame_by_name(const StudyValue& frame, const std::vector<NamedLimb>& known, SlotLines& slot) {
   for (const std::size_t i : slot.limbs) {
     const std::optional<std::size_t> behind = known[i].frame_behind(frame.text());
@@ -552,7 +553,7 @@ void read_frame_by_name(const StudyValue& frame, const std::vector<NamedLimb>& k
   }
 }
 
-/// Reads the limbs of an error, and a frame that all of them have.
+/// Reads the limbs of an error, and a frame that exists in all of them.
 void read_slot(const StudySection& section, const std::vector<NamedLimb>& known, SlotLines& slot) {
   read_limbs(section.require("limb", "write limb = \"each\""), known, slot);
   const StudyValue frame = section.require("frame", "write frame = 0");
@@ -575,7 +576,7 @@ void read_slot(const StudySection& section, const std::vector<NamedLimb>& known,
              "the last frame of " + known[without.front()].text(without.front()) + " is " + last);
 }
 
-/// Throws unless exactly one of two keys is there.
+/// Throws unless the table has exactly one of two keys.
 void need_one_of(const StudySection& section, std::string_view one, std::string_view other) {
   if (section.find(one)) {
     section.refuse(other, "an error with " + std::string(one));
@@ -599,7 +600,8 @@ PlaceLines read_place(const StudySection& section, const std::vector<NamedLimb>&
   return place;
 }
 
-/// Reads where an error acts and on what: in one place of each limb, or in several places together.
+/// Reads where an error acts and which components it changes: either one place in each limb, or several places
+/// together.
 void read_where(const StudySection& section, const std::vector<NamedLimb>& known, ErrorLines& error) {
   const std::optional<StudyValue> places = section.find("places");
   if (!places) {
@@ -668,7 +670,7 @@ void read_sets(const StudyValue& value, MechanismFile& file) {
 
 // ---- the file
 
-/// A parameter of the geometry as written.
+/// A parameter of the geometry, as written.
 struct ParameterLines {
   std::optional<Expression> value;
   std::string description;
@@ -751,7 +753,7 @@ const Keys<MechanismFile, Nothing>& file_keys() {
   return keys;
 }
 
-/// A table whose keys are names chosen by the file.
+/// The description of a table in which the file chooses the names of the keys.
 StudyTable of_names(std::vector<std::string_view> paths, std::string_view name, std::string type,
                     std::string_view meaning, std::string missing = {}, std::string example = {}) {
   return {.paths = std::move(paths),
@@ -763,7 +765,7 @@ StudyTable of_names(std::vector<std::string_view> paths, std::string_view name, 
                     .meaning = meaning}}};
 }
 
-/// The properties of a kind of joint: its name in files and its letter in sketches.
+/// The properties of a type of joint: name in files, letter in sketches, number of elementary joints.
 struct JointTraits {
   std::string_view name;
   char letter;

@@ -14,16 +14,16 @@ using Matrix = Eigen::MatrixXd;
 using Eigen::Index;
 using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// A matrix's singular values, its rank, and an orthonormal basis of its null space.
+/// The singular values of a matrix, its rank, and an orthonormal basis of its null space.
 struct Decomposed {
   Eigen::VectorXd values;
   Index rank;
-  Matrix null;  ///< [columns x (columns - rank)]
-  Matrix V;     ///< [columns x columns]
+  Matrix null;  ///< [columns x (columns - rank)] basis of the null space
+  Matrix V;     ///< [columns x columns] right singular vectors
 };
 
-/// threshold: a singular value below this share counts as zero: a share of the largest one, or of `largest` if that is
-/// not 0.
+/// Decomposes a matrix. A singular value counts as zero below the share `threshold` of the largest singular value, or
+/// of `largest` if that is not 0.
 Decomposed decomposed(const Matrix& matrix, double threshold, double largest = 0.0) {
   if (matrix.cols() == 0 || matrix.rows() == 0) {
     const Matrix identity = Matrix::Identity(matrix.cols(), matrix.cols());
@@ -37,18 +37,19 @@ Decomposed decomposed(const Matrix& matrix, double threshold, double largest = 0
 
 std::size_t size(Index count) { return static_cast<std::size_t>(count); }
 
-/// Loop Jacobian and twists of the bodies, with lengths in units of the reach.
+/// The loop Jacobian and the twists of the bodies, with lengths in units of the reach.
 struct Jacobians {
   Matrix loops;
-  std::vector<Columns> bodies;       ///< [bodies][6 x joints] twists by the limbs that place them; the base's: 0
+  /// [bodies][6 x joints] twists of each body by the limbs that place it; 0 for the base.
+  std::vector<Columns> bodies;
   std::vector<const Joint*> joints;  ///< joint of each column
   std::vector<std::string> limbs;    ///< limb of each column, for messages
 
   const Columns& platform() const { return bodies[kPlatform]; }
 };
 
-/// Each body has the twist of the first limb that ends there; other limbs that end there give equations, their twist
-/// minus that one.
+/// Each body has the twist of the first limb that ends there. Each other limb that ends there gives equations: its
+/// twist minus that of the first.
 Jacobians jacobians(const Mechanism& unit, std::span<const double> q) {
   const auto joints = static_cast<Index>(unit.moving());
   const std::size_t bodies = unit.bodies.size();
@@ -66,7 +67,7 @@ Jacobians jacobians(const Mechanism& unit, std::span<const double> q) {
     }
   }
   std::vector<Transform> at(bodies);
-  /// Adds the twist of the limb's end to `to` and returns the pose of the end.
+  /// Adds sign x (twist of the limb's end) to `to`, and returns the pose of the end.
   const auto add_limb = [&](std::size_t i, Eigen::Ref<Matrix> to, double sign) {
     const Limb& limb = unit.limbs[i];
     Columns columns(6, static_cast<Index>(limb.moving()));
@@ -92,7 +93,7 @@ Jacobians jacobians(const Mechanism& unit, std::span<const double> q) {
   return made;
 }
 
-/// Replaces the columns of the joints of one drive by their sum, at the position of the first.
+/// Replaces the columns of all joints of a drive by their sum, at the position of the first joint.
 Jacobians with_one_column_a_drive(Jacobians all, const std::vector<Drive>& drives) {
   std::vector<Index> kept;
   std::vector<bool> follows(all.joints.size(), false);
@@ -116,7 +117,7 @@ Jacobians with_one_column_a_drive(Jacobians all, const std::vector<Drive>& drive
   return made;
 }
 
-/// The columns of joints without a drive.
+/// The columns of the joints without a drive.
 Matrix passive(const Matrix& matrix, const Jacobians& all) {
   Matrix made(matrix.rows(), matrix.cols());
   Index count = 0;
@@ -126,7 +127,7 @@ Matrix passive(const Matrix& matrix, const Jacobians& all) {
   return made.leftCols(count);
 }
 
-/// Text of a vector: "(0, 0.71, 0.71)".
+/// A vector as text: "(0, 0.71, 0.71)".
 std::string vector_text(const Vector3& vector) {
   const auto entry = [](double value) {
     const double rounded = std::round(100.0 * value) / 100.0;
@@ -135,8 +136,8 @@ std::string vector_text(const Vector3& vector) {
   return "(" + entry(vector.x()) + ", " + entry(vector.y()) + ", " + entry(vector.z()) + ")";
 }
 
-/// Sets the text for a motion of the passive joints: "joint 'A' of limb 2 is loose, and the platform turns about (0, 0,
-/// 1)".
+/// Sets the texts for a motion of the passive joints: "joint 'A' of limb 2 is loose, and the platform turns about (0,
+/// 0, 1)".
 void describe_loose(const Jacobians& all, const Eigen::VectorXd& motion, const lie::Screw<double>& twist,
                     Mobility& found) {
   Index largest = 0;
@@ -156,7 +157,7 @@ void describe_loose(const Jacobians& all, const Eigen::VectorXd& motion, const l
                      (turns ? "turns about " + vector_text(direction) : "slides along " + vector_text(direction));
 }
 
-/// Finds motions of the platform or another body while all drives are held. bodies: of the mechanism.
+/// Finds motions of the platform or of another body while all drives are held. bodies: those of the mechanism.
 void find_loose(const Jacobians& all, const std::vector<assembly::Body>& bodies, double threshold, Mobility& found) {
   const Matrix loops = passive(all.loops, all);
   const double largest = found.singular_values.empty() ? 0.0 : found.singular_values[0];
@@ -175,7 +176,7 @@ void find_loose(const Jacobians& all, const std::vector<assembly::Body>& bodies,
   }
 }
 
-/// The first coordinate whose removal does not change the rank.
+/// The name of the first coordinate whose removal does not change the rank.
 std::string dependent_of(const Mechanism& unit, const Matrix& rates, Index rank) {
   for (Index row = 0; row < rates.rows(); ++row) {
     Matrix others = rates;
@@ -187,7 +188,7 @@ std::string dependent_of(const Mechanism& unit, const Matrix& rates, Index rank)
 
 void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Matrix& twists, Mobility& found) {
   if (twists.cols() == 0) return;  // nothing moves; Eigen does not support a matrix without columns here
-  // At a singular pose of the coordinates, the least-squares rates of least norm.
+  // At a singular pose of the coordinates, these are the least-squares rates of least norm.
   const Matrix rates = linalg::pseudo_inverse(platform_columns(unit, pose)) * twists;
   Matrix chosen(static_cast<Index>(unit.coordinates.size()), rates.cols());
   for (std::size_t c = 0; c < unit.coordinates.size(); ++c) {
@@ -198,14 +199,14 @@ void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Mat
   if (found.coordinates_rank < unit.coordinates.size()) found.dependent = dependent_of(unit, chosen, rank);
 }
 
-/// The reference for singular values of the loops if drives move several joints, whose motions may cancel; 0: their own
-/// largest value.
+/// The reference for singular values of the loops if a drive moves several joints, because their motions may cancel.
+/// Without such drives the reference is 0, which means that the largest singular value itself is used.
 double largest_of(const Matrix& loops_by_joint, const std::vector<Drive>& drives) {
   if (std::ranges::none_of(drives, &Drive::is_shared)) return 0.0;
   return linalg::singular_values(loops_by_joint)[0];
 }
 
-/// The mobility of a mechanism with lengths in units of its reach.
+/// The mobility of a mechanism from in_reaches().
 Mobility mobility_of(const Mechanism& unit, std::span<const double> q, const PlatformPose& pose) {
   const double threshold = unit.precision.rank_threshold;
   const Jacobians of_joints = jacobians(unit, q);
@@ -227,7 +228,8 @@ Mobility mobility_of(const Mechanism& unit, std::span<const double> q, const Pla
   return found;
 }
 
-/// The k-th point of Roberts' sequence in the unit cube: multiples of powers of 1/phi, phi^(n+1) = phi + 1.
+/// The k-th point of Roberts' sequence in the unit cube of n dimensions: multiples of powers of 1/phi, where phi^(n+1)
+/// = phi + 1.
 std::vector<double> even_point(std::size_t k, std::size_t dimensions) {
   double phi = 2.0;
   for (int n = 0; n < 60; ++n) phi = std::pow(1.0 + phi, 1.0 / (static_cast<double>(dimensions) + 1.0));
@@ -264,15 +266,20 @@ Mobility home_mobility(const Mechanism& mechanism) {
 
 namespace {
 
-/// Finds the parasitic motion of the platform from home: the part that is not in its coordinates.
+/// Sets the parasitic motion of the platform. It leads to `pose` from the pose that has the same coordinates, but in
+/// all other components is that of home.
 void find_parasitic(const Mechanism& mechanism, const PlatformPose& pose, PoseMobility& found) {
-  const PlatformPose home = home_pose(mechanism);
-  for (std::size_t component = 0; component < pose.size(); ++component) {
-    if (std::ranges::find(mechanism.coordinates, component, &Coordinate::component) != mechanism.coordinates.end())
-      continue;
-    double& largest = component < 3 ? found.moved : found.turned;
-    largest = std::max(largest, std::abs(pose[component] - home[component]));
-  }
+  PlatformPose without = home_pose(mechanism);
+  for (const Coordinate& coordinate : mechanism.coordinates) without[coordinate.component] = pose[coordinate.component];
+  const Transform from = platform_transform(mechanism, without);
+  const Transform to = platform_transform(mechanism, pose);
+  found.moved = (to.p - from.p).norm();
+  for (std::size_t k = 3; k < pose.size(); ++k) found.turned = std::max(found.turned, std::abs(pose[k] - without[k]));
+  // An angle (rad) below this is taken from the component itself, because products of rotations would add rounding.
+  constexpr double kSmall = 1e-9;
+  if (found.turned < kSmall) return;
+  const lie::Matrix3<double> turn = to.R * from.R.transpose();
+  found.turned = lie::log<double>(turn).norm();
 }
 
 }  // namespace
@@ -298,8 +305,8 @@ std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::si
 
 namespace {
 
-/// " in limb 2, which has none" if some limbs have a drive and that one has not; else empty. Also empty if limbs
-/// branch, because then many of them have no drive.
+/// The text " in limb 2, which has none" for the first limb without a drive, if some limbs have drives. Empty
+/// otherwise, and empty if the mechanism is branched, because then many limbs have no drive.
 std::string limb_without_drive(const Mechanism& mechanism) {
   if (mechanism.is_branched()) return {};
   const auto has_none = [](const Limb& limb) { return std::ranges::none_of(limb.joints, &Joint::actuated); };
@@ -308,7 +315,7 @@ std::string limb_without_drive(const Mechanism& mechanism) {
   return " in limb " + std::to_string(first - mechanism.limbs.begin() + 1) + ", which has none";
 }
 
-/// Throws if the platform can move while all drives are held. where: "" at home, or " at some poses".
+/// Throws if the platform or another body can move while all drives are held. where: "" at home, or " at some poses".
 void check_held(const Mechanism& mechanism, const Mobility& found, const std::string& where) {
   if (found.loose == 0) return;
   throw InputError(

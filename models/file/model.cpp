@@ -2,155 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
-#include "engine/base/contract.h"
 #include "engine/schema/keys.h"
-#include "models/chain/calibration.h"
-#include "models/chain/deformation_model.h"
-#include "models/chain/deformation_trace.h"
 #include "models/chain/metric.h"
-#include "models/chain/nominal.h"
-#include "models/chain/passive_condition.h"
-#include "models/chain/separation.h"
-#include "models/chain/sketch.h"
-#include "models/file/branched_model.h"
-#include "models/file/structure.h"
-#include "models/file/tracked_model.h"
+#include "models/file/balanced_model.h"
+#include "models/file/published_model.h"
 
 namespace poesy::file {
 namespace {
 
-/// Displacements of joints and fixed frames at a pose.
-std::function<std::vector<double>(std::span<const double>)> displacements_by(const Mechanism& mechanism,
-                                                                             std::shared_ptr<const Tracker> tracker,
-                                                                             const chain::DeformationModel& model) {
-  if (!model.chain.rounded) {
-    return [mechanism, tracker = std::move(tracker)](std::span<const double> pose) {
-      return with_fixed(mechanism, tracker->track(pose).displacements);
-    };
-  }
-  return [mechanism, tracker = std::move(tracker), chain = model.chain,
-          points = model.points](std::span<const double> pose) {
-    return chain::settled(chain, points, with_fixed(mechanism, tracker->track(pose).displacements));
-  };
-}
-
-chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<const Tracker> tracker,
-                                    const Mobility& home, std::vector<Vector3> points) {
-  chain::DeformationModel model;
-  const std::vector<std::size_t> drives = shared_drives(mechanism);
-  std::span<const std::size_t> left = drives;
-  for (const Limb& limb : mechanism.limbs) {
-    model.chain.limbs.push_back(chain_limb(limb, mechanism.errors_at_joints, left));
-  }
-  model.chain.pairs = chain::pairs_of(mechanism.limbs.size());
-  model.chain.idle = home.idle;
-  model.chain.meets = home.passive_rank == home.loop_equations;
-  model.terms = mechanism.terms;
-  model.points = std::move(points);
-  model.held_at = mechanism.points;
-  model.chain.rounded = mechanism.precision.rounded();
-  model.joint_displacements = displacements_by(mechanism, std::move(tracker), model);
-  model.platform = chain::PlatformReport{mechanism.tool, model.points.empty() ? mechanism.points : model.points};
-  return model;
-}
-
-/// The largest deformation, over poses of the workspace, that rounded numbers cause without errors.
-double nominal_deformation(const Mechanism& mechanism, const chain::DeformationModel& model, std::size_t response) {
-  const std::vector<double> no_errors(model.terms.size(), 0.0);
-  double largest = 0.0;
-  for (const PoseMobility& pose : workspace_mobility(mechanism)) {
-    if (!pose.reached()) continue;
-    largest = std::max(largest, chain::first_order_trace(model, pose.pose, no_errors).responses[response]);
-  }
-  return largest;
-}
-
-/// A model of limbs between base and platform only, without stiffness.
-class ChainModel final : public TrackedModel {
- public:
-  /// points: of the platform's metric; none: the published weight.
-  ChainModel(const MechanismFile& file, Checked found, std::vector<Vector3> points, chain::Fidelity fidelity)
-      : TrackedModel(file, found),
-        model_(chain_model(mechanism(), tracker(), found.home, std::move(points))),
-        fidelity_(fidelity) {
-    set_responses(chain::responses_of(model_));
-    ModelDescription& description = described();
-    description.separation = chain::separation_description(model_);
-    if (model_.chain.meets) return;
-    description.metric = model_.points.empty() ? "published" : "platform";
-    if (model_.points.empty()) description.tolerance = SolverOptions().tolerance;
-    DeformationMeasure measure = chain::deformation_measure(model_);
-    if (model_.chain.rounded) {
-      measure.rounding =
-          std::max(measure.rounding, kNominalShare * nominal_deformation(mechanism(), model_, measure.response));
-    }
-    description.deformation = measure;
-    description.details = chain::deformation_details(model_.chain);
-  }
-
-  double condition(std::span<const double> pose) const override {
-    const std::vector<double> displacements = model_.joint_displacements(pose);
-    const std::optional<chain::Metric> metric = model_.metric(displacements);
-    return chain::passive_condition(model_.chain, displacements, metric ? &*metric : nullptr);
-  }
-
-  std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
-    return chain::deformation_evaluator(model_, options, fidelity_);
-  }
-
-  std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
-    return description().separation ? chain::calibrated_evaluator(model_, options, fidelity_) : nullptr;
-  }
-
-  std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
-                                  const SolverOptions& options) const override {
-    if (fidelity_ == chain::Fidelity::first_order) return chain::first_order_trace(model_, pose, errors);
-    return chain::deformation_trace(model_, pose, errors, options);
-  }
-
-  lie::Matrix3<double> orientation(std::span<const double> pose) const override {
-    if (pose.empty()) return mechanism().platform.R;
-    return model_.platform_points(model_.joint_displacements(pose))->platform.R;
-  }
-
-  std::optional<Sketch> sketch(std::span<const double> pose) const override {
-    Sketch sketch = sketch_of(mechanism());
-    chain::place(sketch, model_,
-                 pose.empty() ? std::vector(model_.chain.joints(), 0.0) : model_.joint_displacements(pose));
-    return sketch;
-  }
-
-  double rounding(std::size_t response) const override { return chain::effect_rounding(model_, response); }
-
-  std::vector<double> norm_of_details(std::size_t response, std::span<const double> pose) const override {
-    return chain::norm_of_details(model_, response, pose);
-  }
-
-  Separation separation(std::span<const double> pose) const override { return chain::separation(model_, pose); }
-
-  std::vector<PlatformPoint> metric_points() const override {
-    if (model_.chain.meets) return {};
-    std::vector<PlatformPoint> points;
-    for (const Vector3& point : model_.points) points.push_back({point.x(), point.y(), point.z()});
-    return points;
-  }
-
- private:
-  /// Errors change the deformation by rounded numbers by less than this factor.
-  static constexpr double kNominalShare = 2.0;
-
-  chain::DeformationModel model_;
-  chain::Fidelity fidelity_;
-};
-
-/// A file, and its checked mechanism with the default geometry.
+/// A mechanism file, and its checked mechanism with the default geometry.
 struct Read {
   MechanismFile file;
   std::vector<double> defaults;
@@ -162,10 +26,11 @@ struct Read {
   }
 };
 
-/// The basis of the responses: forces by stiffness, or mismatch by the platform's metric or by the published weight.
+/// The choice of the limbs' mechanics: forces by stiffness, mismatch in the platform's metric, or mismatch with the
+/// published weight.
 enum class By { stiffness, platform, published };
 
-/// Throws if a point of the platform gives a response the name of another one.
+/// Throws if a named point of the platform gives a response the name of another one.
 void check_points(const MechanismFile& file, const ModelDescription& model) {
   for (const NamedPoint& named : file.platform.named) {
     for (const std::string_view end : {"_x", "_y", "_z", "_position"}) {
@@ -179,7 +44,7 @@ void check_points(const MechanismFile& file, const ModelDescription& model) {
   }
 }
 
-/// The model with the named points of its platform.
+/// The model extended by the named points of its platform.
 std::unique_ptr<Model> with_points(std::unique_ptr<TrackedModel> model, const Read& read,
                                    std::vector<NamedPlatformPoint> named, chain::Fidelity fidelity) {
   check_points(read.file, model->description());
@@ -192,7 +57,8 @@ std::unique_ptr<Model> with_points(std::unique_ptr<TrackedModel> model, const Re
                               fidelity == chain::Fidelity::first_order);
 }
 
-/// The model for these values of the geometry. points: of the platform's metric; none: the file's own.
+/// Builds the model for these values of the geometry (SI). points: points that define the platform's metric (m); none:
+/// those of the file.
 std::unique_ptr<Model> built(const Read& read, std::span<const double> values, std::size_t fidelity, By by,
                              std::optional<std::vector<Vector3>> points = {}) {
   Checked found = read.with(values);
@@ -202,14 +68,13 @@ std::unique_ptr<Model> built(const Read& read, std::span<const double> values, s
   }
   const auto wanted = static_cast<chain::Fidelity>(fidelity);
   std::vector<NamedPlatformPoint> named = found.mechanism.named;
-  if (found.mechanism.is_branched() || by == By::stiffness) {
+  if (points) found.mechanism.points = *std::move(points);
+  const auto made = [&]() -> std::unique_ptr<TrackedModel> {
+    if (by == By::published) return published_model(read.file, std::move(found), wanted);
     const auto metric = by == By::stiffness ? assembly::Metric::stiffness : assembly::Metric::platform;
-    if (points) found.mechanism.points = *std::move(points);
-    return with_points(branched_model(read.file, std::move(found), metric, wanted), read, std::move(named), wanted);
-  }
-  std::vector<Vector3> own = by == By::platform ? points.value_or(found.mechanism.points) : std::vector<Vector3>();
-  return with_points(std::make_unique<ChainModel>(read.file, std::move(found), std::move(own), wanted), read,
-                     std::move(named), wanted);
+    return balanced_model(read.file, std::move(found), metric, wanted);
+  };
+  return with_points(made(), read, std::move(named), wanted);
 }
 
 CatalogEntry entry_by(const std::shared_ptr<const Read>& read, const std::string& path, By by) {
@@ -231,7 +96,7 @@ CatalogEntry entry_by(const std::shared_ptr<const Read>& read, const std::string
 
 }  // namespace
 
-std::string reference() {
+std::string key_reference() {
   StudyTables tables = mechanism_file_tables();
   std::erase_if(tables, [](const StudyTable& table) { return table.paths.front().starts_with("response"); });
   return "\n# Mechanism files\n\n"
@@ -250,7 +115,7 @@ std::string reference() {
 
 namespace {
 
-/// The same responses for a model with another metric, without those that it cannot form.
+/// The file's own responses for a model with another metric, without the responses that this model cannot form.
 std::vector<OwnResponse> by_names(const std::vector<OwnResponse>& own, const ModelDescription& from,
                                   const ModelDescription& to) {
   const ModelDescription named = described(from, own);
@@ -270,7 +135,8 @@ std::vector<OwnResponse> by_names(const std::vector<OwnResponse>& own, const Mod
   return list;
 }
 
-/// The entry with these responses, by all its metrics; positions are those of `from`.
+/// The catalog entry with these own responses for all its metrics. Positions of responses in `own` are positions in
+/// the model `from`.
 CatalogEntry with_own(CatalogEntry entry, const std::vector<OwnResponse>& own, const ModelDescription& from) {
   if (entry.other_metric != nullptr) {
     entry.other_metric = std::make_shared<const CatalogEntry>(with_own(*entry.other_metric, own, from));
@@ -279,7 +145,7 @@ CatalogEntry with_own(CatalogEntry entry, const std::vector<OwnResponse>& own, c
   return with_responses(std::move(entry), formed);
 }
 
-/// The catalog entry of a file.
+/// The catalog entry of a mechanism file.
 CatalogEntry entry_of(MechanismFile file, const std::string& path, const std::string& text) {
   const std::vector<double> defaults = default_geometry(file);
   Checked found = checked(mechanism(file, defaults), Workspace::in_reach);
@@ -298,11 +164,12 @@ CatalogEntry entry_of(MechanismFile file, const std::string& path, const std::st
   }
   const std::vector<OwnResponse> own = read_own_responses(text, path, other->description);
   if (own.empty()) return *other;
-  static_cast<void>(with_responses(other->build(defaults, 0), own));  // throws if one is relative to no pose of it
+  // Throws for a pose that the model does not have.
+  static_cast<void>(with_responses(other->build(defaults, 0), own));
   return with_own(*other, own, other->description);
 }
 
-/// Adds to the entry, for all its metrics, the function that changes loads.
+/// Adds to the catalog entry the function that changes loads, for all its metrics.
 CatalogEntry with_loads(CatalogEntry entry, const MechanismFile& file, const std::string& path,
                         const std::string& text) {
   entry.with_load = [file, path, text](const StudyValue& value) {

@@ -18,7 +18,7 @@ class Stiffness {
  public:
   explicit Stiffness(const Numbers& numbers) : numbers_(numbers) {}
 
-  /// Sets bearings, links and compliance of a limb.
+  /// Sets bearings, links and compliance of the whole limb.
   void add(const LimbLines& lines, const Transform& turn, const std::vector<assembly::Body>& bodies, Limb& limb) const {
     std::size_t first = 0;
     for (const JointLines& joint : lines.joints) {
@@ -52,7 +52,7 @@ class Stiffness {
   static constexpr std::size_t kAboutZ = 2;
   static constexpr std::size_t kAlongZ = 5;
 
-  /// The value of `actuated` that makes a drive hold this freedom; empty if the file format has none.
+  /// The value of `actuated` with which a drive holds this freedom; empty if the file format has none.
   static std::string drive_along(const JointLines& joint, std::size_t direction) {
     if (joint.kind == JointKind::spherical || direction < kAboutZ) return {};
     if (joint.kind == JointKind::universal) return "1";
@@ -61,7 +61,7 @@ class Stiffness {
     return direction == kAboutZ ? "1" : "2";
   }
 
-  /// Whether a joint moves freely about (0, 1, 2) or along (3, 4, 5) an axis of its first frame.
+  /// Returns true if a joint moves freely about (direction 0, 1, 2) or along (3, 4, 5) an axis of its first frame.
   static bool is_free(const JointLines& joint, std::size_t direction) {
     const bool held = joint.actuated[0];
     switch (joint.kind) {
@@ -83,9 +83,9 @@ class Stiffness {
     throw std::logic_error("unknown kind of joint");
   }
 
-  static constexpr double kSymmetric = 1e-9;  ///< as a share of the largest entry of a block
+  static constexpr double kSymmetric = 1e-9;  ///< largest asymmetry, as a share of the largest entry of a block
 
-  /// The first two entries that differ but should be equal; empty if the matrix is symmetric.
+  /// The first two numbers of the matrix that differ but should be equal, as text; empty if the matrix is symmetric.
   static std::string asymmetry(const assembly::Matrix6& C) {
     for (Eigen::Index row = 0; row < 6; ++row) {
       for (Eigen::Index column = 0; column < row; ++column) {
@@ -134,8 +134,8 @@ class Stiffness {
     known.push_back(is_first ? from : to);
     throw InputError(reference.place,
                      reference.key + " '" + printable(reference.name) +
-                         "' is no joint of this limb, and not the body '" + std::string(known.back()) + "' where it " +
-                         (is_first ? "begins" : "ends"),
+                         "' is not a joint of this limb, and not the body '" + std::string(known.back()) +
+                         "' where it " + (is_first ? "begins" : "ends"),
                      suggestion(reference.name, known));
   }
 
@@ -224,7 +224,8 @@ class Stiffness {
     return section;
   }
 
-  /// Throws if a joint inside a beam is not on the beam's line, because the beam would not stay straight when it moves.
+  /// Throws if the axis of a joint inside a beam is not on the beam's line, because the beam would not stay straight
+  /// when the joint moves.
   void check_between(const LinkLines& link, const assembly::Link& made, const Vector3& along, const Vector3& begin,
                      const Limb& limb) const {
     using At = assembly::LinkEnd::At;

@@ -10,7 +10,7 @@
 namespace poesy::file {
 namespace {
 
-/// Smaller entries of a direction or a position are rounding.
+/// A component of a direction or a position that is smaller than this counts as rounding.
 constexpr double kNothing = 5e-7;
 constexpr double kMillimetres = 1e3;
 
@@ -40,7 +40,7 @@ std::string counted(std::size_t count, std::string_view one, std::string_view mo
   return fmt::format("{} {}", count, count == 1 ? one : more);
 }
 
-/// The difference in mobility between a pose and home; empty if there is none.
+/// The difference in mobility between a pose and home, as text; empty if there is none.
 std::string difference(const Mobility& home, const PoseMobility& at) {
   if (!at.reached()) return "out of reach: " + at.tracked.unreachable;
   const Mobility& found = at.mobility;
@@ -62,7 +62,7 @@ std::string pose_text(std::span<const Coordinate> coordinates, std::span<const d
 
 SketchVector sketched(const Vector3& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
-/// A line for each named drive.
+/// Text with a line for each named drive.
 std::string drive_lines(const Mechanism& mechanism) {
   std::string text;
   const std::vector<const Joint*> joints = moving_joints(mechanism);
@@ -74,7 +74,7 @@ std::string drive_lines(const Mechanism& mechanism) {
   return text;
 }
 
-/// Whether the mechanism has errors of frames `first` to `last` of a limb.
+/// Returns true if the mechanism has errors in frames `first` to `last` of a limb.
 bool has_errors(const Mechanism& mechanism, std::size_t limb, std::size_t first, std::size_t last) {
   const auto is_there = [&](const chain::ErrorTerm& term) {
     return term.limb == limb && term.frame >= first && term.frame <= last;
@@ -83,7 +83,7 @@ bool has_errors(const Mechanism& mechanism, std::size_t limb, std::size_t first,
                              [&](const chain::ErrorTerms& terms) { return std::ranges::any_of(terms, is_there); });
 }
 
-/// A line for each limb, if some limbs begin or end at other bodies.
+/// Text with a line for each limb, if the mechanism is branched; else empty.
 std::string limb_lines(const Mechanism& mechanism) {
   std::string text;
   if (!mechanism.is_branched()) return text;
@@ -96,7 +96,7 @@ std::string limb_lines(const Mechanism& mechanism) {
   return text;
 }
 
-/// "position 0.05 mm to A|B, perpendicularity 0.02 mm to A".
+/// The zones of a feature as text: "position 0.05 mm to A|B, perpendicularity 0.02 mm to A".
 std::string zones_text(const Feature& feature) {
   std::vector<std::string> list;
   for (const std::optional<Zone>& zone : {feature.location, feature.orientation}) {
@@ -108,9 +108,9 @@ std::string zones_text(const Feature& feature) {
   return fmt::format("{}", fmt::join(list, ", "));
 }
 
-/// The points of a feature in its own axes, m.
+/// The outline of a feature as points in its own axes, m.
 std::vector<Vector3> outline_of(const Feature& feature) {
-  constexpr int kCorners = 16;  // of a round face
+  constexpr int kCorners = 16;  // number of corners that show a round face
   const double a = 0.5 * feature.size[0];
   const double b = 0.5 * feature.size[1];
   std::vector<Vector3> outline;
@@ -179,6 +179,7 @@ Sketch sketch_of(const Mechanism& mechanism) {
       j = end;
     }
     sketch.limbs.push_back(std::move(limb));
+    sketch.labels.push_back(mechanism.limbs[i].label);
   }
   for (std::size_t f = 0; f < mechanism.features.size(); ++f) sketch.features.push_back(sketched_feature(mechanism, f));
   if (!mechanism.is_branched()) return sketch;
@@ -308,9 +309,9 @@ std::vector<std::string> mobility_lines(const Mechanism& mechanism, const Mobili
   }
   lines.push_back(
       fmt::format("the same at {} of {} poses tried in the workspace", poses.size() - different, poses.size()));
-  lines.push_back(
-      fmt::format("there, besides its coordinates, the platform moves by up to {} mm and turns by up to {} deg",
-                  number_text(kMillimetres * moved), number_text(turned * 180.0 / std::numbers::pi)));
+  lines.push_back(fmt::format(
+      "there, beside its coordinates, the platform moves by up to {} mm and turns by an angle of up to {} deg",
+      number_text(kMillimetres * moved), number_text(turned * 180.0 / std::numbers::pi)));
   return lines;
 }
 

@@ -1,20 +1,32 @@
 #pragma once
 
+#include <cstddef>
+
+/// The most lanes that a kernel's source may be compiled for: 1 where it computes number by number, as on a GPU.
+#ifndef POESY_MOST_LANES
+#define POESY_MOST_LANES 8
+#endif
+
 namespace poesy::simd {
+
+/// The largest number of lanes of any instruction set. The arrays with one number for each sample are padded to
+/// multiples of it.
+inline constexpr std::size_t kMostLanes = POESY_MOST_LANES;
 
 /// Instruction sets that kernels are compiled for.
 enum class Isa {
   plain,   ///< one double at a time, on every machine
-  avx2,    ///< 4 lanes, with FMA
+  avx2,    ///< 4 lanes, with fused multiply-add
   avx512,  ///< 8 lanes
   neon     ///< 2 lanes
 };
 
-/// The best set that this machine supports, or the one in the environment variable POESY_ISA (plain, avx2, avx512,
-/// neon). Throws InputError if that names another set, or one that this machine does not support.
+/// The best instruction set that this machine supports, or the one named by the environment variable POESY_ISA (plain,
+/// avx2, avx512, neon). Throws InputError if the variable names anything else, or a set that this machine does not
+/// support.
 Isa selected_isa();
 
-/// Calls choose.operator()<isa>() for selected_isa() if this build has kernels for it, else for plain.
+/// Calls choose.operator()<isa>() for selected_isa(). Uses Isa::plain if this build has no kernels for that set.
 template <class Choose>
 auto for_selected_isa(Choose choose) {
   switch (selected_isa()) {

@@ -7,82 +7,92 @@
 #include "models/simd/isa.h"
 #include "models/three_prs/sources.h"
 
-// The kernels, and the plain data that goes into and comes out of them: nothing but pointers and numbers. This header
-// is also read by translation units compiled for one instruction set, which must not share inline functions.
+// The kernels, and the plain data that they read and write: only pointers and numbers. Translation units compiled for
+// one instruction set also include this header. They must not share inline functions.
 
 namespace poesy::three_prs {
 
-/// The largest number of lanes of any instruction set.
-inline constexpr std::size_t kMostLanes = 8;
+using simd::kMostLanes;
 /// Number of samples in a tile, so small that their data stays in the first-level cache.
 inline constexpr std::size_t kTile = 64;
 
-inline constexpr std::size_t kVectorRows = 9;     ///< theta, dr, displacement of the tool tip
-inline constexpr std::size_t kResponseRows = 12;  ///< the vectors and their norms
-inline constexpr std::size_t kDetailRows = 3;     ///< swings
+/// Components of the platform's rotation, of the displacement of P, and of the displacement of the tool tip.
+inline constexpr std::size_t kVectorRows = 9;
+/// The components of kVectorRows, followed by the norms of these three vectors.
+inline constexpr std::size_t kResponseRows = 12;
+inline constexpr std::size_t kDetailRows = 3;  ///< swings of the three rods
 
-/// At most kTile samples, in rows: entry (v, b) is at v * stride + b. Rows can be read and written up to the next
-/// multiple of kMostLanes; entries behind the last sample are overwritten.
+/// At most kTile samples. Each error or response has a row of numbers, one for each sample: number v of sample b is at
+/// v * stride + b. Rows can be read and written up to the next multiple of kMostLanes; the numbers behind the last
+/// sample are overwritten.
 struct Tile {
   std::size_t count;            ///< number of samples
-  const double* values;         ///< [varied x stride]
+  const double* values;         ///< [varied x stride] values of the varied errors, SI
   std::size_t values_stride;    ///< distance between rows of values, in numbers
-  double* responses;            ///< [kResponseRows x stride]
-  double* details;              ///< [kDetailRows x stride], or null
-  std::size_t outcomes_stride;  ///< distance between rows of responses and details, in numbers
-  SolveStatus* status;          ///< [count]
-  std::uint32_t* iterations;    ///< [count]
+  double* responses;            ///< [kResponseRows x stride] responses
+  double* details;              ///< [kDetailRows x stride] swings of the rods (rad), or null if they are not wanted
+  std::size_t outcomes_stride;  ///< distance between rows of responses and of swings, in numbers
+  SolveStatus* status;          ///< [count] status of each sample
+  std::uint32_t* iterations;    ///< [count] iterations of each sample
 };
 
-/// The first-order effects of errors.
+/// The first-order effects of errors on the nine components of kVectorRows (rotation of the platform, displacements of
+/// P and of the tool tip) and on the swings of the three rods.
 struct FirstOrderMap {
-  std::size_t varied;      ///< V
-  const double* effects;   ///< [varied x rows] with kVectorRows, then kDetailRows rows
-  const double* constant;  ///< [rows] effects of the errors that do not vary
+  std::size_t varied;  ///< number of varied errors
+  /// [varied x kMapRows] Effects of each varied error: kVectorRows rows, then kDetailRows rows.
+  const double* effects;
+  const double* constant;  ///< [kMapRows] effects of the errors that do not vary
 };
 inline constexpr std::size_t kMapRows = kVectorRows + kDetailRows;
 
-/// One limb at a nominal pose; matrices by rows.
+/// One limb at a nominal pose, for the closure kernel. Matrices are stored row by row.
 struct ClosureLimb {
-  double cosine;                   ///< of the angle about z from the base frame to the limb's
-  double sine;                     ///< of the same angle
-  double base_R_platform_limb[9];  ///< R R_i
+  double cosine;                   ///< cosine of the angle about z from the base frame to the limb's frame
+  double sine;                     ///< sine of that angle
+  double base_R_platform_limb[9];  ///< rotation R R_i from the limb's frame on the platform (R_i) through the
+                                   ///< platform's frame (R) to the base frame
   double joint[3];                 ///< from P to C_i, base frame
   double q;                        ///< nominal position of the carriage (m)
-  double error[kSources];          ///< constant part of each error, ordered as Source
+  double error[kSources];          ///< constant part of each error, in the order of Source
   int varied_row[kSources];        ///< row of Tile::values that replaces the error; -1 if it is constant
-  bool varies;                     ///< whether any error varies
+  bool varies;                     ///< true if any error of the limb varies
 };
 
-/// The mechanism at a nominal pose. The six equations are those of close_limbs(): three of rods, three of joints.
-/// Lengths in m.
+/// The mechanism at a nominal pose, for the closure kernel. The six equations are those of close_limbs(): three of
+/// rods, then three of joints. Lengths are in m.
 struct ClosurePose {
-  ClosureLimb limb[kLimbs];  ///< the limbs at that pose
-  double a;                  ///< radius of the rails' circle
+  ClosureLimb limb[kLimbs];  ///< the three limbs
+  double a;                  ///< radius of the circle of the rails
   double l;                  ///< length of the rods
   double r[3];               ///< P, base frame
-  double tool[3];            ///< from P to the tip, base frame
-  double start[36];          ///< matrix from the values of the equations without motion to the start [delta; dr]
-  std::size_t row[6];        ///< position of each equation in the elimination, whose columns are [dr; delta]
-  double pivot_sign;         ///< sign of the product of the pivots without errors, as 1.0 or -1.0; 0 at a singular pose
+  double tool[3];            ///< from P to the tool tip, base frame
+  /// Matrix from the values of the equations at zero displacement to the starting point [delta; dr] of the iteration:
+  /// rotation of the platform (rad) and displacement of P (m).
+  double start[36];
+  /// Position of each equation in the elimination; the columns of the Jacobian are [dr; delta].
+  std::size_t row[6];
+  double pivot_sign;  ///< sign of the product of the pivots without errors: 1.0 or -1.0; 0 at a singular pose
 };
 
 /// The stopping rule of the iteration.
 struct ClosureOptions {
-  double tolerance;              ///< on the change of [delta; dr]
-  double rounding;               ///< smaller changes may be rounding
-  std::uint32_t max_iterations;  ///< a sample that needs more is given up
+  /// A solve converges if no component of [delta; dr] (rad, m) changes by more than this.
+  double tolerance;
+  double rounding;               ///< a change below this may be rounding; see rounding_level()
+  std::uint32_t max_iterations;  ///< number of iterations after which a sample is given up
 };
 
-/// Doubles of scratch that close_tile needs with any instruction set.
+/// The number of doubles of scratch memory that close_tile needs with any instruction set.
 inline constexpr std::size_t kClosureScratch = 48 * kTile;
 
-/// The kernels of one instruction set. Each set has its own translation unit: kernels.cpp, compiled for that set.
+/// The kernels of one instruction set. Each set has its own translation unit, kernels.cpp compiled for that set.
 struct Kernels {
-  /// Computes first-order responses, status and iterations, and details if wanted.
+  /// Computes first-order responses, status and iterations, and the swings of the rods if Tile::details is not null.
   void (*map_tile)(const FirstOrderMap& map, const Tile& tile);
-  /// Computes responses, status and iterations by Newton, but no details. Returns the number of samples that it gave up
-  /// because they need close_limbs(); these have no iterations. scratch: [kClosureScratch], aligned to 64 bytes.
+  /// Computes responses, status and iterations by Newton's method, but not the swings of the rods. Returns the number
+  /// of samples that it gave up, which need close_limbs(); their iterations are 0. scratch: [kClosureScratch], aligned
+  /// to 64 bytes.
   std::size_t (*close_tile)(const ClosurePose& pose, const ClosureOptions& options, const Tile& tile, double* scratch);
 };
 

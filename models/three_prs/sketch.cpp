@@ -11,7 +11,7 @@ namespace {
 using Vector3 = lie::Vector3<double>;
 using Matrix3 = lie::Matrix3<double>;
 
-/// The place of a source's errors, in the terms of SketchedError.
+/// The place of an error source, in the terms of SketchedError.
 struct Site {
   std::size_t frame;
   std::size_t after;
@@ -20,13 +20,13 @@ struct Site {
 
 Site site_of(Source source) {
   if (source == Source::q) return {1, 1, 1};
-  if (source < Source::b) return {1, 0, 1};         // a and theta_A
-  if (source < Source::theta_Bp) return {2, 1, 2};  // b and theta_B
-  if (source < Source::c) return {3, 2, 3};         // theta_Bp and l
+  if (source < Source::b) return {1, 0, 1};         // a and theta_A: position and attitude of the rail
+  if (source < Source::theta_Bp) return {2, 1, 2};  // b and theta_B: gap and attitude of the revolute joint
+  if (source < Source::c) return {3, 2, 3};         // theta_Bp and l: attitude of the rod's frame and length of the rod
   return {4, 3, 4};
 }
 
-/// The axis, 0 to 2, from the x, y or z in an error's name; a scalar is along z.
+/// The axis (0 to 2) that an error's axis name x, y or z means. A scalar error acts along z.
 std::size_t axis_of(const Factor& factor) {
   return factor.axis.empty() ? 2 : static_cast<std::size_t>(factor.axis.front() - 'x');
 }
@@ -83,7 +83,8 @@ Sketch sketch(const Geometry& geometry, const Configuration& nominal) {
     const auto column = effects.col(static_cast<Eigen::Index>(f));
     const Vector3 theta = column.segment<3>(kTheta);
     const Vector3 v = Vector3(column.segment<3>(kDr)) - theta.cross(P);
-    SketchedError error{f / kSources, site.frame, axis_of(all[f]), site.after, site.before, {}};
+    SketchedError error{f / kSources, site.frame, axis_of(all[f]), all[f].dimension == Dimension::angle, site.after,
+                        site.before,  {}};
     if (column.allFinite()) error.motions = {{theta.x(), theta.y(), theta.z(), v.x(), v.y(), v.z()}};
     sketch.errors.push_back(std::move(error));
   }

@@ -3,10 +3,15 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "engine/base/contract.h"
+#include "models/assembly/details.h"
+#include "models/assembly/model.h"
+#include "models/assembly/sketch.h"
 #include "models/chain/deformation_model.h"
 #include "models/chain/deformation_trace.h"
+#include "models/chain/metric.h"
 #include "models/chain/passive_condition.h"
 #include "models/chain/sketch.h"
 #include "models/two_upr_rpu/errors.h"
@@ -15,8 +20,8 @@
 namespace poesy::two_upr_rpu {
 namespace {
 
-/// A limb's loop counts as open if its platform pose differs from the wanted one by more than this (rad, and shares of
-/// the chain's reach). Closed loops differ by about 1e-15.
+/// The loop of a limb counts as open if the limb's platform pose differs from the wanted one by more than this.
+/// Rotations are compared in rad, translations as shares of the chain's reach. Closed loops differ by about 1e-15.
 constexpr double kClosure = 1e-9;
 
 using Vector3 = lie::Vector3<double>;
@@ -26,21 +31,44 @@ Pose pose_from(std::span<const double> pose) {
   return {pose[0], pose[1], pose[2]};
 }
 
-/// The chain with the metric of these points, or with the published weight if there are none.
-chain::DeformationModel deformation_model(const Geometry& geometry, std::vector<Vector3> points) {
-  const auto displacements = [geometry](std::span<const double> pose) {
+Pose home(const Geometry& geometry) { return {geometry.z_0, 0.0, 0.0}; }
+
+std::function<std::vector<double>(std::span<const double>)> displacements_by(const Geometry& geometry) {
+  return [geometry](std::span<const double> pose) {
     const auto q = two_upr_rpu::joint_displacements(geometry, pose_from(pose));
     return std::vector<double>(q.begin(), q.end());
   };
+}
+
+chain::DeformationModel deformation_model(const Geometry& geometry) {
   return {.chain = parallel_chain(geometry),
           .terms = error_terms(),
-          .joint_displacements = displacements,
-          .points = std::move(points),
+          .joint_displacements = displacements_by(geometry),
           .platform = {},
           .held_at = platform_joints(geometry)};
 }
 
-ModelDescription describe(const chain::DeformationModel& deformation) {
+/// The mechanism as limbs between base and platform. points: (m, platform frame) define the metric.
+assembly::AssemblyModel assembly_model(const Geometry& geometry, std::vector<Vector3> points) {
+  const chain::ParallelChain chain = parallel_chain(geometry);
+  assembly::AssemblyModel model;
+  model.assembly.bodies.push_back({"base", {}});
+  model.assembly.bodies.push_back({"platform", base_T_platform(home(geometry))});
+  for (const chain::Limb& limb : chain.limbs) {
+    model.ranks.push_back(limb.passive_joints());
+    model.assembly.limbs.push_back({.chain = limb, .label = std::to_string(model.ranks.size())});
+  }
+  model.assembly.points = std::move(points);
+  model.assembly.reach = chain.reach();
+  model.report.motions = false;
+  model.terms = error_terms();
+  model.pairs = chain.pairs;
+  model.joint_displacements = displacements_by(geometry);
+  return model;
+}
+
+/// The parts of the description that do not depend on the metric.
+ModelDescription describe(const chain::ParallelChain& chain) {
   const Geometry published;
   ModelDescription description;
   description.name = "2upr-rpu";
@@ -56,13 +84,8 @@ ModelDescription describe(const chain::DeformationModel& deformation) {
                                   {"gamma", Dimension::angle, "rotation of the platform about its own v axis"}};
   description.factors = factors();
   description.factor_sets = factor_sets();
-  const bool by_platform = !deformation.points.empty();
-  description.metric = by_platform ? "platform" : "published";
-  if (by_platform) description.tolerance = chain::kToleranceByMetric;
-  description.responses = by_platform ? chain::responses_by_metric() : chain::deformation_responses();
-  description.deformation = chain::deformation_measure(deformation);
-  description.details = chain::deformation_details(deformation.chain);
-  description.joints = chain::joint_displacement_names(deformation.chain);
+  description.details = chain::deformation_details(chain.pairs);
+  description.joints = chain::joint_displacement_names(chain);
   description.fidelities = {"exact", "first-order"};
   description.pose_lower = {-0.30, -0.5, -0.6};
   description.pose_upper = {-0.18, 0.5, 0.6};
@@ -72,13 +95,14 @@ ModelDescription describe(const chain::DeformationModel& deformation) {
   return description;
 }
 
-/// Whether two poses are equal up to kClosure.
+/// Returns true if two poses are equal up to kClosure. reach: the length by which translations are divided, m.
 bool are_same(const lie::Transform<double>& a, const lie::Transform<double>& b, double reach) {
   const lie::Screw<double> screw = lie::log(a * b.inverse());
   return screw.head<3>().norm() < kClosure && screw.tail<3>().norm() < kClosure * reach;
 }
 
-/// The joints of the limbs: U, P and R of the first two, R, P and U of the third. U is at the intersection of its axes.
+/// The joints of the limbs: U, P and R for the first two limbs, R, P and U for the third. A U joint is at the
+/// intersection of its axes.
 std::vector<std::vector<SketchedJoint>> joints() {
   const auto joint = [](char type, std::size_t first, std::size_t frame) {
     return SketchedJoint{.name = {},
@@ -94,19 +118,9 @@ std::vector<std::vector<SketchedJoint>> joints() {
   return {upr, upr, {joint('R', 1, 1), joint('P', 2, 2), joint('U', 3, 3)}};
 }
 
-class TwoUprRpu final : public Model {
+/// The poses, geometry and errors of the mechanism, which are the same for all metrics.
+class TwoUprRpu : public Model {
  public:
-  /// points: of the platform's metric; none: the published weight.
-  TwoUprRpu(const Geometry& geometry, std::vector<Vector3> points, chain::Fidelity fidelity)
-      : geometry_(geometry),
-        deformation_(deformation_model(geometry, std::move(points))),
-        description_(describe(deformation_)),
-        fidelity_(fidelity) {
-    if (auto problem = open_loop({geometry.z_0, 0.0, 0.0})) {
-      throw std::invalid_argument("the home configuration does not assemble: " + *problem);
-    }
-  }
-
   const ModelDescription& description() const override { return description_; }
 
   std::optional<std::string> unreachable(std::span<const double> pose) const override {
@@ -118,39 +132,12 @@ class TwoUprRpu final : public Model {
   }
 
   std::vector<double> joint_displacements(std::span<const double> pose) const override {
-    return deformation_.joint_displacements(pose);
+    const auto q = two_upr_rpu::joint_displacements(geometry_, pose_from(pose));
+    return {q.begin(), q.end()};
   }
 
-  double condition(std::span<const double> pose) const override {
-    const std::vector<double> displacements = joint_displacements(pose);
-    const std::optional<chain::Metric> metric = deformation_.metric(displacements);
-    return chain::passive_condition(deformation_.chain, displacements, metric ? &*metric : nullptr);
-  }
-
-  std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
-    return chain::deformation_evaluator(deformation_, options, fidelity_);
-  }
-
-  std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
-                                  const SolverOptions& options) const override {
-    if (fidelity_ == chain::Fidelity::first_order) return chain::first_order_trace(deformation_, pose, errors);
-    return chain::deformation_trace(deformation_, pose, errors, options);
-  }
-
-  double rounding(std::size_t response) const override { return chain::effect_rounding(deformation_, response); }
-
-  std::vector<double> norm_of_details(std::size_t response, std::span<const double> pose) const override {
-    return chain::norm_of_details(deformation_, response, pose);
-  }
-
-  std::vector<PlatformPoint> metric_points() const override {
-    std::vector<PlatformPoint> points;
-    for (const Vector3& point : deformation_.points) points.push_back({point.x(), point.y(), point.z()});
-    return points;
-  }
-
-  /// Lengths are bounded by the smaller of the platform and the base, which every limb joins; the offsets c and d are
-  /// not links and may be 0.
+  /// Lengths are bounded by the smaller of the platform's and the base's size, because every limb joins both. The
+  /// offsets c and d are not links and may be 0.
   ErrorBound error_bound(FactorIndex factor) const override {
     if (description_.factors[factor.value].dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
     if (geometry_.l_A < geometry_.l_B) return {geometry_.l_A, "the platform's size l_A"};
@@ -159,8 +146,7 @@ class TwoUprRpu final : public Model {
 
   std::optional<Sketch> sketch(std::span<const double> pose) const override {
     Sketch sketch{.limbs = joints(), .platform = {}, .tool = {}};
-    chain::place(sketch, deformation_,
-                 pose.empty() ? std::vector(deformation_.chain.joints(), 0.0) : joint_displacements(pose));
+    place(sketch, pose.empty() ? std::vector(description_.joints.size(), 0.0) : joint_displacements(pose));
     return sketch;
   }
 
@@ -170,16 +156,31 @@ class TwoUprRpu final : public Model {
             ") is larger than the base (l_B = " + readable_text({geometry_.l_B, Dimension::length}) + ")"};
   }
 
+ protected:
+  explicit TwoUprRpu(const Geometry& geometry)
+      : geometry_(geometry), chain_(parallel_chain(geometry)), description_(describe(chain_)) {
+    if (auto problem = open_loop(home(geometry))) {
+      throw std::invalid_argument("the home configuration does not assemble: " + *problem);
+    }
+  }
+
+  /// The description, for derived classes that complete it.
+  ModelDescription& described() { return description_; }
+
+  /// Places the joints, the platform and the errors of a sketch for these displacements of the joints (rad, m).
+  virtual void place(Sketch& sketch, const std::vector<double>& displacements) const = 0;
+
  private:
-  /// The limbs do not meet if a leg has no length, or if a coordinate is so large that digits are lost.
+  /// The reason why a limb does not close at a pose, if one does not: a leg has no length, or a coordinate is so large
+  /// that digits are lost.
   std::optional<std::string> open_loop(const Pose& pose) const {
     const auto q = two_upr_rpu::joint_displacements(geometry_, pose);
     const lie::Transform<double> wanted = base_T_platform(pose);
-    for (std::size_t i = 0; i < deformation_.chain.limbs.size(); ++i) {
-      const chain::Limb& limb = deformation_.chain.limbs[i];
+    for (std::size_t i = 0; i < chain_.limbs.size(); ++i) {
+      const chain::Limb& limb = chain_.limbs[i];
       const auto reached = chain::forward_kinematics<double>(limb, limb.home, std::span(q).subspan(4 * i, 4),
                                                              [](std::size_t, const lie::Screw<double>&) {});
-      if (!are_same(reached, wanted, deformation_.chain.reach())) {
+      if (!are_same(reached, wanted, chain_.reach())) {
         return "limb " + std::to_string(i + 1) + " cannot reach the platform there";
       }
     }
@@ -187,8 +188,92 @@ class TwoUprRpu final : public Model {
   }
 
   Geometry geometry_;
-  chain::DeformationModel deformation_;
+  chain::ParallelChain chain_;
   ModelDescription description_;
+};
+
+class AsPublished final : public TwoUprRpu {
+ public:
+  AsPublished(const Geometry& geometry, chain::Fidelity fidelity)
+      : TwoUprRpu(geometry), model_(deformation_model(geometry)), fidelity_(fidelity) {
+    ModelDescription& description = described();
+    description.metric = "published";
+    description.responses = chain::deformation_responses();
+    description.deformation = chain::deformation_measure(model_);
+  }
+
+  double condition(std::span<const double> pose) const override {
+    return chain::passive_condition(model_.chain, joint_displacements(pose));
+  }
+
+  std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
+    return chain::deformation_evaluator(model_, options, fidelity_);
+  }
+
+  std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
+                                  const SolverOptions& options) const override {
+    if (fidelity_ == chain::Fidelity::first_order) return chain::first_order_trace(model_, pose, errors);
+    return chain::deformation_trace(model_, pose, errors, options);
+  }
+
+  double rounding(std::size_t /*response*/) const override { return chain::effect_rounding(model_); }
+
+  std::vector<double> norm_of_details(std::size_t response, std::span<const double> /*pose*/) const override {
+    return chain::norm_of_details(model_, response);
+  }
+
+ private:
+  void place(Sketch& sketch, const std::vector<double>& displacements) const override {
+    chain::place(sketch, model_, displacements);
+  }
+
+  chain::DeformationModel model_;
+  chain::Fidelity fidelity_;
+};
+
+class ByPlatform final : public TwoUprRpu {
+ public:
+  /// points: of the platform (m, platform frame), which define the metric.
+  ByPlatform(const Geometry& geometry, std::vector<Vector3> points, chain::Fidelity fidelity)
+      : TwoUprRpu(geometry), model_(assembly_model(geometry, std::move(points))), fidelity_(fidelity) {
+    ModelDescription& description = described();
+    description.metric = "platform";
+    description.tolerance = chain::kToleranceByMetric;
+    description.responses = assembly::responses_of(model_);
+    description.deformation = DeformationMeasure{0, rounding(0)};
+  }
+
+  double condition(std::span<const double> pose) const override { return assembly::condition(model_, pose); }
+
+  std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
+    return assembly::assembly_evaluator(model_, options, fidelity_);
+  }
+
+  std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
+                                  const SolverOptions& options) const override {
+    return assembly::assembly_trace(model_, pose, errors, options, fidelity_);
+  }
+
+  double rounding(std::size_t response) const override {
+    return assembly::effect_rounding(model_, description().responses[response]);
+  }
+
+  std::vector<double> norm_of_details(std::size_t response, std::span<const double> pose) const override {
+    return assembly::norm_of_details(model_, response, pose);
+  }
+
+  std::vector<PlatformPoint> metric_points() const override {
+    std::vector<PlatformPoint> points;
+    for (const Vector3& point : model_.assembly.points) points.push_back({point.x(), point.y(), point.z()});
+    return points;
+  }
+
+ private:
+  void place(Sketch& sketch, const std::vector<double>& displacements) const override {
+    assembly::place(sketch, model_, displacements);
+  }
+
+  assembly::AssemblyModel model_;
   chain::Fidelity fidelity_;
 };
 
@@ -208,13 +293,12 @@ Geometry checked_geometry(std::span<const double> values) {
 }
 
 std::unique_ptr<Model> build_as_published(std::span<const double> values, std::size_t fidelity) {
-  return std::make_unique<TwoUprRpu>(checked_geometry(values), std::vector<Vector3>(),
-                                     static_cast<chain::Fidelity>(fidelity));
+  return std::make_unique<AsPublished>(checked_geometry(values), static_cast<chain::Fidelity>(fidelity));
 }
 
 std::unique_ptr<Model> build_by_platform(std::span<const double> values, std::size_t fidelity) {
   const Geometry geometry = checked_geometry(values);
-  return std::make_unique<TwoUprRpu>(geometry, platform_joints(geometry), static_cast<chain::Fidelity>(fidelity));
+  return std::make_unique<ByPlatform>(geometry, platform_joints(geometry), static_cast<chain::Fidelity>(fidelity));
 }
 
 std::unique_ptr<Model> build_with_points(std::span<const double> values, std::size_t fidelity,
@@ -225,17 +309,26 @@ std::unique_ptr<Model> build_with_points(std::span<const double> values, std::si
   if (const std::string why = chain::why_no_metric(own, parallel_chain(geometry).reach()); !why.empty()) {
     throw std::invalid_argument(why);
   }
-  return std::make_unique<TwoUprRpu>(geometry, own, static_cast<chain::Fidelity>(fidelity));
+  return std::make_unique<ByPlatform>(geometry, own, static_cast<chain::Fidelity>(fidelity));
+}
+
+/// The catalog entry with the published geometry of a model that `build` makes.
+CatalogEntry entry_of(decltype(CatalogEntry::build) build) {
+  std::vector<double> values;
+  for (const GeometryParameter& parameter : describe(parallel_chain({})).geometry)
+    values.push_back(parameter.published);
+  ModelDescription description = build(values, 0)->description();
+  return {std::move(description), std::move(build)};
 }
 
 }  // namespace
 
 CatalogEntry catalog_entry() {
-  const Geometry published;
-  CatalogEntry by_platform{describe(deformation_model(published, platform_joints(published))), build_by_platform};
+  CatalogEntry by_platform = entry_of(build_by_platform);
   by_platform.build_with_points = build_with_points;
-  return {describe(deformation_model(published, {})), build_as_published,
-          std::make_shared<const CatalogEntry>(std::move(by_platform))};
+  CatalogEntry entry = entry_of(build_as_published);
+  entry.other_metric = std::make_shared<const CatalogEntry>(std::move(by_platform));
+  return entry;
 }
 
 }  // namespace poesy::two_upr_rpu

@@ -52,10 +52,13 @@ TEST(PlainLine, IsNotReadyBeforeTheEnd) {
   EXPECT_TRUE(plain_line(almost).starts_with("100.0 % done"));
 }
 
-TEST(PlainLine, DoesNotKnowTheTimeWithoutARate) {
+TEST(ProgressLines, SayNoRateAndNoTimeUntilThereIsARate) {
   ProgressFacts begun = facts();
   begun.rate = 0.0;
-  EXPECT_TRUE(plain_line(begun).ends_with("time left unknown"));
+  EXPECT_EQ(plain_line(begun), "43.2 % done, 12 not converged (0.0028 %), time left unknown");
+  for (std::size_t width = 20; width <= 120; ++width) {
+    EXPECT_EQ(live_line(begun, width).find("solves/s"), std::string::npos) << width;
+  }
 }
 
 TEST(PlainLine, WritesRatesShort) {

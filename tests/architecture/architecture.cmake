@@ -27,6 +27,11 @@ add_test(NAME architecture.ctest_lines
          COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/ctest_lines.py ${PROJECT_BINARY_DIR})
 add_test(NAME architecture.ctest_lines_finds_violations
          COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/ctest_lines_test.py)
+add_test(NAME architecture.kernels_for_gpu
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/kernels_for_gpu.py ${PROJECT_SOURCE_DIR})
+add_test(NAME architecture.kernels_for_gpu_finds_violations
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/kernels_for_gpu_test.py)
+set_tests_properties(architecture.kernels_for_gpu PROPERTIES SKIP_RETURN_CODE 77)
 set_tests_properties(architecture.include_table architecture.include_table_finds_violations
                      architecture.kind_names architecture.kind_names_finds_violations
                      architecture.ctest_lines architecture.ctest_lines_finds_violations
@@ -34,6 +39,7 @@ set_tests_properties(architecture.include_table architecture.include_table_finds
                      architecture.readme_commands architecture.readme_commands_finds_violations
                      architecture.page_links architecture.page_links_finds_violations
                      architecture.type_names architecture.type_names_finds_violations
+                     architecture.kernels_for_gpu architecture.kernels_for_gpu_finds_violations
                      PROPERTIES LABELS architecture)
 
 # Every public header compiles alone, with nothing but what the exported targets offer: one source a header.

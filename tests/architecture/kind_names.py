@@ -19,10 +19,12 @@ REGISTRY = "engine/kinds/registry.cpp"
 # Sobol' points are a sequence of engine/random.
 # Tolerances at least cost are a part of engine/stats.
 # A table of any study says how machines are calibrated; results of `poesy calibrate` are of a kind that no study has.
+# `poesy sweep` is a command, whose results are of a kind that no study has.
 WORDS_OF_OTHERS = {
     "evaluate": ("engine/app/evaluate.cpp",),
     "sobol": ("engine/random/low_discrepancy.cpp",),
     "allocation": (),
+    "sweep": ("engine/app/sweep.cpp",),
     "calibration": ("engine/study/calibration_keys.cpp", "engine/study/study_file.cpp"),
 }
 TEXT = re.compile(r'"(?:\\.|[^"\\])*"')

@@ -11,10 +11,14 @@ foreach(script IN ITEMS d3 plot)
 endforeach()
 
 # Reports in a browser: a page with figures of every type, and reports of studies. Screenshots stay in the build tree.
-foreach(pages IN ITEMS Figures Reports)
+foreach(pages IN ITEMS Figures Reports WhatIf)
   string(TOLOWER ${pages} name)
+  set(script report_test.py)
+  if(pages STREQUAL WhatIf)
+    set(script what_if_test.py)
+  endif()
   add_test(NAME browser.${name}
-           COMMAND ${POESY_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/browser/report_test.py ${pages})
+           COMMAND ${POESY_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/browser/${script} ${pages})
   set_tests_properties(browser.${name} PROPERTIES LABELS browser TIMEOUT 1200 SKIP_RETURN_CODE 77
                        FIXTURES_REQUIRED web_packages)
   set_property(TEST browser.${name} PROPERTY ENVIRONMENT POESY_PROGRAM=$<TARGET_FILE:poesy>

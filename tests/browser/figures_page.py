@@ -125,6 +125,24 @@ def add_scatter(page):
         "units": UNITS, "names": errors(71)}
 
 
+def add_what_if(page):
+    """Machines with one limit on the norm of two components, and one on a value from -1 to 2; costs fall as 1 / size."""
+    machines, poses, errors_count = 300, 2, 4
+    deviations = page.random.normal(0, 1, (errors_count, machines))
+    slopes = page.random.normal(0, 0.25, (poses, 3, errors_count))
+    factors = [0.5, 0.75, 1, 1.5, 2]
+    names = ["delta_1_4_y", "hole with quite a long name of its own, rail_lean_x_1", "epsilon_2_1_z"]
+    page.figures["what-if"] = {
+        "type": "whatIf", "factors": factors, "machines": machines, "poses": poses,
+        "sliders": [{"name": name, "sizes": [{"label": "position", "value": 0.1 * (k + 1), "unit": "mm"}] * (k + 1),
+                     "errors": slots, "costs": [1 / factor for factor in factors]}
+                    for k, (name, slots) in enumerate(zip(names, [[0], [1, 3], [2]]))],
+        "limits": [{"components": 2, "low": -1, "high": 1}, {"components": 1, "low": -1, "high": None}],
+        "components": page.array(np.einsum("kce,eb->kcb", slopes, deviations)), "deviations": page.array(deviations),
+        "slopes": page.array(slopes), "yield": [0.8, 0.78, 0.82], "quantile": 1.96, "linearError": 0.02, "missed": 0.001,
+        "otherCosts": 10}
+
+
 def add_extremes(page):
     page.figures["nothing"] = {
         "type": "lines", "x": {"label": "time", "unit": "s", "value": page.array([0, 1]), "log": False}, "most": 4,
@@ -156,6 +174,7 @@ def add_all(page):
     add_fields(page, "flat", 2, 12, 1)
     add_lines(page)
     add_scatter(page)
+    add_what_if(page)
 
 
 def figures_page(web, add=add_all):

@@ -9,6 +9,7 @@ endif()
 poesy_test(monte_carlo_sort_test LABELS regression SOURCES engine/kinds/monte_carlo/sort_test.cpp
            LINKS poesy_kinds poesy_models)
 poesy_test(machines_test LABELS unit SOURCES engine/kinds/monte_carlo/machines_test.cpp engine/kinds/monte_carlo/stated_errors_test.cpp LINKS poesy_kinds Boost::headers)
+poesy_test(sweep_settings_test LABELS unit SOURCES engine/kinds/sweep/settings_test.cpp LINKS poesy_kinds)
 poesy_test(part_groups_test LABELS unit SOURCES engine/kinds/monte_carlo/part_groups_test.cpp LINKS poesy_kinds)
 poesy_test(part_sums_statistical_test LABELS statistical
            SOURCES engine/kinds/monte_carlo/part_sums_statistical_test.cpp LINKS poesy_kinds Boost::headers)
@@ -32,6 +33,8 @@ poesy_test(tolerance_search_test LABELS statistical
            SOURCES engine/kinds/allocation/near_limit_test.cpp engine/kinds/allocation/search_stages_test.cpp
                    engine/kinds/allocation/search_test.cpp engine/kinds/allocation/variations_test.cpp
            LINKS poesy_kinds)
+poesy_test(calibrated_allocation_test LABELS unit DATA SOURCES engine/kinds/allocation/calibrated_test.cpp
+           LINKS poesy_kinds poesy_models)
 poesy_test(zone_parts_test LABELS unit DATA SOURCES engine/kinds/allocation/zones_test.cpp
            LINKS poesy_kinds poesy_models nlohmann_json::nlohmann_json)
 poesy_test(sobol_test LABELS unit SOURCES engine/kinds/sobol/groups_test.cpp engine/kinds/sobol/constant_test.cpp

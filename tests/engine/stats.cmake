@@ -6,7 +6,7 @@ poesy_test(stats_test LABELS unit
                    engine/stats/machines_test.cpp engine/stats/error_scores_test.cpp engine/stats/yield_gradient_test.cpp
                    engine/stats/main_effects_test.cpp engine/stats/first_order_test.cpp engine/stats/squared_differences_test.cpp
                    engine/stats/linear_fit_test.cpp engine/stats/linear_limits_test.cpp engine/stats/mean_square_shares_test.cpp
-                   engine/stats/mapped_gradient_test.cpp
+                   engine/stats/mapped_gradient_test.cpp engine/stats/told_together_test.cpp
            LINKS poesy_stats poesy_random Boost::headers)
 poesy_test(stats_property_test LABELS property
            SOURCES engine/stats/moments_property_test.cpp engine/stats/quantile_sketch_property_test.cpp

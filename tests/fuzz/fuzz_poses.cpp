@@ -1,8 +1,9 @@
-// A table of poses, and of points over time, for every mechanism.
+// A table of poses, of points over time, and of what was measured of a machine, for every mechanism.
 #include <algorithm>
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "engine/study/machine_file.h"
 #include "engine/study/table_file.h"
 #include "models/registry.h"
 #include "tests/fuzz/target.h"
@@ -28,6 +29,19 @@ void check(const TimedPoints& points, const ModelDescription& model) {
   fuzz::expect(std::ranges::is_sorted(points.time, std::less_equal<>()), "times ascend");
 }
 
+void check(const MachineFile& file, const ModelDescription& model) {
+  check(file.poses, model);
+  const std::size_t rows = file.poses.points.size();
+  fuzz::expect(!file.values.empty() && file.names.size() == rows, "something was measured, and rows have names");
+  for (const MachineValue& value : file.values) {
+    fuzz::expect(value.row < rows && value.other < rows, "values belong to rows");
+    fuzz::expect(std::isfinite(value.value), "values are finite");
+    fuzz::expect(!value.sd || (std::isfinite(*value.sd) && *value.sd >= 0.0), "standard deviations are not below zero");
+    const bool is_distance = value.column == MachineColumn::distance;
+    fuzz::expect(!is_distance || (value.value > 0.0 && value.row != value.other), "a distance is between two rows");
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -36,6 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const ModelDescription& model = entry.description;
     fuzz::accepted<InputError>([&] { check(read_poses(file.path(), model), model); });
     fuzz::accepted<InputError>([&] { check(read_trajectory(file.path(), model), model); });
+    fuzz::accepted<InputError>([&] { check(read_machine_file(file.path(), model), model); });
   }
   return 0;
 }

@@ -49,6 +49,9 @@ add_test(NAME interop.reading_guide COMMAND ${POESY_PYTHON} -B ${scripts}/readin
 set_tests_properties(interop.reading_guide PROPERTIES LABELS interop TIMEOUT 300)
 poesy_interop_test(python_values ${POESY_PYTHON} ${scripts}/check_values.py ${examples}/sensitivity.h5
                    ${examples}/evaluate.h5 ${examples}/paired.h5)
+# engine/docs/result-datasets.md is what the results say of themselves.
+poesy_interop_test(dataset_page ${POESY_PYTHON} -B ${scripts}/dataset_page.py
+                   ${PROJECT_SOURCE_DIR}/engine/docs/result-datasets.md ${examples} $<TARGET_FILE:poesy>)
 # The tests of allocation compare with costs that scipy found. Where there is a scipy it finds some of them again.
 add_test(NAME interop.allocation_costs COMMAND ${POESY_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/engine/optimise/reference_costs.py
                                                check ${CMAKE_CURRENT_SOURCE_DIR}/data/allocation_costs.csv)

@@ -23,5 +23,5 @@ set_source_files_properties(models/simd/math_test.cpp PROPERTIES COMPILE_OPTIONS
 
 poesy_test(assembly_test LABELS property SOURCES models/assembly_test.cpp LINKS poesy_models DATA)
 poesy_test(kernel_test LABELS property SOURCES models/chain/block_lanes_test.cpp models/chain/block_solver_test.cpp
-           models/chain/metric_test.cpp models/chain/platform_motion_test.cpp
+           models/chain/platform_motion_test.cpp
            LINKS poesy_models)

@@ -1,6 +1,6 @@
 poesy_test(lie_test LABELS property SOURCES models/lie/so3_test.cpp models/lie/se3_test.cpp LINKS poesy_models)
 poesy_test(chain_test LABELS property SOURCES models/chain/limb_test.cpp models/chain/deformation_solver_test.cpp models/chain/first_order_test.cpp
-           models/chain/passive_condition_test.cpp models/chain/separation_test.cpp
+           models/chain/metric_test.cpp models/chain/passive_condition_test.cpp models/chain/separation_test.cpp
            LINKS poesy_models)
 poesy_test(trace_test LABELS unit SOURCES models/trace_test.cpp LINKS poesy_models)
 poesy_test(sketch_test LABELS property SOURCES models/sketch_test.cpp LINKS poesy_models DATA)
@@ -36,7 +36,8 @@ poesy_test(assembly_properties_test LABELS property
                    models/assembly/calibration_test.cpp
                    models/assembly/closed_forms_test.cpp models/assembly/cuts_test.cpp
                    models/assembly/loops_test.cpp
-                   models/assembly/properties_test.cpp models/assembly/starts_test.cpp
+                   models/assembly/properties_test.cpp models/assembly/separation_test.cpp models/assembly/starts_test.cpp
+                   models/assembly/unbranched_test.cpp
            LINKS poesy_models DATA)
 poesy_test(platform_points_test LABELS unit SOURCES models/file/platform_points_test.cpp LINKS poesy_models DATA)
 poesy_test(branched_file_test LABELS property SOURCES models/file/branched_file_test.cpp LINKS poesy_models DATA)

@@ -10,19 +10,11 @@ from pathlib import Path
 import h5py
 import numpy
 
-from poesy_program import GALLERY, PROGRAM, main
+from poesy_program import EACH_A_PART, GALLERY, PROGRAM, main
 from resumption import ALLOCATION, ResumptionTest
 
 CHOICES = Path(__file__).resolve().parents[1] / "fuzz/corpus/study/allocation"
-PARTS = """\
-[[analysis.parts]]
-factors = "linear"
-each = true
-cost = { law = "reciprocal", b = 1, unit = "mm" }
-[[analysis.parts]]
-factors = "angular"
-each = true
-cost = { law = "reciprocal", b = 1, unit = "deg" }
+PARTS = EACH_A_PART + """\
 [run]
 seed = 5
 """
@@ -279,7 +271,7 @@ class Allocation(ResumptionTest):
             self.assertEqual(done.returncode, 2)
             self.assertIn(words, done.stderr.decode())
         self.run_study(SMALL)  # over its own files
-        self.assertEqual(self.succeeds("template", "2upr-rpu", "allocation").count("[[analysis.parts]]"), 2)
+        self.assertEqual(self.succeeds("template", "2upr-rpu", "allocation").count("each = true"), 2)
 
     def test_other_samples_are_another_study(self):
         self.write("study.toml", SMALL)

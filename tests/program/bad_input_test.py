@@ -81,6 +81,16 @@ BAD_STUDIES = {
     "case_beyond_the_platform": (
         changed('kind = "sensitivity"', 'kind = "evaluate"\ncases = [{ errors = { delta_1_1_y = "70 mm" } }]')
         .replace('background', '# background'), "12:", ["delta_1_1_y", "70 mm"]),
+    "range_in_degrees": (
+        changed("count = 6", 'count = 6\nworkspace = { z = ["-0.3 m", "-180 mm"], beta = ["20 deg", "-20 deg"], '
+                'gamma = ["-5 deg", "5 deg"] }'),
+        "7:49", ["beta runs from 20 deg to -20 deg"]),
+    "open_quote": (changed('model = "2upr-rpu"', 'model = "2upr-rpu'), "4:9",
+                   ['begins here with " is not closed on its line', 'write " at its end']),
+    "open_long_quote": (changed('model = "2upr-rpu"', 'model = """2upr-rpu'), "4:9",
+                        ['begins here with """ is not closed up to the end of the file']),
+    "missing_quote": (changed('sigma = "1 mm" }\n', 'sigma = 1 mm" }\n'), "8:", ["a quote too many, or one is missing"]),
+    "folder_as_poses": (changed("count = 6", 'select = "file"\nfile = "."'), "7:8", ["poses.file names '.', which is a folder"]),
     "not_toml": (changed("[poses]", "[poses"), "5:", []),
     "rubbish": (bytes(range(256)) * 20, "", []),
     "empty": ("", "1:1", ["empty"]),
@@ -186,6 +196,26 @@ analysis = { factors = "rod-length", samples = 10 }
         done = self.poesy("evaluate", "s.toml", "--poses", "p.csv", "--errors", "e.csv", "--quiet")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn(b"warning: p.csv:2: pose 1 is singular", done.stderr)
+
+    def test_files_that_a_study_names(self):
+        measured = 'override = { delta_1_1_y = { distribution = "measured", file = "absent.csv", column = "a" } }\n[analysis]'
+        machines = changed('kind = "sensitivity"', 'kind = "monte-carlo"\ndraws = "per machine"').replace("background", "# ")
+        studies = {
+            "mechanism.file": (changed('model = "2upr-rpu"', 'file = "absent.csv"'), "4:8"),
+            "poses.file": (changed("count = 6", 'select = "file"\nfile = "absent.csv"'), "7:8"),
+            "poses.trajectory.file": (HELIX.replace('curve = "helix"', 'file = "absent.csv"'), "7:23"),
+            "errors.override.delta_1_1_y.file": (changed("[analysis]", measured), "10:64"),
+            "errors.machines": (machines.replace("[errors]", '[errors]\nmachines = "absent.csv"'), "8:12"),
+        }
+        (self.folder / "below").mkdir()
+        for name, (study, place) in studies.items():
+            with self.subTest(name):
+                self.write("below/study.toml", study)
+                done = self.poesy("check", "below/study.toml")
+                self.assertEqual(done.returncode, 3, done.stderr)
+                self.assertEqual(done.stderr.decode(),
+                                 f"poesy: below/study.toml:{place}: {name} names 'below/absent.csv', which cannot be read: No such "
+                                 "file or directory; check the path, which is relative to the study's folder, and its permissions\n")
 
     def test_files_that_cannot_be_read(self):
         for arguments in [["run", "absent.toml"], ["show", "absent.h5"], ["verify", "absent.h5"]]:

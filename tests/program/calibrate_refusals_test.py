@@ -39,7 +39,7 @@ TABLES = [
     (titled("deviation_z [um]", "deviation_z [deg]"), "1:27", "a unit of angle, but this column is a length"),
     (titled("deviation_z [um]", "deviation_z [furlong]"), "1:27", "an unknown unit"),
     (titled("deviation_z [um]", "deviation_position [um]"), "1:27", "'position' has no sign"),
-    (titled("deviation_z [um]", "x [mm]"), "1:27", "column 'x' stands here a second time"),
+    (titled("deviation_z [um]", "x [mm]"), "1:27", "column 'x' appears a second time"),
     (titled("x [mm],", ""), "1:1", "column 'x' is missing"),
     (titled("x [mm]", "q_1_2 [mm]"), "1:1", "the columns mix coordinates"),
     (titled("name", "part"), "1:1", "column 'part' is unknown"),
@@ -63,7 +63,7 @@ TABLES = [
     (replaced(1, "p1,60,0,0,-528.5,p1,119.92"), "3:18", "'to' names its own row"),
     (replaced(1, "p1,60,0,0,-528.5,,119.92"), "3:1", "a distance is measured, but 'to' names no row"),
     (replaced(1, "p1,60,0,0,-528.5,p4,-119.92"), "3:1", "a distance is not above zero"),
-    (replaced(2, "p1,-60,0,0,-12.9,,"), "4:1", "name 'p1' stands here a second time, after line 3"),
+    (replaced(2, "p1,-60,0,0,-12.9,,"), "4:1", "name 'p1' appears a second time, after line 3"),
     (replaced(2, "'p',-60,0,0,-12.9,,"), "4:1", "has a quote"),
     (replaced(2, "=p,-60,0,0,-12.9,,"), "4:1", "begins with '='"),
     (replaced(2, "p4,-60,0,0,-12.9,"), "4:1", "this line should have 7 cells, but has 6"),
@@ -86,7 +86,7 @@ NOISE = 'noise = { z = "10 um", distance = "50 um" }'
 KEYS = [
     (FIT, "", "6:", "key 'fit' is missing"),
     (FIT, "fit = []", "7:7", "is empty"),
-    (FIT, 'fit = ["zero_7"]', "7:8", "'zero_7', which is no error, set or combination"),
+    (FIT, 'fit = ["zero_7"]', "7:8", "'zero_7', which is not an error, set or combination"),
     (FIT, 'fit = ["radius"]\ncombinations.radius = { foot_x_9 = 1 }', "8:", "unknown error 'foot_x_9'"),
     (FIT, 'fit = ["radius"]\ncombinations.radius = { }', "8:", "names no error"),
     (FIT, 'fit = ["radius"]\ncombinations.radius = { foot_x_1 = 0 }', "8:", "is 0"),
@@ -154,7 +154,39 @@ class Refusals(ProgramTest):
         self.write("study.toml", STUDY.replace("[analysis]", "poses = { count = 3 }\n[analysis]"))
         done = self.poesy("run", "study.toml", "--quiet")
         self.assertEqual(done.returncode, 2)
-        self.assertIn("calibrates no machine; 'poesy calibrate' takes it as it is", done.stderr.decode())
+        self.assertIn("analysis.calibration does not say what is measured", done.stderr.decode())
+
+    def test_units_of_a_combination(self):
+        shutil.copyfile(FILES / "delta-six-rods.toml", self.folder / "delta-six-rods.toml")
+        study = STUDY.replace("delta-puu", "delta-six-rods").replace(
+            FIT, 'fit = ["tower"]\ncombinations.tower = { tower_y_1 = 1, lean_x_1 = 1 }')
+        said = self.refused(study, "x,y,z,rx,ry,rz,deviation_z\n0,0,0,0,0,0,1e-5\n")
+        self.assertIn("tower_y_1 is a length and lean_x_1 an angle; give the factor a unit", said)
+        self.assertIn("study.toml:8:", said)
+
+    def test_more_motors_than_coordinates(self):
+        mechanism = (FILES.parent / "mechanisms" / "lift-table.toml").read_text()
+        self.write("lift-table.toml", mechanism)
+        said = self.refused(STUDY.replace("delta-puu", "lift-table").replace(FIT, 'fit = ["leg_1"]'),
+                            "z [mm],rx,ry,deviation_z [um]\n600,0,0,1\n650,0,0,2\n")
+        self.assertIn("4 motors and 3 commanded coordinates; say which drives move together (motors), or what else is "
+                      "commanded (coordinates)", said)
+
+    def test_lengths_and_angles_without_noise(self):
+        study = STUDY.replace(NOISE, "noise = { z = 0, theta_x = 0 }")
+        said = self.refused(study, "x,y,z,deviation_z [um],deviation_theta_x [mrad]\n" + "".join(
+            f"{place},0,0,{place},0\n" for place in (0, 0.01, 0.02)))
+        self.assertIn("noise is 0 and values have lengths and angles: say how they are weighed; state the noise of each", said)
+
+    def test_errors_that_change_from_move_to_move(self):
+        study = STUDY.replace("errors.linear", 'errors.override.zero_1 = { draws = "per pose" }\nerrors.linear')
+        self.assertIn("'zero_1', which changes from move to move", self.refused(study, table()))
+
+    def test_kinds_of_wrong_tables(self):
+        """Each with its line and column."""
+        places = [place for _, place, _ in TABLES if place]
+        self.assertGreaterEqual(len(places), 40)
+        self.assertTrue(all(place.split(":")[1] for place in places))
 
     def test_calibrated_beside_it(self):
         said = self.refused(STUDY.replace("[analysis]\n", "[analysis]\ncalibrated = true\n"), table())

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 from pathlib import Path
 
@@ -172,6 +173,51 @@ class Calibrate(ProgramTest):
         self.compare(names, found, expected, **tolerances)
         return expected, found, done
 
+    def test_seven_numbers_of_a_printer_of_six_rods(self):
+        """13 heights, each known to 2 um, are fitted as well as they are known; and it is said that the length of the rods
+        is hardly told from the end stops."""
+        moved = {}  # of each error by the fitted numbers, in the base's axes
+        for k, (end_stop, turn) in enumerate(zip("abc", ("turn_a", "turn_b", None))):
+            c, s = np.cos(2 * np.pi * k / 3), np.sin(2 * np.pi * k / 3)
+            for rod in (k + 1, k + 4):
+                moved[f"endstop_{rod}"] = {f"stop_{end_stop}": 1.0}
+                moved[f"rod_{rod}"] = {"rods": 1.0}
+                moved[f"tower_x_{rod}"] = {"radius": c, turn: -s}
+                moved[f"tower_y_{rod}"] = {"radius": s, turn: c}
+        true = dict(stop_a=3e-4, stop_b=-2e-4, stop_c=1e-4, radius=4e-4, turn_a=0.65e-3, turn_b=-0.44e-3, rods=5e-4)
+        errors = {error: sum(factor * true.get(name, 0.0) for name, factor in by.items()) for error, by in moved.items()}
+        factors = [f'combinations.{name} = {{ '
+                   + ", ".join(f"{error} = {by[name]!r}" for error, by in moved.items() if abs(by.get(name, 0.0)) > 1e-12)
+                   + " }" for name in true]
+        head = 'format = "poesy-study"\nversion = 1\nmechanism.file = "delta-six-rods.toml"\n'
+        self.write("evaluate.toml", head)
+        self.write("study.toml", head + "[analysis.calibration]\nfit = [" + ", ".join(f'"{name}"' for name in true)
+                   + ']\nnoise = { z = "2 um" }\n' + "\n".join(factors) + "\n")
+        around = np.radians(np.arange(6) * 60.0)
+        places = np.array([(0.0, 0.0), *((0.06 * np.cos(a), 0.06 * np.sin(a)) for a in around),
+                           *((0.03 * np.cos(a), 0.03 * np.sin(a)) for a in around + np.pi / 6)]).tolist()
+        self.write("p.csv", "x,y,z,rx,ry,rz\n" + "".join(f"{x!r},{y!r},0,0,0,0\n" for x, y in places))
+        self.write("e.csv", ",".join(errors) + "\n" + ",".join(map(repr, map(float, errors.values()))) + "\n")
+        self.succeeds("evaluate", "evaluate.toml", "--poses", "p.csv", "--errors", "e.csv", "-o", "e.h5", "--quiet")
+        with h5py.File(self.folder / "e.h5") as file:
+            z = file["evaluate/z"][:].ravel() + np.random.default_rng(1).normal(0.0, 2e-6, len(places))
+        self.write("m.csv", "x,y,z,rx,ry,rz,deviation_z\n" + "".join(
+            f"{x!r},{y!r},0,0,0,0,{height!r}\n" for (x, y), height in zip(places, z.tolist())))
+        done = self.poesy("calibrate", "study.toml", "--measured", "m.csv", "-o", "r.h5")
+        self.assertEqual(done.returncode, 0, done.stderr.decode())
+        with h5py.File(self.folder / "r.h5") as file:
+            names = [name.decode() for name in file["fitted"][:]]
+            found = file["calibration"]
+            # Of 7 normal numbers and chi-square of 6 degrees of freedom: alpha = 1e-6 each.
+            off = (found["estimate"][:] - [true[name] for name in names]) / found["sd"][:]
+            self.assertLess(np.abs(off).max(), 4.9)
+            self.assertEqual(found["dof"][()], 6)
+            self.assertLess(found["chi_square"][()], 38.3)
+            self.assertGreater(found["condition"][()], 500)
+            self.assertGreater(found["sd"][names.index("rods")], 1e-4)
+        shown = " ".join(done.stdout.decode().split())
+        self.assertIn("stop_a, stop_b, stop_c, radius, rods move together", shown)
+
     def test_hexapod(self):
         least_squares = [('prior = "tolerances"', 'prior = "none"')]
         for case, change, of_estimate in (("known frame, tolerances as prior", [], 7e-12),
@@ -199,7 +245,10 @@ class Calibrate(ProgramTest):
                 self.assertEqual(file["calibration/file_text"][()].decode(), (FILES / "delta-heights.csv").read_text())
         self.assertEqual(*hashes)
         self.succeeds("verify", "a.h5")
-        self.succeeds("show", "a.h5")
+        shown = self.succeeds("show", "a.h5")
+        solves = int(re.search(r"\n([\d ]+) solves in", shown)[1].replace(" ", ""))
+        self.assertGreater(solves, 7 * 1000)  # of the limits alone: 1000 machines at 7 poses
+        self.assertNotIn("converge", shown)
         shown = json.loads(self.poesy("show", "a.h5", "--json").stdout)
         self.assertIn("fitted", json.dumps(shown))
         self.succeeds("report", "a.h5", "-o", "a.html")
@@ -207,6 +256,77 @@ class Calibrate(ProgramTest):
         for table, lines in (("estimates", 8), ("residuals", 16), ("correlation", 8), ("left", 8), ("next", 6),
                              ("controller", 5)):
             self.assertEqual(len((self.folder / "tables" / f"{table}.csv").read_text().splitlines()), lines, table)
+
+    def said_of(self, changes=(), measured="delta-heights.csv", code=0):
+        """What is said on stderr of the printer, and its code."""
+        text = (self.folder / "delta-measured.toml").read_text()
+        for old, new in changes:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        self.write("study.toml", text)
+        done = self.poesy("calibrate", "study.toml", "--measured", measured)
+        self.assertEqual(done.returncode, code, done.stderr.decode())
+        return done.stderr.decode()
+
+    def test_contradictions_are_said(self):
+        """Residuals that the noise does not explain, of which none is an outlier; then errors larger than they should be."""
+        noise = 'noise = { z = "10 um", distance = "50 um" }'
+        said = self.said_of([(noise, 'noise = { z = "6.25 um", distance = "31.25 um" }')])
+        self.assertRegex(said, r"residual 1\.33 of the noise, p = 0\.0009: the fitted errors do not explain the "
+                               r"measurements; intervals are too narrow")
+        said = self.said_of([("next       = 5", 'prior = "tolerances"\nnext = 0'), ('sigma = "0.3 mm"', 'sigma = "0.12 mm"')])
+        self.assertRegex(said, r"estimates are far outside their tolerances \(S = 52\.8 of 15\): are these the sigmas\?")
+        self.assertEqual(self.said_of(), "")
+
+    def test_a_fit_that_ends_nowhere(self):
+        """Heights that change their sign from place to place, up to 30 mm: the result is kept, and is not to be used."""
+        header, *rows = (self.folder / "delta-heights.csv").read_text().splitlines()
+        changed = [row.split(",") for row in rows]
+        for at, row in enumerate(changed):
+            row[4] = row[4] and repr(60.0 * float(row[4]) * (-1) ** at)
+        self.write("far.csv", "\n".join([header, *(",".join(row) for row in changed)]) + "\n")
+        done = self.poesy("calibrate", "delta-measured.toml", "--measured", "far.csv", "-o", "far.h5")
+        self.assertEqual(done.returncode, 5, done.stderr.decode())
+        self.assertIn("far.csv: the fit did not converge, so nothing of it is to be typed in; look at the units",
+                      done.stderr.decode())
+        self.succeeds("verify", "far.h5")
+
+    def test_a_machine_that_is_not_solved(self):
+        """Micrometres that are read as metres: the column is doubted, and no estimate is found."""
+        text = (self.folder / "delta-heights.csv").read_text()
+        self.write("bare.csv", text.replace("deviation_z [um]", "deviation_z"))
+        said = self.said_of(measured="bare.csv", code=5)
+        self.assertIn("bare.csv: deviation_z has no unit, so its numbers are in m: one is -240", said)
+        self.assertIn("name their unit in the first line, e.g. 'deviation_z [mm]'", said)
+        self.assertIn("look at the units of its columns", said)
+
+    def test_numbers_without_a_unit_are_doubted(self):
+        header, *rows = (self.folder / "delta-heights.csv").read_text().splitlines()
+        for old, new, doubt in (("distance [mm]", "distance", "distance has no unit, so its numbers are in m: one is 119"),
+                                ("deviation_z [um]", "actual_z", "actual_z has no unit"),
+                                ("to,", "sd_z,", "sd_z has no unit")):
+            with self.subTest(old):
+                changed = rows
+                if old == "to,":
+                    changed = [",".join([*row.split(",")[:5], "10"]) for row in rows]
+                    header_now = "name,x [mm],y [mm],z [mm],deviation_z [um],sd_z"
+                else:
+                    header_now = header.replace(old, new)
+                self.write("bare.csv", "\n".join([header_now, *changed]) + "\n")
+                self.write("study.toml", (self.folder / "delta-measured.toml").read_text())
+                done = self.poesy("calibrate", "study.toml", "--measured", "bare.csv")
+                self.assertIn("bare.csv: " + doubt, done.stderr.decode())
+
+    def test_over_constrained_limbs_are_named(self):
+        shutil.copyfile(DATA / "mechanisms" / "upr2-rpu.toml", self.folder / "upr2-rpu.toml")
+        self.write("study.toml", 'format = "poesy-study"\nversion = 1\nmechanism.file = "upr2-rpu.toml"\n'
+                                 'solver.metric = "platform"\n[analysis.calibration]\nfit = ["delta_1_0_z", "delta_2_0_z"]\n'
+                                 'noise = { x = "5 um", y = "5 um", z = "5 um" }\n')
+        self.write("m.csv", "z [mm],beta [deg],gamma [deg],deviation_x [um],deviation_y [um],deviation_z [um]\n"
+                            "-220,0,0,3,-2,10\n-220,10,0,1,2,12\n-250,0,-10,0,1,8\n")
+        done = self.poesy("calibrate", "study.toml", "--measured", "m.csv")
+        self.assertEqual(done.returncode, 0, done.stderr.decode())
+        self.assertIn("limbs over-constrain each other", done.stderr.decode())
 
     def test_present_corrections(self):
         """A controller that already corrects the estimates measures nothing but noise, and the totals stay what they are."""

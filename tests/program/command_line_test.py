@@ -83,8 +83,8 @@ class CommandLine(ProgramTest):
 
     def test_arguments(self):
         self.refuses("show", "poesy show needs RESULT.h5; write poesy show RESULT.h5 ... [options], see poesy show --help")
-        self.refuses("evaluate s.toml --errors e.csv", "poesy evaluate needs --poses P.csv; write poesy evaluate STUDY.toml "
-                     "--poses P.csv --errors E.csv [options], see poesy evaluate --help")
+        self.refuses("evaluate s.toml --poses p.csv", "poesy evaluate needs --errors E.csv; write poesy evaluate STUDY.toml "
+                     "--errors E.csv [options], see poesy evaluate --help")
         self.refuses("check a.toml b.toml", "'b.toml' is one too many; write poesy check STUDY.toml [options], see poesy check --help")
         self.refuses("template", "MODEL is required; see poesy template --help")
         self.refuses("template --reference 3-prs", "MODEL and --reference do not go together; leave one out, "

@@ -48,7 +48,7 @@ KINDS = {
     "sensitivity": 'kind = "sensitivity"\nsamples = 100\n',
     "sobol": 'kind = "sobol"\nsamples = 256\nsecond_order = true\n',
     "shapley": 'kind = "sobol"\nsamples = 256\nshapley = true\n',
-    "monte-carlo": 'kind = "monte-carlo"\nsamples = 500\n',
+    "monte-carlo": 'kind = "monte-carlo"\ndraws = "per pose"\nsamples = 500\n',
     "machines": 'kind = "monte-carlo"\nsamples = 500\ndraws = "per machine"\n'
                 'limits = { gap = "0.001 mm", position = "0.1 mm" }\n',
 }

@@ -78,7 +78,7 @@ analysis = {{ kind = "coupling", linear = ["0.1 mm", "0.3 mm", "0.5 mm"], limbs 
         zeroed = '[[response]]\nname = "rise"\nsum = { nozzle_z = 1 }\nrelative_to = { x = 0, y = 0, z = "200 mm" }\n'
         errors = 'factors = ["rail_*", "rod_?", "batch", "sag_?"]\n'
         for analysis in ('kind = "sensitivity"\nsamples = 1200\n', 'kind = "sobol"\nsamples = 256\n',
-                         'kind = "monte-carlo"\nsamples = 1200\nlimits = { rise = "0.2 mm" }\n'):
+                         'kind = "monte-carlo"\ndraws = "per pose"\nsamples = 1200\nlimits = { rise = "0.2 mm" }\n'):
             study = DESIGNED_HEAD + zeroed + "[analysis]\n" + analysis + errors
             self.assertEqual(len({self.content_hash(study, "--threads", n) for n in (1, 2, 5)}), 1, analysis)
 

@@ -56,9 +56,9 @@ class Drawing(ProgramTest):
         shutil.copy(MECHANISM, self.folder / "delta.toml")
         self.write("poses.csv", POSES)
 
-    def result(self, name, analysis, fidelity="first-order", arguments=()):
+    def result(self, name, analysis, fidelity="first-order", arguments=(), shape='"normal", sigmas = 3'):
         has_features = "features = [" in (self.folder / "delta.toml").read_text()
-        zones = 'errors.zones = { distribution = "normal", sigmas = 3 }' if has_features else ""
+        zones = f"errors.zones = {{ distribution = {shape} }}" if has_features else ""
         self.write(f"{name}.toml", STUDY.format(analysis=analysis, fidelity=fidelity, zones=zones))
         self.succeeds("run", f"{name}.toml", "-o", f"{name}.h5", "--quiet", *arguments)
         return h5py.File(self.folder / f"{name}.h5")
@@ -70,7 +70,7 @@ class Drawing(ProgramTest):
     def test_scatter(self):
         """The root mean square of the tool's displacement is that of all zones, to first order."""
         samples = 40000
-        with self.result("mc", f'kind = "monte-carlo"\nsamples = {samples}') as file:
+        with self.result("mc", f'kind = "monte-carlo"\ndraws = "per pose"\nsamples = {samples}') as file:
             names = [name.decode() for name in file["response"][:]]
             rms = file["monte_carlo/rms"][names.index("tip_position")]
             sigma = dict(zip((name.decode() for name in file["factors/name"][:]), file["factors/sigma"][:]))
@@ -114,6 +114,66 @@ class Drawing(ProgramTest):
             self.succeeds("run", "one.toml", "--shard", shard, "-o", f"part{shard[0]}.h5", "--quiet")
         self.succeeds("merge", "part1.h5", "part2.h5", "-o", "merged.h5")
         self.assertEqual(len({self.content_hash(f"{name}.h5") for name in ("one", "two", "merged")}), 1)
+
+    # Standard deviations of uniform features over those of normals with three sigmas: a location alone, or a lean alone,
+    # 1.5; a distance or a lift alone, root of 3. Features with both zones are not among them.
+    UNIFORM = {"face": 3**0.5, "zero": 3**0.5, "cross_b": 1.5, "rod": 3**0.5, "rod_bore": 1.5, "cross_c": 1.5, "hinge_c": 1.5}
+    SHAPED = 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = {samples}\nfactors = [{factors}]\nlimits = {{ tip_position = "0.12 mm" }}'
+
+    def test_uniform(self):
+        """Mean squares of uniform features are those of normals times closed ratios, and draws have them."""
+        samples = 40000
+        factors = ", ".join(f'"{feature}_*"' for feature in self.UNIFORM if feature not in ("rod", "zero"))
+        analysis = self.SHAPED.format(samples=samples, factors=factors + ', "rod_?", "zero_?"')
+        with self.result("uniform", analysis, shape='"uniform"') as file:
+            tip = [name.decode() for name in file["response"][:]].index("tip_position")
+            found, drawn = file["drawing/rms"][tip], file["monte_carlo/rms"][tip]
+            worst = file["drawing/rms_worst_division"][tip]
+            self.assertEqual(set(file["drawing/sigmas"][:]), {0.0})
+            self.assertTrue(np.isnan(file["monte_carlo/S1"][tip, 0]))
+        expected = [np.sqrt(sum((ratio * pose["zones"][f"{feature}_{limb}"]["rms_tip"]) ** 2
+                                for feature, ratio in self.UNIFORM.items() for limb in (1, 2, 3))) for pose in EXPECTED["poses"]]
+        np.testing.assert_allclose(found, expected, rtol=1e-9)
+        np.testing.assert_array_equal(worst, found)
+        # Squares of uniform errors scatter less than those of normals; alpha = 1e-6.
+        self.assertLess(np.abs(drawn / expected - 1.0).max(), 5.0 * np.sqrt(2.0 / samples) / 2.0)
+        self.assertIn("groups that hold whole features", " ".join(self.succeeds("show", "uniform.h5").split()))
+
+    def test_inspected_parts_are_in_their_zones(self):
+        """So no machine exceeds the worst case of the zones, which is first-order as the solves are, and many normal ones do."""
+        samples = 4000
+        analysis = self.SHAPED.format(samples=samples, factors='"rail_*"')
+        beyond = {}
+        for name, shape in (("normal", '"normal", sigmas = 1.5'), ("inspected", '"inspected", sigmas = 1.5'), ("uniform", '"uniform"')):
+            with self.result(name, analysis, shape=shape) as file:
+                tip = [one.decode() for one in file["response"][:]].index("tip_z")
+                worst = file["drawing/worst_case"][tip]
+                low, high = file["monte_carlo/min"][tip], file["monte_carlo/max"][tip]
+                beyond[name] = (np.maximum(-low, high) > worst * (1.0 + 1e-9)).any()
+        self.assertEqual(beyond, {"normal": True, "inspected": False, "uniform": False})
+
+    def test_division_of_shapes(self):
+        """Threads, shards and a stop change no bit, and a sample is replayed alone."""
+        analysis = self.SHAPED.format(samples=2000, factors='"*"')
+        for shape in ('"uniform"', '"inspected", sigmas = 1.5'):
+            self.result("one", analysis, arguments=["--threads", "1"], shape=shape).close()
+            self.result("two", analysis, arguments=["--threads", "2"], shape=shape).close()
+            for shard in ("1/2", "2/2"):
+                self.succeeds("run", "one.toml", "--shard", shard, "-o", f"part{shard[0]}.h5", "--quiet")
+            self.succeeds("merge", "part1.h5", "part2.h5", "-o", "merged.h5")
+            self.assertEqual(len({self.content_hash(f"{name}.h5") for name in ("one", "two", "merged")}), 1)
+            for part in (self.folder / "part1.h5", self.folder / "part2.h5", self.folder / "merged.h5"):
+                part.unlink()
+
+    def test_groups_of_whole_features(self):
+        """Indices of Sobol' are of features as a whole: of independent ones they add up to one, to first order."""
+        groups = 'groups = { rail = ["rail_*"], hinges = ["hinge_*"], rods = ["rod_*"] }'
+        analysis = f'kind = "sobol"\nsamples = 4096\n{groups}'
+        with self.result("sobol", analysis, shape='"inspected", sigmas = 2') as file:
+            tip = [name.decode() for name in file["response"][:]].index("tip_z")
+            low, high = (file[f"sobol/aggregated/S1_ci_{end}"][tip] for end in ("low", "high"))
+            self.assertLess(low.sum(), 1.0)
+            self.assertGreater(high.sum(), 1.0)
 
     def test_published_pocket(self):
         """How many parts are too wide for the pocket, wherever it holds them: at the top or at the bottom of their faces."""
@@ -260,6 +320,34 @@ bounds = ["0.002 mm", "0.2 mm"]
         self.assertIn("<span>\u2316</span><span>\u23000.05</span><span>A</span><span>B</span></span>", page)
         self.assertIn("<span>\u2225</span><span>0.01</span><span>A</span></span>", page)  # a face
 
+    def test_measured_parts(self):
+        """A feature whose errors are measured has the effect of its parts, not of its zone; the worst case is of the zones."""
+        analysis = 'kind = "sensitivity"\nsamples = 200'
+        with self.result("zones", analysis) as file:
+            before = {name: file[f"drawing/{name}"][:] for name in ("effect", "worst_case")}
+            features = [name.decode() for name in file["feature"][:]]
+            sigma = dict(zip((name.decode() for name in file["factors/name"][:]), file["factors/sigma"][:]))
+            response = [name.decode() for name in file["response"][:]].index("tip_position")
+        times = 2.5  # what the parts scatter more than their zone says
+        offsets = np.linspace(-1, 1, 21)
+        parts = times * sigma["rod_2"] * offsets / np.std(offsets, ddof=1) + 3e-6
+        self.write("parts.csv", "rod [m]\n" + "".join(f"{value!r}\n" for value in map(float, parts)))
+        study = (self.folder / "zones.toml").read_text()
+        override = '[errors.override]\nrod_2 = { distribution = "measured", file = "parts.csv", column = "rod" }\n'
+        self.write("study.toml", study.replace("[analysis]", override + "[analysis]"))
+        self.succeeds("run", "study.toml", "-o", "study.h5", "--quiet")
+        with h5py.File(self.folder / "study.h5") as file:
+            after = {name: file[f"drawing/{name}"][:] for name in before}
+        ratio = after["effect"][response] / before["effect"][response]
+        expected = np.where(np.array(features) == "rod_2", times, 1.0)
+        np.testing.assert_allclose(ratio, expected, rtol=1e-6)
+        np.testing.assert_array_equal(after["worst_case"], before["worst_case"])
+        table = next(one for one in json.loads(self.succeeds("show", "study.h5", "--json"))["tables"] if one["name"] == "features")
+        shown = {row["feature"]: row["location"] for row in table["rows"]}
+        self.assertEqual(shown["rod_2"], "measured, instead of +-0.02")
+        self.assertEqual([name for name, text in shown.items() if "measured" in text], ["rod_2"])
+        self.assertIn("the effect is that of the standard deviation of the measured parts", " ".join(table["notes"]))
+
     def test_rounded(self):
         """Tolerances in steps that a workshop has: the certificate is of these."""
         for name, round_to in (("r10", '"R10"'), ("steps", '"0.0005 mm"')):
@@ -310,8 +398,11 @@ bounds = ["0.002 mm", "0.2 mm"]
         self.assertIn("# " + hint, self.succeeds("check", "study.toml"))
 
     def test_named(self):
-        """`models` says in words what the errors of a feature are."""
+        """`models` says in words what the errors of a feature are, and where its axes point."""
         text = self.succeeds("models", "delta.toml")
+        self.assertRegex(text, r"face of limb 1 lifts towards x: [^\n]* down by as much\n")  # its x is the base's
+        self.assertRegex(text, r"face of limb 2 lifts towards x: [^\n]*, where x is \(-0.5, 0.866025, 0\) at home\n")
+        self.assertRegex(text, r"face of limb 3 lifts towards x: [^\n]*, where x is \(-0.5, -0.866025, 0\) at home\n")
         self.assertIn("leans to x: its far end against its near end, 500 mm apart", text)
 
 

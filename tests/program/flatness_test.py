@@ -174,7 +174,7 @@ class Flatness(ProgramTest):
         self.succeeds("show", "out.h5")
 
     def test_draws_per_pose_between_two_ends(self):
-        study = STUDY.replace('draws = "per machine"\n', "").replace("[analysis]\n", '[analysis]\njudge = "share"\nshare = 0.9\n')
+        study = STUDY.replace("per machine", "per pose").replace("[analysis]\n", '[analysis]\njudge = "share"\nshare = 0.9\n')
         z = bed(np.random.default_rng(6).normal(0.0, SIGMA, (MACHINES, 6)))
         share = ((z >= -8e-5) & (z <= 1.2e-4)).mean(axis=0)
         self.assertGreater(share.min(), 0.9)

@@ -45,7 +45,7 @@ class Pictures(HTMLParser):
 
     def __init__(self, text):
         super().__init__()
-        self.poses, self.data, self.inside = [], "", None
+        self.poses, self.data, self.inside, self.middle = [], "", None, None
         self.feed(text)
         self.figure = json.loads(self.data)["figures"]["robot"]
 
@@ -54,6 +54,8 @@ class Pictures(HTMLParser):
         kinds = (given.get("class") or "").split()
         if "robot-pose" in kinds:
             self.poses.append({"title": "", "joints": [], "links": []})
+        elif tag == "svg" and self.poses and self.middle is None:
+            self.middle = [float(number) / 2 for number in given["viewbox"].split()[2:]]
         elif "joint" in kinds or "link" in kinds:
             self.poses[-1]["joints" if "joint" in kinds else "links"].append(given)
         self.inside = "title" if "plot-title" in kinds else "data" if given.get("id") == "report-data" else None
@@ -148,7 +150,7 @@ class FramesTest(ProgramTest):
         text = self.succeeds(*command, "text")
         self.assertIn("Joints and frames without errors", text)
         self.assertEqual(text.count("U joint 1"), 3 * 2 * 3)
-        self.assertIn("'xml' is no form of a table", self.poesy(*command, "xml").stderr.decode())
+        self.assertIn("'xml' is not a form of a table", self.poesy(*command, "xml").stderr.decode())
         self.assertEqual(self.poesy(*command, "csv", "--errors", "poses.csv").returncode, 2)
 
     def check_report(self, study, home, coordinates):
@@ -180,18 +182,19 @@ class FramesTest(ProgramTest):
                 if min(np.linalg.norm(point - wanted) for point in others) > 20.0:
                     self.near(points(joint["data-p"])[0], wanted, DRAWN)
                     apart += 1
-                self.check_place(pictures.figure, joint)
+                self.check_place(pictures, joint)
         self.assertGreater(apart, 3)
         return pictures
 
-    def check_place(self, figure, joint):
+    def check_place(self, pictures, joint):
+        figure, (x, y) = pictures.figure, pictures.middle
         at = points(joint["data-p"])[0] - figure["centre"]
         if figure["down"]:
             at[1:] *= -1
         yaw, pitch = np.radians(figure["yaw"]), np.radians(figure["pitch"])
         deep = at[0] * np.sin(yaw) + at[1] * np.cos(yaw)
-        wanted = (230 + figure["scale"] * (at[0] * np.cos(yaw) - at[1] * np.sin(yaw)),
-                  170 - figure["scale"] * (at[2] * np.cos(pitch) + deep * np.sin(pitch)))
+        wanted = (x + figure["scale"] * (at[0] * np.cos(yaw) - at[1] * np.sin(yaw)),
+                  y - figure["scale"] * (at[2] * np.cos(pitch) + deep * np.sin(pitch)))
         found = [float(number) for number in re.findall(r"-?[\d.]+", joint["transform"])]
         self.near(found, wanted, PIXEL)
 

@@ -145,7 +145,7 @@ class GrowingErrors(ProgramTest):
         self.linear_delta()
         effects = 5e-4 * self.scatter()
         samples = 20000
-        with self.run_study(f'kind = "monte-carlo"\nsamples = {samples}', "mc.h5") as file:
+        with self.run_study(f'kind = "monte-carlo"\ndraws = "per pose"\nsamples = {samples}', "mc.h5") as file:
             names = [name.decode() for name in file["response"][:]]
             found = np.stack([file["monte_carlo/rms"][names.index(axis)] for axis in "xyz"], -1)
             unit = file["factors/unit"][0].decode()
@@ -174,7 +174,7 @@ class GrowingErrors(ProgramTest):
         # The first-order map is off by 0.3 % of z at these poses. 4.5 standard errors: alpha = 7e-6.
         self.assertLess(abs(certified - own), 4.5 * np.sqrt(own * (1.0 - own) * (1.0 / count + 1.0 / len(draws))) + 1e-4)
         self.assertGreater(own, 0.985)
-        held = 'kind = "monte-carlo"\nsamples = 100\nfactors = ["scale_1"]\nbackground = { factors = ["scale_2", "scale_3"], relative = "0.1 %" }'
+        held = 'kind = "monte-carlo"\ndraws = "per pose"\nsamples = 100\nfactors = ["scale_1"]\nbackground = { factors = ["scale_2", "scale_3"], relative = "0.1 %" }'
         with self.run_study(held, "held.h5") as file:
             names = [name.decode() for name in file["response"][:]]
             mean = file["monte_carlo/mean"][names.index("z")]
@@ -223,6 +223,17 @@ class GrowingErrors(ProgramTest):
         way = Linear(0.16, 0.3).ways(self.poses[0], 0.2)[0]
         self.write("machine.toml", text + plain)
         np.testing.assert_allclose(found, self.displacements(["twist", "yaw"], (2e-3 * way, 1e-3 * way)), atol=1e-14)
+
+    def test_kinds_that_set_sizes_by_dimension(self):
+        """They have a size for lengths and one for angles, and none for a number: refused, not left out."""
+        text = (GALLERY / "tripteron" / "tripteron.toml").read_text()
+        self.write("machine.toml", text + SCALE.format(limb='"each"', more="").replace('"q"', '"rail"'))
+        head = 'format = "poesy-study"\nversion = 1\nmechanism.file = "machine.toml"\nposes.count = 2\n[analysis]\n'
+        self.write("study.toml", head + 'kind = "identification"\nfactors = ["scale_1"]\n')
+        self.refuses("study.toml", "study.toml:7:11: analysis.factors has 'scale_1', which is a number, but groups have no size for it; name errors that are lengths or angles")
+        sources = '[[analysis.sources]]\nname = "{}"\nfactors = ["{}"]\n'
+        self.write("study.toml", head + 'kind = "coupling"\n' + sources.format("rail", "delta_1_1_x") + sources.format("scale", "scale_1"))
+        self.refuses("study.toml", "'scale_1', which is a number, but a coupling study has no size for it; name errors that are lengths or angles")
 
     def test_words(self):
         self.linear_delta('from = "-20 mm"')

@@ -55,7 +55,7 @@ class LeadingResponse(ProgramTest):
         """Of several limits the one that is missed most often, also where the mechanism does not put it first."""
         limits = 'limits = { x = "0.2 mm", tip_z = "0.03 mm", rotation = "0.2 deg" }'
         per_machine = self.run_study("machines", f'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 400\n{limits}')
-        per_pose = self.run_study("draws", f'kind = "monte-carlo"\nsamples = 400\njudge = "share"\nshare = 0.9\n{limits}')
+        per_pose = self.run_study("draws", f'kind = "monte-carlo"\ndraws = "per pose"\nsamples = 400\njudge = "share"\nshare = 0.9\n{limits}')
         evaluated = self.run_study(
             "cases", f'kind = "evaluate"\n{limits}\n[[analysis.cases]]\nerrors = {{ linear = "0.01 mm" }}')
         order = ["tip_z", "x", "rotation"]

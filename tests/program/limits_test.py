@@ -6,7 +6,7 @@ import json
 import h5py
 from poesy_program import STUDY, ProgramTest, main
 
-MONTE_CARLO = STUDY.replace('"sensitivity"', '"monte-carlo"')
+MONTE_CARLO = STUDY.replace('"sensitivity"', '"monte-carlo"\ndraws = "per pose"')
 RESPONSE = "linear_deformation"
 
 
@@ -60,6 +60,32 @@ class Limits(ProgramTest):
         for words in ("study.toml", RESPONSE, "above its limit"):
             self.assertIn(words, done.stderr.decode())
         return found
+
+    def test_digits(self):
+        """Estimates are shown with four digits; JSON and CSV have all of them."""
+        self.run_with(1.0, code=0)
+        tables = json.loads(self.succeeds("show", "study.h5", "--json"))["tables"]
+        checked = 0
+        for table in tables:
+            if table["name"] not in ("limits", "overall", "poses"):
+                continue
+            for shown, row in zip(table["shown"], table["rows"]):
+                for text, column in zip(shown, table["columns"]):
+                    value = row[column["name"]]
+                    if isinstance(value, float) and not column["unit"] == "%" and column["name"] != "limit":
+                        self.assertEqual(text, f"{value:.4g}")
+                        checked += text != repr(value)
+        self.assertGreater(checked, 20)
+        overall = next(table for table in tables if table["name"] == "overall")
+        self.succeeds("export", "study.h5", "-d", "tables")
+        with h5py.File(self.folder / "study.h5") as file:
+            row = list(file["responses/name"].asstr()).index(RESPONSE)
+            mean = file["monte_carlo/overall_mean"][row]
+        shown = next(one["mean"] for one in overall["rows"] if one["response"] == RESPONSE)
+        self.assertAlmostEqual(shown, 1e3 * mean, delta=1e-14 * shown)
+        with open(self.folder / "tables/overall.csv", newline="") as file:
+            exported = next(one for one in csv.DictReader(file) if one["response"] == RESPONSE)
+        self.assertEqual(float(exported["mean"]), mean)
 
     def test_root_mean_square(self):
         found = self.check_both_sides("")

@@ -205,7 +205,7 @@ errors.angular = {{ distribution = "normal", sigma = "0.02 deg" }}
 
     def test_the_load_is_part_of_the_result(self):
         """Resolved studies say it, and a sample is replayed under it."""
-        self.study(FULL, f'kind = "monte-carlo"\nfactors = {ERRORS}\nsamples = 20', "exact")
+        self.study(FULL, f'kind = "monte-carlo"\ndraws = "per pose"\nfactors = {ERRORS}\nsamples = 20', "exact")
         told = self.succeeds("check", "study.toml")
         self.assertRegex(told, r'\[mechanism\.load\]\n(.*\n)?gravity = \[.*-9\.81 m/s\^2"?\]')
         self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet")

@@ -36,7 +36,7 @@ STUDIES = {
     + 'worst_case = "sum"\n',
     "worst cases": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=600, kind="coupling") + SIZES,
     "monte-carlo": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=25000, kind="monte-carlo")
-    + 'factors = "all"\nsamples = 2\n',
+    + 'draws = "per pose"\nfactors = "all"\nsamples = 2\n',
     "machines": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=1000, kind="monte-carlo")
     + 'draws = "per machine"\nfactors = "all"\nsamples = 8000\nlimits.position = "0.1 mm"\n',
 }
@@ -55,7 +55,7 @@ SMALL = {
     "allocation of two parts": SMALL_ALLOCATION.format(factors='["a_x_1", "q_1"]'),
     "allocation of more parts": SMALL_ALLOCATION.format(factors='"rod-length"'),
     "monte-carlo": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=100, kind="monte-carlo")
-    + 'factors = ["a_x_1"]\nsamples = 100\n',
+    + 'draws = "per pose"\nfactors = ["a_x_1"]\nsamples = 100\n',
     "sensitivity": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=5, kind="sensitivity")
     + 'factors = ["a_x_1"]\nsamples = 100\n',
 }

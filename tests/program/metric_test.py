@@ -8,7 +8,7 @@ import os
 import h5py
 import numpy as np
 
-from poesy_program import STUDY, ProgramTest, main
+from poesy_program import GALLERY, STUDY, ProgramTest, main
 
 COORDINATES = ["z", "beta", "gamma"]
 RESPONSES = ["gap", "angular_deformation", "linear_deformation"]
@@ -38,7 +38,7 @@ seed = {seed}
 
 
 SENSITIVITY = 'kind = "sensitivity"\nfactors = "deforming"\nsamples = {}'
-MONTE_CARLO = 'kind = "monte-carlo"\nfactors = "{}"\nsamples = {}'
+MONTE_CARLO = 'kind = "monte-carlo"\ndraws = "per pose"\nfactors = "{}"\nsamples = {}'
 BACKGROUND = 'background = { factors = "benign", linear = "1 mm", angular = "1 deg" }'
 
 
@@ -65,10 +65,12 @@ class Metric(ProgramTest):
                 group = result["evaluate"]
                 for m, case in enumerate(cases):
                     self.assertLess(group["status"][m, 0], 2)
+                    # The cases compare limbs in pairs, which is the same to first order.
                     for name in RESPONSES:
-                        self.assertAlmostEqual(group[name][m, 0], case[name], delta=1e-11)
+                        self.assertAlmostEqual(group[name][m, 0], case[name], delta=1e-5 * case[name])
+                    largest = np.max(np.abs(case["delta_mu"]))
                     for pair, name in enumerate(("delta_mu_21", "delta_mu_32", "delta_mu_13")):
-                        np.testing.assert_allclose(group[name][m, 0], case["delta_mu"][pair], rtol=0, atol=1e-11)
+                        np.testing.assert_allclose(group[name][m, 0], case["delta_mu"][pair], rtol=0, atol=1e-5 * largest)
 
     def test_indices_hold_at_any_size(self):
         # The background stays: what it multiplies is an error of the product's size.
@@ -94,26 +96,25 @@ class Metric(ProgramTest):
         with self.result("published_design", study(SENSITIVITY.format(1000), 1, 158, BACKGROUND)) as file:
             missed = np.sum(file["solver/not_converged"][:])
             self.assertLessEqual(missed, 158 * 25 * 1000 / 100_000)
-        for method in ("newton", "gauss-newton"):
-            with self.result(f"all_{method}", study(MONTE_CARLO.format("all", 1000), 1, 60, solver=f'method = "{method}"')) as file:
-                self.assertLessEqual(np.sum(file["solver/not_converged"][:]), 60 * 1000 / 10_000)
+        with self.result("all", study(MONTE_CARLO.format("all", 1000), 1, 60)) as file:
+            self.assertLessEqual(np.sum(file["solver/not_converged"][:]), 60 * 1000 / 10_000)
 
-    def test_newton_solves_what_gauss_newton_solves(self):
-        # Also near singular poses and with large errors, where Newton's step is often not safe.
+    def test_large_errors_near_singular_poses(self):
+        # What cannot be assembled does not depend on the metric, and the method makes no difference by the platform's.
         wide = 'workspace = { z = ["-300 mm", "-60 mm"], beta = ["-1.2 rad", "1.2 rad"], gamma = ["-1.4 rad", "1.4 rad"] }'
         text = study(SENSITIVITY.format(40), 3, 20, BACKGROUND.replace('"1 ', '"3 ')).replace("count = 20", f"count = 20\n{wide}")
         ends = {}
-        for method, solver in (("newton", "[run]"), ("gauss_newton", 'method = "gauss-newton"\nmax_iterations = 500\n[run]')):
-            with self.result(method, text.replace("[run]", solver)) as file:
-                names = [name.decode() for name in file["status"][:]]
-                ends[method] = dict(zip(names, file["solver/solves_by_status"][:].astype(int).sum(axis=(1, 2))))
-        newton, gauss_newton = ends["newton"], ends["gauss_newton"]
-        self.assertGreater(gauss_newton["iteration_cap"], 20)
-        self.assertLess(newton["iteration_cap"], 0.5 * gauss_newton["iteration_cap"])
-        # Close to the border a method may end beside it.
-        impossible = gauss_newton["not_assembled"]
+        for name, solver in (("platform", ""), ("gauss_newton", 'method = "gauss-newton"\n'), ("published", "")):
+            changed = text.replace("[run]", solver + "[run]").replace('"platform"', '"published"' if name == "published" else '"platform"')
+            with self.result(name, changed) as file:
+                names = [status.decode() for status in file["status"][:]]
+                ends[name] = dict(zip(names, file["solver/solves_by_status"][:].astype(int).sum(axis=(1, 2))))
+        self.assertEqual(ends["platform"], ends["gauss_newton"])
+        self.assertLess(ends["platform"]["iteration_cap"], 10)  # of 20 000
+        # Close to the border a solve may end beside it.
+        impossible = ends["published"]["not_assembled"]
         self.assertGreater(impossible, 100)
-        self.assertLess(abs(newton["not_assembled"] - impossible), 0.1 * impossible)
+        self.assertLess(abs(ends["platform"]["not_assembled"] - impossible), 0.1 * impossible)
 
     def test_first_order_is_the_limit_of_small_errors(self):
         for size, most in ((0.001, 1e-4), (1, 0.2)):
@@ -152,15 +153,26 @@ class Metric(ProgramTest):
             self.assertIn(f"{what}.h5: is of another study", done.stderr.decode())
 
     def test_a_sample_is_replayed_by_its_metric(self):
-        text = study(SENSITIVITY.format(2), 1, 3, BACKGROUND).replace("[run]", 'method = "gauss-newton"\nmax_iterations = 3\n[run]')
+        text = study(SENSITIVITY.format(2), 1, 3, BACKGROUND).replace("[run]", 'max_iterations = 3\n[run]')
         with self.result("few", text) as file:
             self.assertGreater(np.sum(file["solver/not_converged"][:]), 0)
         shown = self.succeeds("show", "few.h5")
         command = next(line for line in shown.splitlines() if line.startswith("replay it: ")).split(maxsplit=4)[4]
         printed = self.succeeds("replay", *command.split())
-        self.assertIn("Gauss-Newton by the platform's metric", printed)
+        self.assertIn("Newton on the equilibrium of the bodies", printed)
         self.assertIn("status: the same", printed)
         self.assertIn("gap", printed)
+
+    def test_a_mechanism_with_stiffness_keeps_the_metric_that_its_study_names(self):
+        """It is not over-constrained, so without stiffness it has no metric. A study without the key has its stiffness."""
+        text = (GALLERY / "tricept" / "yield.toml").read_text().replace("samples = 5000", "samples = 20")
+        text = text.replace('file = "tricept.toml"', f'file = "{GALLERY / "tricept" / "tricept.toml"}"')
+        self.result("named", text).close()
+        replayed = self.succeeds("replay", "named.h5", "all", "0", "0")
+        self.assertIn("tip_position", replayed)
+        self.assertNotIn("strain_energy", replayed)
+        self.result("unnamed", text.replace('metric = "platform"', "")).close()
+        self.assertIn("strain_energy", self.succeeds("replay", "unnamed.h5", "all", "0", "0"))
 
     def test_both_fidelities_say_which_errors_are_linear(self):
         for metric, fewest, most in (("platform", 0, 0), ("published", 10, 25)):

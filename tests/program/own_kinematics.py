@@ -151,21 +151,66 @@ def six_legs(ends, balls, lengths, rotation, position):
     """Where a platform is whose balls [N x 6 x 3] legs of these lengths [N x 6] hold to their ends [N x 6 x 3], by Newton's
     method from a rotation [N x 3 x 3] and a position [N x 3]: both."""
     for _ in range(6):
-        arms = np.einsum("nij,nkj->nki", rotation, balls)
-        legs = arms + position[:, None] - ends
-        found = np.linalg.norm(legs, axis=-1)
-        along = legs / found[..., None]
-        jacobian = np.concatenate([np.cross(arms, along), along], -1)
+        found, jacobian = legs_of(ends, balls, rotation, position)
         step = np.linalg.solve(jacobian, (lengths - found)[..., None])[..., 0]
         rotation, position = rotations(step[:, :3]) @ rotation, position + step[:, 3:]
     assert np.abs(step).max() < 1e-12
     return rotation, position
 
 
+def legs_of(ends, balls, rotation, position):
+    """Lengths of six legs [N x 6], and their derivatives by turns and moves of the platform [N x 6 x 6]."""
+    arms = np.einsum("nij,nkj->nki", rotation, balls)
+    legs = arms + position[:, None] - ends
+    found = np.linalg.norm(legs, axis=-1)
+    along = legs / found[..., None]
+    return found, np.concatenate([np.cross(arms, along), along], -1)
+
+
+def followed_legs(machines, count, position, size):
+    """Where a platform on six legs goes while its errors grow from none: machines(shares [N]) has its ends and balls [N x 6 x
+    3] and its legs' lengths [N x 6]. A step may change the determinant of the legs' derivatives, with lengths in units of
+    `size`, by a third; a machine that takes no step of 1e-10 has come to where it is zero. Machines that arrive [N], rotations
+    [N x 3 x 3] and positions [N x 3]."""
+    rotation, position = np.tile(np.eye(3), (count, 1, 1)), np.tile(position, (count, 1))
+    unit = np.array([1.0 / size] * 3 + [1.0] * 3)
+    share, step = np.zeros(count), np.full(count, 0.01)
+    ends, balls, _ = machines(share)
+    determinant = np.linalg.det(legs_of(ends, balls, rotation, position)[1] * unit)
+    moves = np.arange(count)
+    while moves.size:
+        there = np.minimum(share + step, 1.0)
+        ends, balls, lengths = (part[moves] for part in machines(there))
+        turned, moved = rotation[moves], position[moves]
+        good = np.ones(moves.size, bool)
+        for n in range(5):
+            found, jacobian = legs_of(ends, balls, turned, moved)
+            change = np.linalg.solve(jacobian * unit, (lengths - found)[..., None])[..., 0]
+            length = np.linalg.norm(change, axis=-1)
+            good &= length < (0.02 * size if n == 0 else 0.005 * size)
+            change = good[:, None] * unit * change
+            turned, moved = rotations(change[:, :3]) @ turned, moved + change[:, 3:]
+        now = np.linalg.det(legs_of(ends, balls, turned, moved)[1] * unit)
+        ratio = now / determinant[moves]
+        good &= (length < 1e-12) & (ratio > 2.0 / 3.0) & (ratio < 1.5)
+        taken = moves[good]
+        rotation[taken], position[taken], determinant[taken], share[taken] = turned[good], moved[good], now[good], there[taken]
+        step[taken] *= 1.3
+        step[moves[~good]] *= 0.5
+        moves = moves[(share[moves] < 1.0) & (step[moves] > 1e-10)]
+    return share == 1.0, rotation, position
+
+
+def moved_legs(arrived, rotation, position, place):
+    """What followed_legs() found, with the platform's displacement [N x 6] from a level place."""
+    return arrived, np.concatenate([position - place, rotation_vectors(rotation)], -1)
+
+
 class SixRods:
     """printer.toml: the effector is where its six balls are as far from those of the carriages as the rods are long. The
     first three rods are those on the left of the three carriages, the others those on the right."""
 
+    file, coordinates = "printer.toml", ("x", "y", "z")
     rod, reach, radius, width = 0.217, 0.095, 0.030, 0.046
     sides, towers = ("left",) * 3 + ("right",) * 3, (1, 2, 3, 1, 2, 3)
     names = ([f"{name}_{axis}_{k}" for name in ("tower", "lean") for k in (1, 2, 3) for axis in "xy"]
@@ -205,6 +250,20 @@ class SixRods:
         nominal, _ = self.put({}, 1, self.axes, (1, 2, 3), heights)
         return there - nominal, rotation_vectors(leaning)
 
+    def followed(self, errors, place):
+        """Machines that can be assembled near a place [N], and where their effectors are [N x 6]; see followed_legs()."""
+        count = len(next(iter(errors.values())))
+        pairs = list(zip(self.sides, self.towers))
+        rods = error_vectors(errors, [[f"rod_{side}_{k}" for side, k in pairs]], count)[:, 0]
+        seats = error_vectors(errors, [[f"ball_{side}_{axis}_{k}" for axis in "xyz"] for side, k in pairs], count)
+
+        def machines(shares):
+            grown = {name: shares * values for name, values in errors.items()}
+            ends, _ = self.put(grown, count, self.up, self.towers, np.tile(self.heights(place[None]), 2))
+            return ends[0], self.down + shares[:, None, None] * seats, self.rod + shares[:, None] * rods
+
+        return moved_legs(*followed_legs(machines, count, place, self.rod), place)
+
     def displacement(self, errors, places):
         """Of the effector, x y z and its rotation vector: [M x N x 6]."""
         count = len(next(iter(errors.values())))
@@ -218,6 +277,32 @@ class SixRods:
         rotation, position = six_legs(ends, balls, rods, rotation, position)
         moved = np.concatenate([position - np.repeat(places, count, axis=0), rotation_vectors(rotation)], -1)
         return moved.reshape(len(places), count, 6)
+
+
+class SixLegs:
+    """ups6.toml: each leg leads from a point of the base to one of the platform. It has errors of both and of its length."""
+
+    file, coordinates = "ups6.toml", ("x", "y", "z", "rx", "ry", "rz")
+    ends = 1e-3 * np.array([[305.4001, 111.1565, 0.0], [-56.4357, 320.0625, 0.0], [-248.9644, 208.906, 0.0],
+                            [-248.9644, -208.906, 0.0], [-56.4357, -320.0625, 0.0], [305.4001, -111.1565, 0.0]])
+    balls = 1e-3 * np.array([[92.1597, 84.4488, 0.0], [27.055, 122.037, 0.0], [-119.2146, 37.58822, 0.0],
+                             [-119.2146, -37.5882, 0.0], [27.055, -122.037, 0.0], [92.1597, -84.4488, 0.0]])
+    names = [f"delta_{k}_{frame}_{axis}" for k in range(1, 7) for frame in (0, 6) for axis in "xyz"] + [
+        f"delta_{k}_3_z" for k in range(1, 7)]
+
+    def followed(self, errors, place):
+        """Of level platforms, as SixRods.followed()."""
+        count = len(next(iter(errors.values())))
+        at_base, at_platform = (error_vectors(errors, [[f"delta_{k}_{frame}_{axis}" for axis in "xyz"] for k in range(1, 7)],
+                                              count) for frame in (0, 6))
+        longer = error_vectors(errors, [[f"delta_{k}_3_z" for k in range(1, 7)]], count)[:, 0]
+        nominal = np.linalg.norm(self.balls + place - self.ends, axis=-1)
+
+        def machines(shares):
+            of_each = shares[:, None, None]
+            return self.ends + of_each * at_base, self.balls + of_each * at_platform, nominal + shares[:, None] * longer
+
+        return moved_legs(*followed_legs(machines, count, place, 0.15), place)
 
 
 class BellCrank:

@@ -84,7 +84,7 @@ class OwnResponses(ProgramTest):
                 self.succeeds("report", f"{kind}.h5", "-o", f"{kind}.html")
 
     def test_replayed_from_the_result(self):
-        analysis = 'kind = "monte-carlo"\nsamples = 300\n'
+        analysis = 'kind = "monte-carlo"\ndraws = "per pose"\nsamples = 300\n'
         for threads in (1, 2):
             self.run_study(f"t{threads}", analysis, arguments=("--threads", threads)).close()
         hashes = {self.shown(f"t{threads}.h5")["content_sha256"] for threads in (1, 2)}

@@ -15,6 +15,16 @@ GALLERY = Path(__file__).resolve().parents[2] / "results/gallery"
 MECHANISMS = Path(__file__).resolve().parents[1] / "data/mechanisms"
 AN_OLDER_RESULT = "poesy-result: an older one"  # what may be replaced
 
+EACH_A_PART = """\
+[[analysis.parts]]
+factors = "linear"
+each = true
+cost = { law = "reciprocal", b = 1, unit = "mm" }
+[[analysis.parts]]
+factors = "angular"
+each = true
+cost = { law = "reciprocal", b = 1, unit = "deg" }
+"""
 STUDY = """\
 format = "poesy-study"
 version = 1

@@ -19,6 +19,8 @@ endfunction()
 program_test(bad_input unit)
 program_test(wrong_words unit)
 program_test(csv unit)
+program_test(own_poses unit)
+program_test(force_picture unit)
 program_test(frames regression)
 program_test(untrusted robustness)
 program_test(oracle regression)
@@ -28,8 +30,12 @@ set_property(TEST program.metric APPEND PROPERTY ENVIRONMENT
 program_test(mechanism_file regression)
 program_test(shared_drive statistical)
 program_test(assembly regression)
+program_test(assembly_modes regression)
 program_test(drawing regression)
 program_test(compare unit)
+program_test(what_if statistical)
+program_test(paper unit)
+program_test(sweep statistical)
 program_test(flatness statistical)
 program_test(public_cases statistical)
 program_test(yield_coverage statistical)
@@ -37,15 +43,19 @@ program_test(growing_errors regression)
 program_test(leading_response unit)
 program_test(calibrate regression)
 program_test(calibrate_refusals unit)
+program_test(calibrated_study statistical)
+program_test(calibrated_allocation statistical)
+program_test(calibrated_sensitivity regression)
 program_test(allocation_over_poses statistical)
 program_test(own_responses regression)
 program_test(relative_responses statistical)
 program_test(branched statistical)
 program_test(load regression)
-set_property(TEST program.calibrate program.calibrate_refusals program.drawing program.compare program.flatness
+set_property(TEST program.calibrate program.calibrate_refusals program.calibrated_study program.calibrated_allocation
+             program.calibrated_sensitivity program.drawing program.compare program.flatness
              program.growing_errors program.leading_response program.allocation_over_poses program.mechanism_file
              program.relative_responses program.shared_drive
-             program.assembly program.branched program.load
+             program.assembly program.assembly_modes program.branched program.load
              APPEND PROPERTY ENVIRONMENT POESY_DATA=${CMAKE_CURRENT_SOURCE_DIR}/data)
 program_test(determinism determinism)
 program_test(adaptive determinism)

@@ -165,6 +165,73 @@ class OneSided(Case):
         self.assertIn(b"endstop_1", done.stderr)
 
 
+class FlatBed(Case):
+    """Case 11 (Klipper #2891): heights over the bed, by six rods. The printer is zeroed in the middle."""
+
+    STUDY = PRINTERS.replace("endstop_*", "rod_*").replace('z = "0.1 mm"', 'rise = "0.04 mm"').replace(
+        "[analysis]", 'response = [{ name = "rise", sum = { z = 1 }, relative_to = { x = 0, y = 0, z = 0 } }]\n[analysis]')
+
+    def test_yields(self):
+        """As it stands, zeroed in the middle, and by its flatness alone: three questions with three answers."""
+        self.say(PRINTER, self.STUDY, BED)
+        rods = np.random.default_rng(8).normal(0.0, 5e-5, (6, MACHINES))
+        z = of_printers(dict(zip(RODS, rods)))[..., 2]
+        for limit, own, stated in ((None, np.abs(z - z[0]).max(axis=0) <= 4e-5, 0.580),
+                                   ('z = "0.04 mm"', np.abs(z).max(axis=0) <= 4e-5, 0.309),
+                                   ('z = { spread = "0.08 mm" }', np.ptp(z, axis=0) <= 8e-5, 0.631)):
+            self.assertAlmostEqual(own.mean(), stated, delta=3.9 * np.sqrt(stated * (1.0 - stated) / MACHINES))
+            study = self.STUDY if limit is None else self.STUDY.replace('rise = "0.04 mm"', limit)
+            self.assert_share(self.yield_of(study), own.mean())
+
+
+# spacetelescope/webbpsf #409: the hexapod of a mirror (lsst-ts/ts_mthexapod), whose drives have steps of 10 um.
+FIXED = [(0, 1701.8, 607.3), (-1542.35, -719.21, 607.3), (1542.35, -719.21, 607.3), (493.79, 1460.49, 228.6),
+         (-1256.87, -419.29, 228.6), (1256.87, -419.29, 228.6)]
+MOVING = [(0, 1701.8, 114.3), (-1542.35, -719.21, 114.3), (1542.35, -719.21, 114.3), (0.79, 1460.49, 228.6),
+          (-1503.37, 7.66, 228.6), (1503.37, 7.66, 228.6)]
+MIRROR = """\
+format = "poesy-mechanism"
+version = 1
+name = "mirror"
+error = [ { name = "strut", limb = "each", frame = 4, component = "delta_z" } ]
+[platform]
+origin = [0, 0, "-703 mm"]
+rotation = "xyz"
+coordinates = ["x", "y", "z", "rx", "ry", "rz"]
+workspace = { x = ["-6 mm", "6 mm"], y = ["-6 mm", "6 mm"], z = ["-709 mm", "-697 mm"], rx = ["-0.1 deg", "0.1 deg"], ry = ["-0.1 deg", "0.1 deg"], rz = ["-0.05 deg", "0.05 deg"] }
+""" + "".join(f"""\
+[[limb]]
+joints = [ {{ name = "F", type = "S", at = {[f"{x} mm" for x in fixed]} }}, {{ name = "q", type = "P", from = "F", to = "M", actuated = true }}, {{ name = "M", type = "S", at = {[f"{x} mm" for x in moving]} }} ]
+""" for fixed, moving in zip(FIXED, MOVING))
+STEPS = f"""\
+format = "poesy-study"
+version = 1
+mechanism.file = "machine.toml"
+poses.count = 20
+errors.linear = {{ distribution = "uniform", half_width = "5 um", draws = "per pose" }}
+[analysis]
+kind = "monte-carlo"
+draws = "per machine"
+samples = {MACHINES}
+limits = {{ theta_x = "0.6 arcsec", theta_y = "0.6 arcsec" }}
+"""
+
+
+class Steps(Case):
+    """Case 12: each move rounds the drives anew. How many machines are good at all of 20 moves?"""
+
+    def test_yield(self):
+        self.say(MIRROR, STEPS, BED)
+        arms, along = np.array(MOVING) / 1e3 - [0, 0, -0.703], np.array(MOVING) - FIXED
+        along /= np.linalg.norm(along, axis=1)[:, None]
+        tilt = np.degrees(np.linalg.inv(np.hstack([np.cross(arms, along), along]))[:2]) * 3600.0
+        for study, moves, stated in ((STEPS, 20, 0.400), (STEPS.replace(', draws = "per pose"', ""), 1, 0.954)):
+            struts = np.random.default_rng(9).uniform(-5e-6, 5e-6, (MACHINES, moves, 6))
+            own = (np.abs(struts @ tilt.T) <= 0.6).all(axis=(1, 2)).mean()
+            self.assertAlmostEqual(own, stated, delta=0.012)
+            self.assert_share(self.yield_of(study), own)
+
+
 # Position zones of ISO 1101 of the balls on the effector: of the axes of their bores, square to it.
 SEATS = PRINTER.replace(PRINTER[PRINTER.index("errors ="):PRINTER.index("[platform]")], "").replace('/2", 0] } ]\n', """\
 /2", 0] } ]
@@ -198,6 +265,17 @@ class RoundZone(Case):
         seats = np.random.default_rng(5).normal(0.0, 5e-5 / np.sqrt(2.0), (MACHINES, 6, 2))
         own = (self.turned_by(seats) <= np.radians(0.08)).all(axis=0).mean()
         self.assertTrue(0.3 < own < 0.9, own)
+        self.assert_share(self.yield_of(), own)
+
+    def test_uniform_in_its_zone(self):
+        """Anywhere in the circle, of bores that are square to the effector."""
+        self.say(SEATS.replace('position = {', 'perpendicularity = "1e-6 mm", position = {'),
+                 self.STUDY.replace('"normal", sigmas = 1', '"uniform"'), BED)
+        generator = np.random.default_rng(7)
+        radius, angle = 5e-5 * np.sqrt(generator.uniform(size=(MACHINES, 6))), generator.uniform(0.0, 2.0 * np.pi, (MACHINES, 6))
+        seats = radius[..., None] * np.stack([np.cos(angle), np.sin(angle)], -1)
+        own = (self.turned_by(seats) <= np.radians(0.08)).all(axis=0).mean()
+        self.assertAlmostEqual(own, 0.976, delta=0.01)
         self.assert_share(self.yield_of(), own)
 
     def test_given_places(self):

@@ -58,8 +58,9 @@ class Readme(ProgramTest):
         for row in rows:
             self.assertIn(row, rankings)
 
-    def test_what_it_says_of_the_metrics(self):
-        text = " ".join(README.split())
+    def test_what_its_page_says_of_the_metrics(self):
+        text = " ".join((STUDIES / "README.md").read_text(encoding="utf-8").split())
+        self.assertIn("results/2upr-rpu-sensitivity/README.md", README)
         rankings = " ".join((STUDIES / "rankings.txt").read_text(encoding="utf-8").split())
         dependence = (STUDIES / "dependence.txt").read_text(encoding="utf-8").splitlines()
         published = dependence[:next(n for n, line in enumerate(dependence) if line.startswith("platform metric"))]

@@ -150,7 +150,7 @@ class RelativeResponses(ProgramTest):
     def test_other_kinds(self):
         """Where each draw is a machine at one pose and at the reference."""
         for kind, analysis in {"sensitivity": "samples = 200\n", "sobol": "samples = 64\n",
-                               "monte-carlo": "samples = 300\n"}.items():
+                               "monte-carlo": 'draws = "per pose"\nsamples = 300\n'}.items():
             with self.subTest(kind=kind):
                 step = '[[response]]\nname = "step"\nnorm = ["x", "z"]\nrelative_to = "previous"\n' if kind == "sobol" else ""
                 self.run_study(analysis, HEIGHT + ZERO + step, kind=kind, name=kind).close()

@@ -12,7 +12,7 @@ import h5py
 
 from poesy_program import PROGRAM, STUDY, ProgramTest, main
 
-MONTE_CARLO = STUDY.replace('kind = "sensitivity"', 'kind = "monte-carlo"').split("background")[0] + "[run]\nseed = 5\n"
+MONTE_CARLO = STUDY.replace('kind = "sensitivity"', 'kind = "monte-carlo"\ndraws = "per pose"').split("background")[0] + "[run]\nseed = 5\n"
 
 
 RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
@@ -115,12 +115,13 @@ class Report(ProgramTest):
         self.succeeds("report", "r.h5")
         drawn = facts()
         self.assertEqual(drawn["seed"], "5")
-        self.assertIn("normal", drawn["linear errors"])
+        self.assertIn("linear: distribution = normal, sigma = 1 mm", drawn["sizes of the errors"])
         self.assertNotIn("on any machine", (self.folder / "r.html").read_text())
         self.write("own.toml", STUDY + '[errors.override]\ndelta_1_1_y = { distribution = "normal", sigma = "2 mm" }\n')
         self.succeeds("run", "own.toml", "-o", "r.h5", "--quiet")
         self.succeeds("report", "r.h5")
-        self.assertEqual(facts()["other errors"], "1 of 3 errors have a distribution of their own")
+        self.assertEqual(facts()["sizes of the errors"],
+                         "2 normal with a standard deviation of 0.2 deg; 1 normal with a standard deviation of 2 mm")
         self.write("p.csv", "z,beta,gamma\n-0.2,0.1,0.05\n")
         self.write("e.csv", "delta_1_1_y\n0.001\n")
         self.succeeds("evaluate", "study.toml", "--poses", "p.csv", "--errors", "e.csv", "-o", "r.h5", "--quiet")
@@ -128,7 +129,7 @@ class Report(ProgramTest):
         table = facts()
         self.assertEqual(table["poses"], "1, from a table")
         self.assertEqual(table["samples at each pose"], "1 row of errors")
-        self.assertEqual([table[name] for name in ("seed", "linear errors", "angular errors")], ["-", "-", "-"])
+        self.assertEqual([table[name] for name in ("seed", "sizes of the errors")], ["-", "-"])
         self.assertIn("poses and errors came from tables", (self.folder / "r.html").read_text())
 
     def test_refuses_what_cannot_be(self):

@@ -172,7 +172,7 @@ class Resume(ResumptionTest):
             ("0.2 deg", "0.3 deg", ["angular", "another study"]),
             ("samples = 12300", "samples = 300", ["12300", "300"]),
             ('"delta_1_1_y", ', "", ["delta_1_1_y"]),
-            ('kind = "sensitivity"', 'kind = "monte-carlo"', ["sensitivity", "monte-carlo"]),
+            ('kind = "sensitivity"', 'kind = "monte-carlo"\ndraws = "per pose"', ["sensitivity", "monte-carlo"]),
             ("gauss-newton", "newton", ["gauss-newton"]),
             ("[solver]", '[solver]\nmetric = "platform"', ["metric", "published", "platform"]),
         ]:

@@ -39,11 +39,11 @@ MONTE_CARLO = HEAD + f"""\
 count = {POSES * 3 // 4}
 [analysis]
 kind = "monte-carlo"
+draws = "per pose"
 factors = "deforming"
 samples = 12300
 """
-MACHINES = MONTE_CARLO + """\
-draws = "per machine"
+MACHINES = MONTE_CARLO.replace("per pose", "per machine") + """\
 limits.linear_deformation = "0.5 mm"
 """
 # The gradient of their yield takes a linear map, and looks at the machines once more at the end.
@@ -209,6 +209,7 @@ linear = {{ distribution = "normal", sigma = "0.05 mm" }}
 angular = {{ distribution = "normal", sigma = "0.02 deg" }}
 [analysis]
 kind = "monte-carlo"
+draws = "per pose"
 samples = 300
 limits = {{ position = "0.6 mm", strain_energy = "5 mJ" }}
 """

@@ -99,7 +99,7 @@ class SharedDrives(ProgramTest):
         lifts = heights(PLACES) - home
         rows = "".join(",".join(map(repr, row)) + "\n" for row in (1e3 * lifts).tolist())
         self.write("places.csv", "motor_1 [mm],motor_2 [mm],motor_3 [mm]\n" + rows)
-        with self.run_study('kind = "monte-carlo"\nsamples = 50\n', "out.h5") as file:
+        with self.run_study('kind = "monte-carlo"\ndraws = "per pose"\nsamples = 50\n', "out.h5") as file:
             found = np.array([file["poses"][axis][:] for axis in "xyz"]).T
         np.testing.assert_allclose(found, PLACES, atol=1e-12)
 

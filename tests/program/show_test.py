@@ -13,7 +13,7 @@ import h5py
 from poesy_program import PROGRAM, STUDY, ProgramTest, main
 
 BY_PLATFORM = STUDY.replace("[solver]\n", '[solver]\nmetric = "platform"\n')
-MONTE_CARLO = STUDY.replace('"sensitivity"', '"monte-carlo"')
+MONTE_CARLO = STUDY.replace('"sensitivity"', '"monte-carlo"\ndraws = "per pose"')
 
 
 def rankings(both):

@@ -73,6 +73,9 @@ class StudyNotes(ProgramTest):
         self.assertIn("did not converge and are left out", of_newton)
         self.assertNotIn("method", of_newton)
         self.assertIn("study smaller errors, or raise solver.max_iterations above 50", of_newton)
+        by_platform = self.warning(large.replace('"gauss-newton"', '"gauss-newton"\nmetric = "platform"\nmax_iterations = 2'))
+        self.assertNotIn("method", by_platform, "both methods are the same there")
+        self.assertIn("study smaller errors, or raise solver.max_iterations above 2", by_platform)
 
     def test_what_the_study_allows_is_no_warning(self):
         allowed = '"gauss-newton"\nmax_iterations = 8\nmax_not_converged = 0.9'

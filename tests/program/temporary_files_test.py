@@ -81,7 +81,7 @@ class TemporaryFiles(ResumptionTest):
         os.symlink("victim", self.folder / "r.h5")
         done = self.run_quick()
         self.assertEqual(done.returncode, 2)
-        self.assertIn("is no result of poesy, and it would be lost", done.stderr.decode())
+        self.assertIn("is not a result of poesy, and it would be lost", done.stderr.decode())
         self.assertEqual(self.victim.read_text(), PRECIOUS)
         os.symlink("b.h5", self.folder / "a.h5")
         os.symlink("a.h5", self.folder / "b.h5")

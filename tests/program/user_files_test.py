@@ -58,7 +58,7 @@ class UserFiles(ProgramTest):
         for name, command in commands.items():
             with self.subTest(command=name):
                 self.write("r.h5", PRECIOUS)
-                self.assertIn("exists and is no result of poesy, and it would be lost", self.ends(2, *command, "-o", "r.h5"))
+                self.assertIn("exists and is not a result of poesy, and it would be lost", self.ends(2, *command, "-o", "r.h5"))
                 self.assertEqual((self.folder / "r.h5").read_text(), PRECIOUS)
                 for theirs in ("r.h5", "other.dat"):
                     (self.folder / theirs).unlink(missing_ok=True)

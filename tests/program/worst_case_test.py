@@ -170,7 +170,7 @@ class WorstCase(ProgramTest):
         self.assertRegex(shown, r"worst case of base\+leg\+plat: pose 0 \(.*\), with [+-]base_x_1, ")
         self.succeeds("report", "out.h5", "-o", "report.html")
         page = (self.folder / "report.html").read_text(encoding="utf-8")
-        self.assertIn("which is no bound", page)
+        self.assertIn("which is not a bound", page)
         self.succeeds("export", "out.h5", "-d", "tables")
         rows = (self.folder / "tables/coupling_corners.csv").read_text(encoding="utf-8").splitlines()
         self.assertEqual(len(rows), 1 + 7 * len(ERRORS))

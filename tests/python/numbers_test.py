@@ -57,7 +57,7 @@ class Numbers(FolderTest):
                 self.assertIn("position", found.plot.ranking().get_xlabel())
 
     def test_too_few_samples_are_named(self):
-        found = poesy.run(study({"kind": "monte-carlo", "samples": 50}))
+        found = poesy.run(study({"kind": "monte-carlo", "draws": "per pose", "samples": 50}))
         self.assertTrue(all(math.isnan(row.S1) for row in found.ranking()))
         self.assertIn("none is formed below 64 samples", found.ranking().title)
 
@@ -151,7 +151,7 @@ class Numbers(FolderTest):
             if row.name in changes:
                 self.assertAlmostEqual(row.change, changes[row.name]["change"] / 100.0, places=12)
         label = found.plot.ranking().get_xlabel()
-        self.assertEqual(label, "share of the mean square")
+        self.assertEqual(label, f"share of the mean square of {limited[0]}")
         self.assertEqual(found.ranking("linear_deformation").value, "S1")  # has no limit
 
     def test_allocation(self):

@@ -39,8 +39,9 @@ PARTS = [
 STUDIES = {
     "sensitivity": study({"kind": "sensitivity", "samples": 200}),
     "sensitivity of the 3-prs": study({"kind": "sensitivity", "samples": 200}, model="3-prs"),
-    "monte-carlo": study({"kind": "monte-carlo", "samples": 400}),
-    "monte-carlo, adaptive": study({"kind": "monte-carlo", "samples": {"min": 200, "max": 800, "relative_error": 0.05}}),
+    "monte-carlo": study({"kind": "monte-carlo", "draws": "per pose", "samples": 400}),
+    "monte-carlo, adaptive": study({"kind": "monte-carlo", "draws": "per pose",
+                                    "samples": {"min": 200, "max": 800, "relative_error": 0.05}}),
     "machines": study(
         {"kind": "monte-carlo", "draws": "per machine", "samples": 1000, "yield": 0.9,
          "limits": {"gap": "0.2 mm", "angular_deformation": "0.3 deg"}}

@@ -109,7 +109,7 @@ class Strangers(FolderTest):
             with self.subTest(name), self.assertRaisesRegex(poesy.DamagedFile, words):
                 poesy.read(EXAMPLES / f"{name}.h5")
         (self.folder / "text.h5").write_text("no result")
-        with self.assertRaisesRegex(poesy.DamagedFile, "text.h5: is no intact HDF5 file"):
+        with self.assertRaisesRegex(poesy.DamagedFile, "text.h5: is not an intact HDF5 file"):
             poesy.read("text.h5")
         with self.assertRaises(OSError) as absent:
             poesy.read("absent.h5")

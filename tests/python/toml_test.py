@@ -67,7 +67,7 @@ class Writer(unittest.TestCase):
     def test_what_toml_cannot_hold(self):
         for table, words in (
             ({"analysis": {"samples": None}}, "analysis.samples is None"),
-            ({"a": {1: 2}}, "the key 1 in a is no text"),
+            ({"a": {1: 2}}, "the key 1 in a is not a text"),
             ({"a": [1, {2, 3}]}, "a is {2, 3}"),
             ({"a": 1j}, "a is 1j"),
         ):

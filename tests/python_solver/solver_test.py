@@ -377,7 +377,8 @@ class Refusals(unittest.TestCase):
                      factors=["delta_1_0_x", "delta_1_0_x"])
         self.refuses(refused, "analysis.calibrated is true, but", evaluator, "2upr-rpu", calibrated=True)
         self.refuses(refused, "solver.metric does not belong", evaluator, "3-prs", metric="published")
-        self.refuses(poesy_solver.FileError, "^no/such.toml: cannot be read", evaluator, "no/such.toml")
+        self.refuses(poesy_solver.FileError, "^mechanism.file names 'no/such.toml', which cannot be read: .*; check the "
+                     "path and its permissions$", evaluator, "no/such.toml")
         self.assertTrue(issubclass(refused, ValueError) and issubclass(poesy_solver.FileError, OSError))
 
     def test_a_broken_mechanism_file_is_named_with_its_line(self):
@@ -416,6 +417,56 @@ class Guide(unittest.TestCase):
         names = {"print": lambda *_: None}
         for block in blocks:
             exec(compile(block, "README.md", "exec"), names)  # the tutorial's own lines
+
+
+class Designs(unittest.TestCase):
+    """Parameters of the geometry."""
+
+    POSE = [0.1, -0.1, -0.7]
+    TRICEPT = GALLERY / "tricept" / "tricept.toml"
+
+    def tool(self, **options):
+        evaluator = poesy_solver.Evaluator(self.TRICEPT, metric="platform", fidelity="first-order", **options)
+        return evaluator.at(self.POSE)(sampled(evaluator, (20,), scale=0.1))
+
+    def test_geometry_is_that_of_a_file_with_other_numbers(self):
+        text = self.TRICEPT.read_text()
+        with tempfile.TemporaryDirectory() as name:
+            other = pathlib.Path(name) / "other.toml"
+            other.write_text(text.replace('value = "250 mm", description = "from the middle', 'value = "310 mm", description = "from the middle'))
+            self.assertNotEqual(other.read_text(), text)
+            evaluator = poesy_solver.Evaluator(other, metric="platform", fidelity="first-order")
+            expected = evaluator.at(self.POSE)(sampled(evaluator, (20,), scale=0.1))
+        for value in ("310 mm", "0.31 m", 0.31):
+            self.assertEqual(bits(self.tool(geometry={"a": value})), bits(expected))
+        self.assertNotEqual(bits(self.tool()), bits(expected))
+        self.assertEqual(bits(self.tool(geometry={})), bits(self.tool()))
+
+    def test_refusals(self):
+        for geometry, said in (({"q": 0.1}, "q"), ({"a": "310"}, "a"), ({"a": "310 deg"}, "length"),
+                               ({"a": math.nan}, "a")):
+            with self.subTest(geometry), self.assertRaisesRegex(poesy_solver.InputError, said):
+                poesy_solver.Evaluator(self.TRICEPT, geometry=geometry)
+
+    def test_lines_of_the_page_run(self):
+        """engine/docs/design-optimisation.md: the search finds a better design within its bounds, and the program agrees."""
+        text = (ROOT / "engine" / "docs" / "design-optimisation.md").read_text(encoding="utf-8")
+        blocks = re.findall(r"^```python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+        self.assertEqual(len(blocks), 2)
+        names = {"print": lambda *_: None}
+        before = os.getcwd()
+        self.addCleanup(os.chdir, before)
+        self.addCleanup(sys.path.remove, str(ROOT / "engine" / "python"))
+        sys.path.insert(0, str(ROOT / "engine" / "python"))
+        os.environ["POESY"] = PROGRAM
+        os.chdir(ROOT)
+        for block in blocks:
+            exec(compile(block, "design-optimisation.md", "exec"), names)
+        found = names["found"]
+        self.assertLess(found.fun, 0.7 * names["tool_error"]((0.25, 0.12, 0.25)))
+        for value, (least, most) in zip(found.x, names["bounds"]):
+            self.assertTrue(least <= value <= most)
+        self.assertGreater(names["certificate"].to_xarray("yield")["value"].item(), 0.9)
 
 
 class Calibration(unittest.TestCase):

@@ -45,9 +45,11 @@ samples = { min = 500, max = 2300, relative_error = 0.02 })"},
 samples = 1300)",
      "both"},
     {"monte_carlo", R"(kind = "monte-carlo"
+draws = "per pose"
 samples = 1300
 quantiles = [0.1, 0.9])"},
     {"monte_carlo_adaptive", R"(kind = "monte-carlo"
+draws = "per pose"
 samples = { min = 500, max = 2300, relative_error = 0.02 })"},
     {"machines", R"(kind = "monte-carlo"
 draws = "per machine"

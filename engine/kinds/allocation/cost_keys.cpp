@@ -17,18 +17,18 @@ namespace {
 
 using Law = StatedCost::Law;
 
-/// The words of a study file, in the order of the enumeration.
+/// The names of laws in study files, in the order of the enumeration.
 constexpr std::array<std::string_view, 4> kLawNames{"none", "reciprocal", "reciprocal-power", "exponential"};
 
-/// A cost with the numbers of the study file, in which b is for T in a unit.
+/// A cost as a study file states it: b refers to a tolerance in the stated unit.
 struct WrittenCost {
   StatedCost cost = {};
   Dimension dimension = Dimension::length;
-  std::string unit = {};   ///< as written; empty: none
-  double unit_size = 1.0;  ///< SI
+  std::string unit = {};   ///< the unit as written; empty: none stated
+  double unit_size = 1.0;  ///< size of the unit, SI
 };
 
-/// The size of a unit of this dimension, SI; none for any other text.
+/// The size of a unit of this dimension, SI. None if the text is not such a unit.
 std::optional<double> unit_size(std::string_view spelling, Dimension dimension) {
   if (dimension == Dimension::number) return spelling == si_unit(dimension) ? 1.0 : ratio_unit(spelling);
   const Unit* unit = find_unit(spelling);
@@ -45,7 +45,7 @@ KeyValue<WrittenCost> unit_value() {
     written.unit = value.text();
     const auto size = unit_size(written.unit, written.dimension);
     if (!size) {
-      value.fail(fmt::format("is '{}', which is no unit of the part's tolerance, {}", printable(written.unit),
+      value.fail(fmt::format("is '{}', which is not a unit of the part's tolerance, {}", printable(written.unit),
                              with_article(written.dimension)),
                  written.dimension == Dimension::number ? "known: %, ppm, um/m, 1"
                                                         : "known: " + unit_names(written.dimension));

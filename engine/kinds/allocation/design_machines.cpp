@@ -1,4 +1,4 @@
-// Functions of the design's machines that several stages of the search use.
+// Functions on the design's machines that several stages of the search use.
 
 #include <algorithm>
 #include <cmath>
@@ -13,13 +13,14 @@
 namespace poesy::allocation {
 namespace {
 
-/// The load of the machine before the deciding one; infinite where no reject is allowed.
+/// The smallest load above the deciding load (deciding_load()): that of the last machine that is still rejected.
+/// Infinite if no reject is allowed.
 double load_before_deciding(const std::vector<double>& load, std::uint64_t rejects) {
   return rejects == 0 ? std::numeric_limits<double>::infinity() : deciding_load(load, rejects - 1);
 }
 
-/// The factor on all tolerances that brings the deciding machine just within the limit. The machine before it remains
-/// beyond the limit, however close the two loads are.
+/// The factor on all tolerances that brings the deciding machine just within the limit. The machine with the next
+/// larger load stays beyond the limit, however close the two loads are.
 double factor_to_limit(double deciding, double before) {
   constexpr double kWithin = 1.0 + 0.5 * kFinalLoadTolerance;
   const double between = before > deciding && std::isfinite(before) ? std::sqrt(before / deciding) : kWithin;
@@ -39,7 +40,8 @@ std::vector<double> loads_of(const SearchProblem& problem, std::uint64_t seed, s
   const StudyRun& run = problem.run;
   const Study study = machine_study(problem, seed, tolerance);
   const Plan plan = Plan(study, run.poses).with_samples(machines.value_or(study.analysis.samples));
-  return unless_stopped(machine_loads(plan, run.model, study.analysis.limits, run.options)).load;
+  const auto calibration = problem.calibration_of(study);
+  return unless_stopped(machine_loads(plan, run.model, study.analysis.limits, run.options, calibration.get())).load;
 }
 
 double deciding_load(std::vector<double> load, std::uint64_t rejects) {
@@ -61,9 +63,10 @@ ScreenedMachines try_screened(const SearchProblem& problem, const ToleranceDesig
                               const TolerancePoint& point) {
   const StudyRun& run = problem.run;
   const Study study = machine_study(problem, design.seed, point.tolerance);
+  const auto calibration = problem.calibration_of(study);
   ScreenedMachines screened{screen(problem, design.load), {}};
   screened.load = unless_stopped(machine_loads(Plan(study, run.poses), run.model, study.analysis.limits,
-                                               screened.numbers, run.options))
+                                               screened.numbers, run.options, calibration.get()))
                       .load;
   return screened;
 }
@@ -138,7 +141,7 @@ PartScores part_scores(const SearchProblem& problem, const ToleranceDesign& desi
       of_error[p] += x * x - 1.0;
     }
   }
-  // A coarser orientation leaves less to the middle of its feature, which may raise the yield.
+  // A coarser orientation leaves less of the location zone to the middle of the feature, which may raise the yield.
   std::vector<bool> may_fall(problem.programme.size(), false);
   for (const Within& pair : problem.programme.pairs()) may_fall[pair.inner] = true;
   PartScores scores;
@@ -149,7 +152,7 @@ PartScores part_scores(const SearchProblem& problem, const ToleranceDesign& desi
       sum += growth * of_error[p];
       squares += growth * growth;
     }
-    // The score of each error has a variance of 2 in a machine.
+    // In one machine, the score of an error has variance 2.
     const double noise = std::sqrt(2.0 * static_cast<double>(machines.size()) * squares);
     scores.of_part.push_back(sum);
     scores.is_sure.push_back((may_fall[i] ? std::abs(sum) : sum) > kSignificance * noise);

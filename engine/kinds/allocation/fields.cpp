@@ -64,7 +64,8 @@ const Group<Result> kAllocation{
      {"zone_datums", &Result::zone_datums, "1", "Its datums", Presence::where_computed},
      {"zone_length", &Result::zone_length, "m", "Length of the axis, first side or diameter of the plane; NaN: none",
       Presence::where_computed},
-     {"zone_width", &Result::zone_width, "m", "Second side of the plane; NaN: none", Presence::where_computed},
+     {"zone_width", &Result::zone_width, "m", "Second side of the plane; 0: it is round; NaN: none",
+      Presence::where_computed},
      {"zone_inside", &Result::zone_inside, "1", "Share of the features that are inside the zone",
       Presence::where_computed},
      {"zone_is_needed", &Result::zone_is_needed, "1",
@@ -113,7 +114,7 @@ const Fields<AllocationStage> kStageFields{
 
 constexpr const char* kCertificate = "/allocation/certificate";
 
-/// What the fresh machines show.
+/// The verdict on the certificate's machines.
 const Group<YieldVerdict> kVerdict{
     kCertificate,
     "What fresh machines show of the tolerances: their number is set beforehand, their seed serves nothing else, and "
@@ -128,7 +129,7 @@ const Group<YieldVerdict> kVerdict{
      {"ci_low", &YieldVerdict::ci_low, "1", "Lower end of its two-sided interval (Clopper and Pearson)"},
      {"ci_high", &YieldVerdict::ci_high, "1", "Upper end of its two-sided interval (Clopper and Pearson)"}}};
 
-/// The seeds and numbers of the machines, and the yield and confidence that the study asked for.
+/// Seeds and numbers of machines.
 const Fields<Result> kMachines{
     {"seed", &Result::certificate_seed, "1", "Seed of the fresh machines"},
     {"most_rejects", &Result::certificate_most, "1", "The certificate holds with no more rejects than these"},
@@ -138,7 +139,7 @@ const Fields<Result> kMachines{
 
 constexpr const char* kCertificateStudy = "/allocation/certificate_study";
 
-/// In the order of YieldVerdict::Decision.
+/// The words in a file for YieldVerdict::Decision, in the order of the enumeration.
 constexpr std::array<std::string_view, 4> kDecisions{"not_asked", "kept", "not_kept", "undecided"};
 constexpr std::array kAims{Aim::least_cost, Aim::equal_effect, Aim::equal_tolerance, Aim::common_factor};
 
@@ -146,7 +147,7 @@ std::string decision_of(const YieldVerdict& shown) {
   return std::string(kDecisions[static_cast<std::size_t>(shown.decision)]);
 }
 
-/// One-sided lower bound on the yield.
+/// The one-sided lower confidence bound on the yield.
 double lower_bound(const YieldVerdict& shown) {
   return proportion_at_least(shown.machines - shown.rejects, shown.machines, shown.conf_level);
 }
@@ -164,7 +165,7 @@ void write_certificate(ResultBuilder& result, const Result& found) {
                      "bound is below it; undecided: neither"});
 }
 
-/// Throws h5::Error for counts that no run can give.
+/// Reads the certificate. Throws h5::Error for counts that no run can produce.
 void read_certificate(const h5::File& file, Result& found) {
   YieldVerdict& shown = found.certificate;
   read_group(file, kVerdict, shown);
@@ -181,7 +182,7 @@ void read_certificate(const h5::File& file, Result& found) {
   }
 }
 
-/// Adds attributes that are not numbers, and those that follow from other data, for readers without this program.
+/// Adds attributes for readers without this program: texts, and numbers that follow from other data.
 void add_attributes(h5::File& file, const Result& found) {
   const auto set = [&](const char* name, const auto& value) { file.set_attribute(kAllocation.path, name, value); };
   set("yield", found.certificate.value);
@@ -221,7 +222,7 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   add_failures(result, found.failures, {std::string(kAllFactors)}, found.total().not_converged());
 }
 
-/// Checks what tables and CSV rely on. Throws h5::Error.
+/// Checks what tables and CSV files assume about a result. Throws h5::Error.
 void check(const Result& found) {
   check_names(found.part_names, "/part");
   check_names(found.part_unit, "/allocation/unit");
@@ -260,7 +261,7 @@ void read(const h5::File& file, StoredResult& result) {
   check(found);
   found.solves = read_solver<decltype(found.solves)>(file);
   found.certificate.solves = found.total();
-  // The certificate's samples have other addresses than the study's: the study that repeats it can replay them.
+  // The addresses of the certificate's samples are those of the certificate's own study, which can replay them.
   result.varied = {std::string(kAllFactors)};
   found.failures = read_failures(file, result);
   result.varied.clear();
@@ -268,7 +269,7 @@ void read(const h5::File& file, StoredResult& result) {
   result.found = std::move(found);
 }
 
-/// The row of /allocation of this name.
+/// The row for the dataset with this name in the table of fields of the group /allocation.
 const FieldRow<Result>& row(std::string_view name) {
   return *std::ranges::find(kAllocation.fields, name, &FieldRow<Result>::name);
 }
@@ -280,7 +281,7 @@ std::vector<NamedUnit> named_parts(const Result& found) {
   return parts;
 }
 
-/// The tolerances of the drawing, a line for each part.
+/// A CSV table of the tolerances, with a line for each part.
 CsvTable part_table(const Result& found) {
   CsvTable table{"allocation",
                  {"part", [&found](std::size_t n) { return found.part_names[n]; }},
@@ -304,7 +305,7 @@ CsvTable part_table(const Result& found) {
   return table;
 }
 
-/// The share of the mean square of each error.
+/// A CSV table of each error's share of the mean square.
 CsvTable error_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   CsvTable table = lines_of_factors(result, "allocation_errors");
@@ -312,7 +313,7 @@ CsvTable error_table(const StoredResult& result) {
   return table;
 }
 
-/// A line for each response that has a limit.
+/// A CSV table with a line for each response that has a limit.
 CsvTable limit_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   CsvTable table{"allocation_limits",
@@ -338,7 +339,7 @@ CsvTable limit_table(const StoredResult& result) {
   return table;
 }
 
-/// How much of each limit is used at each pose, and what it costs there.
+/// A CSV table of the use of each limit at each pose, and of the multiplier there.
 CsvTable pose_use_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   CsvTable table = lines_of_poses(result, "allocation_poses");
@@ -361,7 +362,7 @@ CsvTable stage_table(const Result& found) {
   return table;
 }
 
-/// The costs of other yields, followed by the costs of other limits.
+/// A CSV table of predicted costs: first at other yields, then at other limits.
 CsvTable curve_table(const Result& found) {
   const std::size_t yields = found.curve_yield.size();
   const auto of = [yields](std::span<const double> by_yield, std::span<const double> by_factor) {
@@ -376,7 +377,7 @@ CsvTable curve_table(const Result& found) {
            {"cost", of(found.curve_yield_cost, found.curve_factor_cost)}}};
 }
 
-/// What the fresh machines show, on one line.
+/// A CSV table with the certificate in one line.
 CsvTable certificate_table(const Result& found) {
   const YieldVerdict& shown = found.certificate;
   CsvTable table{"allocation_certificate", {"decision", [&shown](std::size_t) { return decision_of(shown); }}, 1};
@@ -400,7 +401,7 @@ CsvTable certificate_table(const Result& found) {
   return table;
 }
 
-/// The failed samples of the certificate. Their addresses are those of the study that repeats it.
+/// A CSV table of the certificate's failed samples. Their addresses are those of the certificate's own study.
 CsvTable certificate_failures(const Result& found) {
   const std::vector<Failure>& list = found.failures;
   return {"failures",

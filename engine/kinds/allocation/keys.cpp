@@ -12,19 +12,21 @@
 #include "engine/kinds/allocation/zone_blocks.h"
 #include "engine/kinds/allocation/zone_parts.h"
 #include "engine/stats/proportion.h"
+#include "engine/study/calibration_keys.h"
 #include "engine/study/limit_keys.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
 
-constexpr std::array<std::string_view, 11> kAllocationKeys{
-    "factors", "limits", "yield", "confidence", "samples", "aim", "background", "sigmas", "cpk", "calibrated", "parts"};
+constexpr std::array<std::string_view, 12> kAllocationKeys{"factors", "limits",     "yield",       "confidence",
+                                                           "samples", "aim",        "background",  "sigmas",
+                                                           "cpk",     "calibrated", "calibration", "parts"};
 
-/// The words of a study file, in the order of the enumeration.
+/// The names of aims in study files, in the order of the enumeration.
 constexpr std::array<std::string_view, 4> kAimNames{"least-cost", "equal-effect", "equal-tolerance", "common-factor"};
 
-/// Enough expected rejects to estimate 1 - yield within 5 %.
+/// The expected number of rejects in a study of default size. It estimates 1 - yield to about 5 %.
 constexpr double kUsualRejects = 400.0;
 constexpr double kFewestUsual = 2000.0;
 constexpr double kMostUsual = 20e6;
@@ -32,7 +34,7 @@ constexpr double kMostUsual = 20e6;
 /// The default number of machines.
 std::size_t usual_samples(double yield) {
   constexpr double kThousand = 1000.0;
-  constexpr double kRounding = 1e-11;  // relative; without it a yield of 0.9 would take 5000 machines instead of 4000
+  constexpr double kRounding = 1e-11;  // relative; without it, a yield of 0.9 would give 5000 machines instead of 4000
   const double machines = std::ceil(kUsualRejects / (1.0 - yield) * (1.0 - kRounding));
   return static_cast<std::size_t>(std::clamp(std::ceil(machines / kThousand) * kThousand, kFewestUsual, kMostUsual));
 }
@@ -47,12 +49,12 @@ void read_samples(const StudyValue& value, Study& study, const Reading&) {
   samples_value().read(value, study);
 }
 
-/// Checks these keys alone; read_sigmas() gives their values to the parts.
+/// Only checks the keys; read_sigmas() passes their values to the parts.
 void read_usual_sigmas(const StudyValue&, Study&, const Reading& reading) {
   static_cast<void>(read_sigmas(reading.root.section("analysis")));
 }
 
-/// Throws if an error of the new parts belongs to an earlier part.
+/// Throws InputError if an error of the new parts is in an earlier part.
 void check_own_errors(const StudySection& block, std::span<const AllocatedPart> earlier,
                       std::span<const AllocatedPart> parts, const ModelDescription& model) {
   std::vector<const AllocatedPart*> owner(model.factors.size());
@@ -91,7 +93,8 @@ std::string parts_lines(const Study& study) {
   return text;
 }
 
-/// The first two limbs, as an example of limbs whose errors are the same.
+/// A commented line of a template that names the first two limbs as an example of the key identical_limbs. Empty if the
+/// mechanism has fewer than two limbs.
 std::string shown_limbs(const ModelDescription& model) {
   std::set<std::size_t> limbs;
   for (const Factor& factor : model.factors) limbs.insert(factor.limb);
@@ -99,7 +102,8 @@ std::string shown_limbs(const ModelDescription& model) {
   return fmt::format("# identical_limbs = [{}, {}]\n", *limbs.begin(), *std::next(limbs.begin()));
 }
 
-/// A block in which each error of this dimension is a part of its own.
+/// The TOML table [[analysis.parts]] of a template in which each error of this dimension is a part of its own. Empty if
+/// the mechanism has no such error.
 std::string shown_block(Dimension dimension, const ModelDescription& model) {
   if (std::ranges::count(model.factors, dimension, &Factor::dimension) == 0) return {};
   return fmt::format(
@@ -109,7 +113,8 @@ std::string shown_block(Dimension dimension, const ModelDescription& model) {
       example_size(dimension, 1.0));
 }
 
-/// A block in which each zone is a part of its own; empty without zones.
+/// The TOML table [[analysis.parts]] of a template in which each tolerance zone is a part of its own. Empty if the
+/// mechanism has no zones.
 std::string shown_zone_block(const ModelDescription& model) {
   const auto has_zone = [](const Feature& feature) { return feature.location || feature.orientation; };
   if (std::ranges::none_of(model.features, has_zone)) return {};
@@ -118,6 +123,14 @@ std::string shown_zone_block(const ModelDescription& model) {
       "}}\n# bounds = [{}, {}]\n",
       shown_limbs(model), display_unit(Dimension::length).name, example_size(Dimension::length, 0.01),
       example_size(Dimension::length, 1.0));
+}
+
+/// The template's line with `sigmas`, which applies to parts that are not zones. If the template has no such part, the
+/// line is a comment.
+std::string shown_sigmas(const TemplateLines& lines, const Study& study) {
+  const ModelDescription& model = study.model();
+  const bool has_other = shown_zone_block(model).empty() || !shown_block(Dimension::angle, model).empty();
+  return lines.explained("analysis", "sigmas", has_other ? "sigmas = 3" : "# sigmas = 3");
 }
 
 std::string shown_parts(const TemplateLines& lines, const Study& study) {
@@ -182,7 +195,8 @@ std::vector<StudyRow> allocation_rows() {
                    .usual = "each part has its own",
                    .example = "3",
                    .meaning = "How many standard deviations a tolerance is, for parts that do not say it themselves.",
-                   .reader = read_usual_sigmas},
+                   .reader = read_usual_sigmas,
+                   .shown = shown_sigmas},
           StudyRow{.name = "cpk",
                    .value = {.type = "number", .bounds = "greater than 0"},
                    .usual = "",
@@ -200,7 +214,7 @@ std::vector<StudyRow> allocation_rows() {
                    .shown = shown_parts}};
 }
 
-/// Refuses a number of machines that is too small for a certificate even if all of them are good.
+/// Refuses a number of machines that is too small for a certificate even if all machines are good.
 void check_samples(const Study& study, const StudySection& section) {
   const AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
   const std::uint64_t needed = trials_without_failure(asked.yield, asked.confidence);
@@ -214,14 +228,14 @@ void check_samples(const Study& study, const StudySection& section) {
   throw InputError(yield ? yield->place() : section.place(), problem, remedy);
 }
 
-/// Refuses a study that lacks what a run needs.
+/// Refuses a study without limits or parts.
 void require_all(const Study& study, const StudySection& section) {
   static_cast<void>(
       section.require("limits", "write what every machine must keep, e.g. limits = " + example_limits(study.model())));
   static_cast<void>(section.require("parts", "write [[analysis.parts]] with factors, e.g. factors = \"linear\""));
 }
 
-/// Refuses a limit on the spread of a response without a sign.
+/// Refuses a limit on the spread of a response that has no sign.
 void check_limits(const Study& study, const StudySection& section) {
   for (const ResponseLimit& limit : study.analysis.limits) {
     const Response& response = study.model().responses[limit.response];
@@ -234,8 +248,8 @@ void check_limits(const Study& study, const StudySection& section) {
   }
 }
 
-/// Refuses an aim that gives an orientation no tolerance: its effect alone may be negative, and it has no place as wide
-/// as its location.
+/// Refuses an aim that cannot choose the tolerance of an orientation, because the effect of an orientation alone may be
+/// negative.
 void check_aim_of_zones(const Study& study, const StudySection& section) {
   const AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
   if (asked.aim != Aim::equal_effect && asked.aim != Aim::equal_tolerance) return;
@@ -253,11 +267,13 @@ void check_aim_of_zones(const Study& study, const StudySection& section) {
 void complete_allocation(Study& study, const Reading& reading) {
   const StudySection section = reading.root.section("analysis");
   AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
-  study.analysis.draws = Draws::per_machine;
   if (!section.find("samples")) study.analysis.samples = usual_samples(asked.yield);
   check_samples(study, section);
   check_limits(study, section);
-  if (reading.use == StudyUse::run) require_all(study, section);
+  if (reading.use == StudyUse::run) {
+    require_all(study, section);
+    check_simulated_machines(study, section);
+  }
   const bool costs = std::ranges::any_of(asked.parts, has_cost);
   const auto aim = section.find("aim");
   if (!aim) asked.aim = costs ? Aim::least_cost : Aim::equal_effect;
@@ -295,6 +311,7 @@ const StudyKind kAllocationStudy{.name = "allocation",
                                  .asks = "which tolerances keep limits, and at what cost",
                                  .keys = kAllocationKeys,
                                  .varies = Varies::together,
+                                 .draws = Draws::per_machine,
                                  .draws_machines_anew = true,
                                  .decides_by_samples = true,
                                  .rows = allocation_rows,

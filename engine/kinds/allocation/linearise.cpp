@@ -5,15 +5,19 @@
 
 #include "engine/kinds/allocation/search_constants.h"
 #include "engine/kinds/allocation/search_stages.h"
-#include "engine/random/distribution.h"
+#include "engine/random/normal_quantile.h"
 
 namespace poesy::allocation {
 
-Linearisation measure(const SearchProblem& problem, std::span<const double> tolerance, std::size_t draws) {
+Linearisation measure(const SearchProblem& problem, std::span<const double> tolerance, std::size_t draws,
+                      std::span<const double> known) {
   const Study study = problem.programme.at(tolerance);
+  const Study before = problem.programme.at(known.empty() ? tolerance : known);
+  const auto calibration = problem.calibration_of(before);
   const StudyRun& run = problem.run;
   return {{tolerance.begin(), tolerance.end()},
-          unless_stopped(mean_squares(Plan(study, run.poses), run.model, study.analysis.limits, draws, run.options))};
+          unless_stopped(mean_squares(Plan(study, run.poses), run.model, study.analysis.limits, calibration ? 0 : draws,
+                                      run.options, calibration.get()))};
 }
 
 std::optional<Candidate> choose(const SearchProblem& problem, const Linearisation& linearisation, double share,
@@ -49,7 +53,7 @@ Linearised linearise(const SearchProblem& problem, StageLog& log) {
   const std::vector<double> usual = programme.usual();
   std::vector<double> small = usual;
   for (double& tolerance : small) tolerance *= kLinearSize;
-  Linearisation linearisation = measure(problem, small, 0);
+  Linearisation linearisation = measure(problem, small, 0, usual);
   // The share `yield` of the draws of a standard normal have |z| below this quantile.
   const double share = 1.0 / normal_quantile(1.0, 0.5 + 0.5 * problem.options.yield);
   std::optional<Candidate> candidate = choose(problem, linearisation, share, {});
@@ -59,7 +63,7 @@ Linearised linearise(const SearchProblem& problem, StageLog& log) {
     candidate = choose_by_least_share(problem, linearisation, share, 1.0, {});
   }
   log.add("linear", *candidate, 0, 0);
-  // An error without an effect of its own may have one among other errors. Until that is known it has its usual size.
+  // An error may act only together with other errors. Until these effects are measured, its tolerance stays usual.
   const ToleranceLimits limits = programme.limits(linearisation.squares, small, candidate->share);
   for (std::size_t i = 0; i < programme.size(); ++i) {
     bool acts = false;
@@ -77,7 +81,8 @@ Settled settle(const SearchProblem& problem, Linearised from, StageLog& log) {
     const TolerancePoint before = candidate.point;
     linearisation = measure(problem, before.tolerance, kDrawsAmongOthers);
     const auto next = choose(problem, linearisation, candidate.share, {before.tolerance, kMaxGrowth});
-    if (!next) {  // the machines show whether the lowest tolerances keep the limits
+    if (!next) {  // no tolerances are feasible: trials of machines will show whether the lowest tolerances keep the
+                  // limits
       const Candidate lowest{problem.programme.lowest(), candidate.chosen, candidate.share};
       return {std::move(linearisation), lowest, std::move(candidate)};
     }

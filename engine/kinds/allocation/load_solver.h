@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "engine/base/archive.h"
 #include "engine/kinds/allocation/relative_limits.h"
+#include "engine/kinds/machine_calibration.h"
 #include "engine/model/model.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
@@ -16,32 +18,36 @@
 
 namespace poesy {
 
-/// The number of machines that are solved together at each pose.
+/// The number of machines in a piece of work, which one thread solves together at each pose.
 inline constexpr std::size_t kMachinesOfPiece = 200;
 
-/// This number of solves, counted as converged. For work that only counts solves; how solves end is counted when all
-/// machines are tried.
+/// The counts of a piece of work that does not record how its solves ended: all of them count as converged. How solves
+/// ended is recorded by machine_loads(), which tries all machines.
 inline SolveCounts as_converged(std::uint64_t solves) {
   SolveCounts counts;
   counts.by_status[static_cast<std::size_t>(SolveStatus::converged)] = solves;
   return counts;
 }
 
-/// Reads or writes `count` loads. No load is negative, and a machine without a solution has an infinite load.
+/// Reads or writes the loads (MachineLoads) of `count` machines. A load is never negative, and a machine that is not
+/// solved has an infinite load.
 inline void loads_state(Archive& archive, std::vector<double>& loads, std::size_t count) {
   archive.list(loads, count);
   archive.expect(std::ranges::all_of(loads, [](double load) { return load >= 0.0; }), "has loads that no machine has");
 }
 
-/// Draws machines, solves them at the poses of a plan, and computes their loads. Owns the scratch of one thread.
+/// Draws the machines of a plan, solves them at its poses, and computes their loads: for each machine the largest ratio
+/// of a response to its limit. Owns the scratch memory of one thread.
 class LoadSolver : protected UnitSolver {
  protected:
-  /// Refers to all three arguments.
-  LoadSolver(const Plan& plan, const Model& model, const RelativeLimits& limits)
-      : UnitSolver(plan, model, plan.factors().size()), limits_(limits) {}
+  /// Refers to all arguments. calibration: how machines are calibrated; null: they are not.
+  LoadSolver(const Plan& plan, const Model& model, const RelativeLimits& limits, const MachineCalibration* calibration)
+      : UnitSolver(plan, model, plan.factors().size()), limits_(limits), calibration_(calibration) {
+    if (calibration != nullptr) calibrator_ = std::make_unique<MachineCalibrator>(*calibration);
+  }
 
-  /// Draws the errors of these machines at the first pose into values_ [P x B]. machines: ascending numbers, at most
-  /// kMachinesOfPiece.
+  /// Draws the errors of these machines at the first pose into values_ [errors x machines]. machines: ascending, at
+  /// most kMachinesOfPiece.
   void draw(std::span<const std::size_t> machines) {
     const std::size_t count = machines.size();
     const std::size_t errors = plan_->factors().size();
@@ -49,7 +55,16 @@ class LoadSolver : protected UnitSolver {
     plan_->transform(std::span(values_).first(errors * count), count);
   }
 
-  /// Draws those of their errors anew that machines have anew at each pose. Returns the positions of these errors.
+  /// Calibrates the machines whose errors are in values_ [P x B], if machines are calibrated. The next solves are of
+  /// these machines.
+  void calibrate(std::span<const std::size_t> machines) {
+    if (calibrator_ == nullptr) return;
+    calibrated_ = calibration_->evaluator((*calibrator_)(all_errors(drawn(machines.size())), machines));
+    solve_by(calibrated_.get());
+  }
+  bool is_calibrated() const { return calibrator_ != nullptr; }  ///< Whether machines are calibrated.
+
+  /// Draws the errors that machines draw anew at each pose. Returns the positions of these errors.
   std::span<const std::size_t> draw_per_pose(PoseIndex pose, std::span<const std::size_t> machines) {
     const std::span<const std::size_t> errors = plan_->per_pose();
     if (errors.empty()) return errors;
@@ -58,14 +73,15 @@ class LoadSolver : protected UnitSolver {
     return errors;
   }
 
-  /// Begins to collect what limits over poses need of this many machines.
+  /// Prepares to record what limits over poses need from this number of machines.
   void begin_poses(std::size_t machines) {
     const std::size_t poses = plan_->poses().size();
     if (limits_.any_over_poses()) at_poses_.assign(limits_.size() * machines * poses, 0.0);
   }
 
-  /// Solves the drawn machines at one pose and raises their loads [B]. Sets missing [B] to 1 where a machine is not
-  /// solved, and beyond [K x B] to 1 where it breaks a limit. Limits over poses wait for end_poses().
+  /// Solves the drawn machines at one pose and raises their loads [machines] to the largest so far. Sets missing
+  /// [machines] to 1 if a machine is not solved, and beyond [limits x machines] to 1 if it breaks a limit. Limits over
+  /// poses are evaluated by end_poses().
   UnitOutcomes add_pose(PoseIndex pose, std::span<double> loads, std::span<std::uint8_t> missing,
                         std::span<std::uint8_t> beyond) {
     const std::size_t count = loads.size();
@@ -89,8 +105,8 @@ class LoadSolver : protected UnitSolver {
     return outcomes;
   }
 
-  /// Raises the loads of the machines by limits over poses, and sets beyond, as add_pose() does. Loads of machines that
-  /// are not solved at a pose say nothing.
+  /// Raises the loads of the machines by their loads under limits over poses, and sets beyond [limits x machines], as
+  /// add_pose() does. The loads of machines that are not solved at some pose are meaningless.
   void end_poses(std::span<double> loads, std::span<std::uint8_t> beyond) {
     const std::size_t count = loads.size();
     for (std::size_t k = 0; k < limits_.size(); ++k) {
@@ -103,19 +119,20 @@ class LoadSolver : protected UnitSolver {
     }
   }
 
-  const RelativeLimits& limits_;  ///< K limits
+  const RelativeLimits& limits_;  ///< limits of the study
 
  private:
-  /// [M] What the limit needs of a machine at each pose.
+  /// [poses] The recorded values of a machine under limit k, one for each pose.
   std::span<double> values_over_poses(std::size_t k, std::size_t machine, std::size_t count) {
     const std::size_t poses = plan_->poses().size();
     return std::span(at_poses_).subspan((k * count + machine) * poses, poses);
   }
 
-  /// Fills the row of an error with the uniforms of these machines at a pose.
+  /// Fills the row of an error in values_ with the uniform numbers from which the error is drawn, for these machines at
+  /// a pose.
   void draw_row(std::size_t error, PoseIndex pose, std::span<const std::size_t> machines) {
     const std::size_t count = machines.size();
-    for (std::size_t from = 0; from < count;) {  // consecutive machines are drawn together
+    for (std::size_t from = 0; from < count;) {  // machines with consecutive numbers are drawn in one call
       std::size_t to = from + 1;
       while (to < count && machines[to] == machines[to - 1] + 1) ++to;
       const WorkUnit run{0, pose, SampleIndex(machines[from]), to - from};
@@ -124,7 +141,12 @@ class LoadSolver : protected UnitSolver {
     }
   }
 
-  std::vector<double> at_poses_;  ///< [K x B x M] for limits over poses; empty without one
+  const MachineCalibration* calibration_;
+  std::unique_ptr<MachineCalibrator> calibrator_;  ///< null: machines are not calibrated
+  std::unique_ptr<Evaluator> calibrated_;          ///< evaluator of the machines that were calibrated last
+  /// [limits x machines x poses] What limits over poses need at each pose: the response for a spread, otherwise the
+  /// load. Empty without such a limit.
+  std::vector<double> at_poses_;
 };
 
 }  // namespace poesy

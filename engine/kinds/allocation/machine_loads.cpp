@@ -12,10 +12,10 @@
 namespace poesy {
 namespace {
 
-/// The machines of a run.
+/// The machines that a run solves.
 struct Machines {
-  std::size_t count;                      ///< n
-  std::span<const std::uint32_t> listed;  ///< [n] numbers; empty means 0 .. n - 1
+  std::size_t count;                      ///< n, the number of machines
+  std::span<const std::uint32_t> listed;  ///< [n] their numbers; empty: 0 .. n - 1
 
   std::size_t pieces() const { return (count + kMachinesOfPiece - 1) / kMachinesOfPiece; }
   std::size_t first(std::size_t piece) const { return piece * kMachinesOfPiece; }
@@ -23,7 +23,7 @@ struct Machines {
   std::size_t number(std::size_t n) const { return listed.empty() ? n : listed[n]; }
 };
 
-/// The loads of consecutive machines at all poses: the result of one piece of work or of several.
+/// The loads (MachineLoads) of consecutive machines over all poses, from one or several pieces of work.
 struct LoadSums : MachineLoads {
   const Machines* machines = nullptr;
 
@@ -54,11 +54,12 @@ struct LoadSums : MachineLoads {
   }
 };
 
-/// Solves one piece of work at a time. Owns the scratch of one thread.
+/// Solves a piece of work. Owns the scratch memory of one thread.
 class LoadEvaluator : private LoadSolver {
  public:
-  LoadEvaluator(const Plan& plan, const Model& model, const RelativeLimits& limits, const Machines& machines)
-      : LoadSolver(plan, model, limits), machines_(machines) {}
+  LoadEvaluator(const Plan& plan, const Model& model, const RelativeLimits& limits, const Machines& machines,
+                const MachineCalibration* calibration)
+      : LoadSolver(plan, model, limits, calibration), machines_(machines) {}
 
   LoadSums operator()(std::size_t piece) {
     const std::size_t count = machines_.count_of(piece);
@@ -66,6 +67,7 @@ class LoadEvaluator : private LoadSolver {
     numbers_.clear();
     for (std::size_t b = 0; b < count; ++b) numbers_.push_back(machines_.number(machines_.first(piece) + b));
     draw(numbers_);
+    calibrate(numbers_);
     LoadSums found(machines_, poses, limits_.size());
     found.load.assign(count, 0.0);
     missing_.assign(count, 0);
@@ -99,24 +101,25 @@ class LoadEvaluator : private LoadSolver {
   }
 
   const Machines& machines_;
-  std::vector<std::size_t> numbers_;   ///< [B]
-  std::vector<double> at_pose_;        ///< [B] loads
-  std::vector<std::uint8_t> missing_;  ///< [B] whether a pose is not solved
-  std::vector<std::uint8_t> beyond_;   ///< [K x B] whether the limit is broken at a pose
+  std::vector<std::size_t> numbers_;   ///< [machines] numbers of the machines
+  std::vector<double> at_pose_;        ///< [machines] loads at one pose
+  std::vector<std::uint8_t> missing_;  ///< [machines] 1 if some pose is not solved
+  std::vector<std::uint8_t> beyond_;   ///< [limits x machines] 1 if the limit is broken at some pose
 };
 
-/// The job of UnitFold, whose units are the pieces of work.
+/// The job of a UnitFold (run/unit_fold.h), whose units are the pieces of work.
 struct LoadJob {
   const Plan& plan;
   const Model& model;
   RelativeLimits limits;
   Machines machines;
+  const MachineCalibration* calibration;
 
   static constexpr std::string_view kName = "machine loads";
   std::vector<std::uint64_t> sizes() const { return {machines.count, plan.poses().size(), limits.size()}; }
   NumberRange units(const Shard& shard) const { return shard.of(machines.pieces()); }
   std::uint64_t expected(std::size_t n) const { return std::uint64_t{machines.count_of(n)} * plan.poses().size(); }
-  LoadEvaluator worker() const { return {plan, model, limits, machines}; }
+  LoadEvaluator worker() const { return {plan, model, limits, machines, calibration}; }
   static SolveCounts solves(std::size_t, const LoadSums& unit) { return total_of(unit.solves); }
   LoadSums sums() const { return {machines, plan.poses().size(), limits.size()}; }
 };
@@ -124,13 +127,16 @@ struct LoadJob {
 }  // namespace
 
 std::optional<MachineLoads> machine_loads(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
-                                          const RunOptions& options) {
-  return fold_units(LoadJob{plan, model, {plan, model, limits}, {plan.samples(), {}}}, options);
+                                          const RunOptions& options, const MachineCalibration* calibration) {
+  const LoadJob job{plan, model, {plan, model, limits, calibration}, {plan.samples(), {}}, calibration};
+  return fold_units(job, options);
 }
 
 std::optional<MachineLoads> machine_loads(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
-                                          std::span<const std::uint32_t> machines, const RunOptions& options) {
-  return fold_units(LoadJob{plan, model, {plan, model, limits}, {machines.size(), machines}}, options);
+                                          std::span<const std::uint32_t> machines, const RunOptions& options,
+                                          const MachineCalibration* calibration) {
+  const LoadJob job{plan, model, {plan, model, limits, calibration}, {machines.size(), machines}, calibration};
+  return fold_units(job, options);
 }
 
 }  // namespace poesy

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <string_view>
 
 #include "engine/base/archive.h"
+#include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "engine/kinds/allocation/load_solver.h"
 #include "engine/run/evaluate_unit.h"
@@ -14,26 +17,46 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kNodes = 3;            ///< mu - sigma, c, mu + sigma; c: Distribution::centre()
-constexpr std::size_t kDrawsOfPiece = 16;    ///< draws of one piece of work
-constexpr double kUnsolvedOverLimit = 10.0;  ///< response over limit of a sample without a solution
-constexpr double kLargestSum = 1e100;        ///< largest sum of squares in a state; slopes from it are finite
+constexpr std::size_t kNodes = 3;  ///< values of an error at which it is solved: mu - sigma, c, mu + sigma, where c is
+                                   ///< Distribution::centre()
+constexpr std::size_t kDrawsOfPiece = 16;  ///< number of draws in a piece of work
+/// A sample that is not solved counts as this multiple of the limit.
+constexpr double kUnsolvedOverLimit = 10.0;
+constexpr double kLargestSum = 1e100;  ///< the largest sum of squares that a state may hold, so that slopes computed
+                                       ///< from it are finite
 
-/// The result of a piece of work at its pose: K limits, P errors.
+/// What adds to mean squares: the errors that vary, then the noise of the measured values of a calibration.
+struct Sources {
+  std::size_t errors;
+  std::size_t noises;
+
+  std::size_t size() const { return errors + noises; }
+  bool is_noise(std::size_t p) const { return p >= errors; }
+};
+
+Sources sources_of(const Plan& plan, const MachineCalibration* calibration) {
+  const bool is_noisy =
+      calibration != nullptr && std::ranges::any_of(calibration->noise(), [](double sd) { return sd > 0.0; });
+  return {plan.factors().size(), is_noisy ? calibration->values() : 0};
+}
+
+/// The result of a piece of work at its pose, for K limits and P sources of scatter (errors, then measured values whose
+/// noise counts).
 struct AddedSquares {
-  /// [K] y^2 of the mechanism whose errors are at their centres; NaN where it is not solved, and among others
+  /// [limits] Square of the response of the mechanism with all errors at their centres. NaN if it is not solved, and in
+  /// pieces in which the other errors are drawn.
   std::vector<double> base;
   std::vector<double> added;    ///< [K x P] sums over the draws
   std::vector<double> counted;  ///< [P] draws that were solved
-  /// [K x P x kNodes] of limits on spreads: the response at each node of each error alone; NaN where it is not solved,
-  /// and among others. Empty without such a limit.
+  /// [K x P x kNodes] For limits on spreads: the response at each node of each source alone. NaN where it is not
+  /// solved, and in pieces where the other errors are drawn. Empty without such a limit.
   std::vector<double> nodes;
 
   AddedSquares() = default;
-  AddedSquares(const RelativeLimits& limits, std::size_t errors)
+  AddedSquares(const RelativeLimits& limits, std::size_t sources)
       : base(limits.size(), kNaN),
-        added(limits.size() * errors),
-        counted(errors),
+        added(limits.size() * sources),
+        counted(sources),
         nodes(limits.any_spread() ? added.size() * kNodes : 0, kNaN) {}
 
   void state(Archive& archive) {
@@ -41,7 +64,8 @@ struct AddedSquares {
   }
 };
 
-/// The pieces of work: at each pose one for each error alone, then some for each error among draws of the others.
+/// The pieces of work. At each pose, the first piece varies each error with the others at their centres; the following
+/// pieces vary each error among draws of the others.
 struct Pieces {
   std::size_t poses;
   std::size_t draws;
@@ -54,11 +78,18 @@ struct Pieces {
   std::size_t draws_of(std::size_t n) const { return std::min(kDrawsOfPiece, draws - first_draw(n)); }
 };
 
-/// Solves pieces. Owns the scratch of one thread.
+/// Solves a piece of work. Owns the scratch memory of one thread.
 class AddedSquaresEvaluator : private UnitSolver {
  public:
-  AddedSquaresEvaluator(const Plan& plan, const Model& model, const RelativeLimits& limits, const Pieces& pieces)
-      : UnitSolver(plan, model, plan.factors().size()), limits_(limits), pieces_(pieces) {
+  AddedSquaresEvaluator(const Plan& plan, const Model& model, const RelativeLimits& limits, const Pieces& pieces,
+                        const MachineCalibration* calibration)
+      : UnitSolver(plan, model, plan.factors().size()),
+        limits_(limits),
+        pieces_(pieces),
+        sources_(sources_of(plan, calibration)),
+        calibration_(calibration) {
+    POESY_EXPECTS(calibration == nullptr || pieces.draws == 0);
+    if (calibration != nullptr) calibrator_ = std::make_unique<MachineCalibrator>(*calibration);
     const std::size_t errors = plan.factors().size();
     draws_.resize(errors * pieces.draws);
     const WorkUnit all{0, PoseIndex(0), SampleIndex(0), pieces.draws};
@@ -70,42 +101,69 @@ class AddedSquaresEvaluator : private UnitSolver {
   }
 
   AddedSquares operator()(std::size_t n) {
-    const std::size_t errors = plan_->factors().size();
-    AddedSquares found(limits_, errors);
+    AddedSquares found(limits_, sources_.size());
     const std::size_t samples = pieces_.alone(n) ? 1 : pieces_.draws_of(n);
     constexpr std::size_t kMostPairs = Plan::kUnitSamples / kNodes;
-    for (std::size_t first = 0; first < samples * errors; first += kMostPairs) {
-      add_pairs(n, first, std::min(kMostPairs, samples * errors - first), found);
+    for (std::size_t first = 0; first < samples * sources_.size(); first += kMostPairs) {
+      add_pairs(n, first, std::min(kMostPairs, samples * sources_.size() - first), found);
     }
     return found;
   }
 
  private:
-  /// The value of another error in a slot of the batch.
+  /// The value that an error has in a sample while another error is varied.
   double other(std::size_t n, std::size_t sample, std::size_t slot) const {
     if (pieces_.alone(n)) return plan_->distributions()[slot].centre();
     return draws_[slot * pieces_.draws + pieces_.first_draw(n) + sample];
   }
 
-  /// Solves pairs of a sample and an error, sample by sample, at each of the three nodes.
+  /// Solves pairs of a sample and a source, sample by sample, at each of the three nodes.
   void add_pairs(std::size_t n, std::size_t first, std::size_t pairs, AddedSquares& found) {
-    const std::size_t errors = plan_->factors().size();
     const std::size_t count = pairs * kNodes;
-    for (std::size_t v = 0; v < errors; ++v) {
+    for (std::size_t v = 0; v < sources_.errors; ++v) {
       double* const row = &values_[v * count];
       for (std::size_t k = 0; k < pairs; ++k) {
-        std::fill_n(row + k * kNodes, kNodes, other(n, (first + k) / errors, v));
+        std::fill_n(row + k * kNodes, kNodes, other(n, (first + k) / sources_.size(), v));
       }
     }
     for (std::size_t k = 0; k < pairs; ++k) {
-      const std::size_t p = (first + k) % errors;
+      const std::size_t p = (first + k) % sources_.size();
+      if (sources_.is_noise(p)) continue;
       const Distribution& error = plan_->distributions()[p];
       const std::array nodes{error.mean() - error.standard_deviation(), error.centre(),
                              error.mean() + error.standard_deviation()};
       std::ranges::copy(nodes, &values_[p * count + k * kNodes]);
     }
+    calibrate(first, pairs);
     const UnitOutcomes outcomes = UnitSolver::solve(pieces_.pose(n), plan_->factors(), count, 0.0);
-    for (std::size_t k = 0; k < pairs; ++k) add(n, (first + k) % errors, k, outcomes, found);
+    for (std::size_t k = 0; k < pairs; ++k) add(n, (first + k) % sources_.size(), k, outcomes, found);
+  }
+
+  /// Calibrates the machines in values_, if machines are calibrated. Pairs are the same machines at each pose, so they
+  /// are calibrated once.
+  void calibrate(std::size_t first, std::size_t pairs) {
+    if (calibrator_ == nullptr) return;
+    std::unique_ptr<Evaluator>& evaluator = calibrated_[first];
+    if (evaluator == nullptr) {
+      evaluator =
+          calibration_->evaluator(calibrator_->with_noise(all_errors(drawn(pairs * kNodes)), noise_of(first, pairs)));
+    }
+    solve_by(evaluator.get());
+  }
+
+  /// [m x 3 pairs] The noise of measured values at the nodes of each pair: of an error there is none.
+  calibration::Matrix noise_of(std::size_t first, std::size_t pairs) const {
+    const auto columns = static_cast<Eigen::Index>(pairs * kNodes);
+    calibration::Matrix noise = calibration::Matrix::Zero(static_cast<Eigen::Index>(calibration_->values()), columns);
+    for (std::size_t k = 0; k < pairs; ++k) {
+      if (!sources_.is_noise(first + k)) continue;
+      const std::size_t i = first + k - sources_.errors;
+      const auto row = static_cast<Eigen::Index>(i);
+      const auto column = static_cast<Eigen::Index>(k * kNodes);
+      noise(row, column) = -calibration_->noise()[i];
+      noise(row, column + 2) = calibration_->noise()[i];
+    }
+    return noise;
   }
 
   void add(std::size_t n, std::size_t p, std::size_t pair, const UnitOutcomes& outcomes, AddedSquares& found) const {
@@ -117,7 +175,7 @@ class AddedSquaresEvaluator : private UnitSolver {
     found.counted[p] += 1.0;
     const std::size_t samples = outcomes.status.size();
     for (std::size_t k = 0; k < limits_.size(); ++k) {
-      double& sum = found.added[k * plan_->factors().size() + p];
+      double& sum = found.added[k * sources_.size() + p];
       const PoseIndex pose = pieces_.pose(n);
       if (!is_solved) {
         const double room = limits_.room(k, pose);
@@ -126,7 +184,7 @@ class AddedSquaresEvaluator : private UnitSolver {
       }
       const auto values = outcomes.responses.subspan(limits_.response(k) * samples + pair * kNodes, kNodes);
       if (limits_.is_spread(k)) {
-        if (alone) std::ranges::copy(values, &found.nodes[(k * plan_->factors().size() + p) * kNodes]);
+        if (alone) std::ranges::copy(values, &found.nodes[(k * sources_.size() + p) * kNodes]);
         continue;
       }
       const double centre = limits_.centre(k, pose);
@@ -139,27 +197,33 @@ class AddedSquaresEvaluator : private UnitSolver {
 
   const RelativeLimits& limits_;
   const Pieces& pieces_;
-  std::vector<double> draws_;     ///< [P x draws] of all errors, SI
-  std::vector<double> rounding_;  ///< [K]
+  Sources sources_;
+  const MachineCalibration* calibration_;
+  std::unique_ptr<MachineCalibrator> calibrator_;  ///< null: machines are not calibrated
+  /// Evaluators of calibrated machines for a block of pairs (a sample and a source), by the position of its first pair.
+  std::map<std::size_t, std::unique_ptr<Evaluator>> calibrated_;
+  std::vector<double> draws_;     ///< [P x draws] draws of all errors, SI
+  std::vector<double> rounding_;  ///< [K] rounding of the limited responses (Model::rounding)
 };
 
-/// The results of all pieces: K limits at M poses, L rows in all.
+/// The sums over all pieces of work, for K limits, P sources of scatter and M poses. Each limit at each pose has a row,
+/// so there are L = K x M rows.
 struct SquareSums {
   const Pieces* pieces;
-  std::size_t errors;           ///< P
-  std::vector<double> base;     ///< [L]
-  std::vector<double> alone;    ///< [L x P]
-  std::vector<double> among;    ///< [L x P] summed over draws
-  std::vector<double> counted;  ///< [M x P] draws
-  std::vector<double> nodes;    ///< [L x P x kNodes] of limits on spreads; empty without one
+  std::size_t sources;          ///< number P of sources
+  std::vector<double> base;     ///< [L] square of the response with all errors at their centres
+  std::vector<double> alone;    ///< [L x P] added mean squares of each source alone
+  std::vector<double> among;    ///< [L x P] added mean squares of each source among other errors, summed over draws
+  std::vector<double> counted;  ///< [M x P] number of draws that were solved
+  std::vector<double> nodes;    ///< [L x P x kNodes] see AddedSquares::nodes; empty without a limit on a spread
 
-  SquareSums(const Pieces& all, const RelativeLimits& limits, std::size_t error_count)
+  SquareSums(const Pieces& all, const RelativeLimits& limits, std::size_t source_count)
       : pieces(&all),
-        errors(error_count),
+        sources(source_count),
         base(limits.size() * all.poses),
-        alone(base.size() * errors),
+        alone(base.size() * sources),
         among(alone.size()),
-        counted(all.poses * errors),
+        counted(all.poses * sources),
         nodes(limits.any_spread() ? alone.size() * kNodes : 0, kNaN) {}
 
   void add(std::size_t n, const AddedSquares& found) {
@@ -168,15 +232,15 @@ struct SquareSums {
     for (std::size_t k = 0; k < found.base.size(); ++k) {
       const std::size_t row = k * pieces->poses + m;
       if (is_alone && !std::isnan(found.base[k])) base[row] = found.base[k];
-      for (std::size_t p = 0; p < errors; ++p) {
-        (is_alone ? alone : among)[row * errors + p] += found.added[k * errors + p];
+      for (std::size_t p = 0; p < sources; ++p) {
+        (is_alone ? alone : among)[row * sources + p] += found.added[k * sources + p];
       }
     }
     for (std::size_t k = 0; k < found.base.size() && is_alone && !nodes.empty(); ++k) {
-      const std::size_t of_limit = errors * kNodes;
+      const std::size_t of_limit = sources * kNodes;
       std::copy_n(&found.nodes[k * of_limit], of_limit, &nodes[(k * pieces->poses + m) * of_limit]);
     }
-    for (std::size_t p = 0; p < errors && !is_alone; ++p) counted[m * errors + p] += found.counted[p];
+    for (std::size_t p = 0; p < sources && !is_alone; ++p) counted[m * sources + p] += found.counted[p];
   }
 
   void state(Archive& archive, const NumberRange&) {
@@ -193,42 +257,47 @@ struct SquareSums {
   }
 };
 
-/// The job of UnitFold, whose units are the pieces.
+/// The job of a UnitFold (run/unit_fold.h), whose units are the pieces.
 struct SquareJob {
   const Plan& plan;
   const Model& model;
   RelativeLimits limits;
   Pieces pieces;
+  const MachineCalibration* calibration;
 
   static constexpr std::string_view kName = "mean squares";
-  std::size_t errors() const { return plan.factors().size(); }
-  std::vector<std::uint64_t> sizes() const { return {limits.size(), pieces.poses, pieces.draws, errors()}; }
+  std::size_t sources() const { return sources_of(plan, calibration).size(); }
+  std::vector<std::uint64_t> sizes() const { return {limits.size(), pieces.poses, pieces.draws, sources()}; }
   NumberRange units(const Shard& shard) const { return shard.of(pieces.count()); }
-  std::uint64_t expected(std::size_t n) const { return kNodes * errors() * (pieces.alone(n) ? 1 : pieces.draws_of(n)); }
-  AddedSquaresEvaluator worker() const { return {plan, model, limits, pieces}; }
-  AddedSquares unit(std::size_t) const { return {limits, errors()}; }
+  std::uint64_t expected(std::size_t n) const {
+    return kNodes * sources() * (pieces.alone(n) ? 1 : pieces.draws_of(n));
+  }
+  AddedSquaresEvaluator worker() const { return {plan, model, limits, pieces, calibration}; }
+  AddedSquares unit(std::size_t) const { return {limits, sources()}; }
   SolveCounts solves(std::size_t n, const AddedSquares&) const { return as_converged(expected(n)); }
-  SquareSums sums() const { return {pieces, limits, errors()}; }
+  SquareSums sums() const { return {pieces, limits, sources()}; }
 };
 
-/// Fills in the rows of limits on spreads, to first order in single errors: of the responses less their mean over the
-/// poses where they are solved. An error that is drawn anew at each pose is independent from pose to pose.
+/// Computes the rows of MeanSquares for limits on spreads, to first order in single errors. The response minus its mean
+/// over the solved poses takes the place of the response. An error that is drawn anew at each pose is independent
+/// between poses.
 class SpreadRows {
  public:
   SpreadRows(SquareSums& sums, const SquareJob& job) : sums_(sums), job_(job), poses_(job.pieces.poses) {}
 
   void fill(std::size_t k) {
     rounding_ = job_.model.rounding(job_.limits.response(k));
-    for (std::size_t p = 0; p < sums_.errors; ++p) {
+    for (std::size_t p = 0; p < sums_.sources; ++p) {
       take_mean(k, p);
-      (job_.plan.is_per_pose(p) ? add_per_pose(k, p) : add_fixed(k, p));
+      const bool is_anew = p < job_.plan.factors().size() && job_.plan.is_per_pose(p);
+      (is_anew ? add_per_pose(k, p) : add_fixed(k, p));
     }
   }
 
  private:
   using Nodes = std::array<double, kNodes>;
 
-  /// The response at the nodes of an error, less the mean over the poses.
+  /// The response at the nodes of an error, minus the mean over the poses.
   Nodes centred(std::size_t k, std::size_t m, std::size_t p) const {
     Nodes y{};
     for (std::size_t at = 0; at < kNodes; ++at) y[at] = node(k, m, p, at) - mean_[at];
@@ -236,7 +305,7 @@ class SpreadRows {
   }
 
   double node(std::size_t k, std::size_t m, std::size_t p, std::size_t at) const {
-    return sums_.nodes[((k * poses_ + m) * sums_.errors + p) * kNodes + at];
+    return sums_.nodes[((k * poses_ + m) * sums_.sources + p) * kNodes + at];
   }
   bool is_solved(std::size_t k, std::size_t m, std::size_t p) const { return !std::isnan(node(k, m, p, 1)); }
 
@@ -254,7 +323,7 @@ class SpreadRows {
   void set(std::size_t k, std::size_t m, std::size_t p, double base, double added) {
     const std::size_t row = k * poses_ + m;
     sums_.base[row] = base * base;
-    sums_.alone[row * sums_.errors + p] = added;
+    sums_.alone[row * sums_.sources + p] = added;
   }
 
   void add_fixed(std::size_t k, std::size_t p) {
@@ -277,7 +346,7 @@ class SpreadRows {
     }
   }
 
-  /// What the error adds at its own pose to the mean square about the response without it.
+  /// For an error that is drawn anew at each pose: the mean square of the change that it causes at its own pose.
   double own_square(std::size_t k, std::size_t m, std::size_t p) const {
     const double low = node(k, m, p, 0) - node(k, m, p, 1);
     const double high = node(k, m, p, 2) - node(k, m, p, 1);
@@ -287,22 +356,24 @@ class SpreadRows {
   SquareSums& sums_;
   const SquareJob& job_;
   std::size_t poses_;
-  double rounding_ = 0.0;  ///< of the response
-  double solved_ = 0.0;    ///< poses where the error is solved
-  Nodes mean_{};           ///< over these poses
+  double rounding_ = 0.0;  ///< changes of the response up to this are rounding, SI
+  double solved_ = 0.0;    ///< number of poses at which the error is solved
+  Nodes mean_{};           ///< mean of the response over these poses, at each node
 };
 
 MeanSquares mean_squares_of(const SquareSums& sums, const RelativeLimits& limits, const Plan& plan) {
-  MeanSquares found{sums.base, std::vector<double>(sums.alone.size()), {}};
+  const std::size_t errors = plan.factors().size();
+  MeanSquares found{sums.base, std::vector<double>(sums.base.size() * errors), {}};
   for (std::size_t row = 0; row < sums.base.size(); ++row) {
-    for (std::size_t p = 0; p < sums.errors; ++p) {
-      const std::size_t at = row * sums.errors + p;
-      const double draws = sums.counted[row % sums.pieces->poses * sums.errors + p];
+    for (std::size_t p = 0; p < sums.sources; ++p) {
+      const std::size_t at = row * sums.sources + p;
+      const double draws = sums.counted[row % sums.pieces->poses * sums.sources + p];
       const double among =
           draws > 0.0 && !limits.is_spread(row / sums.pieces->poses) ? sums.among[at] / draws : sums.alone[at];
-      const double sigma = plan.distributions()[p].standard_deviation();
       found.value[row] += 0.5 * (sums.alone[at] + among);
-      found.slope[at] = std::max(0.0, among) / (sigma * sigma);
+      if (p >= errors) continue;  // noise does not change with tolerances
+      const double sigma = plan.distributions()[p].standard_deviation();
+      found.slope[row * errors + p] = std::max(0.0, among) / (sigma * sigma);
     }
   }
   return found;
@@ -311,8 +382,9 @@ MeanSquares mean_squares_of(const SquareSums& sums, const RelativeLimits& limits
 }  // namespace
 
 std::optional<MeanSquares> mean_squares(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
-                                        std::size_t draws, const RunOptions& options) {
-  const SquareJob job{plan, model, {plan, model, limits}, {plan.poses().size(), draws}};
+                                        std::size_t draws, const RunOptions& options,
+                                        const MachineCalibration* calibration) {
+  const SquareJob job{plan, model, {plan, model, limits, calibration}, {plan.poses().size(), draws}, calibration};
   auto sums = fold_units(job, options);
   if (!sums) return std::nullopt;
   for (std::size_t k = 0; k < limits.size(); ++k) {

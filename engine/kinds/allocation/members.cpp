@@ -21,7 +21,7 @@ bool varies(const Study& study, FactorIndex factor) {
   return std::ranges::find(study.analysis.factors, factor) != study.analysis.factors.end();
 }
 
-/// The errors that vary and have this dimension.
+/// The varied errors of this dimension.
 PartMembers members_of(const StudyValue& value, Dimension dimension, const Study& study) {
   PartMembers members;
   for (const FactorIndex factor : study.analysis.factors) {
@@ -33,8 +33,8 @@ PartMembers members_of(const StudyValue& value, Dimension dimension, const Study
              "leave this part out");
 }
 
-/// The errors that a word names: "linear", "angular" or "relative" for all of that dimension that vary, else a factor
-/// set.
+/// The errors that a word names: "linear", "angular" or "relative" names all varied errors of that dimension; any other
+/// word names a factor set.
 PartMembers members_by_word(const StudyValue& value, const Study& study) {
   const ModelDescription& model = study.model();
   for (const Dimension dimension : kErrorDimensions) {
@@ -50,7 +50,7 @@ PartMembers members_by_word(const StudyValue& value, const Study& study) {
   return members;
 }
 
-/// Refuses a name or a pattern of a list.
+/// Refuses a name or a pattern that names no varied error.
 [[noreturn]] void refuse_pattern(const StudyValue& value, const std::string& pattern, const Study& study) {
   const ModelDescription& model = study.model();
   const auto fits = [&](const Factor& factor) { return matches(pattern, factor.name); };
@@ -85,7 +85,7 @@ bool is_digit(const std::string& text, std::size_t at) {
   return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
 }
 
-/// The error of the other limb whose name differs only in the limb's number.
+/// The error of another limb whose name differs only in the number of the limb.
 std::optional<FactorIndex> counterpart(const Factor& factor, std::size_t limb, const ModelDescription& model) {
   const std::string number = std::to_string(factor.limb);
   for (std::size_t at = factor.name.find(number); at != std::string::npos; at = factor.name.find(number, at + 1)) {
@@ -99,7 +99,7 @@ std::optional<FactorIndex> counterpart(const Factor& factor, std::size_t limb, c
   return std::nullopt;
 }
 
-/// Joins each error with its counterparts in the other limbs.
+/// Joins each error with its counterparts in the other listed limbs into one part.
 std::vector<PartMembers> joined(const PartMembers& members, const Limbs& limbs, const ModelDescription& model) {
   std::vector<bool> left(model.factors.size());
   for (const FactorIndex factor : members) left[factor.value] = true;
@@ -126,12 +126,18 @@ void check_distributions(const StudyValue& value, const PartMembers& members, co
   for (const FactorIndex factor : members) {
     const std::string& error = factor_of(study, factor).name;
     if (study.errors.by_factor[factor.value].shape() == Distribution::Shape::measured) {
-      value.fail("has '" + error + "', whose distribution is measured, so its tolerance is no choice",
+      value.fail("has '" + error + "', whose distribution is measured, so its tolerance cannot be chosen",
                  "leave it out of all parts to let it vary as measured, or give it another distribution");
     }
     if (study.errors.by_factor[factor.value].centre() != 0.0) {
       value.fail("has '" + error + "', whose mean is not zero, so its tolerance is not about the nominal size",
                  "take the nominal size in the middle of the limits and remove the mean, or leave it out of all parts");
+    }
+    for (const Feature& feature : features_drawn_together(study)) {
+      const std::vector<FactorIndex> errors = feature.errors();
+      if (std::ranges::find(errors, factor) == errors.end()) continue;
+      value.fail("has '" + error + "', which is drawn with all of '" + feature.name + "' in its zone",
+                 "write errors.zones = { distribution = \"normal\", sigmas = 3 }, or leave it out of all parts");
     }
     if (study.errors.is_per_pose(factor)) {
       value.fail("has '" + error + "', which a machine draws anew at each pose, so no part has it",

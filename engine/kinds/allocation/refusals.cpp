@@ -1,4 +1,4 @@
-// The messages of a search that finds no tolerances within the limits.
+// Messages for a search that finds no tolerances within the limits.
 
 #include <fmt/format.h>
 
@@ -16,11 +16,17 @@ namespace poesy::allocation {
 
 namespace {
 
-/// "gap at pose 12".
+/// A limit at a pose, for a message: "gap at pose 12".
 std::string row_text(const StudyRun& run, std::size_t row) {
   const std::size_t poses = run.poses.size();
   const ResponseLimit& limit = run.study.analysis.limits[row / poses];
   return fmt::format("{} at pose {}", run.study.model().responses[limit.response].name, row % poses);
+}
+
+RelativeLimits stated_limits(const SearchProblem& problem) {
+  const Study& study = problem.run.study;
+  return {Plan(study, problem.run.poses), problem.run.model, study.analysis.limits,
+          problem.calibration_of(study).get()};
 }
 
 /// How parts can have lower tolerances.
@@ -35,7 +41,7 @@ std::string finer_parts(const SearchProblem& problem) {
 void refuse_perfect_beyond(const SearchProblem& problem) {
   const Study& study = problem.run.study;
   const PoseSet& poses = problem.run.poses;
-  const RelativeLimits limits(Plan(study, poses), problem.run.model, study.analysis.limits);
+  const RelativeLimits limits = stated_limits(problem);
   for (std::size_t row = 0; row < limits.size() * poses.size(); ++row) {
     const ResponseLimit& limit = study.analysis.limits[row / poses.size()];
     const Dimension dimension = study.model().responses[limit.response].dimension;
@@ -56,8 +62,7 @@ void refuse_infeasible(const SearchProblem& problem, const Infeasible& infeasibl
   const std::size_t k = infeasible.limit / poses.size();
   const ResponseLimit& limit = study.analysis.limits[k];
   const Response& response = study.model().responses[limit.response];
-  const RelativeLimits limits(Plan(study, poses), problem.run.model, study.analysis.limits);
-  const double room = limits.room(k, PoseIndex(infeasible.limit % poses.size()));
+  const double room = stated_limits(problem).room(k, PoseIndex(infeasible.limit % poses.size()));
   const double fixed = room * room - infeasible.room;  // the effect of errors that belong to no part
   const auto text = [&](double square) {
     return readable_text({std::sqrt(std::max(0.0, square)), response.dimension}, 4);
@@ -66,12 +71,15 @@ void refuse_infeasible(const SearchProblem& problem, const Infeasible& infeasibl
     return readable_text({value, response.dimension}, 6);
   });
   const std::string row = row_text(problem.run, infeasible.limit);
+  const bool noise = problem.calibration.has_value();
   if (infeasible.room <= 0.0) {
-    throw InputError({},
-                     fmt::format("the limit of {} on {} cannot be kept: the background and the errors of no part alone "
-                                 "give a root mean square of {}",
-                                 stated, row, text(fixed)),
-                     "widen the limit, make these errors smaller, or list them as parts");
+    throw InputError(
+        {},
+        fmt::format("the limit of {} on {} cannot be kept: {}the background and the errors of no part alone "
+                    "give a root mean square of {}",
+                    stated, row, noise ? "the noise of the calibration, " : "", text(fixed)),
+        noise ? "widen the limit, measure more or better, make these errors smaller, or list them as parts"
+              : "widen the limit, make these errors smaller, or list them as parts");
   }
   throw InputError({},
                    fmt::format("the limit of {} on {} cannot be kept: with every tolerance at its lowest the root mean "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
@@ -10,29 +11,38 @@
 namespace poesy {
 namespace {
 
-/// Solves the mechanism whose errors that vary are at their centres.
+/// Solves the mechanism with all varied errors at their centres.
 class PerfectSolver : private UnitSolver {
  public:
-  PerfectSolver(const Plan& plan, const Model& model) : UnitSolver(plan, model, plan.factors().size()) {
+  PerfectSolver(const Plan& plan, const Model& model, const MachineCalibration* calibration)
+      : UnitSolver(plan, model, plan.factors().size()) {
     for (std::size_t p = 0; p < plan.factors().size(); ++p) values_[p] = plan.distributions()[p].centre();
+    if (calibration == nullptr) return;
+    calibrated_ = calibration->evaluator(MachineCalibrator(*calibration).without_noise(all_errors(drawn(1))));
+    solve_by(calibrated_.get());
   }
-  /// [R] The responses at a pose; zero if it is not solved, so that no machine will be.
+  /// [responses] The responses at a pose. Zero if the mechanism is not solved there, because then no machine is solved
+  /// there either.
   std::vector<double> operator()(PoseIndex pose) {
     const UnitOutcomes outcomes = UnitSolver::solve(pose, plan_->factors(), 1, 0.0);
     if (!counts(outcomes.status.front(), plan_->not_converged())) return std::vector<double>(responses_, 0.0);
     return {outcomes.responses.begin(), outcomes.responses.end()};
   }
+
+ private:
+  std::unique_ptr<Evaluator> calibrated_;
 };
 
 }  // namespace
 
-RelativeLimits::RelativeLimits(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits)
+RelativeLimits::RelativeLimits(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
+                               const MachineCalibration* calibration)
     : limits_(limits.begin(), limits.end()), centre_({limits.size(), plan.poses().size()}, 0.0) {
   const auto is_from_zero = [](const ResponseLimit& limit) {
     return limit.allowed.is_magnitude() || limit.allowed.is_spread();
   };
   if (std::ranges::all_of(limits_, is_from_zero)) return;
-  PerfectSolver solve(plan, model);
+  PerfectSolver solve(plan, model, calibration);
   for (std::size_t m = 0; m < plan.poses().size(); ++m) {
     const std::vector<double> responses = solve(PoseIndex(m));
     for (std::size_t k = 0; k < limits_.size(); ++k) {
@@ -54,7 +64,7 @@ double RelativeLimits::room(std::size_t k, PoseIndex pose) const {
 
 namespace {
 
-/// The load, at most 1 exactly if the limit holds, whatever the rounding.
+/// Corrects a load for rounding, so that it is at most 1 exactly if the limit holds.
 double rounded_load(double load, bool holds) {
   return holds ? std::min(load, 1.0) : std::max(load, std::nextafter(1.0, 2.0));
 }

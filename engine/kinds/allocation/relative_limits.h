@@ -6,6 +6,7 @@
 
 #include "engine/base/array.h"
 #include "engine/base/index.h"
+#include "engine/kinds/machine_calibration.h"
 #include "engine/model/model.h"
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
@@ -16,33 +17,39 @@ namespace axis {
 using Limit = Axis<"limit">;  ///< Limits of a study.
 }  // namespace axis
 
-/// The limits of a study, seen from the mechanism whose errors are at their centres (Distribution::centre: zero, except
-/// for a stated mean), with the constant errors of the background: K limits, M poses. What errors add to a response
-/// grows with the tolerances, so a limit with two ends, or with one, is counted from this response. A limit on
-/// magnitudes is counted from zero, and one on the spread over the poses from the mean over the poses.
+/// The limits of a study as distances from a centre. For a limit with one or two ends, the centre is the response of
+/// the mechanism whose errors are at their own centres (Distribution::centre: zero, or a stated mean) with the constant
+/// errors of the background; the deviation from this response grows with the tolerances. For a limit on a magnitude,
+/// the centre is zero. For a limit on the spread over the poses, it is the mean over the poses.
 class RelativeLimits {
  public:
-  /// Solves this mechanism at all poses of the plan, if a limit is not on magnitudes.
-  RelativeLimits(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits);
+  /// Solves this mechanism at all poses of the plan, if a limit is not on magnitudes. calibration: how it is
+  /// calibrated, without noise; null: it is not.
+  RelativeLimits(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
+                 const MachineCalibration* calibration = nullptr);
 
-  std::size_t size() const { return limits_.size(); }                        ///< K.
-  std::size_t response(std::size_t k) const { return limits_[k].response; }  ///< The response of a limit.
-  /// The value from which the limit is counted, SI.
+  std::size_t size() const { return limits_.size(); }  ///< The number of limits.
+  /// Position of the response that a limit is on.
+  std::size_t response(std::size_t k) const { return limits_[k].response; }
+  /// The centre of a limit at a pose, SI.
   double centre(std::size_t k, PoseIndex pose) const { return centre_(k, pose.value); }
-  /// The distance from the centre to the nearer end, SI; not above zero if the centre is not inside. Of a spread it is
-  /// half of the limit, because values that are no further than this from their mean keep it.
+  /// The distance from the centre to the nearer end of the limit, SI; zero or negative if the centre is not within the
+  /// limit. For a limit on a spread, half the limit: if no value is farther than this from the mean, the spread is
+  /// kept.
   double room(std::size_t k, PoseIndex pose) const;
-  /// The distance of a value from the centre over that of the end on its side: at most 1 exactly if the limit holds,
-  /// whatever the rounding. Preconditions: room() > 0; not of a spread.
+  /// The load of a value: its distance from the centre divided by the distance of the end on the same side. It is at
+  /// most 1 exactly if the limit holds, in spite of rounding. Preconditions: room() > 0; the limit is not on a spread.
   double load(std::size_t k, PoseIndex pose, double value) const;
 
   bool is_spread(std::size_t k) const { return limits_[k].allowed.is_spread(); }  ///< Whether a spread is limited.
-  bool any_spread() const;                                                        ///< Whether any limit is on a spread.
-  /// Whether the load of a machine by this limit needs its values at all poses.
+  /// Whether some limit is on a spread.
+  bool any_spread() const;
+  /// Whether a limit is judged from a machine's values at all poses together.
   bool is_over_poses(std::size_t k) const { return limits_[k].allowed.is_over_poses(); }
-  bool any_over_poses() const { return poesy::any_over_poses(limits_); }  ///< Whether it does for any limit.
-  /// The load of a machine by a limit over poses: at most 1 exactly if the limit holds. at_poses: [M] of a spread the
-  /// values, else their load() at each pose; reordered.
+  /// Whether some limit is judged from the values at all poses together.
+  bool any_over_poses() const { return poesy::any_over_poses(limits_); }
+  /// The load of a machine under a limit over poses: at most 1 exactly if the limit holds. at_poses: [poses] the values
+  /// for a spread, otherwise load() at each pose; the function reorders them.
   double load_over_poses(std::size_t k, std::span<double> at_poses) const;
 
  private:

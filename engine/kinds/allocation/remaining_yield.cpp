@@ -1,4 +1,4 @@
-// The last stages of the search: they find the effect of each part alone, make parts coarser to use remaining yield,
+// The last stages of the search: predict the yield with each part coarser, make parts coarser to use remaining yield,
 // and round tolerances down.
 
 #include <algorithm>
@@ -14,28 +14,31 @@
 namespace poesy::allocation {
 namespace {
 
-/// A part that is made coarser alone.
+/// A step that makes one part coarser.
 struct CoarserPart {
   std::size_t part;
-  double step;   ///< its errors are so many times as large
-  double steps;  ///< the number of such steps of T^2 to the next tolerance that the part can have
+  double step;   ///< factor by which the step scales the part's errors
+  double steps;  ///< increase of T^2 to the next tolerance that the part can have, divided by the increase of T^2 in
+                 ///< one step
 };
 
 std::vector<double> try_varied(const SearchProblem& problem, const ToleranceDesign& design, const NearLimit& near,
                                std::span<const Variation> variations) {
   const StudyRun& run = problem.run;
   const Study study = machine_study(problem, design.seed, design.candidate.point.tolerance);
+  const auto calibration = problem.calibration_of(study);
   return unless_stopped(try_variations(Plan(study, run.poses), run.model, study.analysis.limits, near.machines(),
-                                       variations, run.options));
+                                       variations, run.options, calibration.get()));
 }
 
-/// The share of good machines if the step of a part adds this many rejects.
+/// The predicted share of good machines. added: rejects that one step of the part adds.
 double yield_with(const ToleranceDesign& design, const CoarserPart& coarser, double added) {
   const double rejects = static_cast<double>(rejects_of(design.screened.load)) + coarser.steps * added;
   return std::clamp(1.0 - rejects / static_cast<double>(design.load.size()), 0.0, 1.0);
 }
 
-/// Finds the yields of parts that hardly change loads, from many machines and their mirror images.
+/// Predicts the yields for larger tolerances of parts that hardly change the machines' ratios of response to limit,
+/// with more machines and with mirrored errors.
 void probe_small(const SearchProblem& problem, const ToleranceDesign& design, std::span<const CoarserPart> parts,
                  std::vector<double>& yield) {
   const NearLimit many(design.screened.numbers, design.screened.load, kProbesOfSmall);
@@ -52,9 +55,9 @@ void probe_small(const SearchProblem& problem, const ToleranceDesign& design, st
   }
 }
 
-/// Finds the yield with each of these parts coarser alone, and sets it in the list [N]; NaN for a part that cannot be
-/// coarser. Where the next value that a part can have is far away, few machines tell its effect, so the rejects of a
-/// small step are scaled in proportion to T^2.
+/// Predicts the yield with each of these parts coarser alone, and sets it in the list [parts]; NaN if a part cannot be
+/// coarser. If the next value of a part is far away, only few machines are near enough to show its effect. Then the
+/// rejects of a small step are extrapolated in proportion to T^2.
 std::vector<double> probe(const SearchProblem& problem, const ToleranceDesign& design,
                           std::span<const std::size_t> parts, std::vector<double> yield) {
   const NearLimit few(design.screened.numbers, design.screened.load, kProbes);
@@ -93,8 +96,8 @@ Probed probe_all(const SearchProblem& problem, ToleranceDesign design) {
   return {std::move(design), std::move(yield)};
 }
 
-/// The parts among these that could be coarser alone, at a lower cost, with no more rejects than the design may have.
-/// If together they would use more than that, those of the least effect are taken.
+/// Selects from these parts those that could be coarser alone at a lower cost, without more rejects than the design may
+/// have. If all together would add too many rejects, selects the parts with the least effect.
 std::vector<std::size_t> idle_parts(const SearchProblem& problem, const Probed& probed,
                                     std::span<const std::size_t> parts) {
   const auto& [design, coarser_yield] = probed;
@@ -115,8 +118,8 @@ std::vector<std::size_t> idle_parts(const SearchProblem& problem, const Probed& 
   return idle;
 }
 
-/// Makes these parts coarser by growing steps, until each would break the yield or cannot be coarser. Then scales the
-/// other parts to the yield. None if that does not reduce the cost or does not keep the yield.
+/// Makes these parts coarser in growing steps, until a further step would break the yield or a part cannot be coarser.
+/// Then scales the other parts to the yield. None if the cost does not fall or the yield is not kept.
 std::optional<Probed> loosen(const SearchProblem& problem, const Probed& from, std::vector<std::size_t> idle) {
   Probed loose = from;
   std::vector<bool> stays(problem.programme.size(), false);
@@ -167,7 +170,7 @@ Probed round_down(const SearchProblem& problem, Probed from, StageLog& log) {
   Candidate candidate = from.design.candidate;
   candidate.point = std::move(rounded);
   ToleranceDesign design = try_all(problem, std::move(candidate), from.design.seed);
-  log.add("rounded down", design.candidate, design.load.size(), rejects_of(design.load));
+  log.add(std::string(kRoundedDown), design.candidate, design.load.size(), rejects_of(design.load));
   return probe_all(problem, std::move(design));
 }
 

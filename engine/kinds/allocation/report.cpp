@@ -9,6 +9,7 @@
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
 #include "engine/kinds/allocation/kind.h"
+#include "engine/kinds/allocation/prediction.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/summary.h"
 #include "engine/report/display.h"
@@ -23,7 +24,7 @@ SolveTally tally(const StoredResult& result) {
   return {"", {"all errors"}, result.poses.size(), {solves.begin(), solves.end()}};
 }
 
-/// The use of each limit at each pose and its multiplier there.
+/// Which responses the figures show at each pose: those with a limit, each with its use and its multiplier.
 ShownCells cells(const StoredResult& result) {
   return shown_cells(result, 2, limited_responses(allocation_of(result)));
 }
@@ -43,7 +44,7 @@ void add_certificate(const StoredResult& result, std::span<const Table> tables, 
   }
 }
 
-/// The unit in which each part's T is shown, and T in that unit.
+/// The display unit of each part's tolerance, and the tolerance in this unit.
 std::pair<std::vector<std::string>, std::vector<double>> shown_tolerances(const Result& found) {
   std::pair<std::vector<std::string>, std::vector<double>> shown;
   for (std::size_t n = 0; n < found.parts(); ++n) {
@@ -54,7 +55,7 @@ std::pair<std::vector<std::string>, std::vector<double>> shown_tolerances(const 
   return shown;
 }
 
-/// Bars of cost, share of the mean square and tolerance of each part.
+/// Bars of cost, share of the mean square, and tolerance of each part.
 Bars part_bars(const Result& found, ArrayPool& pool) {
   const auto [units, tolerances] = shown_tolerances(found);
   Bars bars{{}, {}, found.part_names};
@@ -106,14 +107,14 @@ void add_costs(const StoredResult& result, std::span<const Table> tables, Page& 
   }
 }
 
-/// The values of these responses at all poses, response by response.
+/// The values of these responses at all poses, listed response by response.
 std::vector<double> rows_of(const Result::AtPoses& values, std::span<const std::size_t> responses) {
   std::vector<double> list;
   for (const std::size_t r : responses) std::ranges::copy(values.row(r), std::back_inserter(list));
   return list;
 }
 
-/// Shows how much of each limit is used at each pose, and where a limit costs.
+/// Adds to the page the section that shows, for each pose, how much of each limit is used and what the limit costs.
 void add_where(const StoredResult& result, Page& page) {
   const Result& found = allocation_of(result);
   const PoseFigures figures(result, cells(result), page);
@@ -130,7 +131,7 @@ void add_where(const StoredResult& result, Page& page) {
   std::vector<HeatLayer> layers{{"use of the limit", "%", add("limit_use", found.limit_use, 0.01)}};
   std::vector<Field> fields{{"use of the limit", "%", layers.front().value, names}};
   if (has_costs(found)) {
-    Result::AtPoses price = found.multiplier;  // per unit in which the limit is shown
+    Result::AtPoses price = found.multiplier;  // cost saved per display unit of the limit
     for (std::size_t r = 0; r < result.responses.size(); ++r) {
       for (double& one : price.row(r)) one *= display(result.responses[r]).si;
     }
@@ -161,13 +162,7 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   list.push_back(text + ".");
 }
 
-/// The text as a sentence, with a capital letter and a full stop.
-std::string sentence(std::string text) {
-  text.front() = static_cast<char>(text.front() - 'a' + 'A');
-  return text + ".";
-}
-
-/// Names the parts that cost most, or that use most of the limits.
+/// Names the parts with the largest shares of the cost, or of the mean square.
 std::string largest_parts(const Result& found) {
   constexpr std::size_t kMost = 3;
   const Result::Parts<double>& shares = shown_shares(found);
@@ -179,7 +174,8 @@ std::string largest_parts(const Result& found) {
   return text;
 }
 
-/// Names the limit whose relaxation would save most, and the pose where it is used most; empty if none is known.
+/// Names the limit whose relaxation would save most, and the pose at which it is used most. Empty if no saving is
+/// known.
 std::string tightest_text(const StoredResult& result) {
   const Result& found = allocation_of(result);
   std::optional<std::size_t> most;
@@ -201,7 +197,7 @@ Answer answer(const StoredResult& result) {
   const YieldVerdict& shown = found.certificate;
   const std::string parts = counted(found.parts(), "part", "parts");
   const std::string largest = largest_parts(found);
-  Answer lines{{"Answer", sentence(certificate_text(found))},
+  Answer lines{{"Answer", as_sentence(certificate_text(found))},
                {has_costs(found) ? "Cost" : "Parts",
                 has_costs(found)
                     ? fmt::format("{} cost {} in all; most of it {}.", parts, number_text(found.total_cost), largest)
@@ -220,12 +216,40 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-StudyWords words(const StoredResult& result) {
-  return {.draws = true,
-          .samples = counted(allocation_of(result).certificate.machines, "fresh machine", "fresh machines")};
+/// "34 parts of +-0.01 to +-0.05 mm, 3 standard deviations each" for each unit: what the fresh machines were drawn
+/// with.
+std::vector<std::string> tolerance_sizes(const Result& found) {
+  std::vector<std::string> sizes;
+  for (const std::string_view unit : {"m", "rad"}) {
+    std::vector<double> tolerances;
+    std::vector<double> sigmas;
+    for (std::size_t q = 0; q < found.parts(); ++q) {
+      if (found.part_unit(q) != unit) continue;
+      tolerances.push_back(found.tolerance(q));
+      sigmas.push_back(found.sigma(q));
+    }
+    if (tolerances.empty()) continue;
+    const NamedUnit named{"", std::string(unit)};
+    const Unit& shown = display(named);
+    const auto range = [&](const std::vector<double>& values) {
+      const auto [least, most] = std::ranges::minmax(values);
+      return fmt::format("{:.4g} to {:.4g} {}", least / shown.si, most / shown.si, shown.name);
+    };
+    sizes.push_back(fmt::format("{} with tolerances of {}, standard deviations of {}",
+                                counted(tolerances.size(), "part", "parts"), range(tolerances), range(sigmas)));
+  }
+  return sizes;
 }
 
-/// The share of each part in the mean square, and at each pose the use of the limit that is used most.
+StudyWords words(const StoredResult& result) {
+  const Result& found = allocation_of(result);
+  return {.draws = true,
+          .samples = counted(found.certificate.machines, "fresh machine", "fresh machines"),
+          .drawn = tolerance_sizes(found),
+          .seed = found.certificate_seed};
+}
+
+/// The share of each error in the mean square, and at each pose the use of the limit that is used most.
 ErrorShares error_shares(const StoredResult& result) {
   const Result& found = allocation_of(result);
   if (found.parts() == 0 || found.poses() == 0) return {};
@@ -246,7 +270,7 @@ ErrorShares error_shares(const StoredResult& result) {
   return shares;
 }
 
-/// The parts of two results; costs are compared if both have them.
+/// The parts of a result for comparison with another; costs are compared if both results have them.
 Comparable comparable(const StoredResult& result, const StoredResult& other) {
   const Result& found = allocation_of(result);
   Comparable all{"tolerances", {"all limits"}, "part", found.part_names};
@@ -264,7 +288,8 @@ Comparable comparable(const StoredResult& result, const StoredResult& other) {
   return all;
 }
 
-/// The cost, which is exact. The yield is certified in both, and what it is above that is left over.
+/// The merit by which results are compared: the cost, which has no uncertainty. The yield is not a merit, because both
+/// results certify it.
 std::vector<Merit> merits(const StoredResult& result, std::string_view) {
   const Result& found = allocation_of(result);
   if (!has_costs(found)) return {};
@@ -283,6 +308,7 @@ constinit const ReportKind kAllocationReport{.tally = tally,
                                              .answer = answer,
                                              .shown_cells = cells,
                                              .page = add_page,
+                                             .solved_page = add_prediction,
                                              .error_shares = error_shares,
                                              .comparable = comparable};
 

@@ -21,11 +21,11 @@
 namespace poesy::allocation {
 namespace {
 
-/// Yields and multiples of the limits for which a cost is predicted.
+/// Yields, and factors on all limits, for which costs are predicted.
 constexpr std::array kYields{0.9, 0.95, 0.98, 0.99, 0.995, 0.9973, 0.999, 0.9995, 0.9999};
 constexpr std::array kFactors{0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5, 2.0};
 
-/// The study that tries fresh machines with these tolerances [N].
+/// The study that certifies these tolerances [parts] with fresh machines.
 Study certificate_study(const SearchProblem& problem, std::span<const double> tolerance) {
   Study fresh = as_confirming_study(problem.programme.at(tolerance), "certificate");
   fresh.seed = seed_of_others(problem.run.study, SampleIndex(0));
@@ -53,8 +53,8 @@ YieldVerdict verdict_of(const MachineLoads& fresh, double yield, double confiden
   return verdict;
 }
 
-/// The shares of the parts [N] in the mean square under a limit. What a zone of orientation does that the drawing does
-/// not need is done by the location.
+/// [parts] The share of each part in the mean square under a limit. The share of an orientation that the drawing does
+/// not need is added to that of its location.
 std::vector<double> mean_square_shares(const ToleranceProgramme& programme, const TolerancePoint& point,
                                        const ToleranceLimits& limits, std::size_t limit) {
   const double need = limits.need(limit, point.tolerance);
@@ -70,8 +70,8 @@ std::vector<double> mean_square_shares(const ToleranceProgramme& programme, cons
   return shares;
 }
 
-/// Divides shares among errors in proportion to their slopes by the variance times `weights`, which are the variances
-/// up to a factor.
+/// Divides a share among errors in proportion to variance times slope. weights: the errors with numbers proportional to
+/// their variances.
 void divide_share(std::span<const double> slopes, std::span<const ErrorFactor> weights, double of_parts,
                   Array<double, axis::Factor>& shares) {
   double sum = 0.0;
@@ -82,7 +82,7 @@ void divide_share(std::span<const double> slopes, std::span<const ErrorFactor> w
   }
 }
 
-/// Fills in the results of each part.
+/// Sets the results of each part.
 void add_parts(const SearchProblem& problem, const FoundTolerances& search, const ToleranceLimits& limits,
                AllocationResult& found) {
   const Study& study = problem.run.study;
@@ -130,7 +130,7 @@ void add_parts(const SearchProblem& problem, const FoundTolerances& search, cons
   found.coarser_yield = {{parts}, search.coarser_yield};
 }
 
-/// A feature with the zones that were found.
+/// The feature of a part, with the zones that the search found.
 Feature found_feature(const ToleranceProgramme& programme, const TolerancePoint& point, std::size_t part,
                       const ModelDescription& model) {
   Feature feature = feature_of(programme.parts()[part], model);
@@ -143,7 +143,7 @@ Feature found_feature(const ToleranceProgramme& programme, const TolerancePoint&
   return feature;
 }
 
-/// Fills in the zones of the drawing.
+/// Sets the results of zones.
 void add_zones(const SearchProblem& problem, const TolerancePoint& point, AllocationResult& found) {
   const ModelDescription& model = problem.run.study.model();
   const std::vector<AllocatedPart>& parts = problem.programme.parts();
@@ -166,7 +166,8 @@ void add_zones(const SearchProblem& problem, const TolerancePoint& point, Alloca
     found.zone_shape(i) = shape_of(part, model);
     found.zone_datums(i) = zone_of(part, model).datums;
     if (feature.size[0] > 0.0) found.zone_length(i) = feature.size[0];
-    if (feature.size[1] > 0.0) found.zone_width(i) = feature.size[1];
+    if (feature.kind == FeatureKind::rectangle) found.zone_width(i) = feature.size[1];
+    if (feature.kind == FeatureKind::round) found.zone_width(i) = 0.0;
     found.zone_inside(i) =
         drawing::share_inside(feature, zone_class(part.zone->key, feature.kind), part.sigmas, part.shift);
     found.zone_is_needed(i) = problem.programme.is_void(point, i) ? 0 : 1;
@@ -176,7 +177,7 @@ void add_zones(const SearchProblem& problem, const TolerancePoint& point, Alloca
   }
 }
 
-/// Fills in the results of each limit.
+/// Sets the results of each limit.
 void add_limits(const SearchProblem& problem, const FoundTolerances& search, const ToleranceLimits& limits,
                 AllocationResult& found) {
   const Candidate& candidate = search.design.candidate;
@@ -203,7 +204,8 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
     }
     const std::span rooms = std::span(squares.room).subspan(k * poses, poses);
     const double least = *std::ranges::min_element(rooms);
-    const double limit_of_room = stated[k].allowed.is_spread() ? 2.0 : 1.0;  // RelativeLimits::room
+    const double limit_of_room = stated[k].allowed.is_spread() ? 2.0 : 1.0;  // The room of a limit on a spread is half
+                                                                             // the limit. (RelativeLimits::room)
     found.limit(r) = limit_of_room * least;
     double sum = 0.0;
     for (std::size_t m = 0; m < poses; ++m) {
@@ -212,7 +214,8 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
       const double square = allowed * allowed - limits.room[row] + limits.need(row, candidate.point.tolerance);
       found.limit_use(r, m) = std::sqrt(std::max(0.0, square)) / allowed;
       if (multiplier.empty()) continue;
-      // The room is (share x limit)^2 less the effect of the fixed errors.
+      // The multiplier of the programme is the cost saved per unit of room. The room is (share x limit)^2 minus the
+      // effect of fixed errors, so the chain rule gives the cost saved per unit of the limit.
       found.multiplier(r, m) = multiplier[row] * 2.0 * candidate.share * allowed / limit_of_room;
       sum += found.multiplier(r, m) * (rooms[m] / least);
     }
@@ -220,7 +223,7 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
   }
 }
 
-/// Fills in the costs of other yields, by the loads of the design's machines, and of other limits.
+/// Sets the predicted costs at other yields, which follow from the loads of the design's machines, and at other limits.
 void add_curves(const SearchProblem& problem, const FoundTolerances& search, AllocationResult& found) {
   const auto& [point, chosen, share] = search.design.candidate;
   if (std::isnan(point.cost)) return;
@@ -233,7 +236,7 @@ void add_curves(const SearchProblem& problem, const FoundTolerances& search, All
     if (loads.size() < trials_without_failure(yield, confidence)) continue;
     const std::uint64_t rejects = allowed_rejects(yield, confidence, loads.size()).design;
     const double load = loads[rejects];
-    if (rejects == 0 || !(load > 0.0) || std::isinf(load)) continue;  // too few machines to tell
+    if (rejects == 0 || !(load > 0.0) || std::isinf(load)) continue;  // too few machines to estimate this yield
     found.curve_yield.push_back(yield);
     costs.push_back(scale * predicted_cost(problem, search, share / load, 1.0));
   }
@@ -246,7 +249,8 @@ void add_curves(const SearchProblem& problem, const FoundTolerances& search, All
   found.curve_factor_cost = {{costs.size()}, costs};
 }
 
-/// The result of a search and of the fresh machines of its certificate.
+/// The result of a search. fresh: the certificate's machines, with the ratio of response to limit that decides about
+/// each (MachineLoads).
 AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& search, const MachineLoads& fresh,
                            const Study& certificate) {
   const Study& study = problem.run.study;
@@ -260,7 +264,8 @@ AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& 
   found.aim = problem.options.aim;
   found.calibrated = study.mechanism.calibrated;
   found.total_cost = candidate.point.cost;
-  found.lower_bound = candidate.chosen.lower_bound;  // NaN if only the lowest tolerances were left to try
+  // NaN if the lowest tolerances were taken, which no programme chose.
+  found.lower_bound = candidate.chosen.lower_bound;
   found.gap = candidate.chosen.cost - candidate.chosen.lower_bound;
   found.wanted_yield = problem.options.yield;
   found.confidence = problem.options.confidence;
@@ -300,40 +305,58 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const auto search = find_tolerances(problem);
   if (!search) return std::nullopt;
   const Study certificate = certificate_study(problem, search->design.candidate.point.tolerance);
-  const auto fresh = machine_loads(Plan(certificate, run.poses), run.model, certificate.analysis.limits, run.options);
+  const auto fresh = machine_loads(Plan(certificate, run.poses), run.model, certificate.analysis.limits, run.options,
+                                   problem.calibration_of(certificate).get());
   if (!fresh || !run.makes_result()) return std::nullopt;
   AllocationResult found = result_of(problem, *search, *fresh, certificate);
   LimitVerdicts verdicts = verdicts_of(run.study, *fresh, found.certificate);
   return StudyResult{std::move(found), std::move(verdicts), {}, certificate};
 }
 
-/// About how many times machines are tried, including those of the certificate.
+/// About how many times all machines are tried, including the certificate; an estimate.
 constexpr double kTrials = 5.0;
+
+/// What a search that tries this many machines will cost. A few calibrated machines are solved to measure their time.
+WorkOutlook trying_calibrated(const std::shared_ptr<const Plan>& plan, const Model& model, const Study& study,
+                              const std::shared_ptr<const MachineCalibration>& calibration) {
+  return {[plan, &model, &study, calibration](double) {
+            const Plan few = plan->with_samples(std::min<std::size_t>(plan->samples(), 20));
+            static_cast<void>(machine_loads(few, model, study.analysis.limits, {.threads = 1}, calibration.get()));
+            return static_cast<double>(few.samples()) / static_cast<double>(plan->samples());
+          },
+          kTrials};
+}
 
 Outlook allocation_outlook(const Study& study, const Model& model, const PoseSet& poses) {
   const auto plan = std::make_shared<const Plan>(study, poses);
+  const auto calibration = machine_calibration(study, model, poses);
   constexpr double kMeasurements = 6.0;
-  const double effects = kMeasurements * static_cast<double>(mean_square_solves(*plan, kDrawsAmongOthers));
+  const double effects =
+      kMeasurements * static_cast<double>(mean_square_solves(*plan, calibration ? 0 : kDrawsAmongOthers));
   const double machines = kTrials * static_cast<double>(plan->solves());
   const std::size_t errors = plan->factors().size();
   const std::size_t rows = study.analysis.limits.size() * poses.size();
   const std::size_t loads = plan->samples() * sizeof(double);
   const std::size_t squares = 3 * rows * errors * sizeof(double);
-  // The use and the multiplier of each limit, and the coordinates and condition number of the pose.
+  // The use and the multiplier of each limit, and the pose's coordinates and condition number.
   const std::size_t of_pose = 2 * study.model().responses.size() + study.model().pose_coordinates.size() + 1;
   const std::size_t numbers = poses.size() * of_pose * sizeof(double);
-  // The numbers and names of each part, and its text in the certificate's study.
+  // The numbers and names of a part, and its text in the certificate's study.
   constexpr std::size_t kPart = 400;
   const std::size_t parts = kPart * asked_of<AllocationOptions>(study.analysis).parts.size();
   const std::size_t file = numbers + poses.size() * kSolverColumns + parts;
-  return {.solves = fmt::format("about {:.0f} x {} x {} machines and {:.2g} for the effects of {}: {:.2g} solves",
-                                kTrials, counted_things(poses.size(), "poses"), plan->samples(), effects,
-                                counted_things(errors, "errors"), machines + effects),
-          .memory = {4 * loads + 2 * squares, 4 * loads + 3 * squares, numbers, file},
-          .shared = {sampling<PoseUnitEvaluator>(plan, borrowed(model),
-                                                 (machines + effects) / static_cast<double>(plan->solves()))},
-          .by_one = {},
-          .least = 1.0};
+  return {
+      .solves = fmt::format("about {:.0f} x {} x {} machines and {:.2g} for the effects of {}: {:.2g} solves", kTrials,
+                            counted_things(poses.size(), "poses"), plan->samples(), effects,
+                            counted_things(errors, "errors"), machines + effects) +
+                (calibration ? calibration_cost_text(*calibration, "machine") : ""),
+      .memory = {4 * loads + 2 * squares, 4 * loads + 3 * squares, numbers, file},
+      .shared = {calibration
+                     ? trying_calibrated(plan, model, study, std::make_shared<const MachineCalibration>(*calibration))
+                     : sampling<PoseUnitEvaluator>(plan, borrowed(model),
+                                                   (machines + effects) / static_cast<double>(plan->solves()))},
+      .by_one = {},
+      .least = 1.0};
 }
 
 }  // namespace

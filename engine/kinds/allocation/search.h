@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,97 +11,107 @@
 #include "engine/kinds/allocation/programme.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/kind.h"
+#include "engine/kinds/machine_calibration.h"
 
-/// The search for the tolerances of a study: linearise, settle, scale, improve, then scale to other machines and use
-/// the remaining yield (search_stages.h). Each stage makes a value from that of the stage before. It is a sequence of
-/// runs, each with a checkpoint of its own, and its decisions follow from the study alone.
+/// The search for the tolerances of a study. Its stages are: linearise, settle, scale, improve, scale to other
+/// machines, use the remaining yield (search_stages.h). Each stage computes a new value from that of the stage before.
+/// The search is a sequence of runs, each with its own checkpoint, and its decisions depend only on the study.
 namespace poesy::allocation {
 
-/// How many rejects a certificate allows, and how many the design may have so that its certificate will hold.
+/// The numbers of rejects that the certificate and the design may have.
 struct AllowedRejects {
-  std::uint64_t certificate;  ///< rejects that the certificate allows among this many fresh machines
-  std::uint64_t design;       ///< rejects that the design may have among as many machines
+  std::uint64_t certificate;  ///< largest number of rejects with which the certificate holds
+  std::uint64_t design;       ///< largest number of rejects of the design, among as many machines, with which the
+                              ///< certificate will probably hold
 };
 
-/// How many rejects among this many machines still show, with this confidence (Clopper and Pearson), that the share
-/// `yield` of machines is good. The design may have so many that, with 99 % probability, as many fresh machines have no
-/// more than the certificate allows; both numbers of rejects are taken as normal. Precondition: machines >=
+/// The allowed numbers of rejects among this many machines. The certificate allows as many rejects as still show, with
+/// this confidence (Clopper and Pearson), that the yield is at least `yield`. The number for the design is smaller:
+/// with this number, fresh machines have with 99 % probability no more rejects than the certificate allows. For this,
+/// the numbers of rejects of both sets of machines are approximated as normal. Precondition: machines >=
 /// trials_without_failure().
 AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t machines);
 
-/// The seed of machines that no other part of the study draws: set 0 for the certificate, set 1 for the last scaling.
+/// A seed for machines that the study draws for no other purpose. set: 0 for the certificate, 1 for scaling to other
+/// machines.
 std::uint64_t seed_of_others(const Study& study, SampleIndex set);
 
-/// The problem of a search, the same in all its stages.
+/// The problem of a search; it does not change between stages.
 struct SearchProblem {
   /// Refers to the run.
   explicit SearchProblem(const StudyRun& study_run);
 
-  const StudyRun& run;               ///< the study, its model and how it is run
-  const AllocationOptions& options;  ///< the options of the study
-  ToleranceProgramme programme;      ///< the parts
-  AllowedRejects allowed;            ///< allowed rejects of as many machines as the study has samples
+  const StudyRun& run;                            ///< the study, its model and how it is run
+  const AllocationOptions& options;               ///< the options of the study
+  ToleranceProgramme programme;                   ///< the parts
+  AllowedRejects allowed;                         ///< allowed rejects of as many machines as the study has samples
+  std::optional<MachineCalibration> calibration;  ///< how the study's machines are calibrated; none: they are not
+
+  /// The calibration of the machines of this study, which has other sizes of errors or another seed, and must outlive
+  /// it; null: machines are not calibrated.
+  std::unique_ptr<const MachineCalibration> calibration_of(const Study& study) const;
 };
 
-/// Mean squares of limited responses and the tolerances at which they were measured. Around these, limits on root mean
-/// squares are linear in T^2.
+/// Mean squares of limited responses, and the tolerances T at which they were measured. Near these tolerances, limits
+/// on root mean squares are linear in T^2.
 struct Linearisation {
-  std::vector<double> at;  ///< [N] tolerances
+  std::vector<double> at;  ///< [parts] tolerances of the measurement
   MeanSquares squares;     ///< mean squares at these tolerances, and their slopes
 };
 
-/// Tolerances during the search, and the result of the last programme.
+/// Tolerances during the search, and the solution of the last programme.
 struct Candidate {
-  TolerancePoint point;     ///< the tolerances
-  ChosenTolerances chosen;  ///< the tolerances of the last programme, with its bound and its multipliers
-  double share = 0.0;       ///< the share of each limit that this programme allowed its root mean square
+  TolerancePoint point;     ///< the present tolerances
+  ChosenTolerances chosen;  ///< the solution of the last programme, with its lower bound and multipliers
+  double share = 0.0;       ///< the share of each limit that this programme allowed as root mean square
 };
 
-/// The machines with the largest loads, among which the deciding one is expected.
+/// The machines with the largest loads. Among them is the machine that decides whether the yield is kept.
 struct ScreenedMachines {
-  std::vector<std::uint32_t> numbers;  ///< [n] ascending
-  std::vector<double> load;            ///< [n]
+  std::vector<std::uint32_t> numbers;  ///< [machines] numbers of the machines, ascending
+  std::vector<double> load;  ///< [machines] load of each machine: its largest ratio of a response to its limit
 };
 
-/// Tolerances at which the design's machines were tried.
+/// Tolerances, and the loads of the design's machines with them. The load of a machine is its largest ratio of a
+/// response to its limit (MachineLoads).
 struct ToleranceDesign {
-  Candidate candidate;     ///< the tolerances
-  std::uint64_t seed = 0;  ///< the seed of the machines
-  std::vector<double>
-      load;  ///< [machines] the loads when all machines were tried last; newer ones for screened machines
-  ScreenedMachines
-      screened;  ///< screened machines with their loads at these tolerances; empty if these are the lowest tolerances
+  Candidate candidate;        ///< the tolerances, with the last programme
+  std::uint64_t seed = 0;     ///< the seed of the machines
+  std::vector<double> load;   ///< [machines] loads from the last trial of all machines, updated for screened machines
+  ScreenedMachines screened;  ///< screened machines with their loads at these tolerances; empty if the tolerances are
+                              ///< the lowest ones
 };
 
 /// The stages of a search so far.
 struct StageLog {
-  std::vector<AllocationStage> stages;  ///< in their order
-  std::vector<double> tolerance;        ///< [stages x N]
+  std::vector<AllocationStage> stages;  ///< the stages, in order
+  std::vector<double> tolerance;        ///< [stages x parts] tolerances at the end of each stage
 
-  /// Adds a stage that ended with this candidate, `machines` that were tried, and the rejects among them.
+  /// Adds a stage that ended with this candidate. machines: number that was tried; rejects: number among them.
   void add(std::string name, const Candidate& candidate, std::uint64_t machines, std::uint64_t rejects);
 };
 
 /// The result of a search.
 struct FoundTolerances {
-  Linearisation linearisation;        ///< the linearisation of the last programme
-  ToleranceDesign design;             ///< the tolerances and the loads of the design's machines
-  std::vector<double> coarser_yield;  ///< [N] see AllocationResult::coarser_yield
+  Linearisation linearisation;  ///< the linearisation in the last programme
+  ToleranceDesign design;       ///< the tolerances, and the loads of the design's machines with them (MachineLoads)
+  std::vector<double> coarser_yield;  ///< [parts] predicted yield if the tolerance of this part alone is larger, see
+                                      ///< AllocationResult::coarser_yield
   StageLog log;                       ///< the stages of the search
 };
 
-/// Runs the search. Empty when stopped. Throws InputError if no tolerances keep the limits, naming the limit and by how
-/// much it is exceeded.
+/// Runs the search. Returns nothing if the run was stopped. Throws InputError if no tolerances keep the limits; the
+/// message names a limit and by how much it is exceeded.
 std::optional<FoundTolerances> find_tolerances(const SearchProblem& problem);
 
-/// The limits of the last programme.
+/// The limits of the last programme of a search.
 ToleranceLimits limits_of(const SearchProblem& problem, const FoundTolerances& found);
 
-/// The predicted cost with another share, or with limits multiplied by `wider`, from the last programme; NaN if it has
-/// none.
+/// The cost that the last programme predicts if root mean squares may use `share` of each limit and all limits are
+/// multiplied by `wider`. NaN if the programme has no solution there.
 double predicted_cost(const SearchProblem& problem, const FoundTolerances& found, double share, double wider);
 
-/// The number of machines with a load above 1.
+/// The number of rejects: machines with a load above 1. load: [machines] see MachineLoads.
 std::uint64_t rejects_of(std::span<const double> load);
 
 }  // namespace poesy::allocation

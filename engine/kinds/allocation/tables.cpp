@@ -20,11 +20,12 @@ namespace {
 
 using Result = AllocationResult;
 
-constexpr int kCostDigits = 6;
+constexpr int kCostDigits = 4;
+constexpr int kFullDigits = 6;  ///< digits of a tolerance that is shown in full
 
 std::string cost_text(double cost) { return number_text(cost, kCostDigits); }
 
-/// The table of the yield, in the words of a certificate.
+/// The table of the certificate.
 Table certificate_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   Table table = yield_table(result, {.judge = Judge::yield, .limits = {}, .yield = found.certificate});
@@ -37,11 +38,16 @@ Table certificate_table(const StoredResult& result) {
   return table;
 }
 
-/// The composition of T: "3 sigma + 10 % of T".
+/// The components of the tolerance T of part n in words: "3 sigma + 10 % of T".
 std::string made_of(const Result& found, std::size_t n) {
   const std::string text = number_text(found.sigmas(n), kCostDigits) + " sigma";
   const double share = found.shift(n) / found.tolerance(n);
   return share > 0.0 ? text + " + " + percent_text(share) + " of T" : text;
+}
+
+/// Whether tolerances were rounded down after the least cost had been found, so that they cost more.
+bool is_rounded(const Result& found) {
+  return std::ranges::find(found.stages, kRoundedDown, &AllocationStage::name) != found.stages.end();
 }
 
 std::string drawing_caption(const Result& found) {
@@ -51,7 +57,8 @@ std::string drawing_caption(const Result& found) {
   const std::string cost = has_costs(found) ? ", which cost " + cost_text(found.total_cost) : "";
   switch (found.aim) {
     case Aim::least_cost:
-      return fmt::format("The drawing: tolerances of {} at least cost, {} in all", parts, cost_text(found.total_cost));
+      return fmt::format("The drawing: tolerances of {} at least cost{}, {} in all", parts,
+                         is_rounded(found) ? ", then rounded down" : "", cost_text(found.total_cost));
     case Aim::equal_effect:
       return fmt::format("The drawing: tolerances of {}, each with the same share of the limit that it uses most{}",
                          parts, cost);
@@ -63,7 +70,7 @@ std::string drawing_caption(const Result& found) {
   return {};
 }
 
-/// Says how far the cost may be from the least one.
+/// Adds a note on how far the cost may be from the least cost.
 void add_bound_note(const Result& found, Table& table) {
   if (std::isnan(found.lower_bound) || !has_costs(found)) return;
   const std::string least = fmt::format(
@@ -90,13 +97,14 @@ FilledColumn words_column(std::string name, std::string heading, std::span<const
           [values](std::size_t at) { return text_cell(values[at]); }};
 }
 
-/// Adds columns with T in full and its meaning, for wide tables.
+/// Extends the list `columns` by columns with the tolerance T in full and with its components; narrow tables omit these
+/// columns.
 void add_details(const Result& found, std::vector<FilledColumn>& columns) {
   constexpr int kFirstToGo = 3;
   const auto unit = [&](std::size_t n) { return display_unit(dimension_of(found.part_unit(n))); };
   const auto length = [&](std::string name, std::string heading, const Result::Parts<double>& values) {
     return FilledColumn{number_column(std::move(name), std::move(heading), "", kFirstToGo),
-                        [&values, unit](std::size_t n) { return number_cell(values(n) / unit(n).si, kCostDigits); }};
+                        [&values, unit](std::size_t n) { return number_cell(values(n) / unit(n).si, kFullDigits); }};
   };
   columns.push_back(length("tolerance", "T", found.tolerance));
   columns.push_back(length("sigma", "sigma", found.sigma));
@@ -106,7 +114,7 @@ void add_details(const Result& found, std::vector<FilledColumn>& columns) {
   columns.push_back(words_column("errors", "errors", found.part_members, kFirstToGo + 1));
 }
 
-/// The names of parts, with T.
+/// Columns with the name and the tolerance of each part.
 std::vector<FilledColumn> part_columns(const Result& found) {
   return {words_column("part", "part", found.part_names),
           {text_column("drawing", "drawing"),
@@ -124,7 +132,7 @@ std::vector<FilledColumn> drawing_columns(const Result& found, bool alike) {
   }
   if (has_costs(found)) {
     columns.push_back(cost_column("cost", "cost", found.cost));
-    columns.push_back(share_column("share", "share of cost", found.share));
+    columns.push_back(share_column("share", "share of cost", found.share, 1));
   }
   columns.push_back(share_column("mean_square_share", "share of mean square", found.mean_square_share));
   if (found.has_zones()) {
@@ -167,7 +175,7 @@ Table drawing_table(const Result& found, RowOrder order) {
   return table;
 }
 
-/// The columns of a pose: its number and its coordinates.
+/// Columns with the number and coordinates of the pose at which each response's value is largest.
 std::vector<FilledColumn> pose_columns(const StoredResult& result, const std::string& name,
                                        const Result::AtPoses& values, int dispensable) {
   return {{number_column(name + "_pose", "at pose", "", dispensable),
@@ -197,7 +205,7 @@ ValueLimit limit_on(const Result& found, std::size_t r) {
   return share > 0.0 && share < 1.0 ? limit.at_share(share) : limit;
 }
 
-/// A limit in words, if it is more than a magnitude at each pose; else empty.
+/// A note that states a limit in full. Empty if the limit is simply on a magnitude at each pose.
 std::string limit_note(const StoredResult& result, std::size_t r) {
   const ValueLimit limit = limit_on(allocation_of(result), r);
   if (limit.is_plain()) return {};
@@ -276,7 +284,7 @@ Table stages_table(const Result& found) {
   return table;
 }
 
-/// Shows predicted costs beside that of the tolerances found.
+/// Fills a table with predicted costs and their changes from the cost of the tolerances found.
 void add_costs(const Result& found, std::span<const double> costs, FilledColumn at, Table& table) {
   table.notes.emplace_back("predicted, not certified; change: from the cost of the tolerances found");
   fill(table, positions(costs.size()),

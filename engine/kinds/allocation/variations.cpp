@@ -12,17 +12,16 @@
 namespace poesy {
 namespace {
 
-/// The number of machines that are varied together. It is small, so that a piece of work ends soon even with many
-/// variations.
+/// The number of machines in a piece of work. It is small so that a piece ends soon even with many variations.
 constexpr std::size_t kVariedAtOnce = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// About one in this many poses decides. Used to estimate the solves that remain.
+/// About one pose in this number of poses decides, by experience. Used to estimate the number of solves that remain.
 constexpr std::size_t kOfPosesDecide = 4;
 
-/// Machines and their variations. A piece of work has all variations of some of the machines.
+/// Machines and their variations. A piece of work solves all variations of some machines.
 struct VariedMachines {
-  std::span<const std::uint32_t> machines;  ///< [n]
-  std::span<const Variation> variations;    ///< [V]
+  std::span<const std::uint32_t> machines;  ///< [machines] numbers of the machines
+  std::span<const Variation> variations;    ///< variations under each of which these machines are solved
 
   std::size_t pieces() const { return variations.empty() ? 0 : (machines.size() + kVariedAtOnce - 1) / kVariedAtOnce; }
   std::span<const std::uint32_t> machines_of(std::size_t piece) const {
@@ -30,16 +29,16 @@ struct VariedMachines {
     return machines.subspan(first, std::min(kVariedAtOnce, machines.size() - first));
   }
   std::size_t loads_of(std::size_t piece) const { return variations.size() * machines_of(piece).size(); }
-  /// The largest number of solves.
+  /// The largest number of solves in a piece of work.
   std::uint64_t solves_of(std::size_t piece, std::size_t poses) const {
     return std::uint64_t{loads_of(piece) + machines_of(piece).size()} * poses;
   }
 };
 
-/// The loads of one piece of work, or of several in order.
+/// The loads (MachineLoads) of the machines of one piece of work, or of several pieces in their order.
 struct VariedLoads {
   const VariedMachines* varied = nullptr;
-  std::vector<double> load = {};  ///< [V x B] of each piece
+  std::vector<double> load = {};  ///< [variations x machines] loads of each piece, one piece after the other
   std::uint64_t solves = 0;
 
   void add(std::size_t, const VariedLoads& later) {
@@ -54,17 +53,18 @@ struct VariedLoads {
   }
 };
 
-/// Solves one piece of work at a time. Owns the scratch of one thread.
+/// Solves a piece of work. Owns the scratch memory of one thread.
 class VariationEvaluator : private LoadSolver {
  public:
-  VariationEvaluator(const Plan& plan, const Model& model, const RelativeLimits& limits, const VariedMachines& varied)
-      : LoadSolver(plan, model, limits), varied_(varied) {}
+  VariationEvaluator(const Plan& plan, const Model& model, const RelativeLimits& limits, const VariedMachines& varied,
+                     const MachineCalibration* calibration)
+      : LoadSolver(plan, model, limits, calibration), varied_(varied) {}
 
   VariedLoads operator()(std::size_t piece) {
     const auto machines = varied_.machines_of(piece);
     numbers_.assign(machines.begin(), machines.end());
     count_ = machines.size();
-    if (limits_.any_over_poses()) return solve_all(piece);
+    if (limits_.any_over_poses() || is_calibrated()) return solve_all(piece);
     draw(numbers_);
     drawn_.assign(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(plan_->factors().size() * count_));
     VariedLoads found{&varied_, std::vector<double>(varied_.loads_of(piece)), 0};
@@ -77,7 +77,8 @@ class VariationEvaluator : private LoadSolver {
   }
 
  private:
-  /// Solves each variation at all poses, because limits over poses need them all.
+  /// Solves each variation at all poses, because limits over poses need them all, and because a calibration takes more
+  /// than all poses.
   VariedLoads solve_all(std::size_t piece) {
     VariedLoads found{&varied_, {}, varied_.loads_of(piece) * plan_->poses().size()};
     std::vector<double> loads(count_);
@@ -88,6 +89,7 @@ class VariationEvaluator : private LoadSolver {
       draw(numbers_);
       begin_poses(count_);
       scale(variation, {});
+      calibrate(numbers_);
       for (std::size_t m = 0; m < plan_->poses().size(); ++m) {
         const std::span<const std::size_t> anew = draw_per_pose(PoseIndex(m), numbers_);
         if (!anew.empty()) scale(variation, anew);
@@ -99,8 +101,8 @@ class VariationEvaluator : private LoadSolver {
     return found;
   }
 
-  /// Multiplies the drawn errors by the factors of a variation: those that machines draw anew at a pose, or without any
-  /// the others.
+  /// Multiplies the drawn errors by the factors of a variation. anew: the errors that machines draw anew at the pose.
+  /// If there are any, only these are scaled; otherwise only the errors that stay the same at all poses.
   void scale(const Variation& variation, std::span<const std::size_t> anew) {
     for (const auto& [p, factor] : variation) {
       if (plan_->is_per_pose(p) != !anew.empty()) continue;
@@ -108,7 +110,7 @@ class VariationEvaluator : private LoadSolver {
     }
   }
 
-  /// Solves the machines without variations.
+  /// Solves the machines of a piece without variations at all poses.
   void solve_without(VariedLoads& found) {
     at_pose_.assign(plan_->poses().size() * count_, 0.0);
     load_.assign(count_, 0.0);
@@ -120,9 +122,9 @@ class VariationEvaluator : private LoadSolver {
     found.solves += at_pose_.size();
   }
 
-  /// Solves variations at a pose that decides for a machine (`deciding`). Otherwise solves, for the other machines,
-  /// those variations that change the load of any machine much, because their effect at the deciding pose may be small
-  /// and elsewhere large.
+  /// Solves variations at a pose. If `deciding`, solves all variations of the machines for which the pose decides.
+  /// Otherwise, for the other machines, solves only variations that change some load much: their effect may be small at
+  /// the deciding pose and large elsewhere.
   void solve_at(std::size_t m, bool deciding, VariedLoads& found) {
     pairs_.clear();
     for (const std::size_t p : draw_per_pose(PoseIndex(m), numbers_)) {
@@ -138,7 +140,7 @@ class VariationEvaluator : private LoadSolver {
     if (!pairs_.empty()) solve_pairs(m, found);
   }
 
-  /// Solves the pairs of a variation and a machine that are waiting.
+  /// Solves the waiting pairs of a variation and a machine at a pose, and updates their loads.
   void solve_pairs(std::size_t m, VariedLoads& found) {
     const std::size_t count = pairs_.size();
     for (std::size_t p = 0; p < plan_->factors().size(); ++p) {
@@ -159,7 +161,7 @@ class VariationEvaluator : private LoadSolver {
     pairs_.clear();
   }
 
-  /// Finds the loads at a pose of the first columns of values_; infinite where a machine is not solved.
+  /// Computes the loads at a pose of the machines in the first columns of values_; infinite if a machine is not solved.
   void solve(std::size_t m, std::span<double> loads) {
     missing_.assign(loads.size(), 0);
     beyond_.assign(limits_.size() * loads.size(), 0);
@@ -170,24 +172,26 @@ class VariationEvaluator : private LoadSolver {
   }
 
   const VariedMachines& varied_;
-  std::size_t count_ = 0;             ///< B, the machines of the piece
-  std::vector<std::size_t> numbers_;  ///< [B]
-  std::vector<double> drawn_;         ///< [P x B] errors at the present pose
-  std::vector<double> at_pose_;       ///< [M x B] loads without variations
-  std::vector<double> load_;          ///< [B] the largest of them
-  std::vector<double> change_;        ///< [V] the largest change of a load at a pose
-  std::vector<std::size_t> pairs_;    ///< waiting pairs, as positions in [V x B]
-  std::vector<double> of_pairs_;      ///< their loads at a pose
+  std::size_t count_ = 0;             ///< B, the number of machines in the piece
+  std::vector<std::size_t> numbers_;  ///< [machines] numbers of the machines
+  std::vector<double> drawn_;         ///< [errors x machines] errors at the present pose, without variations
+  std::vector<double> at_pose_;       ///< [poses x machines] loads at each pose without variations
+  std::vector<double> load_;          ///< [machines] largest load over the poses without variations
+  std::vector<double> change_;        ///< [variations] largest change of a load that each variation caused at some pose
+  /// Waiting pairs of a variation and a machine, as positions in an array [variations x machines].
+  std::vector<std::size_t> pairs_;
+  std::vector<double> of_pairs_;  ///< loads of the waiting pairs at the present pose
   std::vector<std::uint8_t> missing_;
   std::vector<std::uint8_t> beyond_;
 };
 
-/// The job of UnitFold, whose units are the pieces of work.
+/// The job of a UnitFold (run/unit_fold.h), whose units are the pieces of work.
 struct VariationJob {
   const Plan& plan;
   const Model& model;
   RelativeLimits limits;
   VariedMachines varied;
+  const MachineCalibration* calibration;
 
   static constexpr std::string_view kName = "variations";
   std::vector<std::uint64_t> sizes() const {
@@ -195,12 +199,12 @@ struct VariationJob {
   }
   NumberRange units(const Shard& shard) const { return shard.of(varied.pieces()); }
   std::uint64_t expected(std::size_t n) const { return varied.solves_of(n, plan.poses().size()) / kOfPosesDecide; }
-  VariationEvaluator worker() const { return {plan, model, limits, varied}; }
+  VariationEvaluator worker() const { return {plan, model, limits, varied, calibration}; }
   static SolveCounts solves(std::size_t, const VariedLoads& unit) { return as_converged(unit.solves); }
   VariedLoads sums() const { return {.varied = &varied}; }
 };
 
-/// [V x n] of the loads of all pieces.
+/// The loads of all pieces, reordered to [variations x machines].
 std::vector<double> by_variation(const VariedMachines& varied, std::span<const double> load) {
   const std::size_t machines = varied.machines.size();
   std::vector<double> loads(load.size());
@@ -220,8 +224,9 @@ std::vector<double> by_variation(const VariedMachines& varied, std::span<const d
 std::optional<std::vector<double>> try_variations(const Plan& plan, const Model& model,
                                                   std::span<const ResponseLimit> limits,
                                                   std::span<const std::uint32_t> machines,
-                                                  std::span<const Variation> variations, const RunOptions& options) {
-  const VariationJob job{plan, model, {plan, model, limits}, {machines, variations}};
+                                                  std::span<const Variation> variations, const RunOptions& options,
+                                                  const MachineCalibration* calibration) {
+  const VariationJob job{plan, model, {plan, model, limits, calibration}, {machines, variations}, calibration};
   const auto loads = fold_units(job, options);
   if (!loads) return std::nullopt;
   return by_variation(job.varied, loads->load);

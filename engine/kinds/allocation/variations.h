@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/kinds/machine_calibration.h"
 #include "engine/model/model.h"
 #include "engine/run/run_options.h"
 #include "engine/study/plan.h"
@@ -13,26 +14,29 @@
 
 namespace poesy {
 
-/// A factor on an error.
+/// A factor on the values of an error.
 struct ErrorFactor {
   std::size_t error;  ///< position among the plan's factors
-  double factor;      ///< finite; a negative one mirrors the error
+  double factor;      ///< the factor, finite; a negative factor mirrors the error
 };
 
-/// Factors on some errors: a changed tolerance, or mirrored errors.
+/// Factors on some errors, which express a changed tolerance or mirrored errors.
 using Variation = std::vector<ErrorFactor>;
 
 /// The loads (MachineLoads) [V x n] of the listed machines with each variation alone. machines: ascending numbers below
 /// plan.samples(). A machine is solved at the poses that decide, where its load is within kDeciding of its largest. If
 /// a variation changes a load there by more than half of that, in any of about forty machines, other poses may decide,
-/// and these machines are solved at all poses. The result has the same bits for any number of threads and on all ranks.
-/// Empty when stopped. Precondition: Draws::per_machine.
+/// and these machines are solved at all poses. Calibrated machines are calibrated anew with each variation, with the
+/// same noise and what is known before, and solved at all poses. The result has the same bits for any number of threads
+/// and on all ranks. Empty when stopped. calibration: as of machine_loads(). Precondition: Draws::per_machine.
 std::optional<std::vector<double>> try_variations(const Plan& plan, const Model& model,
                                                   std::span<const ResponseLimit> limits,
                                                   std::span<const std::uint32_t> machines,
-                                                  std::span<const Variation> variations, const RunOptions& options);
+                                                  std::span<const Variation> variations, const RunOptions& options,
+                                                  const MachineCalibration* calibration = nullptr);
 
-/// Loads at a pose that are this near to the largest one decide; the limit is 1.
+/// A pose decides for a machine if the machine's load there is at most this much below its largest load. A load of 1 is
+/// at the limit.
 inline constexpr double kDeciding = 0.1;
 
 }  // namespace poesy

@@ -19,7 +19,7 @@ struct ZoneAt {
   std::string_view key;
 };
 
-/// All zones of a drawing: feature by feature, first its location.
+/// All zones of a drawing, feature by feature, the location before the orientation.
 std::vector<ZoneAt> all_zones(const ModelDescription& model) {
   std::vector<ZoneAt> zones;
   for (std::size_t f = 0; f < model.features.size(); ++f) {
@@ -30,12 +30,12 @@ std::vector<ZoneAt> all_zones(const ModelDescription& model) {
   return zones;
 }
 
-/// "rail_1.position": the zone of one limb.
+/// The name of the zone of one limb: "rail_1.position".
 std::string name_at(const ZoneAt& zone, const ModelDescription& model) {
   return fmt::format("{}.{}", model.features[zone.feature].name, zone.key);
 }
 
-/// "rail.position": the zone of all limbs.
+/// The name of the zone of all limbs: "rail.position".
 std::string label_at(const ZoneAt& zone, const ModelDescription& model) {
   return fmt::format("{}.{}", model.features[zone.feature].label, zone.key);
 }
@@ -56,7 +56,7 @@ std::vector<ZoneAt> zones_by_pattern(const StudyValue& value, const ModelDescrip
     for (const ZoneAt& zone : all) {
       if (std::ranges::find(known, label_at(zone, model)) == known.end()) known.push_back(label_at(zone, model));
     }
-    element.fail("is '" + printable(pattern) + "', which is no zone of the drawing",
+    element.fail("is '" + printable(pattern) + "', which is not a zone of the drawing",
                  suggestion(pattern, std::vector<std::string_view>(known.begin(), known.end())));
   }
   std::vector<ZoneAt> zones;
@@ -67,7 +67,7 @@ std::vector<ZoneAt> zones_by_pattern(const StudyValue& value, const ModelDescrip
   return zones;
 }
 
-/// Refuses a block whose zones could not be parts.
+/// Refuses a block whose zones cannot be parts.
 void check_block(const StudySection& block, const StudyValue& zones, const Study& study) {
   if (const auto factors = block.find("factors")) {
     factors->fail("is set, and so is " + zones.full_name(), "write one of them, and the other in a block of its own");
@@ -79,6 +79,12 @@ void check_block(const StudySection& block, const StudyValue& zones, const Study
   if (!study.errors.zones) {
     zones.fail("is set, but [errors] does not say how much of a zone is used",
                "write errors.zones = { distribution = \"normal\", sigmas = 3 }");
+  }
+  if (!study.errors.zones->is_normal()) {
+    zones.fail(
+        "is set, but errors.zones has no normals, which alone grow with a tolerance as an allocation needs",
+        "write errors.zones = { distribution = \"normal\", sigmas = 3 }, and try the drawing that it finds with the "
+        "other distribution");
   }
   if (!is_each(block)) {
     zones.fail("is set, but each is not true, and a zone is a tolerance of its own", "write each = true");
@@ -93,7 +99,7 @@ void check_block(const StudySection& block, const StudyValue& zones, const Study
   }
 }
 
-/// The errors that are a zone's own.
+/// The errors that belong to a zone.
 PartMembers errors_of(const ZoneAt& zone, const ModelDescription& model) {
   const Feature& feature = model.features[zone.feature];
   if (zone_class(zone.key, feature.kind) == ZoneClass::orientation) return feature.tilt;
@@ -112,20 +118,20 @@ void check_errors(const StudyValue& value, const ZoneAt& zone, const Study& stud
   check_distributions(value, errors, study);
 }
 
-/// Refuses a key that only distances can have.
+/// Refuses keys that only distances may have.
 void check_distances(const StudySection& block, const std::vector<ZoneAt>& zones, const ModelDescription& model) {
   for (const std::string_view key : {"shift", "grades", "nominal_size"}) {
     const auto value = block.find(key);
     if (!value) continue;
     for (const ZoneAt& zone : zones) {
       if (model.features[zone.feature].kind == FeatureKind::distance) continue;
-      value->fail(fmt::format("is set, but '{}' is no distance", label_at(zone, model)),
+      value->fail(fmt::format("is set, but '{}' is not a distance", label_at(zone, model)),
                   "write the distances in a block of their own");
     }
   }
 }
 
-/// Whether two zones share a tolerance where their limbs are alike.
+/// Whether two zones of different limbs share a tolerance if the limbs are identical.
 bool are_alike(const ZoneAt& a, const ZoneAt& b, const ModelDescription& model) {
   const Feature& one = model.features[a.feature];
   const Feature& other = model.features[b.feature];
@@ -133,7 +139,7 @@ bool are_alike(const ZoneAt& a, const ZoneAt& b, const ModelDescription& model) 
          one.one_direction == other.one_direction && one.orientation.has_value() == other.orientation.has_value();
 }
 
-/// Joins zones of identical limbs.
+/// Joins zones of identical limbs into parts.
 std::vector<std::vector<ZoneAt>> joined(const std::vector<ZoneAt>& zones, const Limbs& limbs,
                                         const ModelDescription& model) {
   const auto is_listed = [&](const ZoneAt& zone) {
@@ -154,7 +160,8 @@ std::vector<std::vector<ZoneAt>> joined(const std::vector<ZoneAt>& zones, const 
   return parts;
 }
 
-/// "rail.position" for the zone of all features of this label, else "rail_1.position".
+/// The name of a part: "rail.position" if it has the zones of all features with this label, otherwise
+/// "rail_1.position".
 std::string name_of(const std::vector<ZoneAt>& zones, const ModelDescription& model) {
   const Feature& first = model.features[zones.front().feature];
   const auto all = static_cast<std::size_t>(std::ranges::count(model.features, first.label, &Feature::label));
@@ -175,7 +182,8 @@ AllocatedPart part_of(const std::vector<ZoneAt>& zones, const Study& study) {
   return part;
 }
 
-/// Whether a zone of orientation has its location beside it, as zone_pairs() finds it.
+/// Returns true if a part is in some pair of zones: as the zone of orientation if side = &Within::inner, as the zone of
+/// location if side = &Within::outer.
 bool has_pair(std::span<const Within> pairs, std::size_t part, std::size_t Within::*side) {
   return std::ranges::any_of(pairs, [&](const Within& pair) { return pair.*side == part; });
 }

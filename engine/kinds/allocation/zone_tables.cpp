@@ -28,12 +28,13 @@ std::string sign_of(const Result& found, std::size_t n) {
   return is_zone(found, n) ? std::string(zone_traits(found.zone_key(n)).sign) : std::string(kPlusMinus);
 }
 
-/// "1-3 rail"; of a part that is not a zone its name.
+/// The feature of a part, "1-3 rail", or the part's name if it is not a zone.
 std::string feature_text(const Result& found, std::size_t n) {
   return is_zone(found, n) ? found.zone_limbs(n) + " " + found.zone_feature(n) : found.part_names[n];
 }
 
-/// The sign before the number: of a diameter, or of a sphere's; none before a width.
+/// The sign that a drawing writes before the size of a zone: the sign of a diameter, or of the diameter of a sphere;
+/// none before a width.
 std::string_view before_number(const Result& found, std::size_t n) {
   if (!is_zone(found, n) || found.zone_shape(n) == "interval") return kPlusMinus;
   if (found.zone_shape(n) == "sphere") return kSphereDiameter;
@@ -46,7 +47,7 @@ std::string zone_text(const Result& found, std::size_t n) {
                      display_unit(dimension_of(unit)).name);
 }
 
-/// The zone with its frame, in mm; that of a distance has none.
+/// A cell with the zone and its tolerance frame, in mm. A distance has no frame.
 Cell zone_cell(const Result& found, std::size_t n) {
   Cell cell = text_cell(zone_text(found, n));
   if (!is_zone(found, n) || found.zone_shape(n) == "interval") return cell;
@@ -56,30 +57,31 @@ Cell zone_cell(const Result& found, std::size_t n) {
   return cell;
 }
 
-/// A column of texts that a frame shows as well.
+/// A column that is shown only in text, because the tolerance frame on the page already contains it.
 Column framed_column(std::string name, std::string heading) {
   Column column = text_column(std::move(name), std::move(heading));
   column.only_text = true;
   return column;
 }
 
-/// "500 mm", or "60 x 40 mm".
+/// The extent of a feature: "500 mm", "60 x 40 mm", or the diameter of a round plane.
 std::string over_text(const Result& found, std::size_t n) {
   if (!is_zone(found, n) || std::isnan(found.zone_length(n))) return "-";
   const Unit& unit = display_unit(Dimension::length);
   const auto in_unit = [&](double si) { return number_text(si / unit.si); };
   const std::string length = in_unit(found.zone_length(n));
   if (std::isnan(found.zone_width(n))) return fmt::format("{} {}", length, unit.name);
+  if (found.zone_width(n) == 0.0) return fmt::format("{}{} {}", kDiameter, length, unit.name);
   return fmt::format("{} x {} {}", length, in_unit(found.zone_width(n)), unit.name);
 }
 
-/// Whether one is the orientation and the other the location of the same features.
+/// Whether two parts are the orientation and the location of the same features.
 bool are_of_one_feature(const Result& found, std::size_t a, std::size_t b) {
   return a != b && is_zone(found, a) && is_zone(found, b) && found.zone_feature(a) == found.zone_feature(b) &&
          found.zone_limbs(a) == found.zone_limbs(b);
 }
 
-/// Remarks of the drawing: an orientation that is not needed, and a tolerance that could not be chosen.
+/// Remarks on a part: its orientation is not needed, or its tolerance could not be chosen.
 std::string remark(const Result& found, std::size_t n) {
   std::vector<std::string> words;
   for (std::size_t other = 0; other < found.parts(); ++other) {
@@ -91,10 +93,10 @@ std::string remark(const Result& found, std::size_t n) {
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-/// Whether this is an orientation whose location has a line of its own.
+/// Whether a part is an orientation whose location is also a part.
 bool follows_another(const Result& found, std::size_t n) {
   if (!is_zone(found, n)) return false;
-  // A run-out is a location on an axis, and only there.
+  // Run-out is a location tolerance for an axis, and an orientation tolerance for other features.
   const FeatureKind kind = found.zone_shape(n) == "cylinder" ? FeatureKind::axis : FeatureKind::round;
   if (zone_class(found.zone_key(n), kind) != ZoneClass::orientation) return false;
   for (std::size_t other = 0; other < found.parts(); ++other) {
@@ -116,7 +118,7 @@ std::vector<FilledColumn> zone_columns(const Result& found) {
 }
 
 std::vector<FilledColumn> inside_columns(const Result& found) {
-  return {{percent_column("inside", "inside"), [&](std::size_t n) { return percent_cell(found.zone_inside(n)); }},
+  return {{percent_column("inside", "inside", 1), [&](std::size_t n) { return percent_cell(found.zone_inside(n)); }},
           {text_column("remark", "remark"), [&](std::size_t n) { return text_cell(remark(found, n)); }}};
 }
 
@@ -146,8 +148,9 @@ std::string zones_note(const Result& found) {
 }
 
 CsvTable drawing_csv(const Result& found) {
-  const auto text = [](double value) { return std::isnan(value) ? std::string("NaN") : shortest(value); };
-  const auto in_mm = [=](double si) { return std::isnan(si) ? text(si) : number_text(1e3 * si, 12); };
+  constexpr int kDigits = 12;  // enough digits, but too few to show the rounding of unit conversion
+  const auto text = [](double value) { return std::isnan(value) ? std::string() : number_text(value, kDigits); };
+  const auto in_mm = [=](double si) { return text(1e3 * si); };
   const auto or_none = [](const std::string& one) { return one.empty() ? std::string("none") : one; };
   CsvTable table{
       "drawing", {"limbs", [&found, or_none](std::size_t n) { return or_none(found.zone_limbs(n)); }}, found.parts()};
@@ -159,7 +162,7 @@ CsvTable drawing_csv(const Result& found) {
   add("symbol", [&found](std::size_t n) { return is_zone(found, n) ? found.zone_key(n) : std::string("tolerance"); });
   add("sign", [&found](std::size_t n) { return sign_of(found, n); });
   add("zone_mm", [&found](std::size_t n) {
-    return found.part_unit(n) == "m" ? drawing_number(found.tolerance(n), "m") : std::string("NaN");
+    return found.part_unit(n) == "m" ? drawing_number(found.tolerance(n), "m") : std::string();
   });
   add("shape", [&found](std::size_t n) { return is_zone(found, n) ? found.zone_shape(n) : std::string("interval"); });
   add("datums", [&found, or_none](std::size_t n) { return or_none(found.zone_datums(n)); });

@@ -13,9 +13,9 @@
 #include "engine/calibration/inference.h"
 #include "engine/calibration/left.h"
 #include "engine/calibration/next_poses.h"
-#include "engine/kinds/calibration/commanded.h"
-#include "engine/kinds/calibration/fitted_errors.h"
 #include "engine/kinds/calibration/kept_limits.h"
+#include "engine/kinds/commanded.h"
+#include "engine/kinds/fitted_errors.h"
 #include "engine/study/calibration.h"
 
 namespace poesy {
@@ -25,7 +25,7 @@ using calibration::Components;
 using calibration::Matrix;
 using calibration::Vector;
 
-constexpr double kStepOfTyped = 1e-6;  // of the scale of a fitted error, of differences
+constexpr double kStepOfTyped = 1e-6;  // difference step, as a share of a fitted error's scale
 
 Eigen::Index position(std::size_t at) { return static_cast<Eigen::Index>(at); }
 
@@ -46,7 +46,7 @@ std::vector<double> pose_of(const PoseSet& poses, std::size_t m) {
   return {pose.begin(), pose.end()};
 }
 
-/// Position of a measured quantity among the components of a displacement.
+/// The position of a measured quantity among the components of a displacement.
 std::size_t component_of(const std::string& quantity) {
   return static_cast<std::size_t>(std::ranges::find(calibration::kComponents, quantity) -
                                   calibration::kComponents.begin());
@@ -57,16 +57,16 @@ Dimension dimension_of(const MachineValue& value) {
   return is_angle ? Dimension::angle : Dimension::length;
 }
 
-/// The stated standard deviation of what a value measures; none if the study states none.
+/// The stated standard deviation of this quantity; none if the study states none.
 std::optional<double> stated_sd(const CalibrationTable& table, const std::string& quantity) {
   const auto found = std::ranges::find(table.noise, quantity, &StatedNoise::what);
   return found == table.noise.end() ? std::nullopt : std::optional(found->sd);
 }
 
-/// The noise of the values, or equal weights if all of it is 0.
+/// The weights of the measured values: their noise, or equal weights if all noise is 0.
 struct Weights {
-  Vector sd;             ///< [m]
-  bool is_noise = true;  ///< whether these are standard deviations
+  Vector sd;             ///< [m] standard deviation of each value, or 1
+  bool is_noise = true;  ///< whether `sd` is noise
 };
 
 Weights weights_of(const MachineToCalibrate& machine, const CalibrationTable& table) {
@@ -100,7 +100,7 @@ Weights weights_of(const MachineToCalibrate& machine, const CalibrationTable& ta
   return {Vector::Ones(weights.sd.size()), false};
 }
 
-/// The values as the fit takes them.
+/// The measured values in the form that the fit uses.
 std::vector<calibration::MeasuredValue> measured_values(const MachineToCalibrate& machine, const Vector& sd) {
   std::vector<calibration::MeasuredValue> list;
   for (const MachineValue& value : machine.file.values) {
@@ -114,7 +114,7 @@ std::vector<calibration::MeasuredValue> measured_values(const MachineToCalibrate
   return list;
 }
 
-/// A machine on its way through the calibration.
+/// The calibration of one machine.
 class Calibration {
  public:
   explicit Calibration(const MachineToCalibrate& machine)
@@ -132,7 +132,13 @@ class Calibration {
     fit_ = calibration::fit({measurement_, columns_.directions, weights_.sd, columns_.prior});
     Calibrated made;
     made.converged = fit_.solved && fit_.converged;
-    if (!fit_.solved) return made;
+    if (fit_.solved) set_result(made);
+    made.solves = exact_.solves();
+    return made;
+  }
+
+ private:
+  void set_result(Calibrated& made) {
     inference_ = calibration::infer(
         fit_, weights_.sd, columns_.directions.scale, columns_.prior,
         {table_.sd == NoiseLevel::estimated, machine_.study.analysis.conf_level, machine_.measured_at.size()});
@@ -142,10 +148,8 @@ class Calibration {
     set_typed(made.result);
     set_left(made);
     if (table_.next > 0) set_next(made);
-    return made;
   }
 
- private:
   static calibration::ExactMachine exact_machine(const MachineToCalibrate& machine) {
     try {
       return {machine.model, machine.study.solver};
@@ -161,7 +165,7 @@ class Calibration {
   bool has_prior() const { return table_.prior == PriorKnowledge::tolerances; }
   std::size_t places() const { return numbers_of(frame()) + numbers_of(target()); }
 
-  /// The poses of the rows, with the drives as the controller had them.
+  /// The measured poses. The drives are those of the controller's present parameters.
   std::vector<calibration::MeasuredPose> measured_poses() const {
     std::vector<calibration::MeasuredPose> poses;
     Vector present = Vector::Zero(position(table_.fit.size()));
@@ -179,7 +183,7 @@ class Calibration {
     return poses;
   }
 
-  /// Throws if fewer values are measured than fitted.
+  /// Throws InputError if fewer values are measured than numbers are fitted.
   void check_count() const {
     const std::size_t fitted = table_.fit.size() + places();
     const std::size_t measured = machine_.file.values.size();
@@ -293,7 +297,7 @@ class Calibration {
     result.typed_sd = {{sd.size()}, sd};
   }
 
-  /// What is known of all errors. Empty if the machine cannot be solved with their estimates.
+  /// Estimates and covariance of all errors, fitted or not. Empty if no estimate of all errors is found.
   std::optional<calibration::Knowledge> knowledge_of_all() const {
     if (!weights_.is_noise) {
       const Eigen::Index all = fit_.theta.size() + fit_.phi.size();
@@ -339,8 +343,9 @@ class Calibration {
     if (const std::string unjudged = kept.not_judged(); !unjudged.empty()) made.warnings.push_back(unjudged);
   }
 
-  /// The kinds of values of the file that are measured at a candidate: one row of derivatives each, over its noise, for
-  /// small errors.
+  /// For each candidate pose, the derivatives of the values that would be measured there with respect to the fitted
+  /// numbers, divided by the noise. A matrix has one row for each quantity that the file measures (such as the height),
+  /// and a column for each fitted error and each number of frame and target. Distances are left out.
   std::vector<Matrix> rows_of_candidates() {
     std::vector<calibration::MeasuredValue> kinds;
     for (const calibration::MeasuredValue& value : measurement_.values()) {
@@ -402,7 +407,8 @@ class Calibration {
     }
   }
 
-  /// The tolerances of the fitted errors as a prior. An error without one counts with its scale.
+  /// The matrix Prior::root that the tolerances of the fitted errors give, even if the fit uses no prior. If some
+  /// fitted error has no tolerance, the scales of the columns take the place of tolerances.
   Matrix tolerances_of_fit() const {
     CalibrationTable with_prior = table_;
     with_prior.prior = PriorKnowledge::tolerances;

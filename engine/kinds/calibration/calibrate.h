@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -13,36 +14,37 @@
 
 namespace poesy {
 
-/// A number for the controller.
+/// A parameter of the controller, computed from the fitted errors, for an operator to type in.
 struct TypedNumber {
-  std::string name;     ///< its name
-  std::string text;     ///< the expression
-  Dimension dimension;  ///< its dimension
-  /// Its value (SI) for these fitted errors, SI.
+  std::string name;     ///< name in the controller
+  std::string text;     ///< expression that computes it
+  Dimension dimension;  ///< length, angle or number
+  /// The value of the parameter (SI) as a function of the fitted errors (SI).
   std::function<double(std::span<const double> fitted)> value;
 };
 
-/// A machine that is calibrated. Refers to all members.
+/// A machine that is calibrated from measurements. Refers to all members.
 struct MachineToCalibrate {
-  const Study& study;                     ///< the study, with [analysis.calibration]
+  const Study& study;                     ///< the study, which has [analysis.calibration]
   const Model& model;                     ///< the model of its mechanism
   const std::string& path;                ///< path of the measurements, for messages
-  const MachineFile& file;                ///< the measurements
-  const PoseSet& measured_at;             ///< the poses of its rows
-  const PoseSet& predicted_at;            ///< poses where what is left is predicted
-  const PoseSet& candidates;              ///< poses from which the next ones are chosen
-  const std::vector<TypedNumber>& typed;  ///< numbers for the controller
+  const MachineFile& file;                ///< the table of measurements
+  const PoseSet& measured_at;             ///< the pose of each row of the table of measurements
+  const PoseSet& predicted_at;            ///< poses at which the remaining displacement is predicted
+  const PoseSet& candidates;              ///< poses among which the next ones to measure are chosen
+  const std::vector<TypedNumber>& typed;  ///< parameters for the controller
 };
 
-/// The result, and what to tell beside it.
+/// The result of a calibration, and messages about it.
 struct Calibrated {
-  CalibrationResult result;           ///< the result; text and hash of the file are not set
+  CalibrationResult result;           ///< the result, without the text and the hash of the file
   bool converged = false;             ///< whether the fit converged
-  std::vector<std::string> warnings;  ///< sentences for people
+  std::uint64_t solves = 0;           ///< how many times the mechanism was solved
+  std::vector<std::string> warnings;  ///< warnings, as sentences for people
 };
 
-/// Fits the errors of [analysis.calibration] to the measurements. Throws InputError if the measurements cannot be
-/// fitted: without their noise, fewer than what is fitted, or drives and commanded coordinates that do not match.
+/// Fits the errors of [analysis.calibration] to the measurements. Throws InputError if they cannot be fitted: the noise
+/// is not stated, there are fewer values than fitted errors, or the drives do not match the commanded coordinates.
 Calibrated calibrate(const MachineToCalibrate& machine);
 
 }  // namespace poesy

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "engine/base/nan.h"
-#include "engine/random/distribution.h"
+#include "engine/random/normal_quantile.h"
 #include "engine/random/stream.h"
 
 namespace poesy {
@@ -18,7 +18,8 @@ using calibration::Vector;
 
 constexpr Eigen::Index kMachines = 1000;
 
-/// Positions of the components of which a response is formed; empty if it is not formed of them.
+/// Positions of the displacement components that form a response; empty if the response is not formed by such
+/// components.
 std::vector<std::size_t> components_of(const ModelDescription& model, std::size_t response) {
   const Response& wanted = model.responses[response];
   std::vector<std::size_t> parts = wanted.components;
@@ -46,7 +47,7 @@ Matrix normal_scores(std::uint64_t seed, Eigen::Index rows) {
   return scores;
 }
 
-/// A root of a covariance, which may be singular.
+/// A square root R of a covariance that may be singular, for which R R^T is the covariance.
 Matrix root_of(const Matrix& covariance) {
   const linalg::EigenDecomposition found = linalg::eigen_decomposition(covariance);
   return found.vectors * found.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();

@@ -2,12 +2,15 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/kinds/calibration/kind.h"
 #include "engine/kinds/calibration/result.h"
 #include "engine/kinds/calibration/words.h"
 #include "engine/report/display.h"
+#include "engine/report/signs.h"
 #include "engine/report/tables.h"
 
 namespace poesy {
@@ -67,10 +70,24 @@ std::vector<Table> calibration_result_tables(const StoredResult& result, const T
 
 SolveTally tally(const StoredResult&) { return {"", {"all errors"}, 1, {SolveCounts()}}; }
 
+/// A text of a terminal as a sentence of print: "to type in: a 1 -> 2 +- 0.1 mm" as "To type in: a 1 → 2 ± 0.1 mm."
+std::string sentence(std::string text) {
+  const std::pair<std::string_view, std::string_view> signs[] = {{"->", "\u2192"}, {"+-", kPlusMinus}};
+  for (const auto& [plain, sign] : signs) {
+    for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain)) {
+      text.replace(at, plain.size(), sign);
+    }
+  }
+  return as_sentence(std::move(text));
+}
+
 Answer answer(const StoredResult& result) {
   const CalibrationResult& found = calibration_of(result);
-  Answer lines{{"Answer", measured_text(found) + "."}, {"How sure", residual_text(found) + "."}};
-  if (const std::string typed = typed_text(found); !typed.empty()) lines.emplace_back("What to do", typed + ".");
+  Answer lines;
+  if (const std::string kept = kept_text(found); !kept.empty()) lines.emplace_back("Limits", sentence(kept));
+  lines.emplace_back("Answer", measured_text(found) + ".");
+  lines.emplace_back("How sure", sentence(residual_text(found)));
+  if (const std::string typed = typed_text(found); !typed.empty()) lines.emplace_back("What to do", sentence(typed));
   return lines;
 }
 
@@ -95,7 +112,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
           .quantities = {{"estimate", "estimate", std::move(units), std::move(values)}}};
 }
 
-/// Studies have other kinds.
+/// A study cannot have this kind, so there is nothing to run.
 std::optional<StudyResult> run_nothing(const StudyRun&) { return std::nullopt; }
 
 AtPose nothing_at_pose(const Study&) { return {0.0, "values", 0.0, "solves"}; }

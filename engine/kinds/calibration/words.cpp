@@ -16,9 +16,10 @@
 namespace poesy {
 namespace {
 
-constexpr double kContradiction = 0.01;  // p below which something is said
-constexpr double kTogether = 0.95;       // magnitude of a correlation from which on two numbers move together
-constexpr std::size_t kAngles = 3;       // components of a displacement before its lengths
+constexpr double kContradiction = 0.01;  // a smaller p-value is reported as a contradiction
+constexpr double kTogether = 0.95;       // estimates move together if the magnitude of their correlation is at least
+                                         // this
+constexpr std::size_t kAngles = 3;       // components of a displacement that are angles and come before the lengths
 
 std::string some(const CalibrationResult& found, const std::vector<std::size_t>& numbers) {
   std::vector<std::string> names;
@@ -26,7 +27,7 @@ std::string some(const CalibrationResult& found, const std::vector<std::size_t>&
   return some_names(names, 18);
 }
 
-/// The directions that are not seen, in words.
+/// Sentences about the directions of fitted errors that the measurement cannot see.
 std::vector<std::string> unseen_notes(const CalibrationResult& found) {
   const auto k = static_cast<Eigen::Index>(found.fitted.size());
   calibration::Matrix projector(k, k);
@@ -50,7 +51,7 @@ std::vector<std::string> unseen_notes(const CalibrationResult& found) {
   return notes;
 }
 
-/// Numbers whose estimates move together.
+/// Sentences about groups of errors whose estimates are correlated.
 std::vector<std::string> together_notes(const CalibrationResult& found) {
   std::vector<std::string> notes;
   std::vector<bool> listed(found.fitted.size(), false);
@@ -84,7 +85,7 @@ std::vector<std::string> together_notes(const CalibrationResult& found) {
   return notes;
 }
 
-/// The root mean square of a component over the poses, with its scatter.
+/// The root mean square over the poses of a component of the remaining displacement, including its uncertainty.
 double left_rms(const CalibrationResult& found, std::size_t component) {
   double sum = 0.0;
   std::size_t poses = 0;
@@ -175,15 +176,19 @@ std::vector<std::string> left_notes(const CalibrationResult& found) {
   }
   if (found.left_in_device_frame != 0) line += "; as the measuring device sees it";
   notes.push_back(std::move(line));
-  if (!std::isnan(found.kept)) {
-    notes.push_back(fmt::format("the limits are kept at all poses by {} of the machines that this one may be",
-                                percent_text(found.kept)));
-  }
+  if (std::string kept = kept_text(found); !kept.empty()) notes.push_back(std::move(kept));
   return notes;
 }
 
+std::string kept_text(const CalibrationResult& found) {
+  if (std::isnan(found.kept)) return {};
+  return fmt::format("the limits are kept at all poses by {} of the machines that this one may be",
+                     percent_text(found.kept));
+}
+
 std::string typed_text(const CalibrationResult& found) {
-  double quantile = kNaN;  // half an interval over its standard deviation: the same for all fitted errors that have one
+  // The half-width of an interval over the standard deviation. This ratio is equal for all fitted errors.
+  double quantile = kNaN;
   for (std::size_t k = 0; k < found.estimate.size() && std::isnan(quantile); ++k) {
     quantile = (found.high(k) - found.estimate(k)) / found.sd(k);
   }

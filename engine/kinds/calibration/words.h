@@ -7,17 +7,20 @@
 
 namespace poesy {
 
-/// "heights.csv: 12 heights, 3 distances at 13 poses; 7 fitted errors, 8 degrees of freedom"
+/// What was measured and fitted: "heights.csv: 12 heights, 3 distances at 13 poses; 7 fitted errors, 8 degrees of
+/// freedom"
 std::string measured_text(const CalibrationResult& found);
-/// How large the residual is, and what the chi-square test says of it. Empty if the noise is not known.
+/// The size of the residuals, and the result of the chi-square test. Empty if the noise is not known.
 std::string residual_text(const CalibrationResult& found);
-/// Sentences about the estimates: what is not determined, what moves together, what is below the noise.
+/// Sentences about the estimates: which are not determined, which are correlated, which are below the noise.
 std::vector<std::string> estimate_notes(const CalibrationResult& found);
-/// Sentences about what is left.
+/// Sentences about the displacement that remains after calibration.
 std::vector<std::string> left_notes(const CalibrationResult& found);
+/// The share of the machines that this one may be which keep the limits; empty without limits.
+std::string kept_text(const CalibrationResult& found);
 /// "to type in: delta_radius 95.0000 -> 95.1139 +- 0.1394 mm"; empty without numbers for the controller.
 std::string typed_text(const CalibrationResult& found);
-/// Warnings: contradictions, outliers, estimates far outside their tolerances.
+/// Warnings about contradictions, outliers, and estimates far outside their tolerances.
 std::vector<std::string> calibration_warnings(const CalibrationResult& found);
 
 }  // namespace poesy

@@ -46,7 +46,7 @@ std::vector<Cell> subset_row(const StoredResult& result, std::size_t r, std::siz
           place_cell(result, opposed, found.cancellation_max_pose(r, z, k))};
 }
 
-/// The signs of the errors that are not zero: "+leg_1 -leg_2".
+/// The errors that are not zero, with their signs: "+leg_1 -leg_2".
 std::string corner_text(const StoredResult& result, std::span<const std::int64_t> signs) {
   constexpr std::size_t kMost = 12;
   std::vector<std::string> names;
@@ -56,7 +56,7 @@ std::string corner_text(const StoredResult& result, std::span<const std::int64_t
   return some_names(names, kMost);
 }
 
-/// The pose and the signs of the worst case of all sources; empty if there is none or it is rounding.
+/// The pose and the signs of the worst case of all sources together; empty if there is none or if it is rounding.
 std::string worst_corner_text(const StoredResult& result, std::size_t z, std::size_t r) {
   const CouplingResult& found = coupling_of(result);
   const std::size_t all = found.subsets.size() - 1;
@@ -66,7 +66,7 @@ std::string worst_corner_text(const StoredResult& result, std::size_t z, std::si
                      corner_text(result, found.worst_case_signs.row(r, z, all)));
 }
 
-/// The number of corners without a solution, and the first of them; empty if there are none.
+/// The number of corners without a solution, and the first such corner; empty if there is none.
 std::string unsolved_text(const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
   const auto sum = [](const auto& counts) { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); };
@@ -104,7 +104,7 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
   return table;
 }
 
-/// Whether a source alone has no effect on one of the shown responses, at all poses and sizes.
+/// Whether some shown response does not change with this source alone, at any pose and size.
 bool does_nothing(const StoredResult& result, const std::string& source) {
   const CouplingResult& found = coupling_of(result);
   const auto k = static_cast<std::size_t>(std::ranges::find(found.subsets, source) - found.subsets.begin());
@@ -117,7 +117,7 @@ bool does_nothing(const StoredResult& result, const std::string& source) {
   });
 }
 
-/// Whether each limb has the same errors, by the stored study, which has all defaults filled in.
+/// Whether all limbs have the same errors. The stored study states this, because all its defaults are filled in.
 bool same_in_all_limbs(const StoredResult& result) {
   return study_setting(result.study_text, "analysis", "limbs") == "\"all\"";
 }
@@ -150,13 +150,13 @@ std::vector<std::string> notes(const StoredResult& result) {
   return list;
 }
 
-/// Leaves out norms, which have no sign and cannot show what cancels.
+/// Which responses the figures show at each pose. Norms are left out: they have no sign and cannot show cancellation.
 ShownCells cells(const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
   return shown_cells(result, found.size_names.size() * (2 * found.subsets.size() + 3), result.signed_headline);
 }
 
-/// The curves of a coupling result, with one panel for each response and size. Refers to its arguments.
+/// The curves of a coupling result, one panel for each response and size. Refers to its arguments.
 class Curves {
  public:
   Curves(const StoredResult& result, const PoseFigures& figures)
@@ -165,7 +165,7 @@ class Curves {
   Lines effects() const {
     return lines("", [&](std::size_t r, std::size_t z) { return effect_series(r, z); });
   }
-  /// Interactions have panels of their own, because they may be far smaller than effects.
+  /// Interactions have their own panels, because they may be far smaller than effects.
   Lines interactions() const {
     return lines("interaction in ",
                  [&](std::size_t r, std::size_t z) { return subset_series("interaction", found_.interaction, r, z); });
@@ -176,7 +176,7 @@ class Curves {
     for (Panel& panel : all.panels) panel.unit = "%";
     return all;
   }
-  /// The effect of all sources together at each pose, and how much they cancel.
+  /// The effect of all sources together at each pose, and their cancellation.
   std::vector<Field> fields() const {
     std::vector<Field> list;
     for (const auto& [r, z] : panels()) {
@@ -192,11 +192,11 @@ class Curves {
   bool has_subsets() const { return found_.subsets.size() > sources(); }
 
  private:
-  /// The number of single sources, which are the first subsets.
+  /// The number of sources. The first subsets have one source each.
   std::size_t sources() const { return std::min(found_.sources.size(), found_.subsets.size()); }
   std::size_t last() const { return found_.subsets.size() - 1; }
   const std::string& subset(std::size_t k) const { return found_.subsets[k]; }
-  /// Pairs of a response and a size. The last size comes first, because tables show it.
+  /// Pairs of a response and a size. The last size comes first, because tables show it first.
   std::vector<std::pair<std::size_t, std::size_t>> panels() const {
     std::vector<std::pair<std::size_t, std::size_t>> list;
     for (const std::size_t r : figures_.responses()) {
@@ -217,14 +217,15 @@ class Curves {
     return all;
   }
 
-  /// One curve, with shares in percent.
+  /// One curve over the poses, in display units; a cancellation in percent.
   ArrayName curve(std::string_view what, const CouplingResult::Curves& values, std::size_t r, std::size_t z,
                   std::size_t k) const {
     const double unit = what == "cancellation" ? 0.01 : display(result_.responses[r]).si;
     return figures_.add(fmt::format("{}/{}/{}/{}", what, r, z, k), values.row(r, z, k), unit);
   }
 
-  /// Adds the subsets of several sources, except the one of all sources.
+  /// Adds to `list` the curves of all subsets with several sources, except the subset of all sources. r: response; z:
+  /// size.
   void add_subsets(std::vector<Series>& list, std::string_view what, const CouplingResult::Curves& values,
                    std::size_t r, std::size_t z) const {
     for (std::size_t k = sources(); k + 1 < found_.subsets.size(); ++k) {
@@ -232,7 +233,7 @@ class Curves {
     }
   }
 
-  /// All sources together, then the other subsets.
+  /// The curve of all sources together, then those of the other subsets with several sources.
   std::vector<Series> subset_series(std::string_view what, const CouplingResult::Curves& values, std::size_t r,
                                     std::size_t z) const {
     std::vector<Series> list{{subset(last()), curve(what, values, r, z, last())}};
@@ -240,7 +241,7 @@ class Curves {
     return list;
   }
 
-  /// Each source alone, then all together with their sum and their interaction, then the other subsets.
+  /// The curves of each source alone, of all sources together with their sum and interaction, and of the other subsets.
   std::vector<Series> effect_series(std::size_t r, std::size_t z) const {
     std::vector<Series> list;
     for (std::size_t k = 0; k < sources(); ++k) {
@@ -267,7 +268,7 @@ class Curves {
   const PoseFigures& figures_;
 };
 
-/// Adds the tables of the last size, and those of the other sizes folded.
+/// Adds to the section the tables for the last size of the errors, and, folded, those for the other sizes.
 void add_tables(const StoredResult& result, std::span<const Table> tables, Section& section) {
   const std::size_t shown = std::min(tables.size(), result.signed_headline.size());
   section.folded("The tables of the other sizes", tables.first(tables.size() - shown));
@@ -306,7 +307,7 @@ SolveTally tally(const StoredResult& result) {
   return {"size", found.size_names, result.poses.size(), {found.solves.begin(), found.solves.end()}};
 }
 
-/// The names of subsets with their size.
+/// The names of subsets at each size: "FS+T at 0.1 mm".
 std::vector<std::string> sized_subsets(const CouplingResult& coupling) {
   std::vector<std::string> list;
   for (const std::string& size : coupling.size_names) {
@@ -315,7 +316,7 @@ std::vector<std::string> sized_subsets(const CouplingResult& coupling) {
   return list;
 }
 
-/// Answers for the last size, which tables show, and the first response.
+/// The answer for the last size, which the page shows, and the first response.
 Answer answer(const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
   if (found.subsets.empty() || found.size_names.empty() || result.signed_headline.empty()) return {};
@@ -334,7 +335,7 @@ Answer answer(const StoredResult& result) {
       {"Largest source", fmt::format("{} alone, with up to {}.", found.subsets[largest], text(effects[largest]))}};
   if (sources > 1) {
     const std::string worst = has_worst_cases(found)
-                                  ? fmt::format(", and the worst case that was found is {}, which is no bound",
+                                  ? fmt::format(", and the worst case that was found is {}, which is not a bound",
                                                 text(found.worst_case_max(r, z, all)))
                                   : "";
     lines.emplace_back(
@@ -349,6 +350,20 @@ Answer answer(const StoredResult& result) {
                                  "differ from machine to machine.",
                                  found.subsets[largest]));
   return lines;
+}
+
+/// The largest effect of all sources together at the last size. It has no uncertainty, because errors are given.
+std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
+  const CouplingResult& found = coupling_of(result);
+  if (name.empty() || found.effect_max.empty()) return {};
+  const std::size_t r = response_named(result, name);
+  const NamedUnit& response = result.responses[r];
+  const double largest = found.effect_max.row(r).back() / display(response).si;
+  return {{.what = fmt::format("largest effect of all sources on {}", name),
+           .unit = unit_text(response),
+           .value = largest,
+           .low = largest,
+           .high = largest}};
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
@@ -375,6 +390,7 @@ std::vector<Table> coupling_tables(const StoredResult& result, const TableOption
 constinit const ReportKind kCouplingReport{
     .tally = tally,
     .tables = coupling_tables,
+    .merits = merits,
     .words = [](const StoredResult& result) { return StudyWords{.sizes = coupling_of(result).size_names}; },
     .answer = answer,
     .shown_cells = cells,

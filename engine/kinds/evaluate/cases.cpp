@@ -1,10 +1,14 @@
 #include "engine/kinds/evaluate/cases.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
+#include "engine/kinds/calibrated_model.h"
 #include "engine/kinds/evaluate/kind.h"
 #include "engine/result/result_parts.h"
 #include "engine/run/evaluation.h"
@@ -17,7 +21,8 @@ constexpr Pairing kPairing = Pairing::every_pose_with_every_row;
 
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const std::vector<ErrorCase>& cases = asked_of<CaseOptions>(run.study.analysis).cases;
-  auto solves = run_evaluation(run.model, run.study.solver, run.poses, case_table(cases), kPairing, run.options);
+  const std::shared_ptr<const Model> model = studied_model(run.study, run.model, run.poses);
+  auto solves = run_evaluation(*model, run.study.solver, run.poses, case_table(cases), kPairing, run.options);
   if (!solves || !run.makes_result()) return std::nullopt;
   if (const auto& limits = run.study.analysis.limits; !limits.empty()) {
     solves->verdicts = judge_rows(limits, *solves, kPairing, run.study.not_converged);
@@ -32,8 +37,9 @@ Outlook cases_outlook(const Study& study, const Model& model, const PoseSet& pos
   const ErrorTable table = case_table(asked_of<CaseOptions>(study.analysis).cases);
   const std::size_t solves = table.rows * poses.size();
   const std::size_t outcomes = solves * outcome_bytes(study.model(), Outcomes::with_details);
+  const auto calibration = machine_calibration(study, model, poses);
   return {.solves = counted_things(table.rows, "cases x ") + counted_things(poses.size(), "poses = ") +
-                    counted_things(solves, "solves"),
+                    counted_things(solves, "solves") + (calibration ? calibration_cost_text(*calibration, "case") : ""),
           .memory = {.state = outcomes, .result = outcomes, .file = outcomes},
           .shared = {table_work(study, model, poses, table, Outcomes::with_details)},
           .by_one = {}};
@@ -99,7 +105,7 @@ std::vector<RowOutcome> row_outcomes(const Evaluation& found, std::size_t respon
       const double value = solves.response(response, m, s);
       RowOutcome& row = rows[row_of_solve(found, m, s)];
       if (row.solved == 0) row.mean = row.extreme = 0.0;
-      row.mean += value;  // the sum, until all poses are added
+      row.mean += value;  // the sum, until it is divided below
       if (row.solved == 0 || std::abs(value) > std::abs(row.extreme)) {
         row.extreme = value;
         row.pose = m;

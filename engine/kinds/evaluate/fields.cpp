@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kLabels = "/evaluate/label";
 
-/// The words of a file for how poses and rows of errors are paired.
+/// The words in a file for how poses and rows of errors are paired.
 /// @{
 constexpr const char* kRowByRow = "row-by-row";
 constexpr const char* kEveryPoseWithEveryRow = "every-pose-with-every-row";
@@ -30,20 +30,20 @@ const Fields<Evaluation> kCaseFields{
     {"max", &Evaluation::max, kResponseUnit, "Largest value over the poses that count"},
     {"count", &Evaluation::count, "1", "Poses that count: solved, or as not_converged has it"}};
 
-/// The order of solves in a file: pose by pose for a table, case by case for cases.
+/// The order of solves in a file: pose by pose for a table, case by case for named cases.
 /// @{
 using TableLayout = AxisLayout<axis::Pose, axis::Sample>;
 using CaseLayout = AxisLayout<axis::Case, axis::Pose>;
 /// @}
 
-/// The pose and the sample at two positions in the file.
+/// The pose and the sample of a solve, from its positions on the two axes of a layout.
 template <class Layout>
 std::pair<std::size_t, std::size_t> solve_at(std::size_t first, std::size_t second) {
   if constexpr (std::is_same_v<Layout, CaseLayout>) return {second, first};
   return {first, second};
 }
 
-/// Adds a dataset of solves. value(pose, sample) gives one value.
+/// Adds to the result file a dataset with one value for each solve. value(pose, sample) returns it.
 template <h5::Number T, class Layout, class Value>
 void add_values(ResultBuilder& result, const std::string& name, const Layout& layout, const Value& value,
                 const Label& label) {
@@ -52,7 +52,7 @@ void add_values(ResultBuilder& result, const std::string& name, const Layout& la
       [&](std::size_t first, std::size_t second) { return std::apply(value, solve_at<Layout>(first, second)); }, label);
 }
 
-/// Reads a dataset of solves. set(pose, sample, value) takes one value.
+/// Reads a dataset with one value for each solve. set(pose, sample, value) takes it.
 template <h5::Number T, class... A, class Set>
 void read_values(const h5::File& file, const std::string& name, const AxisLayout<A...>& layout, const Set& set) {
   const auto values = read_array<Array<T, A...>>(file, "/evaluate/" + name);
@@ -68,7 +68,7 @@ void add_details(ResultBuilder& result, const Evaluation& found, const AxisLayou
   if (found.solves.detail.empty()) return;
   const auto names = texts(found.details, &Detail::name);
   result.file().set_attribute("/evaluate", "details", std::span(names));
-  std::map<std::vector<std::string>, std::string> axis_of;  // details with the same components share an axis
+  std::map<std::vector<std::string>, std::string> axis_of;  // additional outputs with the same components share an axis
   std::size_t first = 0;
   for (const Detail& detail : found.details) {
     const std::size_t width = detail.components.size();
@@ -124,7 +124,7 @@ void read_detail_values(const h5::File& file, const AxisLayout<A...>& layout, Ev
   }
 }
 
-/// Fills in the solves. layout: the order of solves in the file.
+/// Reads what add_solves() writes. layout: the order of solves in the file.
 template <class Layout>
 void read_solves(const h5::File& file, const std::vector<NamedUnit>& responses, const Layout& layout,
                  Evaluation& found) {
@@ -151,7 +151,8 @@ void read_solves(const h5::File& file, const std::vector<NamedUnit>& responses, 
   read_fields(file, "/evaluate", kJointFields, solves);
 }
 
-/// Adds the solves. layout: the order of solves in the file.
+/// Writes the group /evaluate of the file: responses, additional outputs, status and iterations of each solve, and the
+/// nominal displacements of the joints. layout: the order of solves in the file.
 template <class Layout>
 void add_solves(ResultBuilder& result, const ModelDescription& model, const Evaluation& found, const Layout& layout) {
   const EvaluationResult& solves = found.solves;
@@ -176,7 +177,8 @@ void add_solves(ResultBuilder& result, const ModelDescription& model, const Eval
   write_fields(result, "/evaluate", kJointFields, solves);
 }
 
-/// Adds the errors that were given. rows: the name of their axis.
+/// Writes the group /errors of the file: the given errors, their pairing with poses, and the labels of the rows. rows:
+/// the name of the axis of rows.
 void add_errors(ResultBuilder& result, const Evaluation& found, const std::string& rows) {
   const bool row_by_row = found.pairing == Pairing::row_by_row;
   result.file().make_group("/errors");
@@ -189,13 +191,13 @@ void add_errors(ResultBuilder& result, const Evaluation& found, const std::strin
   result.file().set_attribute(kLabels, "column", found.labels.column);
 }
 
-/// Throws unless all rows of errors were tried for every verdict.
+/// Throws h5::Error unless every verdict counts all rows of errors.
 void check_rows(const std::vector<LimitVerdict>& limits, std::size_t rows) {
   const bool fits = std::ranges::all_of(limits, [rows](const LimitVerdict& one) { return one.tried == rows; });
   if (!fits) throw h5::Error("/limits/tried is not the number of rows of errors");
 }
 
-/// The labels of the rows of errors; empty if they have none.
+/// Reads the labels of the rows of errors; empty if the file has none.
 RowLabels read_labels(const h5::File& file, const std::string& rows) {
   RowLabels labels;
   if (!file.exists(kLabels)) return labels;
@@ -203,7 +205,7 @@ RowLabels read_labels(const h5::File& file, const std::string& rows) {
   labels.names = read_along<std::string>(file, kLabels, {rows});
   const bool wrong =
       std::ranges::any_of(labels.names, [](const std::string& name) { return label_problem(name).has_value(); });
-  if (wrong || label_problem(labels.column)) throw h5::Error(std::string(kLabels) + " holds what is no label");
+  if (wrong || label_problem(labels.column)) throw h5::Error(std::string(kLabels) + " holds what is not a label");
   return labels;
 }
 
@@ -219,8 +221,8 @@ std::vector<std::string> component_units(const std::string& text, std::size_t co
   return list;
 }
 
-/// Sets the first cells of a line: the label of its row of errors, if rows have labels, and a number. row(line): the
-/// position of the row.
+/// Sets the first cells of each line: the label of its row of errors, if rows have labels, and a number. row(line): the
+/// position of the row of errors.
 template <class Row, class Number>
 void set_first_cells(CsvTable& table, const RowLabels& labels, const std::string& heading, const Row& row,
                      const Number& number) {
@@ -232,7 +234,7 @@ void set_first_cells(CsvTable& table, const RowLabels& labels, const std::string
   table.columns.push_back({heading, [number](std::size_t line) { return to_number(number(line)); }});
 }
 
-/// Adds columns with the results of solves. solve(line): the pose and the sample of a line.
+/// Gives the table further columns with the results of solves. solve(line): the pose and the sample of a line.
 template <class Solve>
 void append_solve_columns(CsvTable& table, const StoredResult& result, const Solve& solve) {
   const Evaluation& found = evaluation_of(result);
@@ -319,7 +321,7 @@ CsvTable error_table(const StoredResult& result) {
   return table;
 }
 
-/// A line for each row of errors that has a label.
+/// A table with a line for each row of errors. Precondition: the rows have labels.
 CsvTable part_table(const StoredResult& result) {
   const RowLabels& labels = evaluation_of(result).labels;
   CsvTable table{"parts", {labels.column, [&](std::size_t row) { return labels.names[row]; }}, labels.names.size()};
@@ -353,7 +355,7 @@ CsvTable case_sum_table(const StoredResult& result) {
   return table;
 }
 
-/// The content of the file of `poesy evaluate`: its result, and the errors of its table. Refers to both.
+/// What a file of `poesy evaluate` contains: the result, and the errors that the table gives. Refers to both.
 struct TableOfErrors {
   std::span<const FactorIndex> factors;
   const Evaluation& found;

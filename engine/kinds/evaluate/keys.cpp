@@ -7,6 +7,8 @@
 
 #include "engine/base/text.h"
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/study/calibration.h"
+#include "engine/study/calibration_keys.h"
 #include "engine/study/study.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
@@ -14,7 +16,7 @@
 namespace poesy {
 namespace {
 
-constexpr std::array<std::string_view, 3> kEvaluateKeys{"background", "limits", "cases"};
+constexpr std::array<std::string_view, 4> kEvaluateKeys{"background", "limits", "calibration", "cases"};
 
 void set_case_errors(const StudyValue& value, std::string_view key, const ModelDescription& model,
                      std::vector<double>& errors) {
@@ -29,8 +31,8 @@ void set_case_errors(const StudyValue& value, std::string_view key, const ModelD
   }
 }
 
-/// The factor sets that a case names, each before the sets inside it. Throws if two overlap without one being inside
-/// the other.
+/// The factor sets that a case names, larger sets first. Throws InputError if two sets overlap and neither contains the
+/// other.
 std::vector<const FactorSet*> sets_in_case(const StudySection& section, const ModelDescription& model) {
   std::vector<const FactorSet*> sets;
   for (const FactorSet& set : model.factor_sets) {
@@ -52,8 +54,8 @@ std::vector<const FactorSet*> sets_in_case(const StudySection& section, const Mo
   return sets;
 }
 
-/// The errors of a case. `linear` and `angular` apply to all; factor sets, from wide to narrow, and then single factors
-/// override them.
+/// The errors of a case. `linear` and `angular` apply to all errors of that dimension. Factor sets override them,
+/// smaller sets override larger ones, and single factors override all.
 std::vector<double> read_case_errors(const StudySection& section, const ModelDescription& model,
                                      std::vector<double> errors) {
   std::vector<std::string_view> known = names(model.factors);
@@ -95,7 +97,7 @@ void read_cases(const StudyValue& value, Study& study, const Reading&) {
   }
 }
 
-/// Lines of a template that list every error by name.
+/// Lines of a template that state every error by name.
 std::string cases_lines(const Study& study) {
   std::string text;
   for (const ErrorCase& one : asked_of<CaseOptions>(study.analysis).cases) {
@@ -162,15 +164,17 @@ StudyTables case_tables() {
   return {cases, errors, of_set};
 }
 
-/// Takes the factors of the study from its cases.
+/// Checks the cases. The study's list of factors stays empty, because the cases state all errors.
 void complete_cases(Study& study, const Reading& reading) {
   study.analysis.factors.clear();
-  if (!asked_of<CaseOptions>(study.analysis).cases.empty() || reading.use == StudyUse::evaluate) return;
+  if (reading.use == StudyUse::run) check_simulated(study, reading.root.section("analysis"));
+  if (!asked_of<CaseOptions>(study.analysis).cases.empty() || reading.use != StudyUse::run) return;
   throw InputError(reading.root.section("analysis").place(), "kind = \"evaluate\" needs at least one case",
                    "write [[analysis.cases]] with name and errors, or use 'poesy evaluate' for a table of errors");
 }
 
-/// Refuses at the error itself, at what sets all errors of its dimension, or at the case if a factor set sets it.
+/// Refuses an error that is too large. The message points at the key that sets the error, at the key for all errors of
+/// its dimension, or at the case if a factor set sets it.
 [[noreturn]] void refuse_case(const StudySection& errors, const std::string& name, const Factor& factor,
                               const std::string& problem) {
   for (const std::string_view key : {std::string_view(factor.name), error_kind(factor.dimension)}) {

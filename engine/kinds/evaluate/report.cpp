@@ -19,9 +19,9 @@
 namespace poesy {
 namespace {
 
-constexpr int kDigits = 6;
+constexpr int kDigits = 6;  ///< these numbers are solved for given errors, not estimated
 
-/// The mean and the extremes of a response over the solved samples; NaN if none is solved.
+/// The mean and the extremes of a response over the solved samples; NaN if no sample is solved.
 struct Summary {
   double mean = kNaN;
   double smallest = mean;
@@ -45,14 +45,14 @@ Summary summary(const EvaluationResult& found, std::size_t r) {
   return count == 0 ? Summary() : Summary{sum / static_cast<double>(count), smallest, largest};
 }
 
-/// "; 38 of 40 pass" where the study limits the response.
+/// "; 38 of 40 pass" if the study limits the response; otherwise empty.
 std::string passes(const StoredResult& result, std::size_t r) {
   const LimitVerdict* verdict = verdict_on(result, r);
   return verdict == nullptr ? "" : fmt::format("; {} of {} pass", verdict->within, verdict->tried);
 }
 
-/// "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty if rows have no labels or none
-/// was solved.
+/// A note like "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty if rows have no
+/// labels or no row was solved.
 std::string worst_note(const StoredResult& result, std::size_t r) {
   const RowLabels& labels = evaluation_of(result).labels;
   if (labels.names.empty()) return {};
@@ -71,7 +71,8 @@ Table parts_table(const StoredResult& result) {
               .caption = "Each " + labels.column + " over its poses: mean, and the value of the largest magnitude",
               .columns = {},
               .notes = {"poses: those that were solved"}};
-  std::vector<std::vector<RowOutcome>> outcomes;  // [responses of the headline] the outcome of each row
+  std::vector<std::vector<RowOutcome>> outcomes;  // [headline][rows] outcome of each row for each response of the
+                                                  // headline
   for (const std::size_t r : result.headline) outcomes.push_back(row_outcomes(evaluation_of(result), r));
   std::vector<FilledColumn> columns{
       {text_column("label", labels.column), [&](std::size_t row) { return text_cell(labels.names[row]); }},
@@ -81,7 +82,7 @@ Table parts_table(const StoredResult& result) {
     const NamedUnit& response = result.responses[result.headline[h]];
     const std::vector<RowOutcome>& of = outcomes[h];
     const std::string_view unit = display(response).name;
-    const int dispensable = 3 * static_cast<int>(h);  // the columns of the last response are left out first
+    const int dispensable = 3 * static_cast<int>(h);  // a narrow table omits the columns of the last response first
     columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable + 2),
                        [&](std::size_t row) { return value_cell(of[row].mean, response, kDigits); }});
     columns.push_back({number_column(response.name + "_extreme", response.name + " extreme", unit, dispensable),
@@ -103,7 +104,7 @@ Table cases_table(const StoredResult& result) {
   std::vector<FilledColumn> columns{
       {text_column("case", "case"), [&](std::size_t c) { return text_cell(found.cases[c]); }},
       {number_column("poses", "poses"), [&](std::size_t c) { return count_cell(found.count.all()[c]); }}};
-  int dispensable = 0;  // for the first response; the columns of the last one are left out first
+  int dispensable = 0;  // 0 for the first response; a narrow table omits the columns of the last response first
   for (const std::size_t r : result.headline) {
     const NamedUnit& response = result.responses[r];
     const std::string_view unit = display(response).name;
@@ -123,7 +124,7 @@ ShownCells cells(const StoredResult& result) {
   return shown_cells(result, cases == 0 ? kSummaryRows : cases);
 }
 
-/// One response to one row of errors at all poses; NaN where it was not solved.
+/// One response to one row of errors at all poses; NaN if it was not solved.
 std::vector<double> response_to(const EvaluationResult& found, std::size_t r, std::size_t sample) {
   std::vector<double> values;
   for (std::size_t m = 0; m < found.poses(); ++m) {
@@ -132,7 +133,7 @@ std::vector<double> response_to(const EvaluationResult& found, std::size_t r, st
   return values;
 }
 
-/// A curve over the poses for each case, and the same as fields of the workspace.
+/// Adds to the page a curve over the poses for each case, and the same values as fields over the workspace.
 void add_cases(const StoredResult& result, const PoseFigures& figures, Page& page, Section& section) {
   const std::vector<std::string>& cases = evaluation_of(result).cases;
   Lines lines{.x = figures.axis(), .panels = {}};
@@ -154,7 +155,7 @@ void add_cases(const StoredResult& result, const PoseFigures& figures, Page& pag
   figures.add_workspace(section, std::move(fields));
 }
 
-/// Order statistics of the values that were solved; NaN if none was.
+/// Quantiles of the solved values at these levels; NaN if no value was solved.
 std::vector<double> order_statistics(std::span<const double> all, std::span<const SolveStatus> status,
                                      std::span<const double> levels) {
   std::vector<double> values;
@@ -170,7 +171,7 @@ std::vector<double> order_statistics(std::span<const double> all, std::span<cons
   return list;
 }
 
-/// For each pose, over its rows: the 5 % quantile, the median, the 95 % quantile and the largest value.
+/// At each pose, the 5 % quantile, the median, the 95 % quantile and the largest value over the rows of errors.
 std::array<std::vector<double>, 4> quantiles_at_poses(const EvaluationResult& found, std::size_t r) {
   constexpr std::array kLevels{0.05, 0.5, 0.95, 1.0};
   std::array<std::vector<double>, 4> quantiles;
@@ -181,7 +182,7 @@ std::array<std::vector<double>, 4> quantiles_at_poses(const EvaluationResult& fo
   return quantiles;
 }
 
-/// The distribution of each response over all poses and rows.
+/// Adds to the page the distribution of each response over all poses and rows of errors.
 void add_distribution(const StoredResult& result, Page& page, Section& section) {
   constexpr std::size_t kLevels = 101;
   const EvaluationResult& found = evaluation_of(result).solves;
@@ -252,7 +253,7 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   }
 }
 
-/// Counts solves by case, or together for rows of a table.
+/// Counts how solves ended, for each case, or for all rows of a table of errors together.
 SolveTally tally(const StoredResult& result) {
   const std::vector<std::string>& cases = evaluation_of(result).cases;
   const EvaluationResult& found = evaluation_of(result).solves;
@@ -274,7 +275,7 @@ StudyWords words(const StoredResult& result) {
   return {.samples = counted(found.cases.size(), "case", "cases")};
 }
 
-/// Answers for the response that ranks.
+/// The answer for the response by which errors are ranked.
 Answer answer(const StoredResult& result) {
   const Evaluation& found = evaluation_of(result);
   const std::size_t r = response_named(result, default_ranking(result));
@@ -282,6 +283,7 @@ Answer answer(const StoredResult& result) {
   const std::size_t cases = found.cases.size();
   const Summary all = summary(found.solves, r);
   Answer lines;
+  if (std::string limits = limits_text(result); !limits.empty()) lines.emplace_back("Limits", std::move(limits));
   if (cases > 0) {
     const auto largest = found.max.row(r);
     const auto worst = static_cast<std::size_t>(std::ranges::max_element(largest) - largest.begin());
@@ -295,7 +297,6 @@ Answer answer(const StoredResult& result) {
                                              response_text(response, all.largest)));
   }
   if (std::string worst = worst_note(result, r); !worst.empty()) lines.emplace_back("Worst", worst + ".");
-  if (std::string limits = limits_text(result); !limits.empty()) lines.emplace_back("Limits", std::move(limits));
   lines.emplace_back("How sure", "These errors were given, not drawn, so nothing here is up to chance.");
   const bool limited = result.verdicts.has_value();
   lines.emplace_back("What to do", !limited ? "State limits under [analysis.limits], and the report judges them."
@@ -303,6 +304,19 @@ Answer answer(const StoredResult& result) {
                                        ? "Nothing for these errors; others need a study of their own."
                                        : "Begin with the rows and poses that are named below as the worst.");
   return lines;
+}
+
+/// The largest magnitude of the response. It has no uncertainty, because errors are given.
+std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
+  if (name.empty()) return {};
+  const std::size_t r = response_named(result, name);
+  const Summary all = summary(evaluation_of(result).solves, r);
+  const double largest = std::max(std::abs(all.smallest), std::abs(all.largest)) / display(result.responses[r]).si;
+  return {{.what = fmt::format("largest magnitude of {}", name),
+           .unit = unit_text(result.responses[r]),
+           .value = largest,
+           .low = largest,
+           .high = largest}};
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
@@ -357,6 +371,7 @@ Table evaluation_table(const StoredResult& result) {
 
 constinit const ReportKind kEvaluationReport{.tally = tally,
                                              .tables = evaluation_tables,
+                                             .merits = merits,
                                              .words = words,
                                              .answer = answer,
                                              .shown_cells = cells,

@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// Reads or writes what a result keeps of a response's sketch at a finished pose.
+/// Reads or writes the numbers that a result has from a response's sketch at a finished pose.
 void sketched_state(Archive& archive, MonteCarloResult& result, std::size_t response, std::size_t pose) {
   archive.real(result.min(response, pose), result.max(response, pose));
   archive.reals(result.quantiles.row(response, pose));
@@ -20,11 +20,11 @@ void sketched_state(Archive& archive, MonteCarloResult& result, std::size_t resp
   if (!result.share_magnitude.empty()) archive.real(result.share_magnitude(response, pose));
 }
 
-/// The solves that are read must be those of whole units, and of at most most_samples samples.
+/// Refuses a state whose solves are not whole units, or are more than most_samples.
 void expect_whole(const Archive& archive, const SolveCounts& solves, std::size_t most_samples) {
   const std::uint64_t total = solves.total();
   archive.expect(total > 0 && total % Plan::kUnitSamples == 0 && total <= most_samples,
-                 "has a pose that is no number of whole units");
+                 "has a pose that is not a number of whole units");
 }
 
 }  // namespace
@@ -150,7 +150,7 @@ EffectResult MonteCarloCollector::effects() const {
   }
   EffectResult found = effect_result(poses, spreads, conf_level);
   found.effects = main_effects(at_poses, Dependence::independent, all, spreads, responses_, conf_level);
-  leave_out_correlated(*plan_, found.effects);
+  leave_out_dependent(*plan_, found.effects);
   return found;
 }
 

@@ -10,6 +10,7 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/report/display.h"
 #include "engine/stats/error_scores.h"
+#include "engine/stats/told_together.h"
 #include "engine/stats/yield_gradient.h"
 
 namespace poesy {
@@ -22,7 +23,7 @@ const YieldResult* yield_in(const StoredResult& result) {
   return machines && machines->yield ? &*machines->yield : nullptr;
 }
 
-/// Limited responses whose shares are known, starting with the one that rejects most machines.
+/// Limited responses with known shares, the one that rejects most machines first.
 std::vector<std::size_t> shared_responses(const StoredResult& result, const YieldResult& yield) {
   std::vector<std::size_t> list;
   if (!yield.has_shares()) return list;
@@ -33,15 +34,15 @@ std::vector<std::size_t> shared_responses(const StoredResult& result, const Yiel
   return list;
 }
 
-/// The change of the yield by each error, with its interval. Files without it have the slope, which is converted.
+/// The change of the yield by each error, with its interval. If a file has only the gradient, the change is computed
+/// from it.
 struct Changes {
   using Values = Array<double, axis::Factor>;
   Values value;
   Values low;
   Values high;
 
-  /// Whether the interval excludes zero.
-  bool is_told(std::size_t p) const { return low(p) > 0.0 || high(p) < 0.0; }
+  bool is_known(std::size_t p) const { return !std::isnan(low(p)) && !std::isnan(high(p)); }
 };
 
 Changes changes_of(const StoredResult& result, const YieldResult& yield) {
@@ -57,13 +58,42 @@ Changes changes_of(const StoredResult& result, const YieldResult& yield) {
   return {part(yield.gradient), part(yield.gradient_ci_low), part(yield.gradient_ci_high)};
 }
 
-/// The errors whose interval excludes zero, the largest loss first.
-std::vector<std::size_t> told_errors(const Changes& changes) {
-  std::vector<std::size_t> told;
+/// Whether a number of the error is above zero for any limited response whose shares are known; also if it is not
+/// known.
+bool has_any_share(const StoredResult& result, const YieldResult& yield, const MainEffects::Indices& shares,
+                   std::size_t p) {
+  const std::vector<std::size_t> responses = shared_responses(result, yield);
+  return responses.empty() || std::ranges::any_of(responses, [&](std::size_t r) { return !(shares(r, p) <= 0.0); });
+}
+
+/// The errors on which the yield depends for certain, and how many others were tested.
+struct ToldErrors {
+  std::vector<std::size_t> told;  ///< these errors: first those whose share of a mean square is certain, then by the
+                                  ///< loss of yield, largest first
+  std::size_t tested = 0;         ///< number of errors whose change of the yield is known and whose share is not zero
+  std::size_t known = 0;          ///< number of errors whose change of the yield is known
+};
+
+/// Tests all errors together, because among many tests some would tell an effect by chance.
+ToldErrors told_errors(const StoredResult& result, const YieldResult& yield, const Changes& changes) {
+  ToldErrors found;
+  std::vector<Estimate> estimates;
   for (std::size_t p = 0; p < changes.value.size(); ++p) {
-    if (changes.is_told(p)) told.push_back(p);
+    const bool tested = changes.is_known(p) && has_any_share(result, yield, yield.mean_square_share, p);
+    found.known += changes.is_known(p) ? 1 : 0;
+    found.tested += tested ? 1 : 0;
+    estimates.push_back(tested ? Estimate{changes.value(p), {changes.low(p), changes.high(p)}}
+                               : Estimate{kNaN, {kNaN, kNaN}});
   }
-  return largest_first(std::move(told), [&](std::size_t p) { return -changes.value(p); });
+  const double freedom = static_cast<double>(yield.rejects) - 1.0;
+  const std::vector<bool> told = told_together(estimates, {-yield.value, 1.0 - yield.value}, freedom, yield.conf_level);
+  for (std::size_t p = 0; p < told.size(); ++p) {
+    if (told[p]) found.told.push_back(p);
+  }
+  found.told = largest_first(std::move(found.told), [&](std::size_t p) { return -changes.value(p); });
+  std::ranges::stable_partition(
+      found.told, [&](std::size_t p) { return has_any_share(result, yield, yield.mean_square_share_ci_low, p); });
+  return found;
 }
 
 std::string linear_note(const StoredResult& result, const YieldResult& yield, std::size_t r) {
@@ -108,13 +138,32 @@ Table share_table(const StoredResult& result, const YieldResult& yield, const st
   return table;
 }
 
-/// Adds a line that replaces the rows of errors without a clear effect: "33 errors whose effect cannot be told from
-/// zero".
+/// Adds a line for the errors whose effect is not clear: "33 errors whose effect cannot be told from zero".
 void add_line(Table& table, std::size_t errors, std::string_view one, std::string_view many) {
   if (errors == 0) return;
   std::vector<Cell> row{text_cell(fmt::format("{} {}", counted(errors, "error", "errors"), errors == 1 ? one : many))};
   row.resize(table.columns.size(), text_cell(""));
   table.rows.push_back(std::move(row));
+}
+
+/// Says how small a change of the yield these machines tell from zero, if it is the only one, and how many machines a
+/// smaller one takes; empty if all changes are told.
+std::string needed_machines_note(const Changes& changes, const ToldErrors& found, const YieldResult& yield) {
+  constexpr std::uint64_t kFiner = 10;
+  std::vector<double> half_widths;
+  for (std::size_t p = 0; p < changes.value.size(); ++p) {
+    const double half_width = 0.5 * (changes.high(p) - changes.low(p));
+    const bool is_told = std::ranges::find(found.told, p) != found.told.end();
+    if (half_width > 0.0 && !is_told) half_widths.push_back(half_width);
+  }
+  if (half_widths.empty()) return {};
+  const auto middle = half_widths.begin() + static_cast<std::ptrdiff_t>(half_widths.size() / 2);
+  std::ranges::nth_element(half_widths, middle);
+  return fmt::format(
+      "{} tell a change of some {} from zero; one of a tenth of that takes {}. The shares of the mean square rank "
+      "errors with far fewer",
+      counted(yield.machines, "machine", "machines"), percent_text(*middle),
+      counted(kFiner * kFiner * yield.machines, "machine", "machines"));
 }
 
 Table change_table(const StoredResult& result, const YieldResult& yield) {
@@ -128,26 +177,32 @@ Table change_table(const StoredResult& result, const YieldResult& yield) {
       .caption = fmt::format("What the yield changes by if the sigma of one error grows by {}", percent_text(kStep)),
       .columns = {},
       .notes = {fmt::format(
-          "low, high: {} interval; slope: of the yield by sigma, 1/mm or 1/deg, which holds for small "
-          "changes alone",
+          "low, high: {} interval of this error alone; slope: of the yield by sigma, 1/mm or 1/deg, which holds for "
+          "small changes alone",
           percent_text(yield.conf_level))},
       .ranked = true};
-  const std::vector<std::size_t> told = told_errors(changes);
-  fill(table, told,
+  const ToldErrors found = told_errors(result, yield, changes);
+  if (found.tested > 1) {
+    table.notes.push_back(fmt::format(
+        "shown are errors whose effect is certain at {} for all {} together (Holm 1979): of so many intervals some "
+        "exclude zero by chance",
+        percent_text(yield.conf_level), count_text(found.tested)));
+  }
+  fill(table, found.told,
        {name_column(result.factors, "error"),
         column("change", "yield", changes.value),
         column("change_low", "low", changes.low),
         column("change_high", "high", changes.high),
         {number_column("slope", "slope", "", 1),
          [&](std::size_t p) { return number_cell(yield.gradient(p) * display(result.factors[p]).si); }}});
-  const auto unknown =
-      static_cast<std::size_t>(std::ranges::count_if(changes.low, [](double low) { return std::isnan(low); }));
-  add_line(table, changes.value.size() - told.size() - unknown, "whose effect cannot be told from zero",
-           "whose effect cannot be told from zero");
+  const std::size_t unknown = changes.value.size() - found.known;
+  add_line(table, found.known - found.told.size(), "whose effect is not certain", "whose effects are not certain");
   add_line(table, unknown, "of which these machines do not tell it", "of which these machines do not tell it");
+  if (const std::string note = needed_machines_note(changes, found, yield); !note.empty()) table.notes.push_back(note);
   if (unknown > 0) {
     table.notes.emplace_back(
-        "not told: where an error is correlated and not all errors of its block are normal, where its mean is shifted, "
+        "not told: where an error is correlated and not all errors of its block are normal, where it is drawn with "
+        "others of its feature in a zone, where its mean is shifted, "
         "where it is a column of given machines, where one error that is not normal makes the rejects alone and no "
         "linear map is found, or no machine is "
         "rejected");
@@ -178,10 +233,10 @@ void add_share_figure(const StoredResult& result, const YieldResult& yield, Sect
              "intervals.");
 }
 
-/// Adds the figure of errors whose effect is distinct from zero.
+/// Adds to the page the figure of errors whose effect is certain.
 void add_change_figure(const StoredResult& result, const YieldResult& yield, Section& section, Page& page) {
   const Changes changes = changes_of(result, yield);
-  const std::vector<std::size_t> told = told_errors(changes);
+  const std::vector<std::size_t> told = told_errors(result, yield, changes).told;
   if (told.empty()) return;
   const auto add = [&](const std::string& name, const Changes::Values& values) {
     std::vector<double> list;
@@ -196,8 +251,8 @@ void add_change_figure(const StoredResult& result, const YieldResult& yield, Sec
               add("yield_change_high", changes.high)}},
             names_of(result.factors, told)};
   add_figure(page, section, "yield-gradient", std::move(bars),
-             "The errors on which the yield depends, as far as its change is told from zero. Thin lines are "
-             "intervals.");
+             "The errors on which the yield depends for certain, all tested together. Thin lines are intervals of one "
+             "error alone.");
 }
 
 }  // namespace

@@ -2,17 +2,19 @@
 
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/stats/proportion.h"
+#include "engine/study/calibration.h"
+#include "engine/study/calibration_keys.h"
 #include "engine/study/limit_keys.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
 
-constexpr std::array<std::string_view, 11> kMonteCarloKeys{"factors",    "samples",   "draws",     "calibrated",
-                                                           "conf_level", "quantiles", "limits",    "judge",
-                                                           "share",      "yield",     "background"};
+constexpr std::array<std::string_view, 12> kMonteCarloKeys{"factors",     "samples",    "draws",     "calibrated",
+                                                           "calibration", "conf_level", "quantiles", "limits",
+                                                           "judge",       "share",      "yield",     "background"};
 
-/// The key with shares between 0 and 1, ascending.
+/// The key `quantiles`: numbers between 0 and 1, ascending.
 KeyValue<MonteCarloOptions> quantiles() {
   const NumberBounds bounds = between_0_and_1("0.95");
   const auto read = [=](const StudyValue& value) {
@@ -47,7 +49,7 @@ KeyValue<MonteCarloOptions> judge() {
       &MonteCarloOptions::judge);
 }
 
-/// How limits are judged if the study does not say.
+/// The default for how limits are judged.
 Judge usual_judge(const Analysis& analysis) { return analysis.draws == Draws::per_machine ? Judge::yield : Judge::rms; }
 
 std::string judge_line(const Study& study) {
@@ -56,8 +58,8 @@ std::string judge_line(const Study& study) {
   return idle ? "" : "judge = " + in_quotes(name(asked.judge)) + "\n";
 }
 
-/// The line of `share`. It is written even if limits are left out (CheckpointIdentity), because the magnitude that a
-/// share of the draws stays within is part of a run's state.
+/// The line of a study file with the key `share`. It is written even if limits are left out (CheckpointIdentity),
+/// because share_magnitude is part of a run's state.
 std::string share_line(const Study& study) {
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   return asked.judge == Judge::share ? "share = " + shortest(asked.share) + "\n" : "";
@@ -75,7 +77,7 @@ std::vector<StudyRow> monte_carlo_rows() {
                .meaning = "Shares of the samples that lie below, ascending."},
       StudyRow{.name = "judge",
                .value = asked_value(judge()),
-               .usual = "\"rms\"; with draws = \"per machine\" \"yield\"",
+               .usual = "\"yield\"; with draws = \"per pose\" \"rms\"",
                .example = "\"rms\"",
                .meaning = "When a limit is kept. (In an evaluation, if each case is within it at every pose.)",
                .lines = judge_line,
@@ -111,7 +113,7 @@ void check_share(const Study& study, const StudySection& section) {
   }
 }
 
-/// Refuses a yield that is not judged, and one that so few machines cannot show even if all are good.
+/// Refuses a yield that is not judged, or that this number of machines cannot show even if all of them are good.
 void check_yield(const Study& study, const StudySection& section) {
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   const auto yield = section.find("yield");
@@ -133,7 +135,7 @@ void check_yield(const Study& study, const StudySection& section) {
               "take " + std::to_string(needed) + " samples or more, or ask for a smaller yield");
 }
 
-/// Refuses limits that cannot be judged as the study asks.
+/// Refuses limits that the stated judge cannot judge.
 void check_limits(const Study& study, const StudySection& section) {
   const Judge by = asked_of<MonteCarloOptions>(study.analysis).judge;
   for (const ResponseLimit& limit : study.analysis.limits) {
@@ -153,8 +155,20 @@ void check_limits(const Study& study, const StudySection& section) {
   }
 }
 
+/// Refuses a calibration if errors are drawn per pose, or if it does not state what is measured.
+void check_calibration(const Study& study, const StudySection& section) {
+  const auto calibration = section.find("calibration");
+  if (!calibration) return;
+  if (study.analysis.draws == Draws::per_pose) {
+    calibration->fail("is of a machine, but errors are drawn anew at each pose", "set draws = \"per machine\"");
+  }
+  check_simulated_machines(study, section);
+}
+
 void complete(Study& study, const Reading& reading) {
   const StudySection section = reading.root.section("analysis");
+  if (reading.use == StudyUse::run) check_calibration(study, section);
+  check_sizes_of_features(study, reading);
   const auto judge = section.find("judge");
   MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   if (!judge) asked.judge = usual_judge(study.analysis);
@@ -188,6 +202,7 @@ const StudyKind kMonteCarloStudy{.name = "monte-carlo",
                                  .asks = "what all errors do together",
                                  .keys = kMonteCarloKeys,
                                  .varies = Varies::together,
+                                 .draws = Draws::per_machine,
                                  .rows = monte_carlo_rows,
                                  .complete = complete,
                                  .at_pose = monte_carlo_at_pose,

@@ -3,18 +3,21 @@
 #include <optional>
 
 #include "engine/kinds/kind.h"
+#include "engine/kinds/machine_calibration.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
 
 /// Runs a Monte Carlo study on a pool of threads; see run_sensitivity(). Memory does not grow with the number of
-/// samples: a pose's samples are dropped once its quantiles are known, except those that MonteCarloCollector keeps for
-/// a longer study. Of the analysis it uses conf_level, quantiles and limits.
+/// samples: the samples of a pose are dropped when its quantiles are computed, except the packed sketches that
+/// MonteCarloCollector keeps for a longer study. analysis: conf_level, quantiles and limits are used. calibration: that
+/// of the machines; null: machines are not calibrated.
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
-                                                const RunOptions& options);
+                                                const RunOptions& options,
+                                                const MachineCalibration* calibration = nullptr);
 
-/// Runs and reports Monte Carlo studies: the effect of all errors together.
+/// Runs and reports Monte Carlo studies, in which all errors vary together.
 extern const Kind kMonteCarloKind;
 
 /// How Monte Carlo results are stored and reported.

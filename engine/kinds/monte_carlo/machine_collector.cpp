@@ -1,5 +1,7 @@
 #include "engine/kinds/monte_carlo/machine_collector.h"
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 #include "engine/base/nan.h"
@@ -28,6 +30,7 @@ void MachineCollector::Counts::add(const MachineUnit& unit) {
   merge_each(failed, unit.failed);
   rejected.insert(rejected.end(), unit.rejected.begin(), unit.rejected.end());
   machines.merge(unit.counts);
+  calibration.merge(unit.calibration);
 }
 
 void MachineCollector::Counts::merge(const Counts& later) {
@@ -39,6 +42,7 @@ void MachineCollector::Counts::merge(const Counts& later) {
   merge_each(failed, later.failed);
   rejected.insert(rejected.end(), later.rejected.begin(), later.rejected.end());
   machines.merge(later.machines);
+  calibration.merge(later.calibration);
 }
 
 void MachineCollector::Counts::state(Archive& archive, const MachineTable& table, const NumberRange& range) {
@@ -48,6 +52,7 @@ void MachineCollector::Counts::state(Archive& archive, const MachineTable& table
   rejected_state(archive, rejected, table, range);
   archive.object(machines);
   archive.expect(machines.machines == count, "has counts of other machines");
+  if (table.calibration() != nullptr) calibration.state(archive, count);
 }
 
 MachineCollector::MachineCollector(const MachineTable& table, const Analysis& analysis)
@@ -93,13 +98,18 @@ MachineResult MachineCollector::machines(const MachineSums& sums, std::span<cons
   found.effects_on_largest =
       main_effects(std::span(sums.effects).subspan(at_poses + 1, 1), Dependence::unknown, sums.effects[at_poses + 1],
                    spreads, table_->responses(), analysis_->conf_level);
-  leave_out_correlated(table_->plan(), found.effects_on_largest);
+  leave_out_dependent(table_->plan(), found.effects_on_largest);
   leave_out_per_pose(table_->plan(), found.effects_on_largest);
   if (!sums.scores) return found;
   found.yield = yield_of(counts_.machines, *sums.scores, analysis_->limits, analysis_->conf_level);
+  if (table_->calibration() != nullptr) {
+    found.calibration = calibration_yields(counts_.calibration, *table_->calibration(), *found.yield);
+  }
   if (sums.parts) found.yield->parts = parts_yield(*sums.parts, *found.yield);
   if (sums.pose_scores) set_pose_gradient(table_->plan(), *sums.pose_scores, *found.yield);
-  set_first_order(*table_, sums.map(), counts_.rejected, analysis_->conf_level, *found.yield);
+  const std::span<const std::uint8_t> rejected(counts_.rejected);
+  set_first_order(*table_, sums.map(), rejected.first(std::min(rejected.size(), table_->mapped())),
+                  analysis_->conf_level, *found.yield);
   return found;
 }
 
@@ -108,7 +118,7 @@ EffectResult MachineCollector::effects(const MachineSums& sums, std::span<const 
   EffectResult found = effect_result(table_->effect_poses(), spreads, analysis_->conf_level);
   found.effects = main_effects(std::span(sums.effects).first(at_poses), Dependence::unknown, sums.effects[at_poses],
                                spreads, table_->responses(), analysis_->conf_level);
-  leave_out_correlated(table_->plan(), found.effects);
+  leave_out_dependent(table_->plan(), found.effects);
   leave_out_curves_per_pose(table_->plan(), found.effects);
   return found;
 }
@@ -121,6 +131,7 @@ MonteCarloResult MachineCollector::result() && {
   const std::vector<BinSpread> spreads = bin_spreads(table_->plan());
   found.machines = machines(sums, spreads);
   found.effects = effects(sums, spreads);
+  found.rejected = std::move(counts_.rejected);
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(*analysis_);
   if (analysis_->limits.empty()) return std::move(found);
   if (asked.judge == Judge::yield) {
@@ -144,7 +155,7 @@ std::vector<QuantileSketch> MachineCollector::judged_values() const {
 
 void MachineCollector::state(Archive& archive, const NumberRange& units) {
   constexpr const char* kOthers = "has sums of other machines";
-  const std::size_t each = MachineTable::unit_machines(poses());
+  const std::size_t each = table_->unit_machines();
   const std::size_t first = sums_.empty() ? units.first : sums_.first();
   sums_.state(archive, table_->units(), MachineSums(*table_));
   archive.expect(sums_.empty() ? units.first == units.end : sums_.first() == first && sums_.end() == units.end,

@@ -15,47 +15,52 @@
 
 namespace poesy {
 
-/// Merges units of machines in their order: the sums of a UnitFold. It holds a sketch of each response at each pose.
-/// Memory hardly grows with the number of machines, by one sum for each octal digit of that number (MergeTree).
+/// Merges units of machines in their order: the sums of a UnitFold (run/unit_fold.h). In memory is a sketch of each
+/// response at each pose. Memory hardly grows with the number of machines: by one set of sums for each octal digit of
+/// this number (MergeTree).
 class MachineCollector {
  public:
   /// Refers to both arguments.
   MachineCollector(const MachineTable& table, const Analysis& analysis);
 
   void add(std::size_t n, MachineUnit&& unit);  ///< Adds the next unit.
-  /// The mean of each response over the samples of all poses, with its interval, from machines that are solved at each
-  /// pose. The interval takes the machines as independent.
+  /// [responses] The mean of each response over the samples of all poses, with its interval. Only machines that are
+  /// solved at every pose count. The interval assumes that machines are independent.
   std::vector<Estimate> overall_means() const;
-  /// The result of all machines that were added. Precondition: no units follow.
+  /// The result of all machines that were added. Precondition: no units will be added.
   MonteCarloResult result() &&;
 
-  /// Reads or writes the sums of these units. What is read is added.
+  /// Reads or writes the sums of these units. Sums that are read are added.
   void state(Archive& archive, const NumberRange& units);
 
  private:
-  /// Sums that do not depend on the order in which they are added.
+  /// Counts and sketches. They do not depend on the order in which machines are added.
   struct Counts {
     Array<QuantileSketch, axis::Pose, axis::Response> at_pose;
-    std::vector<QuantileSketch> largest;  ///< [R]
-    std::vector<QuantileSketch> rms;      ///< [R]
-    std::vector<QuantileSketch> judged;   ///< what machines are judged by, for MachineTable::judged()
-    std::vector<SolveCounts> solves;      ///< [M]
-    std::vector<FailedSamples> failed;    ///< [M]
-    std::vector<std::uint8_t> rejected;   ///< 1 or 0 for each machine that MachineTable::kept() counts
+    std::vector<QuantileSketch> largest;  ///< [responses] largest magnitude of each machine
+    std::vector<QuantileSketch> rms;      ///< [responses] root mean square of each machine
+    std::vector<QuantileSketch> judged;   ///< value by which a machine is judged (ValueLimit::deciding), for each
+                                          ///< response of MachineTable::judged()
+    std::vector<SolveCounts> solves;      ///< [poses] how the solves at each pose ended
+    std::vector<FailedSamples> failed;    ///< [poses] first samples that failed at each pose
+    std::vector<std::uint8_t> rejected;   ///< 1 if the machine is rejected, otherwise 0, for the first
+                                          ///< MachineTable::kept() machines
     MachineCounts machines;
+    CalibrationCounts calibration;
 
     explicit Counts(const MachineTable& table);
     void add(const MachineUnit& unit);
-    /// Adds those of later machines. Precondition: the machines of `later` come after those of this object.
+    /// Adds the counts of later machines. Precondition: the machines of `later` come after those of this object.
     void merge(const Counts& later);
     /// Reads or writes the counts of these machines. A writer ignores `range`. Throws BytesError.
     void state(Archive& archive, const MachineTable& table, const NumberRange& range);
   };
 
   std::size_t poses() const { return table_->plan().poses().size(); }
-  /// Sets the numbers that depend on the moments and sketches of the samples.
+  /// Sets the numbers that follow from the moments and sketches of the samples.
   void set_columns(const MachineSums& sums, MonteCarloResult& found, class MonteCarloColumns& columns) const;
-  /// [R] What machines are judged by; of a response with a plain limit, or with none, their largest magnitudes.
+  /// [responses] The values by which machines are judged: their largest magnitudes, or for a limit that is not plain
+  /// the deciding values.
   std::vector<QuantileSketch> judged_values() const;
   MachineResult machines(const MachineSums& sums, std::span<const BinSpread> spreads) const;
   EffectResult effects(const MachineSums& sums, std::span<const BinSpread> spreads) const;

@@ -13,10 +13,10 @@ namespace {
 
 const Axes kByEffectPose{"effect_pose"};
 
-/// Ends descriptions of values that only machines solved at every pose have.
+/// The end of descriptions of values that only machines solved at every pose have.
 const std::string kOfSolved = " over the machines that are solved at every pose";
 
-/// The fields of one number of each machine. what: "largest magnitude over the poses".
+/// The fields of a number of each machine. what: the number, such as "largest magnitude over the poses".
 Group<MachineValues> values_group(const std::string& path, const std::string& what) {
   using Values = MachineValues;
   const std::string of = "of the machines' " + what + ",";
@@ -118,7 +118,27 @@ const Group<PartsYield> kPartsYield{
     {{"ci_low", &PartsYield::ci_low, "1", "Lower end of the interval at the conf_level of /yield"},
      {"ci_high", &PartsYield::ci_high, "1", "Upper end of the interval at the conf_level of /yield"}}};
 
-/// The fields of S1 and its interval.
+const Group<CalibrationYields> kCalibrationYields{
+    "/yield/calibration",
+    "The yield of the same machines without their calibration, and with the best correction of the actuators at each "
+    "pose, which no real calibration reaches; /yield/value is that with the calibration of the study",
+    {},
+    {},
+    {{"uncalibrated", &CalibrationYields::uncalibrated, "1", "The yield without calibration"},
+     {"uncalibrated_ci_low", &CalibrationYields::uncalibrated_ci_low, "1", "Lower" + kPearson},
+     {"uncalibrated_ci_high", &CalibrationYields::uncalibrated_ci_high, "1", "Upper" + kPearson},
+     {"best", &CalibrationYields::best, "1",
+      "The yield after the best correction of the actuators at each pose; NaN where the model does not know it"},
+     {"best_ci_low", &CalibrationYields::best_ci_low, "1", "Lower" + kPearson},
+     {"best_ci_high", &CalibrationYields::best_ci_high, "1", "Upper" + kPearson},
+     {"not_fitted", &CalibrationYields::not_fitted, "1",
+      "Machines that were not calibrated, because they are not solved where they are measured or their fit does not "
+      "converge: rejects"},
+     {"fitted", &CalibrationYields::fitted, "1", "Fitted errors of each machine"},
+     {"measured", &CalibrationYields::measured, "1", "Measured values of each machine"},
+     {"measured_poses", &CalibrationYields::measured_poses, "1", "Poses where each machine is measured"}}};
+
+/// The fields of the first-order index S1 and its interval.
 Fields<MainEffects> index_fields(const std::string& what) {
   return {{"S1", &MainEffects::s1, "1", "First-order index " + what},
           {"S1_ci_low", &MainEffects::s1_ci_low, "1", "Lower end of its interval"},
@@ -155,7 +175,7 @@ void write_indices(ResultBuilder& result, const std::string& group, const Fields
   result.file().set_attribute(group + "/S1", "conf_level", conf_level);
 }
 
-/// A table of one number of each machine, a line for each response.
+/// A table of a number of each machine, with a line for each response.
 CsvTable by_response(const StoredResult& result, const std::string& name, const MachineValues& values) {
   const std::vector<double>& levels = monte_carlo_of(result).levels;
   CsvTable table{name,
@@ -186,8 +206,8 @@ CsvTable by_response(const StoredResult& result, const std::string& name, const 
   return table;
 }
 
-/// Adds columns with the effect of each error on a response and its interval: "share_RESPONSE", "share_ci_low_RESPONSE"
-/// and so on.
+/// Gives the table further columns with a number of each error for a response, and with its interval: "share_RESPONSE",
+/// "share_ci_low_RESPONSE" and "share_ci_high_RESPONSE".
 void append_error_columns(CsvTable& table, const std::string& name, const std::string& response,
                           std::span<const double> value, std::span<const double> low, std::span<const double> high) {
   table.columns.push_back(list_column(name + "_" + response, value));
@@ -195,18 +215,18 @@ void append_error_columns(CsvTable& table, const std::string& name, const std::s
   table.columns.push_back(list_column(name + "_ci_high_" + response, high));
 }
 
-/// Each error's share of the mean square of each limited response.
+/// A table of each error's share in the mean square of each limited response.
 CsvTable share_table(const StoredResult& result, const YieldResult& found) {
   CsvTable table = lines_of_factors(result, "mean_square_share");
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
-    if (std::isnan(found.by_response(r))) continue;  // without a limit
+    if (std::isnan(found.by_response(r))) continue;  // the response has no limit
     append_error_columns(table, "share", result.responses[r].name, found.mean_square_share.row(r),
                          found.mean_square_share_ci_low.row(r), found.mean_square_share_ci_high.row(r));
   }
   return table;
 }
 
-/// Adds tables of the yield under all limits, then under each limit.
+/// Adds to `tables` a table of the yield under all limits together, and a table of the yields under each limit.
 void append_yield_tables(CsvTables& tables, const StoredResult& result, const YieldResult& found) {
   CsvTable all{"yield", {"limit", [](std::size_t) { return std::string("all"); }}, 1, {}, {}};
   for (const FieldRow<YieldResult>& field : kYield.fields) {
@@ -215,6 +235,11 @@ void append_yield_tables(CsvTables& tables, const StoredResult& result, const Yi
   if (found.parts) {
     for (const FieldRow<PartsYield>& field : kPartsYield.fields) {
       all.columns.push_back(field_column("parts_" + field.name, field, *found.parts));
+    }
+  }
+  if (const auto& calibration = monte_carlo_of(result).machines->calibration) {
+    for (const FieldRow<CalibrationYields>& field : kCalibrationYields.fields) {
+      all.columns.push_back(field_column(field.name, field, *calibration));
     }
   }
   tables.push_back(std::move(all));
@@ -247,7 +272,7 @@ void append_yield_tables(CsvTables& tables, const StoredResult& result, const Yi
   tables.push_back(std::move(poses));
 }
 
-/// A table of S1 of each error on each response, with the column names of SALib.
+/// A table of the first-order index S1 of each error on each response, with the column names of SALib.
 CsvTable index_table(const StoredResult& result, const std::string& name, const MainEffects& effects) {
   CsvTable table = lines_of_factors(result, name);
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
@@ -257,7 +282,7 @@ CsvTable index_table(const StoredResult& result, const std::string& name, const 
   return table;
 }
 
-/// The curves of one response: a line for each error and bin.
+/// A table of the main-effect curves of one response, with a line for each error and bin.
 CsvTable curve_table(const StoredResult& result, const EffectResult& found, std::size_t r) {
   const NamedUnit& response = result.responses[r];
   return {
@@ -301,6 +326,7 @@ void write_machines(ResultBuilder& result, const MachineResult& found) {
   write_group(result, kRms, found.rms);
   if (found.yield) write_group(result, kYield, *found.yield);
   if (found.yield && found.yield->parts) write_group(result, kPartsYield, *found.yield->parts);
+  if (found.calibration) write_group(result, kCalibrationYields, *found.calibration);
   write_indices(result, "/machines/largest", kIndicesOfLargest, found.effects_on_largest, found.conf_level);
   write_group(result, kCurvesOfLargest, found.effects_on_largest);
 }
@@ -325,6 +351,7 @@ std::optional<MachineResult> read_machines(const h5::File& file) {
   if (file.exists("/yield")) {
     read_group(file, kYield, found.yield.emplace());
     if (file.exists("/yield/parts")) read_group(file, kPartsYield, found.yield->parts.emplace());
+    if (file.exists("/yield/calibration")) read_group(file, kCalibrationYields, found.calibration.emplace());
   }
   read_fields(file, "/machines/largest", kIndicesOfLargest, found.effects_on_largest);
   read_group(file, kCurvesOfLargest, found.effects_on_largest);

@@ -17,13 +17,11 @@
 namespace poesy {
 namespace {
 
-constexpr int kDigits = 6;
-
 const MachineResult& machines_of(const StoredResult& result) { return *monte_carlo_of(result).machines; }
 
 const EffectResult& effects_of(const StoredResult& result) { return monte_carlo_of(result).effects; }
 
-/// A quantile's name in JSON: "q_0_95".
+/// The name of a quantile in JSON: "q_0_95".
 std::string quantile_name(double level) {
   std::string name = "q_" + shortest(level);
   std::ranges::replace_if(
@@ -36,7 +34,7 @@ Table values_table(const StoredResult& result) {
   const auto number = [&result](std::string name, std::string heading, const auto& values, int dispensable = 0) {
     return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
                         [&result, &values](std::size_t r) {
-                          return value_cell(values.row(r).back(), result.responses[r], kDigits);  // highest quantile
+                          return value_cell(values.row(r).back(), result.responses[r]);  // highest quantile
                         }};
   };
   const MachineValues& largest = machines_of(result).largest;
@@ -54,7 +52,7 @@ Table values_table(const StoredResult& result) {
         number("largest_max", "max", largest.max), number("rms_mean", "rms: mean", rms.mean, 1),
         number("rms_" + name, level, rms.quantiles, 1), number("rms_max", "max", rms.max, 1)});
   table.notes.push_back("Machines that are not solved at every pose are left out");
-  if (!largest.quantile_error.empty()) {  // version 0.2 has none
+  if (!largest.quantile_error.empty()) {  // files of version 0.2 have none
     table.notes.push_back(fmt::format("largest: {}; rms: {}",
                                       quantile_error_text(result.headline, largest.quantile_error, largest.std),
                                       quantile_error_text(result.headline, rms.quantile_error, rms.std)));
@@ -62,7 +60,7 @@ Table values_table(const StoredResult& result) {
   return table;
 }
 
-/// The poses at which most machines are rejected, for each limit.
+/// A table of the poses at which most machines are rejected, for each limit.
 Table rejects_table(const StoredResult& result) {
   constexpr std::size_t kMost = 5;
   const YieldResult& yield = *machines_of(result).yield;
@@ -83,12 +81,18 @@ Table rejects_table(const StoredResult& result) {
   return table;
 }
 
-/// Whether errors are correlated and therefore have no index.
+/// Whether some errors are correlated and therefore have no index.
 bool has_correlated(const StoredResult& result) {
   return result.study_text.find("\n[[errors.correlated]]\n") != std::string::npos;
 }
 
-/// Whether the response has too few samples that count at one of the poses over which indices are summed.
+/// Whether some errors are drawn together with others of their feature and therefore have no index.
+bool has_zone_shape(const StoredResult& result) {
+  return result.drawing && result.study_text.find("\nzones = {") != std::string::npos &&
+         result.study_text.find("\nzones = { distribution = \"normal\"") == std::string::npos;
+}
+
+/// Whether too few samples of the response count at a pose over which indices are summed.
 bool has_too_few_samples(const StoredResult& result, std::size_t r) {
   const MonteCarloResult& found = monte_carlo_of(result);
   return std::ranges::any_of(found.effects.s1_poses,
@@ -102,7 +106,9 @@ std::string no_index_text(const StoredResult& result, std::size_t r) {
   if (has_too_few_samples(result, r)) {
     return fmt::format("{}: no S1 is formed below {} samples at a pose that count", response, kFewestIndexSamples);
   }
-  if (has_correlated(result)) return response + ": no error has an index, because each is correlated with others";
+  if (has_correlated(result) || has_zone_shape(result)) {
+    return response + ": no error has an index, because each is correlated or drawn with others";
+  }
   return response + ": no error has an index, because it does not vary at the poses over which indices add up";
 }
 
@@ -121,12 +127,14 @@ std::string indices_note(const StoredResult& result, std::size_t r) {
       result.responses[r].name, number_text(sum, 3));
 }
 
-/// Whether a machine has one value of the error, so that the mean over its poses may depend on it.
+/// Whether an error has one value in a machine at all poses. Otherwise, a mean over the poses does not depend on one
+/// value, and the error has no curve.
 bool has_curve(const StoredResult& result, std::size_t p) {
   return result.factor_draws.empty() || result.factor_draws[p] != name(Draws::per_pose);
 }
 
-/// Charts with a panel for each response of the headline. The errors of the largest indices come first.
+/// Charts of main-effect curves, a panel for each response of the headline. The errors with the largest indices come
+/// first.
 Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
   constexpr std::size_t kMost = 12;
   const MainEffects& effects = effects_of(result).effects;
@@ -172,7 +180,7 @@ std::string quantile_error_text(std::span<const std::size_t> responses, std::spa
 std::vector<Table> machine_tables(const StoredResult& result) {
   std::vector<Table> tables{values_table(result)};
   if (const auto& yield = machines_of(result).yield) {
-    // If limits are judged by other numbers, the yield is not in the verdicts.
+    // If limits are not judged by the yield, the verdicts do not contain it.
     if (result.verdicts && !result.verdicts->yield) {
       tables.insert(tables.begin(),
                     yield_table(result, {.judge = Judge::yield,
@@ -182,6 +190,37 @@ std::vector<Table> machine_tables(const StoredResult& result) {
     tables.push_back(rejects_table(result));
   }
   return tables;
+}
+
+Table calibration_table(const StoredResult& result) {
+  const CalibrationYields& found = *machines_of(result).calibration;
+  const YieldResult& with = *machines_of(result).yield;
+  Table table{.name = "calibration",
+              .caption = fmt::format("Yield of the same {}, as they are made and calibrated",
+                                     counted(with.machines, "machine", "machines")),
+              .columns = {text_column("machines", "machines"), percent_column("yield", "yield"),
+                          percent_column("yield_low", "low"), percent_column("yield_high", "high")},
+              .notes = {fmt::format("low, high: {} interval", percent_text(with.conf_level))}};
+  const auto add = [&](const std::string& machines, double value, double low, double high) {
+    table.rows.push_back({text_cell(machines), percent_cell(value), percent_cell(low), percent_cell(high)});
+  };
+  add("as they are made, without calibration", found.uncalibrated, found.uncalibrated_ci_low,
+      found.uncalibrated_ci_high);
+  add(fmt::format("with this calibration: {}, {} at {}", counted(found.fitted, "fitted error", "fitted errors"),
+                  counted(found.measured, "measured value", "measured values"),
+                  counted(found.measured_poses, "pose", "poses")),
+      with.value, with.ci_low, with.ci_high);
+  if (!std::isnan(found.best)) {
+    add("with the best correction of each pose, which no calibration reaches", found.best, found.best_ci_low,
+        found.best_ci_high);
+  }
+  table.notes.emplace_back("all other numbers are those with this calibration");
+  if (found.not_fitted > 0) {
+    table.notes.push_back(fmt::format("{} {} not calibrated, because the fit has no solution, and count as rejects",
+                                      counted(found.not_fitted, "machine", "machines"),
+                                      found.not_fitted == 1 ? "was" : "were"));
+  }
+  return table;
 }
 
 void add_effects_section(const StoredResult& result, std::span<const Table> tables, Page& page) {
@@ -247,6 +286,11 @@ Table effect_table(const StoredResult& result) {
     table.notes.emplace_back(
         "- for an error that is correlated with others: nothing is its effect alone; indices of groups and Shapley "
         "effects divide the variance of such errors");
+  }
+  if (has_zone_shape(result)) {
+    table.notes.emplace_back(
+        "- for an error of a feature whose errors are drawn together in their zone: kind = \"sobol\" has indices of "
+        "groups that hold whole features");
   }
   fill(table, largest_first(positions(result.factors.size()), [&](std::size_t p) { return effects.s1(ranking, p); }),
        columns);

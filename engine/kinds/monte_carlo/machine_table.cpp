@@ -24,7 +24,7 @@ ErrorScore score_of(const Distribution& distribution) {
       return PolynomialScore(points.points, points.weights);
     }
     case given:
-      return {};  // these values have no size
+      return {};  // values of a given list have no size
   }
   throw std::logic_error("unknown shape of distribution");
 }
@@ -32,9 +32,9 @@ ErrorScore score_of(const Distribution& distribution) {
 ErrorScores scores_of(const Plan& plan) {
   ErrorScores scores;
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {
-    // A correlated error has no score of its own. Nor has one whose mean is shifted, because the shift does not grow
-    // with sigma.
-    const bool has_score = !plan.is_correlated(p) && plan.distributions()[p].shift() == 0.0;
+    // An error that is drawn together with others has no score of its own. An error with a shifted mean has none
+    // either, because the shift does not grow with sigma.
+    const bool has_score = plan.is_drawn_alone(p) && plan.distributions()[p].shift() == 0.0;
     scores.each.push_back(has_score ? score_of(plan.distributions()[p]) : ErrorScore());
   }
   for (const CorrelatedSlots& block : plan.correlated()) {
@@ -50,7 +50,7 @@ ErrorScores scores_of(const Plan& plan) {
   return scores;
 }
 
-/// The scores of errors that are drawn per pose, or of the others.
+/// The scores of the errors that are drawn per pose, or of those that are drawn per machine. The others are empty.
 ErrorScores scores_of(const Plan& plan, const ErrorScores& all, Draws draws) {
   const auto is_one = [&](std::size_t p) { return plan.is_per_pose(p) == (draws == Draws::per_pose); };
   ErrorScores scores{std::vector<ErrorScore>(all.each.size())};
@@ -63,11 +63,11 @@ ErrorScores scores_of(const Plan& plan, const ErrorScores& all, Draws draws) {
   return scores;
 }
 
-/// The number of machines for which the gradient takes a second or so. A linear map judges poses one by one, so it says
-/// nothing about limits over poses.
-std::size_t kept_machines(const Plan& plan, const LimitedVectors& vectors, const ErrorScores& scores) {
+/// The number of machines for which the gradient takes about a second. 0 if the gradient by a linear map is not wanted
+/// or not possible.
+std::size_t mapped_machines(const Plan& plan, const LimitedVectors& vectors, const ErrorScores& scores) {
   constexpr std::size_t kMostWork = 1'000'000'000;  // number of products
-  constexpr std::size_t kWorkOfRange = 10;          // products for the range of one error at one limit
+  constexpr std::size_t kWorkOfRange = 10;  // number of products that find the range in which one error keeps one limit
   constexpr std::size_t kLeast = 1000;
   constexpr std::size_t kMost = 1'000'000;
   const bool is_wanted = std::ranges::any_of(
@@ -79,8 +79,10 @@ std::size_t kept_machines(const Plan& plan, const LimitedVectors& vectors, const
 
 }  // namespace
 
-MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis& analysis)
+MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis& analysis,
+                           const MachineCalibration* calibration, bool keep_all)
     : plan_(&plan),
+      calibration_(calibration),
       responses_(model.description().responses.size()),
       has_limits_(!analysis.limits.empty()),
       limits_(limits_by_response(analysis.limits, responses_)),
@@ -88,7 +90,10 @@ MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis&
       fixed_scores_(scores_of(plan, scores_, Draws::per_machine)),
       pose_scores_(scores_of(plan, scores_, Draws::per_pose)),
       vectors_(plan, model, analysis),
-      kept_(any_over_poses(analysis.limits) ? 0 : kept_machines(plan, vectors_, scores_)) {
+      // A linear map of the errors knows neither the noise of measurements, which also rejects machines, nor limits
+      // over poses.
+      mapped_(calibration != nullptr || any_over_poses(analysis.limits) ? 0 : mapped_machines(plan, vectors_, scores_)),
+      kept_(keep_all && has_limits_ ? plan.samples() : mapped_) {
   POESY_EXPECTS(plan.draws() == Draws::per_machine);
   for (std::size_t r = 0; r < responses_; ++r) {
     if (!limits_[r].is_plain()) judged_.push_back(r);
@@ -98,23 +103,24 @@ MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis&
   effect_poses_ = poesy::effect_poses(plan.poses().size(), responses_, errors());
 }
 
-std::size_t MachineTable::unit_machines(std::size_t poses) {
-  // Rows of 500 numbers would be nearly a page apart, which costs a third of the solver's speed.
+std::size_t MachineTable::unit_machines(std::size_t poses, UnitSize size_wanted) {
+  // With rows of 500 numbers, which are nearly a page apart, the solver is a third slower.
   constexpr std::array<std::size_t, 4> kSizes{1000, 200, 100, 40};
   static_assert(std::ranges::all_of(kSizes, [](std::size_t size) { return Plan::kUnitSamples % size == 0; }));
   constexpr std::size_t kMostSamples = 160'000;
+  if (size_wanted == UnitSize::calibrated) return kSizes.back();
   const auto* const size = std::ranges::find_if(kSizes, [&](std::size_t one) { return one * poses <= kMostSamples; });
   return size == kSizes.end() ? kSizes.back() : *size;
 }
 
-std::size_t MachineTable::units_for(std::size_t machines, std::size_t poses) {
-  const std::size_t each = unit_machines(poses);
+std::size_t MachineTable::units_for(std::size_t machines, std::size_t poses, UnitSize size) {
+  const std::size_t each = unit_machines(poses, size);
   return (machines + each - 1) / each;
 }
 
 WorkUnit MachineTable::unit(std::size_t n) const {
   POESY_EXPECTS(n < units());
-  const std::size_t each = unit_machines(plan_->poses().size());
+  const std::size_t each = unit_machines();
   return {0, PoseIndex(0), SampleIndex(n * each), std::min(each, plan_->samples() - n * each)};
 }
 

@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/kinds/monte_carlo/limited_vectors.h"
+#include "engine/kinds/limited_vectors.h"
+#include "engine/kinds/machine_calibration.h"
 #include "engine/kinds/monte_carlo/part_groups.h"
 #include "engine/model/model.h"
 #include "engine/stats/error_scores.h"
@@ -15,44 +16,66 @@
 
 namespace poesy {
 
-/// The machines of a study that draws errors per machine, divided into units, and the data that their statistics need
-/// beforehand. A unit has consecutive machines, each at all poses. Everything depends on the study alone, so all ranks
-/// have the same. M poses, R responses, P errors.
+/// How many machines a unit has.
+enum class UnitSize {
+  usual,      ///< as many as memory allows
+  calibrated  ///< few, because calibrated machines take much longer to solve
+};
+
+/// The machines of a study that draws errors per machine, divided into units of work, with the data for their
+/// statistics. A unit has consecutive machines, each at all poses. All data follow from the study alone, so all ranks
+/// have the same.
 class MachineTable {
  public:
-  /// Refers to the plan and the model. Precondition: Draws::per_machine.
-  MachineTable(const Plan& plan, const Model& model, const Analysis& analysis);
+  /// Refers to the plan, the model and the calibration (null: machines are not calibrated). keep_all: whether to record
+  /// for every machine whether it is rejected. Precondition: Draws::per_machine.
+  MachineTable(const Plan& plan, const Model& model, const Analysis& analysis,
+               const MachineCalibration* calibration = nullptr, bool keep_all = false);
 
-  /// The number of machines in a unit of a study with this many poses, a divisor of Plan::kUnitSamples. It is smaller
-  /// for more poses, because memory grows with both, but large enough for a solver of batches.
-  static std::size_t unit_machines(std::size_t poses);
+  /// The number of machines in a unit at this many poses; it divides Plan::kUnitSamples. It falls with the number of
+  /// poses, because memory grows with both, but stays large enough for solvers that solve a batch at once.
+  static std::size_t unit_machines(std::size_t poses, UnitSize size = UnitSize::usual);
   /// The number of units for this many machines. The last unit may be smaller.
-  static std::size_t units_for(std::size_t machines, std::size_t poses);
+  static std::size_t units_for(std::size_t machines, std::size_t poses, UnitSize size = UnitSize::usual);
+  /// The size of the units of a study.
+  static UnitSize unit_size(const Analysis& analysis) {
+    return analysis.calibration == nullptr ? UnitSize::usual : UnitSize::calibrated;
+  }
 
-  const Plan& plan() const { return *plan_; }           ///< The plan of the study.
-  std::size_t responses() const { return responses_; }  ///< The number of responses, R.
-  std::size_t units() const {
-    return units_for(plan_->samples(), plan_->poses().size());
-  }  ///< The number of units of the whole study.
-  /// The machines of the n-th unit, at the first pose.
+  const Plan& plan() const { return *plan_; }  ///< The plan.
+  /// The calibration of the machines; null: they are not calibrated.
+  const MachineCalibration* calibration() const { return calibration_; }
+  std::size_t responses() const { return responses_; }               ///< The number of responses.
+  std::size_t units() const { return units_for(plan_->samples()); }  ///< The number of units of the whole study.
+  /// The machines of unit n, at the first pose.
   WorkUnit unit(std::size_t n) const;
-  /// Whether the unit is full.
-  bool is_whole(std::size_t n) const { return unit(n).count == unit_machines(plan_->poses().size()); }
+  /// Whether unit n has the full number of machines.
+  bool is_whole(std::size_t n) const { return unit(n).count == unit_machines(); }
+  /// The static functions above, for the number of poses and the calibration of this study.
+  /// @{
+  std::size_t unit_machines() const {
+    return unit_machines(plan_->poses().size(), calibration_ == nullptr ? UnitSize::usual : UnitSize::calibrated);
+  }
+  std::size_t units_for(std::size_t machines) const { return (machines + unit_machines() - 1) / unit_machines(); }
+  /// @}
 
-  bool has_limits() const { return has_limits_; }                 ///< Whether machines may be rejected.
-  std::span<const ValueLimit> limits() const { return limits_; }  ///< [R] The limit of each response, if it has one.
-  /// Whether each limit is judged at each pose alone, and none over the poses of a machine.
+  /// Whether the study has limits, so that machines may be rejected.
+  bool has_limits() const { return has_limits_; }
+  /// [responses] The limit of each response; without a limit, one that all values keep.
+  std::span<const ValueLimit> limits() const { return limits_; }
+  /// Whether every limit is judged at each pose alone, and none over the poses of a machine.
   bool judges_each_pose() const {
     return std::ranges::none_of(limits_, [](const ValueLimit& limit) { return limit.is_over_poses(); });
   }
-  /// The limited responses whose limits are not plain, ascending. It is stored of each machine by what it is judged.
+  /// The responses whose limits are not plain (ValueLimit::is_plain()), ascending. For these responses, the value by
+  /// which each machine is judged is recorded.
   std::span<const std::size_t> judged() const { return judged_; }
-  std::size_t errors() const { return scores_.each.size(); }  ///< The number of errors, P.
-  /// The scores of the errors, from which the gradient of the yield by their sizes is computed. An error that is
-  /// correlated with others has one only if they are all normal.
+  std::size_t errors() const { return scores_.each.size(); }  ///< The number of errors.
+  /// The scores of the errors, from which the gradient of the yield with respect to their sizes is estimated. A
+  /// correlated error has a score only if all errors of its block are normal.
   const ErrorScores& scores() const { return scores_; }
-  /// The same scores divided: those of errors that are fixed in a machine, and those of errors that it draws anew at
-  /// each pose (Plan::per_pose). Each has no score for the errors of the other.
+  /// The scores of errors that stay fixed in a machine, and the scores of errors that a machine draws anew at each pose
+  /// (Plan::per_pose). Each list has empty scores for the errors of the other list.
   /// @{
   const ErrorScores& fixed_scores() const { return fixed_scores_; }
   const ErrorScores& pose_scores() const { return pose_scores_; }
@@ -60,29 +83,33 @@ class MachineTable {
   /// Whether machines draw some errors anew at each pose.
   bool has_per_pose() const { return !plan_->per_pose().empty(); }
 
-  /// The vectors behind the limited responses, which are fitted to first order.
+  /// The vectors of the limited responses, to which a linear map is fitted.
   const LimitedVectors& vectors() const { return vectors_; }
-  /// [R] The effect that an error may seem to have because solves round (Model::rounding).
+  /// [responses] The largest spread of a response that may come from rounding in solves (Model::rounding).
   std::span<const double> rounding() const { return rounding_; }
-  /// Whether the vectors are fitted to the machines of this unit. They are fitted to the first machines, as many as
-  /// show what is linear.
+  /// Whether the linear map is fitted to the machines of unit n. It is fitted to the first machines, as many as it
+  /// needs.
   bool is_fitted(std::size_t n) const;
-  /// The number of machines, the first of the study, for which it is stored whether they are rejected. The gradient of
-  /// the yield by a linear map uses them, which takes time for each error at each pose. 0 if no gradient is computed.
+  /// The number of machines, from machine 0 on, with which the gradient of the yield by a linear map is estimated. It
+  /// is limited, because the estimate takes time for each error at each pose. 0 if this gradient is not estimated.
+  std::size_t mapped() const { return mapped_; }
+  /// The number of machines, from machine 0 on, for which it is recorded whether they are rejected: mapped(), or all
+  /// machines.
   std::size_t kept() const { return kept_; }
-  /// The groups of errors that were measured on parts; empty without limits.
+  /// The groups of errors that were measured on parts; empty if there are none or the study has no limits.
   const PartGroups& parts() const { return parts_; }
-  /// Whether errors were measured on parts and there are limits.
+  /// Whether the study has limits and errors that were measured on parts.
   bool has_parts() const { return !parts_.each.empty() || !parts_.known; }
 
-  /// The poses at which main effects are summed (engine/run/effect_poses.h).
+  /// The poses at which sums for main effects are computed (engine/run/effect_poses.h).
   std::span<const PoseIndex> effect_poses() const { return effect_poses_; }
-  /// The number of values whose main effects are summed: the responses at each of effect_poses(), the mean over all
-  /// poses, and the largest magnitude.
+  /// The number of quantities with sums for main effects: the responses at each of effect_poses(), the mean over all
+  /// poses, and the largest magnitude over all poses.
   std::size_t effects() const { return effect_poses_.size() + 2; }
 
  private:
   const Plan* plan_;
+  const MachineCalibration* calibration_;
   std::size_t responses_;
   bool has_limits_;
   std::vector<ValueLimit> limits_;
@@ -92,6 +119,7 @@ class MachineTable {
   ErrorScores pose_scores_;
   LimitedVectors vectors_;
   std::vector<double> rounding_;
+  std::size_t mapped_;
   std::size_t kept_;
   PartGroups parts_;
   std::vector<PoseIndex> effect_poses_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <utility>
 
 #include "engine/base/contract.h"
@@ -10,12 +11,22 @@
 namespace poesy {
 namespace {
 
-/// The number of machines of a range that MachineTable::kept() counts.
+/// How many machines of a range are among the first MachineTable::kept() machines.
 std::size_t kept_of(const MachineTable& table, const NumberRange& machines) {
   return std::min(machines.end, table.kept()) - std::min(machines.first, table.kept());
 }
 
 }  // namespace
+
+void CalibrationCounts::merge(const CalibrationCounts& other) {
+  not_fitted += other.not_fitted;
+  uncalibrated += other.uncalibrated;
+  best += other.best;
+}
+
+void CalibrationCounts::state(Archive& archive, std::uint64_t machines) {
+  for (std::uint64_t* count : {&not_fitted, &uncalibrated, &best}) archive.number(*count, machines);
+}
 
 void rejected_state(Archive& archive, std::vector<std::uint8_t>& rejected, const MachineTable& table,
                     const NumberRange& machines) {
@@ -102,6 +113,7 @@ MachineUnit::MachineUnit(const MachineTable& table, const NumberRange& range)
 
 void MachineUnit::state(Archive& archive) {
   archive.objects(*sums, counts, at_pose, largest, rms, judged);
+  if (table_->calibration() != nullptr) calibration.state(archive, machines_.end - machines_.first);
   rejected_state(archive, rejected, *table_, machines_);
   ends_state(archive, solves, failed, machines_.end - machines_.first, machines_.first, machines_.end);
   total = total_of(solves);
@@ -109,9 +121,12 @@ void MachineUnit::state(Archive& archive) {
 
 MachineUnitEvaluator::MachineUnitEvaluator(const MachineTable& table, const Model& model)
     : UnitSolver(table.plan(), model, table.errors()), table_(&table) {
-  const std::size_t machines = MachineTable::unit_machines(table.plan().poses().size());
+  const std::size_t machines = table.unit_machines();
   counts_.resize(machines);
   kept_.reserve(machines);
+  if (table.calibration() == nullptr) return;
+  calibrator_ = std::make_unique<MachineCalibrator>(*table.calibration());
+  best_ = model.calibrated_evaluator(table.plan().solver());
 }
 
 std::span<const double> MachineUnitEvaluator::only(std::span<const double> values,
@@ -239,6 +254,33 @@ void MachineUnitEvaluator::note_rejects(const UnitOutcomes& outcomes, std::span<
   }
 }
 
+std::uint64_t MachineUnitEvaluator::count_rejects(const WorkUnit& unit) {
+  if (!table_->has_limits()) return 0;
+  MachineBlock block(table_->limits(), unit.count);
+  std::vector<std::uint8_t> ok(unit.count);
+  for (std::size_t m = 0; m < plan_->poses().size(); ++m) {
+    const UnitOutcomes outcomes = UnitSolver::solve(PoseIndex(m), plan_->factors(), unit.count, 0.0);
+    for (std::size_t b = 0; b < unit.count; ++b) ok[b] = counts(outcomes.status[b], plan_->not_converged()) ? 1 : 0;
+    block.add_pose(outcomes.responses, ok);
+  }
+  return block.counts().all.strict;
+}
+
+void MachineUnitEvaluator::calibrate(const WorkUnit& unit, MachineUnit& found) {
+  solve_by(nullptr);
+  found.calibration.uncalibrated = count_rejects(unit);
+  if (best_ != nullptr) {
+    solve_by(best_.get());
+    found.calibration.best = count_rejects(unit);
+  }
+  std::vector<std::size_t> machines(unit.count);
+  std::iota(machines.begin(), machines.end(), unit.first.value);
+  calibration::Controllers controllers = (*calibrator_)(all_errors(drawn(unit.count)), machines);
+  found.calibration.not_fitted = static_cast<std::uint64_t>(controllers.errors.row(0).array().isNaN().count());
+  calibrated_ = table_->calibration()->evaluator(std::move(controllers));
+  solve_by(calibrated_.get());
+}
+
 void MachineUnitEvaluator::draw_at(const WorkUnit& unit, std::size_t pose, EffectBins& bins) {
   if (pose == 0 || !table_->has_per_pose()) return;
   const WorkUnit at_pose{unit.slot, PoseIndex(pose), unit.first, unit.count};
@@ -262,6 +304,7 @@ MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {
   make_room({poses, is_fitted_ ? vectors.rows() : 0, unit.count}, rows_);
   poses_beyond_.assign(table_->has_per_pose() ? unit.count : 0, 0);
   make_room({table_->has_per_pose() ? table_->errors() : 0, unit.count}, deciding_);
+  if (calibrator_ != nullptr) calibrate(unit, found);
   MachineBlock block(table_->limits(), unit.count);
   for (std::size_t m = 0; m < poses; ++m) {
     draw_at(unit, m, bins);

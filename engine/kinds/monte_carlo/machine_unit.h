@@ -21,106 +21,138 @@
 #include "engine/stats/sums.h"
 #include "engine/stats/yield_gradient.h"
 
-/// Units of machines and their sums.
+/// Units of work of machines, and the sums over machines.
 namespace poesy {
 
-/// Sums over machines whose last bits depend on the order of addition: a Sum of MergeTree.
+/// Sums over machines whose rounding depends on the order of addition, which MergeTree therefore adds in a fixed order.
 struct MachineSums {
   Array<Moments, axis::Pose, axis::Response> at_pose;  ///< moments of the samples that count
-  std::vector<Moments> mean;                           ///< [R] of the machines' means over the poses
-  std::vector<Moments> largest;                        ///< [R] of the machines' largest magnitudes
-  std::vector<Moments> rms;                            ///< [R] of the machines' root mean squares
-  std::optional<ScoreSums> scores;                     ///< set if there are limits
-  /// Of errors that machines draw anew at each pose, over machines that one pose alone rejects, by the errors at this
-  /// pose. Set if there are such errors and limits, which are judged at each pose.
+  std::vector<Moments> mean;                           ///< [responses] moments of the machines' means over the poses
+  std::vector<Moments> largest;                        ///< [responses] moments of the machines' largest magnitudes
+  std::vector<Moments> rms;                            ///< [responses] moments of the machines' root mean squares
+  std::optional<ScoreSums> scores;                     ///< scores of the errors over rejected machines; set if there
+                                                       ///< are limits
+  /// Scores of the errors that machines draw anew at each pose. They are summed over the machines that exactly one pose
+  /// rejects, with the errors at that pose. Set if there are such errors and all limits are judged at each pose.
   std::optional<ScoreSums> pose_scores;
-  std::optional<LinearFitSums> fit;  ///< fit of the limited vectors at all poses, for the machines that are fitted
-  /// [M] The same at each pose alone, instead of `fit`, if machines draw errors anew at each pose; otherwise empty.
+  std::optional<LinearFitSums> fit;  ///< sums for a linear map of the limited vectors at all poses together
+  /// [poses] Sums for a linear map at each pose alone, which replace `fit` if machines draw errors anew at each pose;
+  /// otherwise empty.
   std::vector<std::optional<LinearFitSums>> fit_at_pose;
-  std::optional<PartSums> parts;        ///< set if there are limits and errors were measured on parts
-  std::vector<MainEffectSums> effects;  ///< [MachineTable::effects()]
+  std::optional<PartSums> parts;        ///< influence of each measured part; set if there are limits and measured
+                                        ///< errors
+  std::vector<MainEffectSums> effects;  ///< [MachineTable::effects()] sums for main effects
 
   /// Empty sums.
   explicit MachineSums(const MachineTable& table);
   /// Adds later machines. Precondition: the machines of `later` come after those of this object.
   void merge(const MachineSums& later);
 
-  /// The linear map of the limited vectors at all poses, pose by pose; none if too few machines were fitted.
+  /// The linear map of the limited vectors at all poses, listed pose by pose; none if too few machines were fitted.
   std::optional<LinearFit> map() const;
-  void state(Archive& archive);  ///< Reads or writes every bit.
+  void state(Archive& archive);  ///< Reads or writes the sums, bit for bit.
 
  private:
   const MachineTable* table_;
 };
 
-/// Reads or writes, for each machine of a range that MachineTable::kept() counts, whether it is rejected, 1 or 0.
+/// How many of the same machines would be rejected without calibration, or with another correction.
+struct CalibrationCounts {
+  std::uint64_t not_fitted = 0;    ///< machines that were not calibrated: they were not solved, or their fit did not
+                                   ///< converge
+  std::uint64_t uncalibrated = 0;  ///< rejects if no machine is calibrated
+  std::uint64_t best = 0;          ///< rejects after the best correction at each pose, if the model can compute it
+
+  /// Adds the counts over other machines to these.
+  void merge(const CalibrationCounts& other);
+  /// Reads or writes the counts of this many machines.
+  void state(Archive& archive, std::uint64_t machines);
+};
+
+/// Reads or writes whether each machine of a range is rejected, 1 or 0. Only the first MachineTable::kept() machines
+/// have this number.
 void rejected_state(Archive& archive, std::vector<std::uint8_t>& rejected, const MachineTable& table,
                     const NumberRange& machines);
 
-/// What one unit of machines contributes.
+/// The result of a unit of machines.
 struct MachineUnit {
   MachineUnit() = default;
   /// An empty unit for this range of machines.
   MachineUnit(const MachineTable& table, const NumberRange& range);
 
   std::optional<MachineSums> sums;                         ///< empty only in a default-constructed unit
-  MachineCounts counts;                                    ///< how many machines are good
+  MachineCounts counts;                                    ///< numbers of good and rejected machines
+  CalibrationCounts calibration;                           ///< counts for calibrated machines, otherwise 0
   Array<NumberBlock, axis::Pose, axis::Response> at_pose;  ///< the samples that count, sorted for a sketch
-  std::vector<NumberBlock> largest;                        ///< [R] of the machines that are solved at each pose
-  std::vector<NumberBlock> rms;                            ///< [R] of the machines that are solved at each pose
-  std::vector<NumberBlock> judged;                         ///< what machines are judged by, for MachineTable::judged()
-  std::vector<std::uint8_t> rejected;  ///< 1 or 0 for each of the machines that MachineTable::kept() counts
-  std::vector<SolveCounts> solves;     ///< how the solves at each pose ended
-  std::vector<FailedSamples> failed;   ///< the first failed samples at each pose
-  SolveCounts total;                   ///< the solves at all poses
+  std::vector<NumberBlock> largest;    ///< [responses] largest magnitude of each machine that is solved at every pose
+  std::vector<NumberBlock> rms;        ///< [responses] root mean square of each machine that is solved at every pose
+  std::vector<NumberBlock> judged;     ///< value by which each machine is judged, for each response
+                                       ///< of MachineTable::judged()
+  std::vector<std::uint8_t> rejected;  ///< 1 if the machine is rejected, otherwise 0, for the first
+                                       ///< MachineTable::kept() machines of the study
+  std::vector<SolveCounts> solves;     ///< [poses] how the solves at each pose ended
+  std::vector<FailedSamples> failed;   ///< [poses] the first failed samples at each pose
+  SolveCounts total;                   ///< how the solves at all poses ended
 
-  void state(Archive& archive);  ///< Reads or writes the unit as a message or state.
+  void state(Archive& archive);  ///< Reads or writes the unit, for messages between ranks and for checkpoints.
 
  private:
   const MachineTable* table_ = nullptr;
   NumberRange machines_{};
 };
 
-/// Solves units of machines serially: draws their errors once and solves them pose by pose. Owns the scratch of one
-/// thread. The result of a unit depends only on the study and the unit.
+/// Solves units of machines: draws the errors of a unit once and solves its machines pose by pose. Owns the scratch of
+/// one thread. The result of a unit depends only on the study and the unit.
 class MachineUnitEvaluator : private UnitSolver {
  public:
   /// Refers to both arguments.
   MachineUnitEvaluator(const MachineTable& table, const Model& model);
 
-  /// Solves unit n at all poses.
+  /// Solves the machines of unit n at all poses.
   MachineUnit operator()(std::size_t n);
 
  private:
-  /// Replaces the errors that are drawn anew at each pose, and their bins if effects are summed at this pose.
+  /// Calibrates the unit's machines, so that the next solves use their controllers. Before that, counts the rejects
+  /// without calibration and with the best correction.
+  void calibrate(const WorkUnit& unit, MachineUnit& found);
+  /// The rejects among the unit's machines as the present evaluator solves them; 0 without limits.
+  std::uint64_t count_rejects(const WorkUnit& unit);
+  /// Draws the errors that machines draw anew at each pose. If main effects are summed at this pose, also updates the
+  /// bins.
   void draw_at(const WorkUnit& unit, std::size_t pose, EffectBins& bins);
   void solve_pose(const WorkUnit& unit, std::size_t pose, const EffectBins& bins, MachineBlock& block,
                   MachineUnit& found);
-  /// Counts the poses that reject each machine, and keeps the errors that are drawn anew from the first of these.
+  /// Counts the poses at which each machine breaks a limit, and records the errors at the first such pose.
   void note_rejects(const UnitOutcomes& outcomes, std::span<const std::uint8_t> ok);
   void add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found);
-  /// [P x B] The present errors, standardised.
+  /// [errors x machines] The present errors minus their means, divided by their standard deviations.
   Array<double, axis::Factor, axis::Sample> standardised(std::size_t machines) const;
-  /// Subtracts the mean over the poses from the rows of vectors that are centred.
+  /// Subtracts the mean over the poses from the components of centred vectors.
   void centre_rows();
-  /// Fits the limited vectors to these machines, whose rows at all poses are in rows_.
+  /// Adds these machines to the fit of the limited vectors, whose components at all poses are in rows_.
   void add_fit(std::span<const std::uint8_t> solved, MachineUnit& found) const;
-  /// The same at one pose, whose samples count where `ok` is 1.
+  /// Adds the samples at one pose to the fit of that pose. A sample counts if `ok` is 1.
   void add_fit_at(std::size_t pose, std::span<const std::uint8_t> ok, MachineUnit& found) const;
-  /// The values whose machine or sample counts.
+  /// The values for which `counts` is 1.
   std::span<const double> only(std::span<const double> values, std::span<const std::uint8_t> counts);
 
   const MachineTable* table_;
+  std::unique_ptr<MachineCalibrator> calibrator_;  ///< null: machines are not calibrated
+  /// Evaluator of machines after the best correction at each pose; null: the model has none.
+  std::unique_ptr<Evaluator> best_;
+  std::unique_ptr<Evaluator> calibrated_;            ///< evaluator of the calibrated machines of the present unit
   std::vector<std::uint8_t> counts_;                 ///< whether each machine counts at the pose
   Array<double, axis::Response, axis::Sample> sum_;  ///< sums over the poses
   std::vector<double> kept_;                         ///< values of one response
   bool is_fitted_ = false;                           ///< whether the present unit is fitted
-  Array<double, axis::DetailComponent, axis::Sample>
-      details_;  ///< details at the pose, if a limited vector is made of them
-  /// Components of the limited vectors, if the unit is fitted.
+  /// Additional outputs at the present pose, if some limited vector is computed from them.
+  Array<double, axis::DetailComponent, axis::Sample> details_;
+  /// Components of the limited vectors at all poses, if the linear map is fitted to the unit.
   Array<double, axis::Pose, axis::VectorRow, axis::Sample> rows_;
-  std::vector<std::uint8_t> poses_beyond_;              ///< [B] poses that reject the machine: 0, 1, or 2 for more
-  Array<double, axis::Factor, axis::Sample> deciding_;  ///< errors at the first of these poses
+  std::vector<std::uint8_t> poses_beyond_;  ///< [machines] number of poses at which the machine breaks a limit: 0,
+                                            ///< 1, or 2 for more
+  /// [errors x machines] Errors at the first pose at which the machine breaks a limit.
+  Array<double, axis::Factor, axis::Sample> deciding_;
 };
 
 }  // namespace poesy

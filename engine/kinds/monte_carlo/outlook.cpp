@@ -1,5 +1,7 @@
 #include "engine/kinds/monte_carlo/outlook.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -19,8 +21,8 @@
 namespace poesy {
 namespace {
 
-/// The additional memory of machines: a sketch of each response at each pose, the sums in the nodes of the merge tree,
-/// and the pieces that are being solved.
+/// The additional memory with draws per machine: a sketch of each response at each pose, the sums in the nodes of the
+/// merge tree, and the units that are being solved.
 MemoryOutlook machine_memory(const Study& study, const Model& model, const Plan& plan) {
   constexpr std::size_t kSketch = 20'000;
   constexpr std::size_t kPackedSketch = 6000;
@@ -32,7 +34,7 @@ MemoryOutlook machine_memory(const Study& study, const Model& model, const Plan&
   const std::size_t fit = plan.poses().size() * table.vectors().rows() * (errors + 3) * sizeof(double);
   const std::size_t sums = cells * sizeof(Moments) + table.effects() * (responses + 3) / 4 * errors * 4 * 512 + fit;
   const std::size_t nodes = MergeTree<MachineSums>::most_nodes(table.units()) * sums;
-  const std::size_t piece = sums + cells * MachineTable::unit_machines(plan.poses().size()) * sizeof(double);
+  const std::size_t piece = sums + cells * table.unit_machines() * sizeof(double);
   return {cells * kSketch + nodes + kInFlight * piece + table.kept(), cells * kPackedSketch + nodes + table.kept(),
           3 * fit, 0};
 }
@@ -43,7 +45,7 @@ MemoryOutlook sum_of(const MemoryOutlook& a, const MemoryOutlook& b) {
 
 MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const Plan& plan) {
   const std::size_t responses = study.model().responses.size();
-  // Quantiles with both ends of their intervals, and the magnitude by which a share of the draws is judged.
+  // Quantiles with both ends of their intervals, and for Judge::share the share_magnitude.
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   const std::size_t of_sketch = 3 * asked.quantiles.size() + (asked.judge == Judge::share ? 1 : 0);
   const MemoryOutlook of_pose{responses * sizeof(Moments) + sizeof(FailedSamples) + sizeof(SolveCounts) + sizeof(Bytes),
@@ -68,7 +70,7 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const P
   memory.file += numbers;
   if (machines) return sum_of(memory, machine_memory(study, model, plan));
   if (!plan.adaptive()) return memory;
-  // Packed sketches of finished poses, which the next round continues.
+  // The next round continues from packed sketches of the finished poses. Bytes of a sketch:
   constexpr std::size_t kPackedSketch = 6000;
   const std::size_t kept =
       std::min(plan.poses().size() * responses * kPackedSketch, MonteCarloCollector::kMostKeptBytes);
@@ -87,7 +89,7 @@ PoseSet first_of(const PoseSet& poses, std::size_t most) {
   return PoseSet(poses.coordinates(), std::move(some));
 }
 
-/// A small version of a study that draws per pose, with a few of its poses and units, whose work is timed.
+/// A small version of a study that draws per pose. It has a few poses and units of the study, and its work is timed.
 class PoseTrial {
  public:
   PoseTrial(const Study& study, const Model& model, const PoseSet& poses)
@@ -96,13 +98,13 @@ class PoseTrial {
         solves_(static_cast<double>(poses.size()) * static_cast<double>(study.analysis.samples)),
         plan_(Plan(study, first_of(poses, kPoses)).with_samples(samples(study.analysis.samples))) {}
 
-  /// Solves a unit, so that merge() has one to merge.
+  /// Solves one unit, which merge() merges.
   void prepare() {
     unit_ = PoseUnitEvaluator(plan_, model_)(plan_.unit(0));
     effects_ = std::exchange(unit_.effects, std::nullopt);
     fill();
   }
-  /// Merges the unit at all poses. Returns the share of the whole study's merging.
+  /// Merges the unit at all poses of the trial. Returns the share that this is of the merging in the study.
   double merge() {
     fill();
     return static_cast<double>(plan_.solves()) / solves_;
@@ -116,7 +118,8 @@ class PoseTrial {
  private:
   static constexpr std::size_t kPoses = 8;
 
-  /// A number of whole units, so many that finishing a pose hardly counts if the study has more.
+  /// The number of samples at each pose of the trial: whole units, and for a large study so many that the work of
+  /// finishing a pose takes little of the time.
   static std::size_t samples(std::size_t of_study) {
     constexpr std::size_t kMostUnits = 8;
     if (of_study < Plan::kUnitSamples) return of_study;
@@ -139,8 +142,9 @@ class PoseTrial {
   std::optional<MonteCarloCollector> collect_;
 };
 
-/// A small version of a study of machines, with some of its poses. They are enough to give a fair share to what is done
-/// once for each machine, and to the few poses of main effects.
+/// A small version of a study with draws per machine, at some of its poses. It has many poses, because some work is
+/// done once for each machine or at the few poses of main effects. With many poses, this work has about the same share
+/// of the time as in the study.
 class MachineTrial {
  public:
   MachineTrial(const Study& study, const Model& model, const PoseSet& poses)
@@ -149,19 +153,21 @@ class MachineTrial {
         poses_(poses.size()),
         responses_(model.description().responses.size()),
         plan_(study, first_of(poses, kPoses)),
+        calibration_(machine_calibration(study, model, poses)),
         table_(plan_, model, study.analysis),
-        unit_plan_(plan_.with_samples(std::min(plan_.samples(), MachineTable::unit_machines(poses.size())))),
-        unit_table_(unit_plan_, model, study.analysis),
+        unit_plan_(plan_.with_samples(std::min(
+            plan_.samples(), MachineTable::unit_machines(poses.size(), MachineTable::unit_size(study.analysis))))),
+        unit_table_(unit_plan_, model, study.analysis, calibration_ ? &*calibration_ : nullptr),
         evaluate_(unit_table_, model) {}
   MachineTrial(const MachineTrial&) = delete;
   MachineTrial& operator=(const MachineTrial&) = delete;
 
-  /// Solves as many machines as a unit of the study has. Returns the share of the whole study's solves.
+  /// Solves as many machines as a unit of the study has. Returns the share that these solves are of those in the study.
   double solve() {
     static_cast<void>(evaluate_(0));
     return share_of(unit_table_.unit(0).count);
   }
-  /// Solves a unit, which is then merged repeatedly.
+  /// Solves one unit, which is then merged repeatedly.
   void prepare() {
     unit_ = MachineUnitEvaluator(table_, model_)(0);
     begin();
@@ -174,7 +180,7 @@ class MachineTrial {
     collect_->add(next_++, MachineUnit(unit_));
     return share_of(table_.unit(0).count);
   }
-  /// Computes the result of one pose. Returns the share of all poses.
+  /// Computes the result at one pose. Returns the share that this pose is of the poses of the study.
   double read_pose() {
     MonteCarloColumns columns(1, responses_, analysis_);
     for (std::size_t r = 0; r < responses_; ++r) {
@@ -196,7 +202,7 @@ class MachineTrial {
     collect_.emplace(table_, analysis_);
     next_ = 0;
   }
-  /// The share of the study in this many machines at the poses that are tried.
+  /// The share of the study's samples that this many machines have at the tried poses.
   double share_of(std::size_t machines) const {
     const double tried = static_cast<double>(machines) * static_cast<double>(plan_.poses().size());
     return tried / (static_cast<double>(plan_.samples()) * static_cast<double>(poses_));
@@ -207,14 +213,15 @@ class MachineTrial {
   std::size_t poses_;  ///< number of poses of the study
   std::size_t responses_;
   Plan plan_;
-  MachineTable table_;  ///< all machines
+  std::optional<MachineCalibration> calibration_;
+  MachineTable table_;  ///< all machines, for merging; without calibration, because merging does not depend on it
   Plan unit_plan_;
-  MachineTable unit_table_;  ///< as many machines as a unit of the study has
+  MachineTable unit_table_;  ///< the first machines: as many as a unit of the study has
   MachineUnitEvaluator evaluate_;
   MachineUnit unit_;
   std::vector<QuantileSketch> sketches_;  ///< sketch of each response at one pose
   std::optional<MachineCollector> collect_;
-  std::size_t next_ = 0;  ///< the next unit to merge
+  std::size_t next_ = 0;  ///< number of the next unit to merge
 };
 
 void add_pose_works(const Study& study, const Model& model, const PoseSet& poses,
@@ -256,6 +263,9 @@ Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSe
                    .shared = {},
                    .by_one = {},
                    .least = least_share(*plan)};
+  if (study.analysis.calibration != nullptr) {
+    expected.solves += calibration_cost_text(machine_calibration(study, model, poses).value(), "machine");
+  }
   if (machines) {
     add_machine_works(study, model, poses, expected);
   } else {

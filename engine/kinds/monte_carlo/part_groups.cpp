@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/random/distribution.h"
 #include "engine/random/normal_copula.h"
+#include "engine/random/normal_quantile.h"
 #include "engine/stats/rank_correlation.h"
 
 namespace poesy {
@@ -15,7 +15,7 @@ namespace {
 
 double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
 
-/// For each x, the sum of y over all larger x plus half of the y of equal x.
+/// For each x_i: the sum of y over all larger x, plus half of y over all equal x.
 std::vector<double> sums_above(std::span<const double> x, std::span<const double> y) {
   std::vector<std::size_t> order(x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -33,7 +33,7 @@ std::vector<double> sums_above(std::span<const double> x, std::span<const double
   return sums;
 }
 
-/// The grade of each x: the share of values below it, less 1/2.
+/// The grade of each x: the share of values below it, minus 1/2.
 std::vector<double> grades(std::span<const double> x) {
   const auto n = static_cast<double>(x.size());
   std::vector<double> found = sums_above(x, std::vector<double>(x.size(), 1.0));
@@ -45,8 +45,8 @@ double mean_product(std::span<const double> a, std::span<const double> b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0) / static_cast<double>(a.size());
 }
 
-/// d rho / dw_i of Spearman's rho = E[a b] / sqrt(E[a^2] E[b^2]) with the grades a, b. It is the sum of the part's own
-/// product and of the effect of its weight on the grades of all others.
+/// The derivatives d rho / dw_i of Spearman's rho = E[a b] / sqrt(E[a^2] E[b^2]), where a and b are grades. Each
+/// derivative is the sum of the part's own product and of the effect of its weight on the grades of all parts.
 std::vector<double> rank_moves(std::span<const double> x, std::span<const double> y) {
   const auto n = static_cast<double>(x.size());
   const std::vector<double> a = grades(x);
@@ -62,11 +62,12 @@ std::vector<double> rank_moves(std::span<const double> x, std::span<const double
   return moves;
 }
 
-/// The correlation of normal scores with this rank correlation, and its derivative.
+/// The correlation of normal scores that belongs to this rank correlation, and its derivative.
 double score_correlation(double rank) { return 2.0 * std::sin(std::numbers::pi / 6.0 * rank); }
 double score_slope(double rank) { return std::numbers::pi / 3.0 * std::cos(std::numbers::pi / 6.0 * rank); }
 
-/// [pairs x n] The derivatives of correlations by the weights, if the correlation is that of the measured rows.
+/// [pairs x parts] The derivatives of correlations with respect to the weights, if the correlations are those of the
+/// measured values.
 std::vector<double> correlation_moves(std::span<const SmoothedValues> parts, std::span<const double> correlation) {
   constexpr double kSame = 1e-9;
   std::vector<double> moves;
@@ -101,14 +102,14 @@ std::vector<double> inverse_of(std::span<const double> matrix, std::size_t size)
   return inverse;
 }
 
-/// The smoothed value of one part.
+/// The smoothed value of one part: uniform between `low` and `high`.
 struct Range {
   double low;
   double high;
 
   bool single() const { return low == high; }
   bool holds(double x) const { return low <= x && x <= high; }
-  /// The share of its density below x.
+  /// The probability that the smoothed value is below x.
   double share(double x) const {
     if (single()) return x == low ? 0.5 : static_cast<double>(x > low);
     return std::clamp((x - low) / (high - low), 0.0, 1.0);
@@ -119,11 +120,11 @@ Range range_of(const SmoothedValues& parts, std::size_t i) {
   return {parts.values()[i] - parts.half_widths()[i], parts.values()[i] + parts.half_widths()[i]};
 }
 
-/// Adds the influence of each part's weight on the logarithm of the density at x: g_i / f - 1, where g_i is the density
-/// of the part alone.
+/// Adds to `influence` [parts] that of each part's weight on the logarithm of the density f at x: g_i / f - 1, where
+/// g_i is the density of the smoothed value of part i.
 void add_density(const SmoothedValues& parts, double x, std::span<double> influence) {
   const std::size_t n = influence.size();
-  bool single = false;  // values that are not smoothed outweigh all others
+  bool single = false;  // whether x equals a value that is not smoothed, whose density outweighs all others
   for (std::size_t i = 0; i < n; ++i) single = single || (range_of(parts, i).single() && range_of(parts, i).low == x);
   const auto own = [&](std::size_t i) {
     const Range range = range_of(parts, i);
@@ -136,7 +137,8 @@ void add_density(const SmoothedValues& parts, double x, std::span<double> influe
   for (std::size_t i = 0; i < n; ++i) influence[i] += static_cast<double>(n) * own(i) / sum - 1.0;
 }
 
-/// The same for correlated errors, whose normal scores depend on the shares of the parts below them.
+/// Adds to `influence` [parts] what each part's weight does through the normal scores of correlated errors. These
+/// scores depend on the share of the parts below x.
 void add_scores(const PartGroup& group, std::span<const double> x, std::span<double> influence) {
   const std::size_t size = group.errors.size();
   const std::size_t n = group.size();
@@ -165,7 +167,7 @@ void add_scores(const PartGroup& group, std::span<const double> x, std::span<dou
   }
 }
 
-/// Whether all errors of a block were measured on the same parts.
+/// Whether all errors of a block were measured on the same number of parts.
 bool measured_together(const Plan& plan, std::span<const std::size_t> errors) {
   const auto& first = plan.distributions()[errors.front()].parts();
   return first && std::ranges::all_of(errors, [&](std::size_t p) {

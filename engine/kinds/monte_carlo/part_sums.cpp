@@ -7,7 +7,7 @@
 #include "engine/base/array.h"
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
-#include "engine/random/distribution.h"
+#include "engine/random/normal_quantile.h"
 
 namespace poesy {
 namespace {
@@ -65,10 +65,11 @@ Interval PartSums::interval(double conf_level) const {
   const auto machines = static_cast<double>(machines_);
   const double yield = 1.0 - static_cast<double>(rejects_) / machines;
   double of_parts = 0.0;
-  double squares = 0.0;  // sum of each group's variance over its degrees of freedom
+  double squares = 0.0;  // sum over groups of the squared variance divided by its degrees of freedom, for Welch and
+                         // Satterthwaite's formula
   for (std::size_t g = 0; g < sums_.size(); ++g) {
     const auto n = static_cast<double>(sums_[g].size());
-    // Corrects the bias of squares of sums over few machines
+    // Subtracting squares_ removes the bias of squared sums over few machines.
     const double variance = (square_sum(sums_[g]) - squares_[g]) / (machines * machines * n * (n - 1.0));
     of_parts += variance;
     squares += variance * variance / (n - 1.0);

@@ -15,13 +15,13 @@
 #include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/machine_report.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/what_if/what_if.h"
 #include "engine/report/display.h"
+#include "engine/report/sketch_view.h"
 #include "engine/report/tables.h"
 
 namespace poesy {
 namespace {
-
-constexpr int kDigits = 6;
 
 /// A quantile's name in JSON: "q_0_95".
 std::string quantile_name(double level) {
@@ -33,15 +33,15 @@ std::string quantile_name(double level) {
 
 std::string quantile_heading(double level) { return "q_" + shortest(level); }
 
-/// In narrow tables the lowest quantiles are left out first, then the smallest value; mean, spread and high values
-/// stay.
+/// The columns of the table with numbers over the samples of all poses. Narrow tables omit the lowest quantiles first,
+/// then the smallest value. Mean, spread and high quantiles always stay.
 std::vector<FilledColumn> overall_columns(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const auto number = [&result](std::string name, std::string heading, const auto& values, int dispensable = 0,
                                 std::size_t q = 0) {
     return FilledColumn{
         number_column(std::move(name), std::move(heading), "", dispensable),
-        [&result, &values, q](std::size_t r) { return value_cell(values.row(r)[q], result.responses[r], kDigits); }};
+        [&result, &values, q](std::size_t r) { return value_cell(values.row(r)[q], result.responses[r]); }};
   };
   std::vector<FilledColumn> columns{
       name_column(result.responses, "response"),  unit_column(result.responses),
@@ -57,7 +57,7 @@ std::vector<FilledColumn> overall_columns(const StoredResult& result) {
   return columns;
 }
 
-/// The accuracy of the quantiles over all poses.
+/// The accuracy of the quantiles over all poses, as text.
 std::string overall_error_text(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.overall_quantile_error.empty()) {  // files of version 0.2
@@ -83,17 +83,17 @@ Table overall_table(const StoredResult& result) {
   return table;
 }
 
-/// The pose where a number is largest; NaN counts as least.
+/// The pose at which a number is largest; NaN counts as smallest.
 std::size_t worst_pose(std::span<const double> at_poses) {
   const auto worst =
       std::ranges::max_element(at_poses, [](double a, double b) { return std::isnan(a) ? !std::isnan(b) : a < b; });
   return static_cast<std::size_t>(worst - at_poses.begin());
 }
 
-/// Adds the largest value over the poses, and its pose.
+/// Gives the row further cells with the largest value over the poses, and its pose.
 void add_worst_pose(std::vector<Cell>& row, std::span<const double> at_poses, const Unit& unit) {
   const std::size_t worst = worst_pose(at_poses);
-  row.push_back(number_cell(at_poses[worst] / unit.si, kDigits));
+  row.push_back(number_cell(at_poses[worst] / unit.si));
   row.push_back(std::isnan(at_poses[worst]) ? text_cell("") : count_cell(worst));
 }
 
@@ -104,13 +104,13 @@ std::vector<double> at_poses(const MonteCarloResult::QuantilesAtPoses& quantiles
   return values;
 }
 
-/// The poses where the highest quantile of a response is the largest.
+/// The poses at which the highest quantile of a response is largest.
 struct WorstPoses {
-  std::vector<double> quantile;  ///< at all poses
-  std::size_t worst;             ///< the pose of the largest
+  std::vector<double> quantile;  ///< [poses] highest quantile at each pose
+  std::size_t worst;             ///< pose with the largest quantile
   double low;                    ///< lower end of its interval
   double high;
-  std::vector<std::size_t> alike;  ///< other poses whose intervals reach above `low`, in order of decreasing quantile
+  std::vector<std::size_t> alike;  ///< other poses whose intervals reach above `low`, by decreasing quantile
 };
 
 WorstPoses worst_poses(const MonteCarloResult& found, std::size_t r) {
@@ -132,17 +132,17 @@ std::vector<Cell> poses_row(const StoredResult& result, std::size_t r) {
   const std::span mean = found.mean.row(r);
   const double sum = std::accumulate(mean.begin(), mean.end(), 0.0);
   std::vector<Cell> row{text_cell(result.responses[r].name), text_cell(unit.name),
-                        number_cell(sum / static_cast<double>(mean.size()) / unit.si, kDigits)};
+                        number_cell(sum / static_cast<double>(mean.size()) / unit.si)};
   add_worst_pose(row, mean, unit);
   const WorstPoses poses = worst_poses(found, r);
   add_worst_pose(row, poses.quantile, unit);
-  row.push_back(number_cell(poses.low / unit.si, kDigits));
-  row.push_back(number_cell(poses.high / unit.si, kDigits));
+  row.push_back(number_cell(poses.low / unit.si));
+  row.push_back(number_cell(poses.high / unit.si));
   row.push_back(std::isnan(poses.low) ? text_cell("") : count_cell(poses.alike.size()));
   return row;
 }
 
-/// Names the poses that cannot be distinguished from the worst; empty if there are none.
+/// A note that names the poses that cannot be distinguished from the worst pose; empty if there are none.
 std::string alike_text(const StoredResult& result, std::size_t r) {
   constexpr std::size_t kMost = 5;
   const WorstPoses poses = worst_poses(monte_carlo_of(result), r);
@@ -157,7 +157,7 @@ std::string alike_text(const StoredResult& result, std::size_t r) {
                      quantile_heading(monte_carlo_of(result).levels.back()), place_text(result, poses.worst), names);
 }
 
-/// The table of the worst poses. Precondition: there are poses and quantiles.
+/// The table of the worst poses of each response. Precondition: there are poses and quantiles.
 Table poses_table(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const std::string name = "largest_" + quantile_name(found.levels.back());
@@ -183,10 +183,11 @@ Table poses_table(const StoredResult& result) {
 }
 
 /// The histogram of a response and its cumulative curve, as outlines over the edges of the bins. The first and the last
-/// bin, which extend to the extremes, are left out.
+/// bin are left out, because they extend to the extremes.
 struct Outline {
   std::vector<double> x;        ///< each bin's lower and upper end, in the unit shown
-  std::vector<double> density;  ///< share of the samples per unit of x
+  double width = 1.0;           ///< about the width of a bin, a round number, in the unit shown
+  std::vector<double> density;  ///< share of the samples per `width`
   std::vector<double> below;    ///< share of the samples below x
 };
 
@@ -197,7 +198,7 @@ Outline outline(const MonteCarloResult& found, std::size_t r, double unit) {
   Outline drawn;
   double sum = static_cast<double>(counts.front()) / all;
   for (std::size_t b = 1; b + 1 < counts.size(); ++b) {
-    // Unused bins are at the largest value.
+    // Unused bins have both edges at the largest value.
     if (!(edges[b] < edges[b + 1]) || !(edges[b + 1] < edges.back())) continue;
     const double share = static_cast<double>(counts[b]) / all;
     const double density = share / ((edges[b + 1] - edges[b]) / unit);
@@ -206,6 +207,10 @@ Outline outline(const MonteCarloResult& found, std::size_t r, double unit) {
     drawn.below.insert(drawn.below.end(), {sum, sum + share});
     sum += share;
   }
+  if (drawn.x.empty()) return drawn;
+  const double bins = 0.5 * static_cast<double>(drawn.x.size());
+  drawn.width = rounded_down((drawn.x.back() - drawn.x.front()) / bins);
+  for (double& density : drawn.density) density *= drawn.width;
   return drawn;
 }
 
@@ -216,8 +221,10 @@ std::string distribution_caption(const StoredResult& result, std::size_t r) {
       "outermost 0.05 % on either side are not drawn.",
       response.name);
   if (const LimitVerdict* verdict = verdict_on(result, r)) {
-    text += fmt::format(" {} of the draws are within the limit.",
-                        percent_text(static_cast<double>(verdict->within) / static_cast<double>(verdict->tried)));
+    const bool machines = result.verdicts->judge == Judge::yield;
+    text += fmt::format(" {} of the {} are within the limit{}.",
+                        percent_text(static_cast<double>(verdict->within) / static_cast<double>(verdict->tried)),
+                        machines ? "machines" : "draws", machines ? " at all poses" : "");
   }
   return text;
 }
@@ -232,8 +239,9 @@ Lines distribution(const StoredResult& result, std::size_t r, ArrayPool& pool) {
   const ArrayName zero = add("histogram_zero", std::vector<double>(drawn.x.size(), 0.0), 1.0);
   const ArrayName density = add("histogram", drawn.density, 0.01);
   return {.x = {response.name, unit, add("histogram_x", drawn.x, 1.0)},
-          .panels = {{"share of the samples per unit",
-                      unit.empty() ? "%" : "%/" + unit,
+          .panels = {{fmt::format("share of the samples per {}{}", number_text(drawn.width),
+                                  unit.empty() ? "" : " " + unit),
+                      "%",
                       {{"samples of all poses", density, zero, density}}},
                      {"share of the samples below", "%", {{"samples of all poses", add("below", drawn.below, 0.01)}}}},
           .marks = limit_marks(result, r, monte_carlo_of(result).overall_min(r) < 0.0)};
@@ -244,6 +252,7 @@ void add_how_large(const StoredResult& result, std::span<const Table> tables, Pa
   Section& section = page.add_section("how-large", "How large are the deviations");
   section.paragraph(fmt::format("All {} vary at once.", counted(result.factors.size(), "error", "errors")));
   section.table(tables, "overall");
+  if (found.machines && found.machines->calibration) section.table(tables, "calibration");
   if (found.machines) section.table(tables, "machines");
   for (const std::size_t r : headline_order(result)) {
     if (found.overall_count(r) == 0) continue;
@@ -259,7 +268,8 @@ SolveTally tally(const StoredResult& result) {
   return {"", {"all errors"}, result.poses.size(), monte_carlo_of(result).solves};
 }
 
-/// Shows the mean of each pose in a band from the lowest to the highest quantile, and colours the workspace.
+/// Adds the section with the mean at each pose, in a band from the lowest to the highest quantile, and with a map of
+/// the workspace.
 void add_where(const StoredResult& result, Page& page) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const std::vector<double>& levels = found.levels;
@@ -334,15 +344,54 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   add_how_sure(result, tables, page);
 }
 
-/// "Make delta_1 (12 %), ... smaller first": the errors that make most of a response's variance alone. Empty if that is
-/// not known or is little, as for norms.
+/// [poses] The share of machines that are rejected at each pose, plus a small amount that grows with the scatter there.
+std::vector<double> pose_weights(const MonteCarloResult& found, const Study& study) {
+  constexpr double kSmall = 1e-6;
+  std::vector<double> weights(found.poses(), 0.0);
+  for (const ResponseLimit& limit : study.analysis.limits) {
+    const std::span rms = found.rms.row(limit.response);
+    const double largest = *std::ranges::max_element(rms);
+    for (std::size_t m = 0; m < weights.size(); ++m) {
+      const double rejected = found.machines->yield->worst_pose_share(limit.response, m);
+      weights[m] += (std::isnan(rejected) ? 0.0 : rejected) + (largest > 0.0 ? kSmall * rms[m] / largest : 0.0);
+    }
+  }
+  return weights;
+}
+
+/// Adds to the page the section that predicts the yield at other sizes of the errors. Adds nothing for calibrated
+/// machines.
+void add_solved_page(const ReportedResult& reported, Page& page) {
+  const MonteCarloResult& found = monte_carlo_of(reported.stored);
+  const Study& study = *reported.study;
+  const bool fits = study.analysis.kind == &kMonteCarloStudy && study.analysis.draws == Draws::per_machine &&
+                    study.analysis.factors.size() == reported.stored.factors.size() &&
+                    reported.model->description().responses.size() == reported.stored.responses.size();
+  if (!fits || !found.machines || !found.machines->yield || study.analysis.calibration != nullptr) return;
+  if (found.poses() == 0 || found.poses() != reported.stored.poses.size()) return;
+  const YieldResult& yield = *found.machines->yield;
+  add_what_if({.study = study,
+               .model = *reported.model,
+               .poses = reported.stored.poses,
+               .errors = sized_errors(study, reported.stored.poses),
+               .pose_weights = pose_weights(found, study),
+               .machines = yield.machines,
+               .yield = yield.value,
+               .yield_low = yield.ci_low,
+               .yield_high = yield.ci_high,
+               .conf_level = yield.conf_level},
+              "yield", page);
+}
+
+/// Advice like "Make delta_1 (12 %), ... smaller first", with the errors that alone make most of a response's variance.
+/// Empty if their indices are unknown or small, as they are for norms.
 std::string drivers_text(const StoredResult& result, std::size_t r) {
   constexpr std::size_t kMost = 3;
   constexpr double kLittle = 0.1;
   const MonteCarloResult& found = monte_carlo_of(result);
   const MainEffects& effects = found.effects.effects;
   const auto share = [&](std::size_t p) { return effects.s1(r, p); };
-  std::vector<std::size_t> order;  // errors that certainly have an effect alone
+  std::vector<std::size_t> order;  // errors with an effect that differs significantly from zero
   for (std::size_t p = 0; p < result.factors.size(); ++p) {
     if (effects.s1_ci_low(r, p) > 0.0) order.push_back(p);
   }
@@ -359,8 +408,8 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
                      text);
 }
 
-/// "Make flange_x (36 %), ... smaller first": the errors that add most to the mean square of a limited response. Empty
-/// if their shares are not known.
+/// Advice like "Make flange_x (36 %), ... smaller first", with the errors that add most to the mean square of a limited
+/// response. Empty if their shares are not known.
 std::string limit_drivers_text(const StoredResult& result) {
   constexpr std::size_t kMost = 3;
   const auto shares = response_shares(result);
@@ -378,17 +427,26 @@ std::string limit_drivers_text(const StoredResult& result) {
                      result.responses[shares->response].name, text);
 }
 
-/// Advice by the limits if the study has some, otherwise by the response.
+/// Advice on the verdicts if the study has limits, otherwise on the response.
 std::string advice(const StoredResult& result, std::size_t r) {
-  if (result.verdicts && result.verdicts->passed())
-    return "Nothing has to be done: as far as it shows, the limits are kept.";
+  using Decision = YieldVerdict::Decision;
+  const std::optional<LimitVerdicts>& verdicts = result.verdicts;
+  const bool has_yield = verdicts && verdicts->yield;
+  const bool undecided = has_yield && verdicts->yield->decision == Decision::undecided;
+  const bool judged = verdicts && !undecided && !(has_yield && verdicts->yield->decision == Decision::not_asked);
+  if (judged && verdicts->passed()) return "Nothing has to be done: as far as it shows, the limits are kept.";
   std::string drivers = limit_drivers_text(result);
   if (drivers.empty()) drivers = drivers_text(result, r);
   const std::string which = drivers.empty() ? "A sensitivity study says which errors to make smaller." : drivers;
-  return (result.verdicts ? "" : "State limits under [analysis.limits], and the report judges them. ") + which;
+  const std::string_view first =
+      !verdicts   ? "State limits under [analysis.limits], and the report judges them. "
+      : judged    ? ""
+      : undecided ? "More machines (samples) decide whether the yield is high enough. "
+                  : "State the yield that you need (yield, under [analysis]), and the report judges it. ";
+  return std::string(first) + which;
 }
 
-/// The values of a response that one may expect, and its worst pose.
+/// The answer: the expected values of a response, and its worst pose.
 Answer answer(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.poses() == 0 || found.levels.empty()) return {};
@@ -398,11 +456,13 @@ Answer answer(const StoredResult& result) {
   const std::size_t highest = found.levels.size() - 1;
   const std::string level = percent_text(found.levels[highest]);
   const WorstPoses worst = worst_poses(found, r);
-  Answer lines{
-      {"Answer", fmt::format("{} is {} on average; {} of the samples of all poses are below {}, the largest is {}.",
-                             response.name, text(found.overall_mean(r)), level,
-                             text(found.overall_quantiles(r, highest)), text(found.overall_max(r)))}};
+  Answer lines;
   if (std::string limits = limits_text(result); !limits.empty()) lines.emplace_back("Limits", std::move(limits));
+  lines.emplace_back("Answer",
+                     fmt::format("{} is {} on average; {} of the samples of all poses are below {}, the largest "
+                                 "is {}.",
+                                 response.name, text(found.overall_mean(r)), level,
+                                 text(found.overall_quantiles(r, highest)), text(found.overall_max(r))));
   const std::string place = place_text(result, worst.worst);
   lines.emplace_back("Where", fmt::format("The worst is {}: {} of the samples there are below {}.", place, level,
                                           text(worst.quantile[worst.worst])));
@@ -423,7 +483,7 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
 }
 
-/// The named numbers of a Monte Carlo result over the samples of all poses, in the order of the levels.
+/// The numbers over the samples of all poses, with their names; quantiles in the order of the levels.
 std::vector<std::pair<std::string, std::function<double(std::size_t r)>>> overall(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const auto of = [](const MonteCarloResult::Overall& numbers) { return [&](std::size_t r) { return numbers(r); }; };
@@ -439,7 +499,13 @@ std::vector<std::pair<std::string, std::function<double(std::size_t r)>>> overal
   return list;
 }
 
-/// Shares of the mean square of a limited response, or else first-order indices, and root mean squares at the poses.
+std::vector<double> rms_at_poses(const StoredResult& result, std::size_t response) {
+  const std::span<const double> values = monte_carlo_of(result).rms.row(response);
+  return {values.begin(), values.end()};
+}
+
+/// The shares of errors in the mean square of a limited response, or first-order indices if there are none; and the
+/// root mean square at each pose.
 ErrorShares error_shares(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.poses() == 0) return {};
@@ -448,14 +514,13 @@ ErrorShares error_shares(const StoredResult& result) {
   if (!shares && !varies(result, r)) return {};
   const std::string& response = result.responses[r].name;
   const std::span values = shares ? shares->each : found.effects.effects.s1.row(r);
-  const std::span at_poses = found.rms.row(r);
   return {.what = (shares ? "share of the mean square of " : "first-order index S1 of ") + response,
           .values = {values.begin(), values.end()},
           .pose_what = "the root mean square of " + response,
-          .at_poses = {at_poses.begin(), at_poses.end()}};
+          .at_poses = rms_at_poses(result, r)};
 }
 
-/// The yield of machines, and the root mean square of the response over the samples of all poses.
+/// The merits by which results are compared: the yield, and the root mean square of the response over all samples.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   const MonteCarloResult& found = monte_carlo_of(result);
   std::vector<Merit> list;
@@ -485,7 +550,8 @@ std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOpt
   const MonteCarloResult& found = monte_carlo_of(result);
   std::vector<Table> tables;
   if (found.poses() > 0 && !found.levels.empty()) {
-    tables = driver_tables(result);
+    if (found.machines && found.machines->calibration) tables.push_back(calibration_table(result));
+    std::ranges::move(driver_tables(result), std::back_inserter(tables));
     tables.push_back(overall_table(result));
     tables.push_back(poses_table(result));
     if (found.machines) std::ranges::move(machine_tables(result), std::back_inserter(tables));
@@ -504,7 +570,9 @@ constinit const ReportKind kMonteCarloReport{
     .answer = answer,
     .shown_cells = [](const StoredResult& result) { return shown_cells(result, kSummaryRows); },
     .page = add_page,
+    .solved_page = add_solved_page,
     .error_shares = error_shares,
+    .rms_at_poses = rms_at_poses,
     .comparable = comparable};
 
 }  // namespace poesy

@@ -18,84 +18,91 @@ namespace poesy {
 namespace axis {
 using Quantile = Axis<"quantile">;     ///< Quantiles that a study asks for.
 using HistogramBin = Axis<"bin">;      ///< Bins of a histogram.
-using HistogramEdge = Axis<"edge">;    ///< Where the bins of a histogram begin and end.
-using EffectBin = Axis<"effect_bin">;  ///< Bins of equal probability of an error.
+using HistogramEdge = Axis<"edge">;    ///< Edges of the bins of a histogram.
+using EffectBin = Axis<"effect_bin">;  ///< Bins of an error's values, all of equal probability.
 }  // namespace axis
 
 /// The options of a Monte Carlo study.
 struct MonteCarloOptions {
-  std::vector<double> quantiles{0.05, 0.5, 0.95};  ///< shares of samples below, ascending
-  Judge judge = Judge::rms;  ///< how limits are judged; Judge::yield is the default with draws per machine
-  double share = 0.0;        ///< for Judge::share: the share of the draws at each pose
-  double yield = 0.0;        ///< for Judge::yield: the share of the machines; 0: no yield is asked for
+  std::vector<double> quantiles{0.05, 0.5, 0.95};  ///< levels of the quantiles that are computed, ascending
+  Judge judge = Judge::rms;  ///< how limits are judged; with draws per machine, the default is Judge::yield
+  double share = 0.0;        ///< share of the draws that must be within a limit at each pose; only for Judge::share
+  double yield = 0.0;  ///< share of the machines that must be good, for Judge::yield; 0 if the study asks for no yield
 };
 
-/// The kind of study in which all errors vary together.
+/// The kind of study in which all errors vary together, `monte-carlo`.
 extern const StudyKind kMonteCarloStudy;
 
-/// One number of each machine, over the machines that are solved at each pose; SI.
+/// Statistics of one number of each machine, such as its largest magnitude, over the machines that are solved at every
+/// pose; SI.
 struct MachineValues {
   using Numbers = Array<double, axis::Response>;                    ///< a number for each response
   using Quantiles = Array<double, axis::Response, axis::Quantile>;  ///< all quantiles of each response
 
-  Numbers mean;                                                               ///< mean over the machines
-  Numbers mean_ci_low;                                                        ///< Student's interval
-  Numbers mean_ci_high;                                                       ///< upper end
-  Numbers std;                                                                ///< sample standard deviation
-  Numbers min;                                                                ///< least value of a machine
-  Numbers max;                                                                ///< largest value of a machine
-  Array<std::uint64_t, axis::Response> count;                                 ///< number of machines
-  Quantiles quantiles;                                                        ///< order statistics
-  Quantiles quantiles_ci_low;                                                 ///< lower ends, see MonteCarloResult
-  Quantiles quantiles_ci_high;                                                ///< upper ends
-  Numbers quantile_error;                                                     ///< see MonteCarloResult::quantile_error
-  Array<double, axis::Response, axis::HistogramEdge> histogram_edges;         ///< edges of the bins
-  Array<std::uint64_t, axis::Response, axis::HistogramBin> histogram_counts;  ///< machines in each bin
+  Numbers mean;  ///< mean over the machines
+  /// Lower end of Student's interval of the mean.
+  Numbers mean_ci_low;
+  Numbers mean_ci_high;                        ///< upper end of that interval
+  Numbers std;                                 ///< sample standard deviation
+  Numbers min;                                 ///< smallest value
+  Numbers max;                                 ///< largest value
+  Array<std::uint64_t, axis::Response> count;  ///< number of machines
+  Quantiles quantiles;                         ///< quantiles, as order statistics
+  /// Lower ends of the intervals of quantiles, see MonteCarloResult.
+  Quantiles quantiles_ci_low;
+  Quantiles quantiles_ci_high;  ///< upper ends of the intervals of quantiles
+  Numbers quantile_error;       ///< error bound of the quantiles, see MonteCarloResult::quantile_error
+  Array<double, axis::Response, axis::HistogramEdge> histogram_edges;         ///< edges of the histogram's bins
+  Array<std::uint64_t, axis::Response, axis::HistogramBin> histogram_counts;  ///< number of machines in each bin
 };
 
 /// The interval of the yield that also includes the uncertainty from the few parts on which errors were measured. It
-/// contains the interval of the machines. NaN if the influence of parts is unknown (PartSums::interval).
+/// contains the interval of YieldResult. NaN if the influence of parts is unknown (PartSums::interval).
 struct PartsYield {
-  double ci_low = 0.0;   ///< lower end
-  double ci_high = 0.0;  ///< upper end
+  double ci_low = 0.0;   ///< lower end of the interval
+  double ci_high = 0.0;  ///< upper end of the interval
 };
 
-/// The yield: the share of machines that are within every limit at every pose. A machine that is not solved at a pose
-/// is a reject unless stated otherwise. Intervals are two-sided at conf_level (Clopper and Pearson). NaN for a response
-/// without a limit.
+/// The yield: the share of machines that are within every limit at every pose. Unless stated otherwise, a machine that
+/// is not solved at some pose is a reject. Intervals are two-sided at conf_level (Clopper and Pearson). NaN for a
+/// response without a limit. Lists of `ci_low` and `ci_high` are the ends of the interval of the value before them.
 struct YieldResult {
-  double conf_level = 0.95;                        ///< of all intervals
-  double value = 0.0;                              ///< the yield
-  double ci_low = 0.0;                             ///< lower end
-  double ci_high = 0.0;                            ///< upper end
-  std::uint64_t rejects = 0;                       ///< machines that are not within every limit at every pose
-  std::uint64_t machines = 0;                      ///< machines that were tried
-  std::uint64_t unsolved = 0;                      ///< rejects that were not solved at a pose
-  double unsolved_pass = 0.0;                      ///< the yield if samples that are not solved were within every limit
-  double unsolved_pass_ci_low = 0.0;               ///< lower end
-  double unsolved_pass_ci_high = 0.0;              ///< upper end
-  std::uint64_t unsolved_pass_rejects = 0;         ///< rejects in that case
-  Array<double, axis::Response> by_response = {};  ///< share of the machines that are within this limit at every pose
-  Array<double, axis::Response> by_response_ci_low = {};   ///< lower ends
-  Array<double, axis::Response> by_response_ci_high = {};  ///< upper ends
-  /// Share of the machines that are not within this limit at the pose.
+  double conf_level = 0.95;            ///< confidence level of all intervals
+  double value = 0.0;                  ///< the yield, an estimate
+  double ci_low = 0.0;                 ///< lower end of the interval of the yield
+  double ci_high = 0.0;                ///< upper end of the interval of the yield
+  std::uint64_t rejects = 0;           ///< number of machines that are not within every limit at every pose
+  std::uint64_t machines = 0;          ///< number of machines that were tried
+  std::uint64_t unsolved = 0;          ///< number of rejects that were not solved at some pose
+  double unsolved_pass = 0.0;          ///< yield if samples that are not solved count as within every limit
+  double unsolved_pass_ci_low = 0.0;   ///< lower end of the interval of unsolved_pass
+  double unsolved_pass_ci_high = 0.0;  ///< upper end of the interval of unsolved_pass
+  /// Number of rejects if samples that are not solved count as within every limit.
+  std::uint64_t unsolved_pass_rejects = 0;
+  Array<double, axis::Response> by_response = {};  ///< share of machines that are within this limit at every pose
+  Array<double, axis::Response> by_response_ci_low = {};   ///< lower ends of the intervals of by_response
+  Array<double, axis::Response> by_response_ci_high = {};  ///< upper ends of the intervals of by_response
+  /// Share of machines that are not within this limit at the pose.
   Array<double, axis::Response, axis::Pose> worst_pose_share = {};
-  Array<double, axis::Factor> gradient = {};  ///< derivative of the yield by the sigma of each error; NaN if not known
-  Array<double, axis::Factor> gradient_ci_low = {};   ///< lower ends, from the central limit theorem
-  Array<double, axis::Factor> gradient_ci_high = {};  ///< upper ends
-  /// Change of the yield if the sigma of an error grows by a tenth; NaN if not known. This and the following lists are
-  /// empty in files of version 0.2.
+  Array<double, axis::Factor> gradient = {};  ///< derivative of the yield with respect to the sigma of each error; NaN
+                                              ///< if not known
+  /// Lower ends of the intervals of gradient, by the central limit theorem.
+  Array<double, axis::Factor> gradient_ci_low = {};
+  Array<double, axis::Factor> gradient_ci_high = {};  ///< upper ends of the intervals of gradient
+  /// Change of the yield if the sigma of an error is a tenth larger; NaN if not known. Files of version 0.2 have
+  /// neither this list nor the lists below.
   Array<double, axis::Factor> change = {};
-  Array<double, axis::Factor> change_ci_low = {};   ///< lower ends
-  Array<double, axis::Factor> change_ci_high = {};  ///< upper ends
+  Array<double, axis::Factor> change_ci_low = {};   ///< lower ends of the intervals of change
+  Array<double, axis::Factor> change_ci_high = {};  ///< upper ends of the intervals of change
   /// Share of each error in the mean square of each limited response; NaN if not known.
   Array<double, axis::Response, axis::Factor> mean_square_share = {};
-  Array<double, axis::Response, axis::Factor> mean_square_share_ci_low = {};   ///< lower ends
-  Array<double, axis::Response, axis::Factor> mean_square_share_ci_high = {};  ///< upper ends
-  Array<double, axis::Response> linear_share =
-      {};  ///< share of the mean square of the scatter that is linear in the errors
+  /// Lower ends of the intervals of mean_square_share.
+  Array<double, axis::Response, axis::Factor> mean_square_share_ci_low = {};
+  /// Upper ends of the intervals of mean_square_share.
+  Array<double, axis::Response, axis::Factor> mean_square_share_ci_high = {};
+  Array<double, axis::Response> linear_share = {};  ///< share of the scatter's mean square that is linear in the errors
 
-  /// Whether the file has these lists.
+  /// Whether the result has the lists of changes, and those of shares.
   /// @{
   bool has_change() const { return !change.empty() && !change_ci_low.empty() && !change_ci_high.empty(); }
   bool has_shares() const {
@@ -103,110 +110,137 @@ struct YieldResult {
            !linear_share.empty();
   }
   /// @}
-  std::optional<PartsYield> parts = {};  ///< set if errors are measured
+  std::optional<PartsYield> parts = {};  ///< interval with the uncertainty from few parts; set if errors are measured
 };
 
-/// The part of each response's scatter that each error makes alone.
+/// The effect of each error alone on each response.
 struct MainEffects {
-  using Indices = Array<double, axis::Response, axis::Factor>;                  ///< a number for each error
-  using Curves = Array<double, axis::Response, axis::Factor, axis::EffectBin>;  ///< a curve for each error
+  /// A number for each response and error.
+  using Indices = Array<double, axis::Response, axis::Factor>;
+  using Curves = Array<double, axis::Response, axis::Factor, axis::EffectBin>;  ///< a curve for each response and error
 
-  Indices s1;          ///< first-order index
-  Indices s1_ci_low;   ///< lower ends
-  Indices s1_ci_high;  ///< upper ends
-  Curves mean;         ///< mean of the response while the error is in the bin
-  Curves ci_low;       ///< lower ends
-  Curves ci_high;      ///< upper ends
+  Indices s1;          ///< first-order index: share of the variance that the error makes alone
+  Indices s1_ci_low;   ///< lower ends of the intervals of s1
+  Indices s1_ci_high;  ///< upper ends of the intervals of s1
+  Curves mean;         ///< mean of the response if the error is in the bin
+  Curves ci_low;       ///< lower ends of the intervals of mean
+  Curves ci_high;      ///< upper ends of the intervals of mean
+};
+
+/// Yields of the same machines without calibration and with the best correction. YieldResult has the yield with
+/// calibration.
+struct CalibrationYields {
+  double uncalibrated = 0.0;          ///< yield without calibration
+  double uncalibrated_ci_low = 0.0;   ///< lower end of the interval of uncalibrated
+  double uncalibrated_ci_high = 0.0;  ///< upper end of the interval of uncalibrated
+  /// Yield after the best correction by the actuators at each pose; NaN if the model cannot compute it.
+  double best = 0.0;
+  double best_ci_low = 0.0;          ///< lower end of the interval of best
+  double best_ci_high = 0.0;         ///< upper end of the interval of best
+  std::uint64_t not_fitted = 0;      ///< number of rejects that were not calibrated: they were not solved, or their fit
+                                     ///< did not converge
+  std::uint64_t fitted = 0;          ///< number of fitted errors
+  std::uint64_t measured = 0;        ///< number of measured values of each machine
+  std::uint64_t measured_poses = 0;  ///< number of poses at which each machine is measured
 };
 
 /// The additional result of a Monte Carlo study with draws per machine.
 struct MachineResult {
-  double conf_level = 0.95;          ///< of all intervals
-  MachineValues largest;             ///< the largest magnitude of each machine over the poses
-  MachineValues rms;                 ///< the root mean square of each machine over the poses
-  std::optional<YieldResult> yield;  ///< set if the study states limits
-  MainEffects effects_on_largest;    ///< main effects on the machines' largest magnitudes
+  double conf_level = 0.95;                      ///< confidence level of all intervals
+  MachineValues largest;                         ///< largest magnitude of each machine over the poses
+  MachineValues rms;                             ///< root mean square of each machine over the poses
+  std::optional<YieldResult> yield;              ///< yield; set if the study states limits
+  std::optional<CalibrationYields> calibration;  ///< yields without calibration; set if machines are calibrated and the
+                                                 ///< study states limits
+  MainEffects effects_on_largest;                ///< main effects on the largest magnitudes of the machines
 };
 
 /// First-order indices and main effects, which every Monte Carlo study computes.
 struct EffectResult {
-  double conf_level = 0.95;                                ///< of all intervals
-  std::vector<std::uint64_t> s1_poses;                     ///< the poses over which effects.s1 sums
-  Array<double, axis::Factor, axis::EffectBin> bin_error;  ///< [P x bins] mean of the error in its bin
-  /// Curves are of the machines' means over all poses, or with draws per pose of all samples at s1_poses.
+  double conf_level = 0.95;                                ///< confidence level of all intervals
+  std::vector<std::uint64_t> s1_poses;                     ///< poses over which effects.s1 is summed
+  Array<double, axis::Factor, axis::EffectBin> bin_error;  ///< [errors x bins] mean of the error in each bin
+  /// Indices and curves. With draws per machine, curves are for the machines' means over all poses; with draws per
+  /// pose, for all samples at s1_poses.
   MainEffects effects;
 };
 
-/// The result of a Monte Carlo study, in which all errors vary together; SI; NaN where undefined. The overall numbers
-/// are over the samples of all poses together.
+/// The result of a Monte Carlo study, in which all errors vary together; SI; NaN where undefined. Numbers named
+/// `overall` are over the samples of all poses together. `ci_low` and `ci_high` are the ends of confidence intervals.
 struct MonteCarloResult {
   using AtPoses = Array<double, axis::Response, axis::Pose>;                           ///< a number at each pose
   using QuantilesAtPoses = Array<double, axis::Response, axis::Pose, axis::Quantile>;  ///< all quantiles at each pose
   using Overall = MachineValues::Numbers;                                              ///< a number for each response
   using OverallQuantiles = MachineValues::Quantiles;  ///< all quantiles of each response
 
-  double conf_level = 0.95;              ///< of all intervals
-  double quantile_relative_error = 0.0;  ///< bound on |quantile - order statistic| / |order statistic| of any quantile
-  std::vector<double> levels;            ///< share of the samples below each quantile
+  double conf_level = 0.95;              ///< confidence level of all intervals
+  double quantile_relative_error = 0.0;  ///< bound on |quantile - order statistic| / |order statistic|, for all
+                                         ///< quantiles
+  std::vector<double> levels;            ///< levels of the quantiles
 
-  AtPoses mean;                                            ///< over the samples
-  AtPoses mean_ci_low;                                     ///< Student's interval
-  AtPoses mean_ci_high;                                    ///< upper end
+  AtPoses mean;                                            ///< mean of the samples
+  AtPoses mean_ci_low;                                     ///< lower end of Student's interval of the mean
+  AtPoses mean_ci_high;                                    ///< upper end of that interval
   AtPoses std;                                             ///< sample standard deviation
-  AtPoses min;                                             ///< least sample
+  AtPoses min;                                             ///< smallest sample
   AtPoses max;                                             ///< largest sample
-  Array<std::uint64_t, axis::Response, axis::Pose> count;  ///< number of samples
-  QuantilesAtPoses quantiles;                              ///< order statistics
+  Array<std::uint64_t, axis::Response, axis::Pose> count;  ///< number of samples that count
+  QuantilesAtPoses quantiles;                              ///< quantiles, as order statistics
   AtPoses rms;                                             ///< root mean square
-  /// Interval of the distribution's quantile (stats/buckets.h). An end is infinite if the samples are too few for it.
+  /// Lower ends of the quantiles' intervals (stats/buckets.h). An end is infinite if there are too few samples for it.
   QuantilesAtPoses quantiles_ci_low;
-  QuantilesAtPoses quantiles_ci_high;  ///< upper ends
-  /// Bound on |quantile - order statistic| of each quantile at the pose; empty in results of version 0.2.
+  QuantilesAtPoses quantiles_ci_high;  ///< upper ends of the quantiles' intervals
+  /// Bound on |quantile - order statistic| for all quantiles at the pose; empty in results of version 0.2.
   AtPoses quantile_error;
-  /// The magnitude that a share of the draws stays within, if limits are judged by that share, else empty. Draws that
-  /// do not count exceed every magnitude; infinite if they are too many. For a response whose limit has other ends: the
-  /// value of the draw that is worst of that share (value_at_rank); NaN if too many draws do not count.
+  /// The magnitude within which the asked share of the draws stays, if limits are judged by share; otherwise empty. A
+  /// draw that does not count exceeds every magnitude, so the value is infinite if too many do not count. For a limit
+  /// that is not on magnitudes: the worst value within that share (value_at_rank), or NaN if too many draws do not
+  /// count.
   AtPoses share_magnitude;
 
-  Overall overall_mean;                                ///< the same as mean, for the samples of all poses
-  Overall overall_std;                                 ///< the same as std
-  Overall overall_min;                                 ///< the same as min
-  Overall overall_max;                                 ///< the same as max
-  Array<std::uint64_t, axis::Response> overall_count;  ///< the same as count
-  OverallQuantiles overall_quantiles;                  ///< the same as quantiles
-  Overall overall_rms;                                 ///< the same as rms
-  OverallQuantiles overall_quantiles_ci_low;           ///< the same as quantiles_ci_low
-  OverallQuantiles overall_quantiles_ci_high;          ///< the same as quantiles_ci_high
-  Overall overall_quantile_error;                      ///< the same as quantile_error
-  /// Edges of a histogram of the samples of all poses (stats/buckets.h).
+  Overall overall_mean;                                ///< mean over the samples of all poses
+  Overall overall_std;                                 ///< sample standard deviation over all poses
+  Overall overall_min;                                 ///< smallest sample of all poses
+  Overall overall_max;                                 ///< largest sample of all poses
+  Array<std::uint64_t, axis::Response> overall_count;  ///< number of samples that count, at all poses together
+  OverallQuantiles overall_quantiles;                  ///< quantiles over all poses
+  Overall overall_rms;                                 ///< root mean square over all poses
+  OverallQuantiles overall_quantiles_ci_low;           ///< lower ends of the intervals of overall quantiles
+  OverallQuantiles overall_quantiles_ci_high;          ///< upper ends of the intervals of overall quantiles
+  Overall overall_quantile_error;  ///< bound on |quantile - order statistic| for all quantiles over all poses; empty in
+                                   ///< results of version 0.2
+  /// Edges of the bins in a histogram of the samples of all poses (stats/buckets.h).
   Array<double, axis::Response, axis::HistogramEdge> histogram_edges;
-  Array<std::uint64_t, axis::Response, axis::HistogramBin> histogram_counts;  ///< samples in each bin
-  std::vector<SolveCounts> solves;                                            ///< [M]
-  std::vector<Failure> failures;  ///< the first, in the order of poses and samples
-  /// Set if the study has adaptive samples.
+  Array<std::uint64_t, axis::Response, axis::HistogramBin> histogram_counts;  ///< number of samples in each bin
+  std::vector<SolveCounts> solves;  ///< [poses] how the solves at each pose ended
+  std::vector<Failure> failures;    ///< the first failed samples, ordered by pose and sample
+  /// The course of adaptive samples. Set if the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
-  /// Set if the study states limits.
+  /// The verdicts on limits. Set if the study states limits.
   std::optional<LimitVerdicts> verdicts;
 
-  Array<std::uint8_t, axis::Response> varies;  ///< whether the response is more than rounding, 0 or 1; empty if all are
-  EffectResult effects;                        ///< first-order indices
-  /// Set if errors are drawn per machine.
+  Array<std::uint8_t, axis::Response> varies;  ///< 1 if the response varies by more than rounding, otherwise 0; empty
+                                               ///< if all vary
+  EffectResult effects;                        ///< first-order indices and main effects
+  /// Results for machines. Set if errors are drawn per machine.
   std::optional<MachineResult> machines;
+  /// 1 if the machine is rejected, otherwise 0, for the first MachineTable::kept() machines. Not part of a result file.
+  std::vector<std::uint8_t> rejected;
 
   std::size_t responses() const { return overall_mean.size(); }  ///< The number of responses.
   std::size_t poses() const { return solves.size(); }            ///< The number of poses.
-  SolveCounts total() const { return total_of(solves); }         ///< The solves at all poses.
+  SolveCounts total() const { return total_of(solves); }         ///< How the solves at all poses ended.
 };
 
-/// Bytes of the numbers of a result with axes of these lengths. machines: whether errors are drawn per machine.
+/// Bytes of the numbers of a result whose axes have these lengths. machines: whether errors are drawn per machine.
 std::size_t monte_carlo_bytes(const AxisLengths& lengths, bool machines);
 
-/// The Monte Carlo result in a stored result; StoredResult has its failures, convergence and verdicts.
-/// Precondition: the result is of that kind.
+/// The Monte Carlo result in a stored result; StoredResult itself has its failures, convergence and verdicts.
+/// Precondition: the result is of kind `monte-carlo`.
 inline const MonteCarloResult& monte_carlo_of(const StoredResult& result) { return found_of<MonteCarloResult>(result); }
 
-/// For each response a table of mean, spread, extremes and quantiles over the samples of all poses, then one of the
-/// mean of the poses' means, and the largest mean and highest quantile with their poses.
+/// Two tables with a row for each response. The first has mean, spread, extremes and quantiles over the samples of all
+/// poses. The second has the mean of the poses' means, and the largest mean and highest quantile with their poses.
 std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions& options = {});
 
 }  // namespace poesy

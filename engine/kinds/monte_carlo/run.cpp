@@ -28,7 +28,7 @@ std::vector<Estimate> overall_means(const MonteCarloResult& found) {
   return means;
 }
 
-/// The rule of adaptive samples, which stops by the means of the headline.
+/// The rule that ends adaptive sampling. It judges the intervals of the means of the responses that a summary shows.
 Rounds::Rule rule_of(const Model& model, const Analysis& analysis) {
   const ModelDescription& description = model.description();
   const std::size_t responses = description.responses.size();
@@ -36,7 +36,7 @@ Rounds::Rule rule_of(const Model& model, const Analysis& analysis) {
           analysis.conf_level, std::vector<double>(responses, 0.0)};
 }
 
-/// The job of PoseFold: draws of all errors together, pose by pose.
+/// The job of a PoseFold (run/pose_fold.h): solves draws of all errors together, pose by pose.
 struct PoseJob {
   const Plan& plan;
   const Model& model;
@@ -60,12 +60,15 @@ struct PoseJob {
   }
 };
 
-/// The job of UnitFold: the machines of a study that draws errors per machine, unit by unit at all poses.
+/// The job of a UnitFold (run/unit_fold.h): solves units of machines at all poses, for a study that draws errors per
+/// machine.
 struct MachineJob {
   const Plan& plan;
   const Model& model;
   const Analysis& analysis;
-  MachineTable table{plan, model, analysis};
+  const MachineCalibration* calibration;
+  bool keep_rejected;
+  MachineTable table{plan, model, analysis, calibration, keep_rejected};
 
   static constexpr std::string_view kName = "machines";
   std::vector<std::uint64_t> sizes() const { return {table.responses(), plan.poses().size(), table.errors()}; }
@@ -80,24 +83,27 @@ struct MachineJob {
   MachineCollector sums() const { return {table, analysis}; }
   Rounds rounds() const { return {plan, rule_of(model, analysis)}; }
   std::size_t samples() const { return plan.samples(); }
-  std::size_t units_for(std::size_t samples) const { return MachineTable::units_for(samples, plan.poses().size()); }
+  std::size_t units_for(std::size_t samples) const { return table.units_for(samples); }
   bool is_whole(std::size_t n) const { return table.is_whole(n); }
   static std::vector<Estimate> estimates(const MachineCollector& sums, const MachineUnit*) {
     return sums.overall_means();
   }
 };
 
-/// A study with draws per machine can be divided between its units, any other between its poses.
+/// The largest number of shards. A study with draws per machine is divided by units of machines, any other by poses.
 std::size_t most_shards(const Study& study, std::size_t poses) {
   if (study.analysis.draws == Draws::per_pose) return shards_by_pose(study, poses);
-  return MachineTable::units_for(study.analysis.samples, poses);
+  return MachineTable::units_for(study.analysis.samples, poses, MachineTable::unit_size(study.analysis));
 }
 
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const Plan plan(run.study, run.poses);
-  auto result = run_monte_carlo(plan, run.model, run.study.analysis, run.options);
+  const auto calibration = machine_calibration(run.study, run.model, run.poses);
+  auto result =
+      run_monte_carlo(plan, run.model, run.study.analysis, run.options, calibration ? &*calibration : nullptr);
   if (!result || !run.makes_result()) return std::nullopt;
   StudyResult found{{}, result->verdicts, {}};
+  if (run.options.keep_rejected) found.rejected = std::move(result->rejected);
   found.found = *std::move(result);
   return found;
 }
@@ -105,7 +111,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
 }  // namespace
 
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
-                                                const RunOptions& options) {
+                                                const RunOptions& options, const MachineCalibration* calibration) {
   const auto run = [&](auto work, const auto& result_of) -> std::optional<MonteCarloResult> {
     if (!fold(work, options) || options.shard) return std::nullopt;
     std::optional<ConvergenceResult> convergence = work.convergence();
@@ -115,7 +121,7 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
     return found;
   };
   if (plan.draws() == Draws::per_machine) {
-    const MachineJob job{plan, model, analysis};
+    const MachineJob job{plan, model, analysis, calibration, options.keep_rejected};
     return run(UnitFold(job, options), [](auto& work) { return std::move(work).sums().result(); });
   }
   const PoseJob job{plan, model, analysis, options.keep_checkpoint || plan.adaptive().has_value()};

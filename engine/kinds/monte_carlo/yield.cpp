@@ -15,14 +15,14 @@ namespace {
 
 double share(std::uint64_t part, std::uint64_t all) { return static_cast<double>(part) / static_cast<double>(all); }
 
-/// Copies estimates into lists of values and of the ends of their intervals.
+/// Copies the estimates of all errors into lists of values and of the ends of their intervals.
 void set_all(const std::vector<Estimate>& estimates, Array<double, axis::Factor>& value,
              Array<double, axis::Factor>& low, Array<double, axis::Factor>& high) {
   make_room({estimates.size()}, value, low, high);
   for (std::size_t p = 0; p < estimates.size(); ++p) set_estimate(estimates[p], value, low, high, p);
 }
 
-/// Values with room for this many responses.
+/// Statistics with room for this many responses and quantiles.
 MachineValues values_of(std::size_t responses, std::size_t levels) {
   MachineValues values;
   make_room({responses}, values.mean, values.mean_ci_low, values.mean_ci_high, values.std, values.min, values.max,
@@ -44,13 +44,13 @@ void set_quantiles(std::span<const Bucket> buckets, std::span<const double> leve
   values.quantile_error(response) = found.error;
 }
 
-/// Sets curves to NaN at these positions: an error on a response, or all errors on it.
+/// Sets curves to NaN. at: a response and an error, or a response alone for all its errors.
 template <class... Positions>
 void leave_out_curve(MainEffects& effects, Positions... at) {
   for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) std::ranges::fill(list->row(at...), kNaN);
 }
 
-/// Sets main effects to NaN at these positions.
+/// Sets indices and curves to NaN. at: as for leave_out_curve().
 template <class... Positions>
 void leave_out(MainEffects& effects, Positions... at) {
   for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) std::ranges::fill(list->row(at...), kNaN);
@@ -103,13 +103,33 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
     const std::size_t r = limit.response;
     set_estimate(good(counts.by_limit(r).strict), found.by_response, found.by_response_ci_low,
                  found.by_response_ci_high, r);
-    if (limit.allowed.is_spread()) continue;  // no pose alone decides
+    if (limit.allowed.is_spread()) continue;  // a spread is not decided at a single pose
     std::ranges::transform(counts.at_pose.row(r), found.worst_pose_share.row(r).begin(),
                            [&](const Rejects& rejects) { return share(rejects.strict, n); });
   }
   set_all(scores.gradient(conf_level), found.gradient, found.gradient_ci_low, found.gradient_ci_high);
   set_all(scores.change(conf_level), found.change, found.change_ci_low, found.change_ci_high);
   return found;
+}
+
+CalibrationYields calibration_yields(const CalibrationCounts& counts, const MachineCalibration& calibration,
+                                     const YieldResult& found) {
+  const auto good = [&](std::uint64_t rejects) {
+    return proportion(found.machines - rejects, found.machines, found.conf_level);
+  };
+  const Estimate without = good(counts.uncalibrated);
+  const bool knows_best = calibration.model().calibrated_evaluator(calibration.study().solver) != nullptr;
+  const Estimate best = knows_best ? good(counts.best) : Estimate{kNaN, {kNaN, kNaN}};
+  return {.uncalibrated = without.value,
+          .uncalibrated_ci_low = without.interval.low,
+          .uncalibrated_ci_high = without.interval.high,
+          .best = best.value,
+          .best_ci_low = best.interval.low,
+          .best_ci_high = best.interval.high,
+          .not_fitted = counts.not_fitted,
+          .fitted = calibration.fitted(),
+          .measured = calibration.values(),
+          .measured_poses = calibration.measured_poses()};
 }
 
 void set_pose_gradient(const Plan& plan, const ScoreSums& scores, YieldResult& found) {
@@ -148,9 +168,9 @@ MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence de
   return effects;
 }
 
-void leave_out_correlated(const Plan& plan, MainEffects& effects) {
+void leave_out_dependent(const Plan& plan, MainEffects& effects) {
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {
-    if (!plan.is_correlated(p)) continue;
+    if (plan.is_drawn_alone(p)) continue;
     for (std::size_t r = 0; r < effects.s1.length<axis::Response>(); ++r) leave_out(effects, r, p);
   }
 }
@@ -234,7 +254,7 @@ LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked
     verdict.within = n - counts.by_limit(limit.response).strict;
     const std::uint64_t rank = asked == 0.0 ? n : quantile_rank(asked, n);
     const QuantileSketch& values = judged[limit.response];
-    const bool is_sorted = limit.allowed.is_plain() || limit.allowed.is_spread();  // none is negative
+    const bool is_sorted = limit.allowed.is_plain() || limit.allowed.is_spread();  // such values are not negative
     if (asked > 0.0) {
       verdict.value = is_sorted && rank <= values.count() ? values.order_statistic(rank)
                                                           : value_at_rank(values, limit.allowed, rank);

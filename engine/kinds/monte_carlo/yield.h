@@ -16,7 +16,7 @@
 /// Computes the numbers of a result from counts and sums over machines.
 namespace poesy {
 
-/// Sets an estimate in lists of values and of the ends of their intervals, at these positions.
+/// Sets an estimate at these positions in a list of values and in the lists of the ends of their intervals.
 template <class Values, class... Positions>
 void set_estimate(const Estimate& estimate, Values& value, Values& low, Values& high, Positions... at) {
   value(at...) = estimate.value;
@@ -24,50 +24,60 @@ void set_estimate(const Estimate& estimate, Values& value, Values& low, Values& 
   high(at...) = estimate.interval.high;
 }
 
-/// One number of each machine. moments, sketches: [R] of the machines that are solved at each pose.
+/// The statistics of a number of each machine. moments, sketches: [responses] of that number over the machines that are
+/// solved at every pose.
 MachineValues machine_values(std::span<const Moments> moments, std::span<const QuantileSketch> sketches,
                              const Analysis& analysis);
 
-/// The yield and its gradient. limits: those of the study.
+/// The yield and its gradient. counts, scores: over all machines; limits: those of the study.
 YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::span<const ResponseLimit> limits,
                      double conf_level);
 
-/// Sets the gradient by errors that machines draw anew at each pose (MachineSums::pose_scores).
+/// The yields of the same machines without calibration and with the best correction. found: the yield with calibration.
+CalibrationYields calibration_yields(const CalibrationCounts& counts, const MachineCalibration& calibration,
+                                     const YieldResult& found);
+
+/// Sets the gradient with respect to errors that machines draw anew at each pose (MachineSums::pose_scores).
 void set_pose_gradient(const Plan& plan, const ScoreSums& scores, YieldResult& found);
 
-/// The interval that includes the uncertainty from few parts. parts: of the same machines as `found`.
+/// The interval of the yield with the uncertainty from few parts. parts: sums over the same machines as `found`.
 PartsYield parts_yield(const PartSums& parts, const YieldResult& found);
 
-/// First-order indices, summed over the poses of `at_poses`, and curves from `curve`. errors: [P] all errors.
+/// First-order indices, summed over the poses of `at_poses`, and main-effect curves from `curve`. errors: [errors]
+/// distribution of each error in its bins.
 MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence dependence, const MainEffectSums& curve,
                          std::span<const BinSpread> errors, std::size_t responses, double conf_level);
 
-/// Sets indices and curves of correlated errors to NaN, because other errors vary with them, and the uniform from which
-/// such an error is drawn is not its own.
-void leave_out_correlated(const Plan& plan, MainEffects& effects);
+/// Sets indices and curves to NaN for errors that are correlated, or drawn together with others of their feature. Other
+/// errors vary with such an error, and it is not computed from a single uniform of its own.
+void leave_out_dependent(const Plan& plan, MainEffects& effects);
 
-/// Sets indices and curves of errors that machines draw anew at each pose to NaN, because a machine has many of them.
+/// Sets indices and curves to NaN for errors that machines draw anew at each pose, because a machine has many values of
+/// them.
 void leave_out_per_pose(const Plan& plan, MainEffects& effects);
-/// The same for the curves alone: the indices are those at single poses.
+/// Sets the curves, but not the indices, to NaN for errors that machines draw anew at each pose. The indices of these
+/// errors are valid if they were computed at single poses.
 void leave_out_curves_per_pose(const Plan& plan, MainEffects& effects);
 
-/// Sets indices and curves to NaN for responses that do not vary (stats/indices.h), at the poses over which indices are
-/// summed or from machine to machine. Records which responses do not vary at any pose, if there are some. rounding: [R]
-/// see joint_rounding() (run/response_rounding.h).
+/// Sets indices and curves to NaN for responses that do not vary (stats/indices.h) at the poses over which indices are
+/// summed, or between machines. If some responses do not vary at any pose, records which. rounding: [responses] see
+/// joint_rounding() (run/response_rounding.h).
 void leave_out_constant(std::span<const double> rounding, MonteCarloResult& found);
 
 /// The distribution of each error of a study in its bins.
 std::vector<BinSpread> bin_spreads(const Plan& plan);
 
-/// The result at these poses, without the effects.
+/// A result of main effects at these poses, with the bins but without indices and curves.
 EffectResult effect_result(std::span<const PoseIndex> poses, std::span<const BinSpread> errors, double conf_level);
 
-/// Judges the yield against the wanted one (0: none): kept if the one-sided lower limit at the result's level is at
-/// least that, not kept if the upper limit is below it. solves: those of the machines at all poses.
+/// Judges the yield against the wanted yield (0: none). It is kept if the one-sided lower confidence bound is at least
+/// the wanted yield, and not kept if the one-sided upper bound is below it. solves: how the machines' solves at all
+/// poses ended.
 YieldVerdict judge_yield(const YieldResult& found, const SolveCounts& solves, double asked);
 
-/// Judges the limits of a study with draws per machine, together and each alone. judged: [R] what machines are judged
-/// by (ValueLimit::deciding), of those that are solved at each pose. counts: see yield_of(); solves: see judge_yield().
+/// Judges the limits of a study with draws per machine, all together and each alone. judged: [responses] values by
+/// which machines are judged (ValueLimit::deciding), of machines that are solved at every pose. counts: see yield_of();
+/// solves: see judge_yield().
 LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked, const YieldResult& found,
                              const SolveCounts& solves, const MachineCounts& counts,
                              std::span<const QuantileSketch> judged);

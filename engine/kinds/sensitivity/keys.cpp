@@ -5,14 +5,15 @@
 
 #include "engine/base/text.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/study/calibration_keys.h"
 #include "engine/study/study.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
 
-constexpr std::array<std::string_view, 6> kSensitivityKeys{"factors",    "samples",   "conf_level",
-                                                           "background", "linearity", "reference"};
+constexpr std::array<std::string_view, 7> kSensitivityKeys{"factors",     "samples",   "conf_level", "background",
+                                                           "calibration", "linearity", "reference"};
 
 const InnerRows<ToleranceReference>& reference_keys() {
   static const InnerRows<ToleranceReference> keys{
@@ -66,7 +67,7 @@ std::string linearity_line(const Study& study) {
   return study.mechanism.compared ? "linearity = " + linearity().text(study) + "\n" : "";
 }
 
-/// The line of `linearity`, for models with two fidelities to compare.
+/// The template's line of `linearity`; empty unless the model has two fidelities to compare.
 std::string shown_linearity(const TemplateLines& lines, const Study& study) {
   return study.model().fidelities.size() == 2 ? lines.usual("analysis", "linearity", "# ") : "";
 }
@@ -89,8 +90,15 @@ std::vector<StudyRow> sensitivity_rows() {
 }
 
 void complete_sensitivity(Study& study, const Reading& reading) {
-  if (reading.use != StudyUse::run || study.mechanism.compared) return;
-  reading.root.section("analysis").refuse("linearity", "a study without fidelity = \"both\"");
+  if (reading.use != StudyUse::run) return;
+  check_sizes_of_features(study, reading);
+  const StudySection section = reading.root.section("analysis");
+  check_simulated_machines(study, section);
+  if (!study.mechanism.compared) return section.refuse("linearity", "a study without fidelity = \"both\"");
+  if (const auto calibration = section.find("calibration")) {
+    calibration->fail("is set, but mechanism.fidelity is \"both\", and a calibration solves at one fidelity",
+                      "choose one fidelity, or remove the calibration");
+  }
 }
 
 void check_reference(const StudySection& analysis, const Study& study, const Model& model) {

@@ -24,7 +24,7 @@
 namespace poesy {
 namespace {
 
-/// An interval is called wide if it extends by more than this share of its index.
+/// An interval is called wide if an end is farther from the index than this share of it.
 constexpr double kWideInterval = 0.10;
 
 constexpr std::string_view kCorrected =
@@ -57,7 +57,7 @@ void add_which_errors_matter(const StoredResult& result, std::span<const Table> 
   section.table(tables, "ranked");
 }
 
-/// The rows of the cells in this order, one after the other.
+/// The numbers at all poses of the errors `rows`, error by error in this order.
 std::vector<double> in_order(const ErrorCells& cells, std::span<const std::size_t> rows) {
   std::vector<double> list;
   list.reserve(cells.size());
@@ -65,7 +65,8 @@ std::vector<double> in_order(const ErrorCells& cells, std::span<const std::size_
   return list;
 }
 
-/// Effects at each pose and samples not converged, as layers of rows x poses, in this order of the errors.
+/// Layers of a heat map with a row for each error, in this order, and a column for each pose: effects, and samples that
+/// did not converge.
 std::vector<HeatLayer> layers(const StoredResult& result, std::span<const std::size_t> rows,
                               const PoseFigures& figures) {
   std::vector<HeatLayer> list;
@@ -79,7 +80,7 @@ std::vector<HeatLayer> layers(const StoredResult& result, std::span<const std::s
   return list;
 }
 
-/// Curves of the local effects over the time of a trajectory, those of the most important errors first.
+/// Curves of the local effects over the time of a trajectory; those of the most important errors come first.
 Lines along_trajectory(const StoredResult& result, const PoseFigures& figures) {
   Lines lines{.x = figures.axis(), .panels = {}};
   for (const std::size_t r : figures.responses()) {
@@ -95,7 +96,7 @@ Lines along_trajectory(const StoredResult& result, const PoseFigures& figures) {
   return lines;
 }
 
-/// The coordinate with which the effects of all errors grow or fall; empty if none is clear.
+/// A sentence on the coordinate with which the effects of all errors grow or fall; empty if there is no clear one.
 std::string trend_text(const StoredResult& result) {
   const std::size_t r = response_named(result, default_ranking(result));
   const auto order = explaining_order(result, root_sum_squares(local_effects(result, r)));
@@ -135,12 +136,12 @@ void add_where(const StoredResult& result, Page& page) {
   figures.add_workspace(section, std::move(fields));
 }
 
-/// The indices with fewer samples.
+/// The course of the indices over the number of samples.
 EstimateCourse course_of(const StoredResult& result) {
   return result.convergence ? with_ends(result.convergence->course) : sensitivity_of(result).history.value();
 }
 
-/// Effects on each response in the order of importance.
+/// Curves of the effects on each response over the number of samples, in the order of importance.
 Lines effects_over_samples(const StoredResult& result, const EstimateCourse& course, ArrayPool& pool) {
   Lines lines = over_samples(course, pool);
   for (const std::size_t r : headline_order(result)) {
@@ -208,7 +209,7 @@ void warn_of_small_errors(const StoredResult& result, std::vector<std::string>& 
                   counted(small.size(), "error is", "errors are"), some_names(small)));
 }
 
-/// Warns only of errors that add a noticeable part to the mean square.
+/// Warns that indices change with size, but only for errors that make a noticeable part of the mean square.
 void warn_of_sizes(const StoredResult& result, std::vector<std::string>& list) {
   const std::size_t response = response_named(result, default_ranking(result));
   const MeanSquare square =
@@ -247,6 +248,17 @@ void warn_of_wide_intervals(const StoredResult& result, std::vector<std::string>
                   "widest is that of {} on {}, {}. More samples make them narrower.",
                   wide, all, 100.0 * found.conf_level, result.factors[factor].name, result.responses[response].name,
                   percent_text(widest)));
+}
+
+std::vector<double> rms_at_poses(const StoredResult& result, std::size_t response) {
+  const SensitivityResult& found = sensitivity_of(result);
+  ErrorCells effects({found.factors(), found.poses()});
+  for (std::size_t p = 0; p < found.factors(); ++p) {
+    for (std::size_t m = 0; m < found.poses(); ++m) {
+      effects(p, m) = found.local(response, p, m) * result.factor_sigma[p];
+    }
+  }
+  return root_sum_squares(effects);
 }
 
 /// The share of each error in the mean square, and the effect of all errors at each pose.
@@ -298,6 +310,7 @@ constinit const ReportKind kSensitivityReport{.tally = sensitivity_tally,
                                               .shown_cells = sensitivity_cells,
                                               .page = add_page,
                                               .error_shares = error_shares,
+                                              .rms_at_poses = rms_at_poses,
                                               .comparable = comparable_sensitivity,
                                               .compare = compare_sensitivity};
 

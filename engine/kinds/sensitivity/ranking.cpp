@@ -20,7 +20,7 @@
 namespace poesy {
 namespace {
 
-/// Positions of the errors in this order.
+/// The positions of the errors in this order.
 std::vector<std::size_t> ordered(const StoredResult& result, std::size_t response, RowOrder order) {
   const SensitivityResult& found = sensitivity_of(result);
   const auto key = [&](std::size_t p) {
@@ -39,11 +39,12 @@ std::vector<std::size_t> ordered(const StoredResult& result, std::size_t respons
   return rows;
 }
 
-/// The effects of one result's errors on the response that ranks, SI, for the errors that both results have.
+/// The effects of one result's errors on the response by which errors are ranked, SI. Only errors that both results
+/// have are listed.
 struct Ranking {
-  std::vector<double> effects;  ///< 0: no effect; NaN: not known
-  std::string metric;           ///< name of the metric
-  NamedUnit response;           ///< the response that ranks
+  std::vector<double> effects;  ///< effect of each error; 0: none; NaN: not known
+  std::string metric;           ///< name of the metric that the result uses
+  NamedUnit response;           ///< the response by which errors are ranked
 };
 
 Ranking ranking_of(const RankedResult& ranked, const std::vector<std::size_t>& factors) {
@@ -58,19 +59,21 @@ Ranking ranking_of(const RankedResult& ranked, const std::vector<std::size_t>& f
   return ranking;
 }
 
-/// The rank: one more than the number of errors with a larger effect.
+/// A cell with the rank of an error: one plus the number of errors with a larger effect.
 Cell rank_cell(const Ranking& ranking, std::size_t at) {
   if (std::isnan(ranking.effects[at])) return text_cell("");
   const auto larger = [&](double effect) { return effect > ranking.effects[at]; };
   return count_cell(1 + static_cast<std::uint64_t>(std::ranges::count_if(ranking.effects, larger)));
 }
 
-/// Adds rank and effect of each error. Refers to the ranking.
+/// Extends the list `columns` by columns with the rank and the effect of each error. letter: A or B, the result. Refers
+/// to the ranking.
 void add_columns(std::vector<FilledColumn>& columns, char letter, const Ranking& ranking, bool by_metric) {
   const std::string suffix = letter == 'A' ? "_a" : "_b";
   const NamedUnit& response = ranking.response;
   const std::string in = fmt::format(" in {}", letter);
-  columns.push_back({number_column("rank" + suffix, "rank" + (by_metric ? ", " + ranking.metric : in)),
+  const int dispensable = letter == 'A' ? 2 : 1;  // the rows are in the order of A
+  columns.push_back({number_column("rank" + suffix, "rank" + (by_metric ? ", " + ranking.metric : in), "", dispensable),
                      [&ranking](std::size_t n) { return rank_cell(ranking, n); }});
   columns.push_back(
       {number_column("effect" + suffix, response.name + (by_metric ? ", " + ranking.metric + " metric" : in),
@@ -78,7 +81,7 @@ void add_columns(std::vector<FilledColumn>& columns, char letter, const Ranking&
        [&ranking](std::size_t n) { return value_cell(ranking.effects[n], ranking.response); }});
 }
 
-/// The number of errors with a known effect in both rankings.
+/// The number of errors whose effect is known in both rankings.
 std::size_t known_in_both(const Ranking& a, const Ranking& b) {
   std::size_t known = 0;
   for (std::size_t n = 0; n < a.effects.size(); ++n) known += !std::isnan(a.effects[n]) && !std::isnan(b.effects[n]);
@@ -113,7 +116,7 @@ std::vector<std::string> remarks(const RankedResult& a, const RankedResult& b, d
   return list;
 }
 
-/// The errors that both have, in this order of A.
+/// The errors that both results have, ordered as `order` asks for result A.
 Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder order) {
   Common both = common(names_of(a.result.factors), names_of(b.result.factors));
   if (both.empty()) {
@@ -125,11 +128,11 @@ Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder or
   return both;
 }
 
-/// The order in which columns are left out of narrow tables: other responses first, beginning with the last, then the
-/// rank.
+/// The order in which narrow tables omit columns: higher numbers first. Other responses go first, beginning with the
+/// last one, then the rank.
 enum Dispensable : int { kIndexChange = 1, kNotConverged = 2, kRank = 3, kFirstOther = 4 };
 
-/// The headline's responses that have a dimension, except the one that ranks.
+/// The responses of the headline that have a dimension, except the one that ranks.
 std::vector<std::size_t> other_responses(const StoredResult& result, std::size_t ranking) {
   std::vector<std::size_t> others;
   for (const std::size_t r : varying_first(result, result.headline)) {
@@ -140,7 +143,7 @@ std::vector<std::size_t> other_responses(const StoredResult& result, std::size_t
 
 using Columns = std::vector<FilledColumn>;
 
-/// Adds columns of an index and the ends of its interval.
+/// Extends the list `columns` by columns with an index and both ends of its interval.
 void add_index(Columns& columns, const StoredResult& result, std::size_t r, const std::string& name,
                const std::string& heading, int dispensable) {
   const GlobalIndices shown = shown_indices(result);
@@ -149,7 +152,7 @@ void add_index(Columns& columns, const StoredResult& result, std::size_t r, cons
   columns.push_back(index_column(result, shown.high, r, name + "_high", "high", dispensable));
 }
 
-/// The columns of the ranking. Refers to both arguments.
+/// The columns of the table of ranked errors. Refers to both arguments.
 Columns ranked_columns(const StoredResult& result, const RankedErrors& ranked) {
   const std::size_t response = ranked.response;
   const Unit& unit = display(result.responses[response]);
@@ -192,7 +195,7 @@ std::vector<std::string> ranked_notes(const StoredResult& result, const RankedEr
           "not converged: share of the samples whose solve did not settle"};
 }
 
-/// How the ranking changes with the points of the platform's metric; empty if the result does not have it.
+/// A note on how the ranking changes with the points of the platform's metric; empty if the result does not know it.
 std::string radius_note(const StoredResult& result, std::size_t response) {
   const auto& tau = sensitivity_of(result).radius_tau;
   if (tau.empty() || std::isnan(tau(0, response)) || std::isnan(tau(1, response))) return {};
@@ -202,12 +205,14 @@ std::string radius_note(const StoredResult& result, std::size_t response) {
       result.responses[response].name, tau(0, response), tau(1, response));
 }
 
-/// How often intervals from this few samples contain the index; empty if that is as often as they state. The samples of
-/// a norm, and of an error that acts by its square, are skewed, and few samples hardly show the tails.
+/// A note on how often intervals from this few samples contain the index; empty if there are enough samples. With few
+/// samples, intervals are too narrow if the samples are skewed, because their tails are hardly seen. This is so for a
+/// norm, and for an error that acts by its square.
 std::string few_samples_note(const StoredResult& result, std::size_t response) {
   constexpr std::uint64_t kEnoughOfNorms = 200;
   constexpr std::uint64_t kEnoughOfSquares = 1000;
-  constexpr double kSquare = -0.5;  // an index in proportion to the error's size changes by -90 % at a tenth of it
+  constexpr double kSquare = -0.5;  // index change above which no error acts by its square; an index that is
+                                    // proportional to size changes by -90 %
   const SensitivityResult& found = sensitivity_of(result);
   if (found.solves.empty()) return {};
   const std::uint64_t samples = std::ranges::min(found.solves, {}, &SolveCounts::total).total();
@@ -220,7 +225,7 @@ std::string few_samples_note(const StoredResult& result, std::size_t response) {
       counted(samples, "sample", "samples"));
 }
 
-/// The reasons why cells have no number; empty if all have one.
+/// A note on why some cells have no number; empty if all cells have one.
 std::string rounding_note(const Table& table) {
   const auto is_rounding = [](const Cell& cell) { return cell.text == kTooSmall; };
   const bool any = std::ranges::any_of(

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/kinds/calibrated_model.h"
 #include "engine/kinds/sensitivity/collector.h"
 #include "engine/kinds/sensitivity/fidelity.h"
 #include "engine/kinds/sensitivity/indices.h"
@@ -20,7 +21,7 @@
 namespace poesy {
 namespace {
 
-/// [R x P] The magnitude below which the index of each error is rounding.
+/// [responses x errors] The magnitude below which the index of each error is rounding.
 std::vector<double> index_roundings(const Plan& plan, const Model& model) {
   std::vector<double> list;
   for (const double rounding : response_rounding(model)) {
@@ -31,7 +32,7 @@ std::vector<double> index_roundings(const Plan& plan, const Model& model) {
   return list;
 }
 
-/// The job of PoseFold: the draws of one error, at one pose after the other.
+/// The job of a PoseFold (run/pose_fold.h): solves the draws of one error at a time, at one pose after the other.
 struct SensitivityJob {
   const Plan& plan;
   const Model& model;
@@ -70,7 +71,8 @@ std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const 
   const auto report = [&](const Progress& progress) {
     if (run.options.progress) run.options.progress(progress);
   };
-  // Progress covers both as one run. If the first half reports none, the continued run has already done it.
+  // The progress of both fidelities is reported as that of one run. If the first reports none, it was complete in the
+  // checkpoint.
   std::optional<std::uint64_t> before;
   RunOptions options = run.options;
   options.progress = [&](const Progress& half) {
@@ -99,18 +101,19 @@ std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const 
 
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const Plan plan(run.study, run.poses);
+  const std::shared_ptr<const Model> model = studied_model(run.study, run.model, run.poses);
   auto result = run.study.mechanism.compared
                     ? run_both_fidelities(run, plan)
-                    : run_sensitivity(plan, run.model, run.study.analysis.conf_level, run.options);
+                    : run_sensitivity(plan, *model, run.study.analysis.conf_level, run.options);
   if (!result) return std::nullopt;
-  auto changes = index_changes(plan, run.model, run.options);
+  auto changes = index_changes(plan, *model, run.options);
   if (!changes) {
     run.checkpoints().stopped_after_stages();
     return std::nullopt;
   }
   if (!run.makes_result()) return std::nullopt;
   result->index_change = *std::move(changes);
-  result->radius_tau = radius_rank_correlations(run.study, plan);
+  if (run.study.analysis.calibration == nullptr) result->radius_tau = radius_rank_correlations(run.study, plan);
   set_references(run.study, *result);
   if (run.model.description().separation) {
     result->separation = separate_errors(run.model, plan.poses(), plan.factors(), standard_deviations(run.study));
@@ -120,7 +123,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
 
 std::size_t cells(const Study& study, std::size_t poses) { return study.analysis.factors.size() * poses; }
 
-/// The work of separating the errors of a sensitivity study, timed at one of its poses.
+/// The work of separating the errors of a study (SeparationResult), timed at one of its poses.
 WorkOutlook separating(const Study& study, const Model& model, const PoseSet& poses) {
   return {[&](double at) {
     const auto pose = poses[PoseIndex(static_cast<std::size_t>(at * static_cast<double>(poses.size())))];
@@ -130,7 +133,7 @@ WorkOutlook separating(const Study& study, const Model& model, const PoseSet& po
   }};
 }
 
-/// The result uses the memory that accumulators free, one response after the other.
+/// The memory of a study. The result takes the place of the accumulators, which are freed one response at a time.
 MemoryOutlook sensitivity_memory(const Study& study, const Plan& plan, std::size_t fidelities) {
   const std::size_t responses = study.model().responses.size();
   const AxisLengths lengths{{"response", responses}, {"factor", plan.factors().size()}, {"pose", plan.poses().size()}};
@@ -138,8 +141,8 @@ MemoryOutlook sensitivity_memory(const Study& study, const Plan& plan, std::size
   const std::size_t separated = study.model().separation ? separation_bytes(lengths) : 0;
   const std::size_t result = numbers + plan.cells() * sizeof(SolveCounts);
   const std::size_t ends = plan.cells() * (sizeof(SolveCounts) + sizeof(FailedSamples));
-  const std::size_t moments = plan.cells() * sizeof(Moments);  // for one response
-  // A smaller last unit is kept apart from whole ones.
+  const std::size_t moments = plan.cells() * sizeof(Moments);  // bytes for one response
+  // A last unit that is smaller is kept apart from the full units.
   const bool both = plan.samples() > Plan::kUnitSamples && plan.samples() % Plan::kUnitSamples != 0;
   const std::size_t parts = both ? 2 : 1;
   const std::size_t at_once = parts * (responses * moments + ends);
@@ -152,12 +155,14 @@ MemoryOutlook sensitivity_memory(const Study& study, const Plan& plan, std::size
 Outlook sensitivity_outlook(const Study& study, const Model& model, const PoseSet& poses) {
   const auto plan = std::make_shared<const Plan>(study, poses);
   const std::size_t fidelities = study.mechanism.compared ? 2 : 1;
+  const auto calibration = machine_calibration(study, model, poses);
   const double with_changes = 1.0 + index_change_solves(*plan) / static_cast<double>(plan->solves());
   Outlook expected{.solves = counted_things(plan->factors().size(), "errors x ") +
                              counted_things(poses.size(), "poses x ") + samples_text(*plan) + " samples" +
-                             (fidelities == 2 ? " x 2 fidelities" : "") + " = " + solves_text(*plan, fidelities),
+                             (fidelities == 2 ? " x 2 fidelities" : "") + " = " + solves_text(*plan, fidelities) +
+                             (calibration ? calibration_cost_text(*calibration, "sample") : ""),
                    .memory = sensitivity_memory(study, *plan, fidelities),
-                   .shared = {sampling<UnitEvaluator>(plan, borrowed(model), with_changes)},
+                   .shared = {sampling<UnitEvaluator>(plan, studied_model(study, model, poses), with_changes)},
                    .by_one = {},
                    .least = least_share(*plan)};
   if (model.description().separation) expected.by_one.push_back(separating(study, model, poses));

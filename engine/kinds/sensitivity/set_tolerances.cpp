@@ -28,12 +28,13 @@ namespace {
 constexpr const char* kStem = "confirm";
 constexpr const char* kEqualEffect = "confirm_equal_effect";
 constexpr const char* kEqualTolerance = "confirm_equal_tolerance";
-/// The largest tolerance over the size of the part. Four standard deviations of a normal error are then the whole part.
+/// The largest tolerance, as a share of the dimension that the error changes. At a quarter, four standard deviations of
+/// a normal error equal the dimension.
 constexpr double kShareOfPart = 0.25;
 
-/// The study of a sensitivity result, as a Monte Carlo study of the same errors at the same poses.
+/// The Monte Carlo study of the same errors at the same poses as a sensitivity result.
 Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
-  // A file of poses has a path relative to a study that may no longer exist, so the poses of the result are used.
+  // The poses of the result are used, because the path of a pose file is relative to a study that may no longer exist.
   Study study = stored_study(result, "the result", catalog).study;
   if (study.analysis.factors.size() != result.factors.size()) {
     throw FileError("the result", "keeps a study that does not fit its factors", "run the study again");
@@ -41,7 +42,7 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   return as_confirming_study(std::move(study), kStem);
 }
 
-/// A quarter of the part to which each of the study's errors belongs.
+/// For each error of the study, a quarter of the dimension that it changes.
 std::vector<double> quarters_of_parts(const Study& study) {
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   std::vector<double> largest;
@@ -51,7 +52,8 @@ std::vector<double> quarters_of_parts(const Study& study) {
   return largest;
 }
 
-/// Sets tolerances. Errors whose tolerance is cut to the largest are added to `at_largest`.
+/// Sets the tolerances of a study. A tolerance above the largest one is cut to it, and its error is added to
+/// `at_largest`.
 void set_tolerances(Study& study, std::span<const double> largest, std::span<const double> tolerances,
                     std::vector<std::string>& at_largest) {
   for (std::size_t p = 0; p < tolerances.size(); ++p) {
@@ -64,16 +66,16 @@ void set_tolerances(Study& study, std::span<const double> largest, std::span<con
   }
 }
 
-/// The position of the item that an option names.
+/// The position of the item that an option names. Throws InputError if there is none.
 std::size_t position(const std::vector<NamedUnit>& things, const std::string& name, std::string_view option,
                      std::string_view what) {
   const auto at = std::ranges::find(things, name, &NamedUnit::name);
   if (at != things.end()) return static_cast<std::size_t>(at - things.begin());
-  throw InputError({}, fmt::format("{}: '{}' is no {} of this result", option, printable(name), what),
+  throw InputError({}, fmt::format("{}: this result has no {} '{}'", option, what, printable(name)),
                    suggestion(name, names(things)));
 }
 
-/// A positive quantity, of the dimension of the owner's SI unit.
+/// A positive quantity in SI, with the dimension of the owner's unit.
 double positive(const std::string& text, std::string_view option, const NamedUnit& owner) {
   const Dimension dimension = dimension_of(owner.unit);
   const std::string example = fmt::format("{} is measured in {}", owner.name, display_unit(dimension).name);
@@ -88,7 +90,8 @@ double positive(const std::string& text, std::string_view option, const NamedUni
     }
   }
   if (quantity.dimension != dimension) {
-    throw InputError({}, fmt::format("{}: '{}' is no {}", option, printable(text), name(dimension)), example);
+    throw InputError(
+        {}, fmt::format("{}: '{}' has another dimension than {}", option, printable(text), name(dimension)), example);
   }
   if (!(quantity.si > 0.0)) {
     throw InputError({}, fmt::format("{}: '{}' is not above zero", option, printable(text)), "write a positive one");
@@ -166,7 +169,7 @@ void check_prediction(const StoredResult& result, const MeanSquare& response, co
   }
 }
 
-/// The limit that --limit sets on the response, SI. Throws if the background alone exceeds it.
+/// The limit on the response that --limit states, SI. Throws InputError if the background alone exceeds it.
 double checked_limit(const TolerancesOptions& options, const StoredResult& result, const MeanSquare& response,
                      const NamedUnit& named) {
   const double limit = positive(*options.limit, "--limit", named);
@@ -180,7 +183,8 @@ double checked_limit(const TolerancesOptions& options, const StoredResult& resul
       "raise the limit, or study smaller errors in [analysis] background");
 }
 
-/// Sets tolerances for errors that are not negligible, within what the others leave of the limit.
+/// Sets tolerances within a limit. Negligible errors get the studied size, and the other errors share the rest of the
+/// limit.
 void set_limit(ResponseTolerances& found, double limit, const StoredResult& result, const ResponseStudy& study,
                const Catalog& catalog) {
   const MeanSquare& response = found.all.mean_square;
@@ -196,7 +200,8 @@ void set_limit(ResponseTolerances& found, double limit, const StoredResult& resu
   }
 }
 
-/// Finds negligible errors without a limit. The reference is never one.
+/// Sets the tolerance of negligible errors to the studied size, for a response without a limit. The reference error is
+/// never negligible.
 void set_negligible(ResponseTolerances& found, const StoredResult& result) {
   const MeanSquare& response = found.all.mean_square;
   found.negligible = negligible_errors(result, found.response, response, response.growth(result.factor_sigma));
@@ -204,7 +209,7 @@ void set_negligible(ResponseTolerances& found, const StoredResult& result) {
   for (const std::size_t p : found.negligible) found.all.equal_effect[p] = result.factor_sigma[p];
 }
 
-/// The commands that run the studies, and the errors whose tolerance is as large as possible.
+/// Lines with the commands that run the studies, and with the errors whose tolerance was cut to the largest one.
 std::string commands_of(const Confirmation& written) {
   std::string commands;
   for (const std::string& study : written.paths) {
@@ -217,7 +222,7 @@ std::string commands_of(const Confirmation& written) {
   return commands;
 }
 
-/// Writes the table and the studies that test it, and returns what was written.
+/// Writes the table of tolerances and the studies that test these tolerances. Returns text about the files.
 std::string write_files(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found,
                         const Catalog& catalog) {
   const std::string beside = std::filesystem::path(options.result).stem().string() + "_tolerances";
@@ -233,8 +238,8 @@ std::string write_files(const TolerancesOptions& options, const StoredResult& re
   return table + "\n" + commands;
 }
 
-/// Names the errors of the mechanism that the study neither varies nor has in its background; none if this program does
-/// not have the mechanism or cannot read the stored study.
+/// A note on the errors of the mechanism that the study neither varies nor has in its background. None if this program
+/// does not have the mechanism or cannot read the stored study.
 std::optional<std::string> perfect_errors_note(const StoredResult& result, const Catalog& catalog) {
   const std::optional<Study> study = study_in(result, catalog);
   if (!study) return std::nullopt;
@@ -248,6 +253,16 @@ std::optional<std::string> perfect_errors_note(const StoredResult& result, const
   const std::size_t absent = all - present.size();
   return fmt::format("{} of the mechanism's {} errors {} not in this study, and {} as perfect here", absent, all,
                      absent == 1 ? "was" : "were", absent == 1 ? "counts" : "count");
+}
+
+/// Refuses a limit on what calibrations leave, because the studies that test tolerances draw errors anew at each pose,
+/// so they have no machines to calibrate.
+void refuse_calibrated(const TolerancesOptions& options, const StoredResult& result, const Catalog& catalog) {
+  const std::optional<Study> study = study_in(result, catalog);
+  if (!options.limit || !study || study->analysis.calibration == nullptr) return;
+  throw InputError({options.result},
+                   "its indices are of what a calibration leaves, and tolerances are tested without one",
+                   "leave out --limit, or take a study of kind \"allocation\" with the same [analysis.calibration]");
 }
 
 /// Refuses tolerances for errors whose index does not hold at their size, or returns why they may not hold.
@@ -311,6 +326,7 @@ std::string set_sensitivity_tolerances(const StoredResult& result, const Toleran
                                        const Catalog& catalog, std::size_t width) {
   const std::size_t response = chosen_response(options, result);
   const NamedUnit& named = result.responses[response];
+  refuse_calibrated(options, result, catalog);
   check_sizes(options, result, response);
   const ResponseStudy study = response_study(sensitivity_of(result), result.factor_sigma, result.factor_mean, response);
   const std::optional<ReferenceError> reference = reference_of(options, result, response);

@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 9> kSobolKeys{"factors", "samples", "conf
 
 constexpr std::array kGroupings{GroupsBy::none, GroupsBy::limb, GroupsBy::frame};
 
-/// The patterns of one group, written as a text or a list of texts.
+/// The patterns of a group, which are written as a text or as a list of texts.
 std::vector<std::string> read_patterns(const StudyValue& value) {
   if (value.is_text()) return {value.text()};
   std::vector<std::string> patterns;
@@ -27,7 +27,7 @@ std::vector<std::string> read_patterns(const StudyValue& value) {
   return patterns;
 }
 
-/// Throws if the name does not fit in tables and files.
+/// Throws InputError if the name cannot be used in tables and files.
 void check_group_name(const StudyValue& value, std::string_view name) {
   if (const auto problem = label_problem(name)) value.fail("is not a name for a group: it " + *problem, kLabelRule);
   if (name == kOtherErrors) value.fail("is not a name for a group", "it is that of the errors of no group");
@@ -128,12 +128,12 @@ StudyTables sobol_tables_of_keys() {
                      .meaning = "The group's errors by name, '*' for any letters and '?' for one."}}}};
 }
 
-/// The error at this position of the study.
+/// The name of the error at this position of the study.
 const std::string& factor_name(const Study& study, std::size_t position) {
   return study.model().factors[study.analysis.factors[position].value].name;
 }
 
-/// Throws if a pattern has no errors, or errors of an earlier group.
+/// Throws InputError if a pattern matches no error of the study, or an error of an earlier group.
 void check_named_groups(const Study& study, const StudySection& section) {
   std::vector<std::string_view> owner(study.analysis.factors.size());
   for (const NamedGroup& group : asked_of<SobolOptions>(study.analysis).named_groups) {
@@ -157,7 +157,7 @@ void check_named_groups(const Study& study, const StudySection& section) {
   }
 }
 
-/// Throws if the samples cannot be divided among the replicates.
+/// Throws InputError if the samples cannot be divided equally among the replicates.
 void check_replicates(const Study& study, const StudySection& analysis) {
   const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
   const auto replicates = analysis.find("replicates");
@@ -181,7 +181,7 @@ std::string names_of(const std::vector<FactorIndex>& factors, const Study& study
   return printable(text, 120);
 }
 
-/// Throws if errors of different groups are correlated, because indices need independent groups.
+/// Throws InputError if errors of different groups are correlated, because S1 and ST need independent groups.
 void check_correlation(const Study& study, const StudySection& analysis) {
   const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
   const std::vector<ErrorGroup> groups = error_groups(study.analysis, study.model());
@@ -209,8 +209,31 @@ void check_correlation(const Study& study, const StudySection& analysis) {
   }
 }
 
-/// Throws if a machine would draw an error anew at each pose, because a pick-freeze pair shares or changes an error as
-/// a whole.
+/// Throws InputError if errors of a feature that are drawn together are in different groups.
+void check_zone_groups(const Study& study, const StudySection& analysis) {
+  const std::vector<ErrorGroup> groups = error_groups(study.analysis, study.model());
+  const auto group_of = [&](FactorIndex error) {
+    return std::ranges::find_if(groups, [&](const ErrorGroup& group) {
+      return std::ranges::any_of(group.members, [&](std::size_t p) { return study.analysis.factors[p] == error; });
+    });
+  };
+  for (const Feature& feature : features_drawn_together(study)) {
+    const std::vector<FactorIndex> errors = feature.errors();
+    const auto is_elsewhere = [&](FactorIndex error) { return group_of(error) != group_of(errors.front()); };
+    if (std::ranges::none_of(errors, is_elsewhere)) continue;
+    const auto value = analysis.find("groups");
+    throw InputError(value ? value->place() : analysis.place(),
+                     "the errors " + names_of(errors, study) +
+                         " are drawn together in their zone, but belong to "
+                         "different groups",
+                     fmt::format("take groups that hold whole features, e.g. groups = {{ {} = [\"{}_*\"] }}, or write "
+                                 "errors.zones = {{ distribution = \"normal\", sigmas = 3 }}",
+                                 feature.label, feature.label));
+  }
+}
+
+/// Throws InputError if a machine draws an error anew at each pose. A pair of samples shares or exchanges an error as a
+/// whole, at all poses.
 void check_draws(const Study& study, const StudySection& analysis) {
   for (const FactorIndex factor : study.analysis.factors) {
     if (!study.errors.is_per_pose(factor)) continue;
@@ -225,24 +248,27 @@ void check_draws(const Study& study, const StudySection& analysis) {
 
 void check_sobol(Study& study, const Reading& reading) {
   const StudySection analysis = reading.root.section("analysis");
-  study.analysis.draws = Draws::per_machine;
   if (study.analysis.adaptive && asked_of<SobolOptions>(study.analysis).design != Design::random) {
     analysis.require("samples").fail("is a table, but analysis.design is not \"random\"",
                                      "write a number, e.g. samples = 4096");
   }
   check_draws(study, analysis);
+  check_sizes_of_features(study, reading);
   check_replicates(study, analysis);
   if (asked_of<SobolOptions>(study.analysis).groups_by == GroupsBy::name) {
     check_named_groups(study, analysis.section("groups"));
   }
-  if (reading.use == StudyUse::run) check_correlation(study, analysis);
+  if (reading.use == StudyUse::run) {
+    check_correlation(study, analysis);
+    check_zone_groups(study, analysis);
+  }
   if (error_groups(study.analysis, study.model()).size() > 1 || reading.use != StudyUse::run) return;
   throw InputError(analysis.place(), "all errors are one group, so there is nothing to compare",
                    "name more factors, or other groups");
 }
 
-/// The number of solves for each sample: A and B, one for each group or subset of groups, and one for each pair of
-/// groups if second-order indices are wanted.
+/// The number of solves of a sample at each pose: one each for the two independent samples A and B, one for each group
+/// or subset of groups, and one for each pair of groups if second-order indices are wanted.
 double solves_of_sample(const Study& study) {
   const auto groups = static_cast<double>(error_groups(study.analysis, study.model()).size());
   const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
@@ -288,6 +314,7 @@ const StudyKind kSobolStudy{.name = "sobol",
                             .asks = "how the variance of each response divides among the errors and their interactions",
                             .keys = kSobolKeys,
                             .varies = Varies::together,
+                            .draws = Draws::per_machine,
                             .draws_machines_anew = true,
                             .rows = sobol_rows,
                             .tables = sobol_tables_of_keys,

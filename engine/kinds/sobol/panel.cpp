@@ -8,27 +8,28 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/random/normal_quantile.h"
 #include "engine/run/response_rounding.h"
 #include "engine/stats/sums.h"
 
 namespace poesy {
 namespace {
 
-/// The number of components of all details.
+/// The number of components of all additional outputs of the model (Detail in model/model.h).
 std::size_t detail_components(const ModelDescription& model) {
   std::size_t count = 0;
   for (const Detail& detail : model.details) count += detail.components.size();
   return count;
 }
 
-/// Whether a vector has a component that is not a response.
+/// Whether some vector has a component that is not a response but a component of an additional output.
 bool need_details(const std::vector<SignedVector>& vectors, std::size_t responses) {
   return std::ranges::any_of(vectors, [&](const SignedVector& vector) {
     return std::ranges::any_of(vector.components, [&](std::size_t component) { return component >= responses; });
   });
 }
 
-/// Blocks of correlated errors that are not all in one group.
+/// Blocks of correlated errors that belong to several groups.
 std::vector<SplitBlock> split_blocks(const Plan& plan, std::span<const ErrorGroup> groups) {
   std::vector<SplitBlock> blocks;
   for (const CorrelatedSlots& correlated : plan.correlated()) {
@@ -44,8 +45,8 @@ std::vector<SplitBlock> split_blocks(const Plan& plan, std::span<const ErrorGrou
   return blocks;
 }
 
-/// The weight of a subset of this size in the Shapley effect of a group outside it, with n groups: s! (n - s - 1)! / n!
-/// (Shapley 1953; of variances Owen 2014, SIAM/ASA J. Uncertain. Quantif. 2, 245-251).
+/// The weight of a subset of this size in the Shapley effect of a group that is not in it, s! (n - s - 1)! / n! for
+/// size s and n groups (Shapley 1953; for variances Owen 2014, SIAM/ASA J. Uncertain. Quantif. 2, 245-251).
 double shapley_weight(std::size_t size, std::size_t groups) {
   double weight = 1.0 / static_cast<double>(groups);
   for (std::size_t k = 1; k <= size; ++k) weight *= static_cast<double>(k) / static_cast<double>(groups - k);
@@ -337,7 +338,7 @@ void PanelEvaluator::add_shapley(PoseIndex pose) {
     for (std::size_t g = 0; g < groups; ++g) {
       if ((subset >> g & 1U) == 0) others.push_back(g);
     }
-    if (others.size() == 1) continue;  // already solved
+    if (others.size() == 1) continue;  // this mixture was already solved for the indices of the group
     mix(others);
     solve(pose, mixed_, of_mixed_);
     absorb();

@@ -15,26 +15,26 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kMostPairs = 10;  ///< the largest number of pairs in a table
+constexpr std::size_t kMostPairs = 10;  ///< largest number of pairs in a table
 
-/// "error", or "group" where errors are joined.
+/// The word for the items whose indices a result has: "error", or "group" if errors are joined.
 std::string word(const SobolResult& found) { return found.joined ? "group" : "error"; }
 
 double or_least(double value) { return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value; }
 
-/// Positions ordered by their shares, the largest first.
+/// Positions ordered by their shares, largest first and NaN last.
 std::vector<std::size_t> by_size(std::span<const double> shares) {
   std::vector<std::size_t> order = positions(shares.size());
   std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t g) { return or_least(shares[g]); });
   return order;
 }
 
-/// The Shapley effects on a response if there are any, otherwise the total indices.
+/// The shares that rank groups: Shapley effects if there are any, otherwise total indices.
 std::span<const double> ranked_shares(const SobolResult& found, std::size_t r) {
   return (found.Sh.empty() ? found.aggregated.ST : found.Sh).value.row(r);
 }
 
-/// The groups in the order that the user chose. Groups have no index per unit, so for that order they use their shares.
+/// The groups in the order that the user chose. Groups have no index per unit, so the order by index is that by share.
 std::vector<std::size_t> ordered(const SobolResult& found, std::size_t r, RowOrder order) {
   std::vector<std::size_t> rows = by_size(ranked_shares(found, r));
   if (order == RowOrder::study) rows = positions(found.groups());
@@ -53,7 +53,7 @@ FilledColumn share_column(std::string name, std::string heading, std::span<const
           [shares](std::size_t g) { return number_cell(shares[g]); }};
 }
 
-/// Shares of a response with their intervals.
+/// Extends the list `columns` by columns with the shares of a response and their intervals.
 void append_shares(std::vector<FilledColumn>& columns, const std::string& name,
                    const Shares<axis::Response, axis::ErrorGroup>& shares, std::size_t r) {
   columns.push_back(share_column(name, name, shares.value.row(r)));
@@ -61,7 +61,7 @@ void append_shares(std::vector<FilledColumn>& columns, const std::string& name,
   columns.push_back(share_column(name + "_high", "high", shares.ci_high.row(r), 1));
 }
 
-/// Columns of S1 and ST with their intervals, and of the difference of the two.
+/// Columns with S1, ST, their intervals, and the difference ST - S1.
 std::vector<FilledColumn> index_columns(const SobolResult& found, std::size_t r) {
   const auto& [conf_level, S1, ST] = found.aggregated;
   std::vector<FilledColumn> columns{group_column(found)};
@@ -122,7 +122,8 @@ bool vector_varies(const SobolResult& found, std::size_t v) {
   return found.vector_varies.empty() || found.vector_varies(v) != 0;
 }
 
-/// "displacement and delta_mu_21_omega do not vary, so no error has a share of them"; empty if all vary.
+/// A note like "displacement and delta_mu_21_omega do not vary, so no error has a share of them"; empty if all vectors
+/// vary.
 std::string constant_vectors_text(const SobolResult& found) {
   std::vector<std::string> names;
   for (std::size_t v = 0; v < found.vectors.size(); ++v) {
@@ -134,7 +135,7 @@ std::string constant_vectors_text(const SobolResult& found) {
                      one ? "it" : "them");
 }
 
-/// The total indices of all vectors, one column each, ordered by the first one that varies.
+/// The table of total indices of all vectors, a column for each, ordered by the first vector that varies.
 Table vectors_table(const StoredResult& result) {
   const SobolResult& found = sobol_of(result);
   const std::vector<std::size_t> vectors = positions(found.vectors.size());
@@ -154,7 +155,7 @@ Table vectors_table(const StoredResult& result) {
   return table;
 }
 
-/// The pairs of a response with the largest second-order index.
+/// The table of the pairs with the largest second-order indices on a response.
 Table pairs_table(const StoredResult& result, std::size_t r) {
   const SobolResult& found = sobol_of(result);
   std::vector<GroupPair> pairs = group_pairs(found.groups());
@@ -184,7 +185,7 @@ Table pairs_table(const StoredResult& result, std::size_t r) {
 
 using SharesOfResponses = Shares<axis::Response, axis::ErrorGroup>;
 
-/// The values of the responses in the order of a page.
+/// The values of all responses in the order of the page.
 std::vector<double> of_responses(const StoredResult& result, const SharesOfResponses::Values& values) {
   std::vector<double> list;
   for (const std::size_t r : response_order(result)) {
@@ -194,13 +195,13 @@ std::vector<double> of_responses(const StoredResult& result, const SharesOfRespo
   return list;
 }
 
-/// One series of bars for all errors.
+/// A series of bars, one for each group.
 struct BarSeries {
-  std::string label;                ///< not shown if it is the only one
-  const SharesOfResponses& shares;  ///< the shares shown
+  std::string label;                ///< name of the series; shown only if there are several
+  const SharesOfResponses& shares;  ///< shares that the bars show
 };
 
-/// Bars of shares of the variance for each response. name: prefix of the names of their arrays.
+/// Bars with shares of the variance of each response. name: prefix of the names of the arrays.
 Bars share_bars(const StoredResult& result, ArrayPool& pool, const std::string& name,
                 const std::vector<BarSeries>& series) {
   const auto all = [&](const std::string& array, SharesOfResponses::Values SharesOfResponses::*part) {
@@ -250,9 +251,17 @@ void add_shares(const StoredResult& result, std::span<const Table> tables, Page&
       percent_text(found.aggregated.conf_level)));
   add_index_bars(result, page, section);
   add_shapley_bars(result, page, section);
-  for (const Table& table : tables) {
-    if (table.name.starts_with("sobol_")) section.table(table);
+  std::vector<Table> others;  // than that of the response which the figure shows first
+  for (bool first = true; const Table& table : tables) {
+    if (!table.name.starts_with("sobol_")) continue;
+    if (first) {
+      section.table(table);
+    } else {
+      others.push_back(table);
+    }
+    first = false;
   }
+  if (!others.empty()) section.folded("The same for every other response", others);
   section.table(tables, "vectors");
 }
 
@@ -281,7 +290,7 @@ SolveTally tally(const StoredResult& result) {
 
 ShownCells cells(const StoredResult& result) { return shown_cells(result, 2 * sobol_of(result).groups()); }
 
-/// Shows ST and S1 of the errors at each pose.
+/// Adds to the page the section that shows ST and S1 at each pose.
 void add_where(const StoredResult& result, Page& page) {
   const SobolResult& found = sobol_of(result);
   const PoseFigures figures(result, cells(result), page);
@@ -324,7 +333,8 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   if (!names.empty()) list.push_back(without_sign_text(some_names(names), names.size() > 1) + ".");
 }
 
-/// Shapley effects if there are some, because these add up, otherwise total indices; and the variance at each pose.
+/// The shares of errors, and the variance at each pose. The shares are Shapley effects if there are any, because they
+/// add up to 1; otherwise total indices.
 ErrorShares error_shares(const StoredResult& result) {
   const SobolResult& found = sobol_of(result);
   if (found.n.empty()) return {};
@@ -339,7 +349,7 @@ ErrorShares error_shares(const StoredResult& result) {
           .at_poses = {variance.begin(), variance.end()}};
 }
 
-/// The largest of these shares in order: "delta_1 (41 %), delta_2 (12 %)".
+/// The largest shares as text: "delta_1 (41 %), delta_2 (12 %)".
 std::string largest_shares(const SobolResult& found, std::span<const double> shares) {
   constexpr std::size_t kMost = 3;
   const std::vector<std::size_t> order = by_size(shares);
@@ -350,7 +360,8 @@ std::string largest_shares(const SobolResult& found, std::span<const double> sha
   return text;
 }
 
-/// Answers for the response that ranks, by Shapley effects if there are any, otherwise by total indices.
+/// The answer for the response by which errors are ranked, by Shapley effects if there are any, otherwise by total
+/// indices.
 Answer answer(const StoredResult& result) {
   constexpr double kWide = 0.2;
   const SobolResult& found = sobol_of(result);
@@ -387,6 +398,19 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
+/// The merit by which results are compared: the root mean square of the response over the samples of all poses.
+std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
+  const SobolResult& found = sobol_of(result);
+  if (name.empty() || found.mean.empty()) return {};
+  const std::size_t r = response_named(result, name);
+  double sum = 0.0;
+  for (std::size_t m = 0; m < result.poses.size(); ++m) sum += found.variance(r, m) + std::pow(found.mean(r, m), 2);
+  const NamedUnit& response = result.responses[r];
+  return {{.what = fmt::format("root mean square of {}", name),
+           .unit = unit_text(response),
+           .value = std::sqrt(sum / static_cast<double>(result.poses.size())) / display(response).si}};
+}
+
 Comparable comparable(const StoredResult& result, const StoredResult& other) {
   const SobolResult& found = sobol_of(result);
   Comparable all{"response", names_of(result.responses, response_order(result)), word(found), found.group_names};
@@ -418,6 +442,7 @@ std::vector<Table> sobol_tables(const StoredResult& result, const TableOptions& 
 
 constinit const ReportKind kSobolReport{.tally = tally,
                                         .tables = sobol_tables,
+                                        .merits = merits,
                                         .sorts = true,
                                         .settling = settling,
                                         .words = [](const StoredResult&) { return StudyWords{.draws = true}; },

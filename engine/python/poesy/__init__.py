@@ -1,12 +1,12 @@
-"""Runs poesy, which says which errors of a parallel robot matter, how much and where, and reads its results.
+"""Runs the program poesy, which tells which errors of a parallel robot matter, how much and where. Reads its results.
 
 >>> import poesy
 >>> result = poesy.run("study.toml")                     # doctest: +SKIP
 >>> print(result.ranking())                              # doctest: +SKIP
 >>> result.plot.ranking()                                # doctest: +SKIP
 
-The program itself has to be there: in the virtual environment, on PATH, or where the environment variable POESY or
-``poesy.program`` says.
+The program itself must be installed: in the virtual environment, on PATH, or at the path that the environment variable
+POESY or ``poesy.program`` names.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from ._calibrate import Calibration, calibrate
 from ._errors import (
     DamagedFile,
     Error,
@@ -26,6 +27,7 @@ from ._errors import (
     StudyError,
 )
 from ._evaluate import Evaluation, evaluate
+from ._figure import figure
 from ._mechanism import Coordinate, Frame, Mechanism, Named, mechanism
 from ._plot import Plots
 from ._program import Progress
@@ -33,14 +35,16 @@ from ._program import version as program_version
 from ._ranking import Ranking
 from ._result import Result, read
 from ._run import run
+from ._sweep import sweep
 
 __version__ = "0.2.0"
 
 program: str | os.PathLike[str] | None = None
-"""The program to run. ``None``: the environment variable POESY says it, else the one of this virtual environment is taken,
-else the first `poesy` on PATH."""
+"""Path of the program to run. ``None``: the path in the environment variable POESY, else the program in this virtual
+environment, else the first `poesy` on PATH."""
 
 __all__ = [
+    "Calibration",
     "Coordinate",
     "DamagedFile",
     "Error",
@@ -59,16 +63,19 @@ __all__ = [
     "Ranking",
     "Result",
     "StudyError",
+    "calibrate",
     "evaluate",
+    "figure",
     "mechanism",
     "program_version",
     "read",
     "run",
+    "sweep",
 ]
 
 
 def __getattr__(name: str) -> Any:
-    """`Evaluator`, the compiled solver, when it is first asked for: most users do not have it."""
+    """Imports `Evaluator`, the compiled solver, on first use, because most installations lack it."""
     if name != "Evaluator":
         raise AttributeError(f"module 'poesy' has no attribute {name!r}")
     try:

@@ -1,4 +1,4 @@
-"""Which responses of a result do not vary: nothing has a share of them, so no ranking begins with them."""
+"""Finds responses of a result that do not vary. No error has a share of them, so no ranking begins with them."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 
 from . import _h5
 
-# As the program has it (engine/stats/indices.h): an index below it is rounding.
+# An index below this is rounding error; the same as in engine/stats/indices.h.
 INDEX_ROUNDING = 1e-10
-# Where kinds of study that form shares say it, if a response does not vary.
+# The dataset that tells which responses vary, for kinds of study that compute shares.
 _FLAGS = {"sobol": "sobol/varies", "monte-carlo": "monte_carlo/varies"}
 
 
@@ -31,7 +31,7 @@ def constant_responses(kind: str, file: h5py.File) -> frozenset[str]:
 
 
 def _has_an_effect(file: h5py.File) -> Any:
-    """Whether any error has an effect on each response, or none of its indices is known, [R]."""
+    """[R] Whether some error has an effect on the response. Also true if none of its indices is known."""
     found = file["sensitivity"]
     rounding = found["rounding"][...][:, None] / file["factors/sigma"][...]
     some = (found["global_corrected"][...] >= np.maximum(INDEX_ROUNDING, rounding)).any(axis=1)
@@ -39,7 +39,7 @@ def _has_an_effect(file: h5py.File) -> Any:
 
 
 def constant_text(response: str) -> str:
-    """In words, as the program has them."""
+    """A sentence on a response that does not vary, in the program's words."""
     return (
         f"{response} does not vary: what its samples scatter, if they do, is the rounding of their solves, "
         "so no error has a share of it"

@@ -1,4 +1,4 @@
-"""Errors and poses as arrays, responses as arrays."""
+"""Solves given errors at given poses. Errors, poses and responses are arrays."""
 
 from __future__ import annotations
 
@@ -21,20 +21,21 @@ Floats = npt.NDArray[np.float64]
 
 
 class Evaluation(dict[str, Floats]):
-    """Responses by name, each [M x N] in SI (m, rad): pose m with errors n; [M] where errors belong to poses one by one.
+    """Responses by name, each [M x N] in SI (m, rad), for pose m and row n of the errors. [M] if each pose has its own
+    row.
 
     Attributes
     ----------
     status : ndarray of uint8 [M x N] or [M]
-        How each solve ended, a position in `status_names`. 0: converged; 5: a machine that cannot be assembled.
+        How each solve ended, as an index of `status_names`. 0: converged; 5: the machine cannot be assembled.
     status_names : tuple of str
-        not_assembled, the last one, only where a solve ended so.
+        Names of the statuses. The last one, not_assembled, is present only if a solve ended with it.
     converged : ndarray of bool
-        Where `status` is 0. Elsewhere a response says little; the program leaves it out of its statistics.
+        Whether `status` is 0. If not, the response means little, and the program leaves it out of its statistics.
     units : dict of str
         SI unit of each response.
     details : dict of ndarray [M x N x C] or [M x C]
-        What else the mechanism gives, for instance deviations between limbs as screws.
+        Further outputs of the mechanism, for instance deviations between limbs as screws.
     joints : ndarray [M x J]
         Displacements of the joints at each pose without errors, m or rad.
     joint_names : tuple of str
@@ -69,22 +70,23 @@ def evaluate(
     solver: Mapping[str, Any] | None = None,
     threads: int | None = None,
 ) -> Evaluation:
-    """What given errors do at given poses, by ``poesy evaluate``.
+    """Solves given errors at given poses with ``poesy evaluate``.
 
-    Numbers go to the program as text, exactly. For a solve inside a loop, `poesy.Evaluator` is far faster.
+    Numbers are passed to the program as text, exactly. Inside a loop, `poesy.Evaluator` is far faster.
 
     Parameters
     ----------
     mechanism
         Name, path of a file, dict or `Mechanism`, as `poesy.mechanism` takes them.
     poses
-        [M x dims], or [dims] for one, SI, columns in the order of ``mechanism(...).coordinates``. Or columns by name, which
-        may be those of another description of a pose ("tip", "actuators": ``print(mechanism(...).text)``).
+        [M x dims], or [dims] for one pose, SI, columns in the order of ``mechanism(...).coordinates``. Or columns by
+        name. These may be coordinates of a chart, such as "tip" or "actuators", which ``print(mechanism(...).text)``
+        lists.
     errors
-        [N x P], or [P] for one row, SI, columns in the order of ``mechanism(...).errors``. Or columns by name; errors that
-        are not named are zero, and one number holds for all rows.
+        [N x P], or [P] for one row, SI, columns in the order of ``mechanism(...).errors``. Or columns by name; other
+        errors are then zero, and a single number applies to all rows.
     paired
-        Row n of the errors belongs to pose n alone, instead of every pose with every row.
+        Whether row n of the errors is solved only at pose n. Otherwise every row is solved at every pose.
     geometry, fidelity
         As in ``[mechanism]`` of a study: ``geometry={"l_A": "80 mm"}``.
     solver
@@ -112,13 +114,13 @@ def evaluate(
         words = ["evaluate", path.name, "--poses", "poses.csv", "--errors", "errors.csv", "-o", "result.h5", "--quiet"]
         words += ["--paired"] * paired + (["--threads", str(threads)] if threads is not None else [])
         done = _program.start(words, folder=folder)
-        if done.code not in (_program.DONE, _program.TOO_MANY_NOT_CONVERGED):  # the status says which did not converge
+        if done.code not in (_program.DONE, _program.TOO_MANY_NOT_CONVERGED):  # `status` tells which
             raise _program.exception_of(done)
         return Evaluation(Result(folder / "result.h5"), paired)
 
 
 def _columns(values: npt.ArrayLike | Mapping[str, npt.ArrayLike], names: list[str], what: str, of: str) -> dict[str, Floats]:
-    """Columns of equal length by name."""
+    """The columns by name, made equally long. what, of: the columns and their names in messages."""
     if isinstance(values, Mapping):
         given = {name: np.asarray(column, dtype=float) for name, column in values.items()}
         try:
@@ -142,7 +144,7 @@ def _some(names: list[str]) -> str:
 
 
 def _write_table(path: Path, columns: Mapping[str, Floats], units: Mapping[str, str]) -> None:
-    """All numbers are SI, which columns say; repr() of a float is read back as the same number."""
+    """Writes columns as CSV. Their titles state the SI units, and repr() of a float reads back as the same number."""
     rows = np.stack(list(columns.values()), axis=1).tolist()
     titles = [f"{name} [{units[name]}]" if units.get(name, "1") != "1" else name for name in columns]
     lines = [",".join(titles), *(",".join(map(repr, row)) for row in rows)]

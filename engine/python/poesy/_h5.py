@@ -1,4 +1,4 @@
-"""Result files as xarray Datasets, by what the files say of themselves: names of axes, units, descriptions."""
+"""Reads result files as xarray Datasets. Names of axes, units and descriptions come from the files themselves."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import xarray
 
 from ._errors import DamagedFile, FileError
 
-MAJOR = 1  # of the format
+MAJOR = 1  # major version of the format
 _BOOKKEEPING = frozenset({"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"})
 _DEEPEST, _MOST_NAMES = 16, 16  # results have three levels, and datasets of up to seven names
 _OWN_FILTERS = range(1, 7)  # gzip, shuffle, fletcher32, szip, nbit, scaleoffset
@@ -24,13 +24,14 @@ _LINKS = {h5py.h5l.TYPE_SOFT: "a soft link", h5py.h5l.TYPE_EXTERNAL: "a link to 
 
 
 class _StrangeFile(Exception):
-    """A file has what poesy never writes."""
+    """A file has contents that poesy never writes."""
 
 
 @contextmanager
 def opened(path: Path) -> Iterator[h5py.File]:
-    """The file, open to be read. Raises `FileError` where it is not there, `DamagedFile` where it is no result, is damaged
-    here or when it is read in the block, is of another version of the format, or would read other files."""
+    """Opens a result file for reading. Raises `FileError` if it does not exist. Raises `DamagedFile` if it is not a
+    result, has another version of the format, would read other files, or is damaged, also if the damage shows inside
+    the block."""
     if not path.exists():
         raise FileError(f"{path}: there is no such file; results come from poesy.run")
     if not path.is_file():  # HDF5 would wait for a FIFO
@@ -49,14 +50,14 @@ def opened(path: Path) -> Iterator[h5py.File]:
     except (OSError, KeyError, RuntimeError) as error:
         if isinstance(error, FileError):
             raise
-        raise DamagedFile(f"{path}: is no intact HDF5 file: {error}") from error
+        raise DamagedFile(f"{path}: is not an intact HDF5 file: {error}") from error
 
 
 def _check(path: Path, file: h5py.File) -> None:
     filetype = file.attrs.get("filetype", "none")
     if filetype != "poesy-result":
         found = _printable(str(filetype))
-        raise DamagedFile(f"{path}: is no result of poesy (attribute filetype: {found}); results come from poesy.run")
+        raise DamagedFile(f"{path}: is not a result of poesy (attribute filetype: {found}); results come from poesy.run")
     major, minor = file.attrs["version"]
     if major != MAJOR:
         remedy = "take a newer package" if major > MAJOR else "run the study again"
@@ -64,29 +65,29 @@ def _check(path: Path, file: h5py.File) -> None:
 
 
 def _printable(text: str) -> str:
-    """What may go to a terminal."""
+    """The text with "?" in place of characters that a terminal cannot print."""
     return "".join(one if one.isprintable() else "?" for one in text)
 
 
 def _expect_plain_tree(file: h5py.File) -> None:
-    """Raises `_StrangeFile` where there is anything but groups and datasets in one tree whose values are all in this file.
+    """Raises `_StrangeFile` unless the file is one tree of groups and datasets whose values are all in this file.
 
-    Looks at no value. HDF5 by itself reads other files for external links, external storage and virtual datasets. The
-    program refuses the same (h5::File::expect_plain_tree).
+    Reads no value. HDF5 would open other files for external links, external storage and virtual datasets. The program
+    refuses such files, too (h5::File::expect_plain_tree).
     """
     names = Counter([h5py.h5o.get_info(h5py.h5g.open(file.id, b"/")).addr])
     groups = [(b"/", 0)]
     while groups:
         group, depth = groups.pop()
         links: list[tuple[bytes, int]] = []
-        here = h5py.h5g.open(file.id, group)  # kept, or its links cannot be listed
+        here = h5py.h5g.open(file.id, group)  # must stay open while its links are listed
         here.links.iterate(lambda name, info: links.append((name, info.type)), info=True)
         for name, link in links:
             path = group.rstrip(b"/") + b"/" + name
             shown = path.decode(errors="replace")
             if link != h5py.h5l.TYPE_HARD:
                 raise _StrangeFile(f"{shown} is {_LINKS.get(link, 'a link of another kind')}")
-            if b"/" in name or name in (b"", b"."):  # HDF5 would look for its parts one by one
+            if b"/" in name or name in (b"", b"."):  # HDF5 would take it for a path
                 raise _StrangeFile(f"{shown} has no name of its own")
             thing = h5py.h5o.open(file.id, path)
             address = h5py.h5o.get_info(thing).addr
@@ -113,7 +114,7 @@ def _expect_own_storage(dataset: h5py.h5d.DatasetID, shown: str) -> None:
         raise _StrangeFile(f"{shown} has its values in other files (external storage)")
     for number in range(storage.get_nfilters()):
         kind = storage.get_filter(number)[0]
-        if kind not in _OWN_FILTERS:  # HDF5 would run what it finds among the plugins of this machine
+        if kind not in _OWN_FILTERS:  # HDF5 would run a plugin of this machine
             raise _StrangeFile(f"{shown} needs the filter {kind}")
 
 
@@ -127,19 +128,20 @@ def _python(value: Any) -> Any:
 
 
 def group_names(file: h5py.File) -> list[str]:
-    """Every group of the file, "sensitivity/history" after "sensitivity"."""
+    """The names of all groups of the file. An inner group, "sensitivity/history", follows its outer one,
+    "sensitivity"."""
     names: list[str] = []
     file.visititems(lambda name, thing: names.append(name) if isinstance(thing, h5py.Group) else None)
     return names
 
 
 def text(file: h5py.File, name: str) -> str:
-    """A dataset that is one text."""
+    """Reads a dataset that is one text."""
     return str(file[name].asstr()[()])
 
 
 def texts(file: h5py.File, name: str) -> list[str]:
-    """A dataset that is a list of texts."""
+    """Reads a dataset that is a list of texts."""
     return [str(one) for one in file[name].asstr()[...]]
 
 
@@ -151,7 +153,7 @@ def _values(dataset: h5py.Dataset) -> Any:
 
 
 def _labels(dataset: h5py.Dataset) -> dict[str, Any]:
-    """Its attributes, and unit and description once more under the names by which xarray labels plots."""
+    """The attributes of a dataset. Unit and description also have the names by which xarray labels plots."""
     found = attributes(dataset)
     if "unit" in found:
         found["units"] = found["unit"]
@@ -161,28 +163,28 @@ def _labels(dataset: h5py.Dataset) -> dict[str, Any]:
 
 
 def _scales(dataset: h5py.Dataset) -> list[tuple[str, h5py.Dataset | None]]:
-    """Of each axis its name and the scale that has its labels."""
+    """For each axis of a dataset its name, and the dimension scale with its labels."""
     if h5py.h5ds.is_scale(dataset.id):
         return [(dataset.name.rpartition("/")[2], dataset)] * dataset.ndim
     found: list[tuple[str, h5py.Dataset | None]] = []
     for number, dimension in enumerate(dataset.dims):
         scale = dimension[0] if len(dimension) else None
-        if scale is not None and scale.name is None:  # a reference to what no link leads to, so nobody has looked at it
+        if scale is not None and scale.name is None:  # no link leads to it, so it was not checked
             raise _StrangeFile(f"{dataset.name} has an axis whose labels are not in the tree")
         found.append((scale.name.rpartition("/")[2], scale) if scale is not None else (f"axis_{number}", None))
     return found
 
 
 def dataset_of(group: h5py.Group, units: Mapping[str, Mapping[str, str]]) -> xarray.Dataset:
-    """A group without the groups below it.
+    """A group as a Dataset, without the groups inside it.
 
     Parameters
     ----------
     group
-        Of a result file.
+        A group of a result file.
     units
-        SI units by name, for each axis whose entries have units of their own: "response", "factor", "part". Such an axis
-        gets a coordinate ``response_unit`` beside it.
+        SI units by name, for each axis whose entries have their own units: "response", "factor", "part". For such an
+        axis the Dataset has a further coordinate, ``response_unit``.
     """
     variables: dict[str, Any] = {}
     coordinates: dict[str, Any] = {}

@@ -21,7 +21,7 @@ _NUMBER = r"[-+]?(?:[\d.]+(?:e[-+]?\d+)?|inf|nan)"
 _VECTOR = rf"\(({_NUMBER}), ({_NUMBER}), ({_NUMBER})\)"
 _FRAME = re.compile(rf"  (?P<name>\S+) +(?P<joint>\S+)(?: +(?P<type>\S.*?))? +{_VECTOR} +{_VECTOR} +{_VECTOR}")
 _COORDINATE = re.compile(rf"  (\S+) +({_NUMBER}) to ({_NUMBER}) +(\S+) (.*)")
-_NAMED = re.compile(r"  (\S+) +(N m|\S+) (.*)")  # a name, its unit, of which one holds a blank, and words
+_NAMED = re.compile(r"  (\S+) +(N m|\S+) (.*)")  # a name, its unit (only "N m" has a blank), and a description
 _RESPONSES = re.compile(
     r'responses(?: by \[solver\] metric = "(?P<metric>[^"]*)")?(?P<usual>, which a study without the key has)?'
 )
@@ -38,7 +38,7 @@ class Coordinate(NamedTuple):
 
 
 class Named(NamedTuple):
-    """An error or a response: its SI unit, and what it is in words."""
+    """An error or a response, with its SI unit and its description."""
 
     name: str
     unit: str
@@ -46,9 +46,9 @@ class Named(NamedTuple):
 
 
 class Frame(NamedTuple):
-    """A joint's frame at home, in the base frame; the last one is the platform's."""
+    """The frame of a joint at home, in the base frame. The last frame is that of the platform."""
 
-    name: str  #: "1_2": of joint 2 of limb 1; "platform"
+    name: str  #: "1_2" for joint 2 of limb 1; "platform"
     joint: str
     type: str  #: "R", "P", ...; empty for the platform
     actuated: bool
@@ -58,25 +58,25 @@ class Frame(NamedTuple):
 
 
 class Mechanism:
-    """A mechanism as the program understands it. `mechanism` gives it.
+    """A mechanism as the program understands it, made by `mechanism`.
 
     Attributes
     ----------
     name, title : str
     path : pathlib.Path or None
-        Its file; ``None`` where it is built in.
+        The mechanism's file; ``None`` for a built-in mechanism.
     coordinates : tuple of Coordinate
-        Of a pose, in the order of the columns of `evaluate`.
+        Coordinates of a pose, in the order of the columns of `evaluate`.
     errors : tuple of Named
         Every geometric error, in the order of the columns of `evaluate`.
     responses : tuple of Named
-        Those of a study that chooses no metric.
+        Responses of a study that chooses no metric.
     responses_by_metric : dict
-        Of an over-constrained mechanism, the responses under ``[solver] metric = "platform"`` and "published".
+        For an over-constrained mechanism, the responses under ``[solver] metric = "platform"`` and "published".
     frames : tuple of Frame
-        Joints at home; empty for a mechanism that is built in.
+        Frames of the joints at home; empty for a built-in mechanism.
     text : str
-        All that ``poesy models`` says: also geometry, mobility, sets of errors.
+        The whole output of ``poesy models``, which also has geometry, mobility and sets of errors.
     """
 
     def __init__(self, name: str, path: Path | None, text: str) -> None:
@@ -91,7 +91,7 @@ class Mechanism:
 
     @property
     def _units(self) -> dict[str, str]:
-        """The SI unit of each pose coordinate, also of other descriptions of a pose, and of each error."""
+        """The SI units of all pose coordinates, of the coordinates of all charts, and of all errors, by name."""
         charts = [_named(lines) for heading, lines in _sections(self.text) if heading.startswith("poses may be given by ")]
         return {one.name: one.unit for one in itertools.chain(*charts, self.coordinates, self.errors)}
 
@@ -104,11 +104,12 @@ class Mechanism:
         return str(self.path)
 
     def table(self) -> dict[str, str]:
-        """Of a study: ``{"mechanism": mechanism.table()}``. A `Mechanism` in its place means the same."""
+        """The table [mechanism] of a study: ``{"mechanism": mechanism.table()}``. A study may have the `Mechanism`
+        instead."""
         return {"model": self.name} if self.path is None else {"file": str(self.path)}
 
     def picture(self, path: str | os.PathLike[str]) -> Path:
-        """Writes a picture (SVG) of a mechanism from a file. Raises as the program does."""
+        """Writes a picture (SVG) of a mechanism that has a file. Raises the exceptions of the program's exit codes."""
         _program.call("models", self._file(), "-o", path)
         return Path(path)
 
@@ -118,7 +119,7 @@ class Mechanism:
         return self.path
 
     def _repr_html_(self) -> str | None:
-        """The picture as an image of its own, because pages that are made of notebooks leave out SVG in other forms."""
+        """The picture as an image with its own data, because web pages made from notebooks drop SVG in other forms."""
         if self.path is None:
             return None
         with tempfile.TemporaryDirectory() as folder:
@@ -130,22 +131,22 @@ class Mechanism:
 def mechanism(
     description: str | os.PathLike[str] | Mapping[str, Any] | Mechanism, path: str | os.PathLike[str] | None = None
 ) -> Mechanism:
-    """Looks at a mechanism: checks it, and says its errors, responses and frames.
+    """Checks a mechanism, and returns its errors, responses and frames.
 
     Parameters
     ----------
     description
-        Name of one that is built in ("2upr-rpu"), path of a mechanism's file, or what such a file holds as a dict, of which
-        ``format`` and ``version`` may be left out (engine/docs/study-file.md, "Mechanism files").
+        Name of a built-in mechanism ("2upr-rpu"), path of a mechanism's file, or the content of such a file as a dict,
+        in which ``format`` and ``version`` may be left out (engine/docs/study-file.md, "Mechanism files").
     path
-        Where to write the file of a dict; default: a folder that lives as long as the object.
+        Where to write the file of a dict; default: a temporary folder that exists as long as the object.
 
     Raises
     ------
     StudyError
-        If it is not a mechanism; the message says where and why.
+        If the description is not a mechanism; the message says where and why.
     FileError
-        Where the file cannot be read or written.
+        If the file cannot be read or written.
     """
     if isinstance(description, Mechanism):
         return description
@@ -188,7 +189,7 @@ def _called_with_line(file: Path, written: str) -> str:
 
 
 def with_line(error: StudyError, path: str, what: str, text: str) -> StudyError:
-    """Names the line of a file that the user has not seen, in place of the file.
+    """The error with the line itself in place of the file's name, for a file that the user has not seen.
 
     "/tmp/x/study.toml:12:1: problem" becomes "study, line 12 (samples = 1): problem".
     """
@@ -200,7 +201,7 @@ def with_line(error: StudyError, path: str, what: str, text: str) -> StudyError:
 
 
 def _sections(text: str) -> list[tuple[str, list[str]]]:
-    """Headings stand at the margin, what belongs to them is indented."""
+    """The headings of the program's text, each with the indented lines below it."""
     found: list[tuple[str, list[str]]] = []
     for line in text.splitlines()[1:]:
         if line and not line.startswith(" "):
@@ -233,7 +234,7 @@ def _responses(sections: Mapping[str, list[str]]) -> tuple[tuple[Named, ...], di
             continue
         if match["metric"]:
             by_metric[match["metric"]] = _named(lines)
-        if match["usual"] or not usual:  # a mechanism with one metric alone does not say which is usual
+        if match["usual"] or not usual:  # with only one metric, the text does not say which is the default
             usual = _named(lines)
     return usual, by_metric
 

@@ -1,4 +1,4 @@
-"""Pictures of a result in matplotlib, in the units in which people read it."""
+"""Pictures of a result in matplotlib, in the units that the program shows."""
 
 from __future__ import annotations
 
@@ -25,38 +25,38 @@ _RANKED = {
     "ST": "ST, share of the variance of {response}",
     "S1": "S1, share of the variance of {response}",
     "cost": "cost",
-    "mean_square_share": "share of the mean square",
+    "mean_square_share": "share of the mean square of {response}",
     "share": "share of the poses where the error deforms alone",
 }
 
 
 @dataclass(frozen=True)
 class _Field:
-    """A value at each pose, in `unit`."""
+    """A quantity at each of M poses."""
 
-    values: Any  # [M]
+    values: Any  # [M] in `unit`
     label: str
     unit: str
 
 
 class Plots:
-    """Pictures of one result. Each method draws into `ax`, or into a new figure, and gives the Axes.
+    """Pictures of one result. Each method draws into `ax`, or into a new figure, and returns the Axes.
 
-    What the result does not have raises `NotInResult`, which says which kinds do.
+    If the result lacks the data, a method raises `NotInResult`, whose message names the kinds that have them.
     """
 
     def __init__(self, result: Result) -> None:
         self._result = result
 
     def ranking(self, response: str | None = None, *, top: int = 20, ax: Axes | None = None) -> Axes:
-        """Bars of what `Result.ranking` ranks, the first on top, with intervals where there are some.
+        """Draws the ranking of `Result.ranking` as bars, the first on top, with intervals if they are known.
 
         Parameters
         ----------
         response
-            By which to rank; default: the one of `poesy show`.
+            Response by which to rank; default: that of `poesy show`.
         top
-            How many rows at the most.
+            Largest number of rows.
         """
         ranked = self._result.ranking(response)[:top]
         if not ranked.rows:
@@ -87,7 +87,7 @@ class Plots:
         y: str | None = None,
         ax: Axes | None = None,
     ) -> Axes:
-        """A value at each pose as colour over two pose coordinates; over time as a line for a trajectory.
+        """Draws a quantity at each pose, as colour over two pose coordinates. For a trajectory, as a line over time.
 
         ==============  ============================================================  ==============================
         kind            what is drawn                                                 `of`
@@ -103,10 +103,10 @@ class Plots:
         Parameters
         ----------
         response
-            Default: the one of `poesy show`; of an allocation the first with a limit.
+            Response to draw; default: that of `poesy show`, for an allocation the first one with a limit.
         x, y
-            Pose coordinates; default: the first two that differ between poses. Poses lie in more dimensions than two,
-            so points may hide each other. With `x` alone, values over that coordinate.
+            Pose coordinates; default: the first two that differ between poses. Points may hide each other, because
+            poses have more than two dimensions. With `x` alone, values are drawn over that coordinate.
         """
         shown_field = self._field(response, of, quantity)
         poses = self._result.to_xarray("poses")
@@ -129,15 +129,15 @@ class Plots:
     def main_effects(
         self, response: str | None = None, errors: str | Sequence[str] | None = None, *, ax: Axes | None = None
     ) -> Axes:
-        """The mean of a response while one error is known and all others vary, with its interval as a band.
+        """Draws the mean of a response over the value of one error, while all others vary. A band is its interval.
 
-        Of kind monte-carlo.
+        For results of kind monte-carlo.
 
         Parameters
         ----------
         errors
-            One error, drawn over its value; or several, drawn over their values in standard deviations. Default: the four
-            with the largest S1.
+            One error, drawn over its value, or several, drawn over their values in standard deviations. Default: the
+            four errors with the largest S1.
         """
         result = self._result
         if "monte_carlo/main_effect" not in result.groups:
@@ -173,10 +173,10 @@ class Plots:
         return axes
 
     def yields(self, *, ax: Axes | None = None) -> Axes:
-        """The share of the machines that are good, with its interval: within all limits, then within each alone.
+        """Draws the share of good machines with its interval, first under all limits, then under each limit alone.
 
-        Of kind monte-carlo with draws per machine and limits, and of kind allocation, whose machines are those of the
-        certificate. A dotted line is the yield that the study asks for.
+        For results of kind monte-carlo with draws per machine and limits, and of kind allocation, whose machines are
+        those of the certificate. A dotted line is the yield that the study asks for.
         """
         names, shares = self._shares()
         axes = _axes(ax, 1.4 + 0.4 * len(names))
@@ -191,6 +191,47 @@ class Plots:
             axes.legend()
         axes.set_xlabel("good machines [%]")
         axes.set_title(_title(self._result))
+        return axes
+
+    def sweep(self, quantity: str | None = None, *, ax: Axes | None = None) -> Axes:
+        """Draws a figure of merit over the first key of a sweep, with its interval as a band. There is a line for each
+        combination of the other keys.
+
+        For results of kind sweep.
+
+        Parameters
+        ----------
+        quantity
+            Figure of merit: "yield", "root mean square of gap", ...; default: the first one of the result.
+        """
+        result = self._result
+        if result.kind != "sweep":
+            raise NotInResult(f"{result.path}: this result of kind {result.kind} is of one design; poesy.sweep compares several")
+        group = result.to_xarray("sweep")
+        quantities = [str(name) for name in group["quantity"].values]
+        quantity = quantity or quantities[0]
+        found = _selected(result, group, "quantity", quantity)
+        keys = [str(key).rsplit(".", 1)[-1] for key in group["key"].values]
+        texts = [[str(value) for value in row] for row in group["value"].values]
+        first = [row[0] for row in texts]
+        curves = next((n for n, value in enumerate(first) if value != first[0]), len(first))
+        over = group["number"].values[::curves, 0]
+        numbers = not np.isnan(over).any()
+        over = over if numbers else np.arange(len(over))
+        axes = _axes(ax, 4.2)
+        for c in range(curves):
+            name = ", ".join(f"{key} = {value}" for key, value in zip(keys[1:], texts[c][1:]))
+            line = axes.plot(over, found["merit"].values[c::curves], "o-", markersize=3, label=name)[0]
+            low, high = (found[end].values[c::curves] for end in ("low", "high"))
+            if not np.isnan(low).all():
+                axes.fill_between(over, low, high, alpha=0.2, linewidth=0, color=line.get_color())
+        if not numbers:
+            axes.set_xticks(over, first[::curves])
+        axes.set_xlabel(labelled(keys[0], str(group["unit"].values[0])))
+        axes.set_ylabel(labelled(quantity, str(found["quantity_unit"].values)))
+        if curves > 1:
+            axes.legend()
+        axes.set_title(_title(result))
         return axes
 
     def _asked(self) -> float | None:
@@ -217,7 +258,7 @@ class Plots:
         return names, shares
 
     def _coordinates(self) -> list[str]:
-        """Time, or the first two pose coordinates that differ between poses; one where only one does."""
+        """The coordinates to draw over: time, or the first one or two pose coordinates that differ between poses."""
         poses = self._result.to_xarray("poses")
         if "time" in poses:
             return ["time"]
@@ -331,7 +372,7 @@ def _coordinate(result: Result, poses: Any, name: str) -> _Coordinate:
 def _axes(ax: Axes | None, height: float) -> Axes:
     if ax is not None:
         return ax
-    from matplotlib import pyplot  # here, so that the package serves without a screen and without matplotlib
+    from matplotlib import pyplot  # imported here, because the package must work without a screen and matplotlib
 
     return pyplot.subplots(figsize=(7.0, height), layout="constrained")[1]
 

@@ -26,17 +26,17 @@ _PROGRESS = re.compile(r"(?:stage (?P<stage>\d+): )?(?P<percent>[\d.]+) % done, 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a run is. The program says it every five seconds.
+    """How far a run is, which the program reports every five seconds.
 
     Attributes
     ----------
     share
-        Of the stage's solves that are done, 0 to 1; 0 while the program looks for poses.
+        Share of the stage's solves that are done, 0 to 1; 0 while the program looks for poses.
     stage
-        Counts from 1; only studies that solve in several stages get beyond it.
+        Number of the stage, from 1; above 1 only in studies that solve in several stages.
     text
-        The program's line: poses found while it looks for them, then share done, solves a second, samples that did
-        not converge, time left.
+        The program's line of progress. While the program looks for poses, the number found. Then the share done, solves
+        per second, samples that did not converge, and time left.
     """
 
     share: float
@@ -49,15 +49,15 @@ class Progress:
 
 @dataclass
 class Finished:
-    """What became of a command: its exit code, what it printed, and its messages without the program's name."""
+    """A finished command: its exit code, what it printed, and its messages without the program's name."""
 
     code: int
     output: str = ""
     messages: list[str] = field(default_factory=list)
-    unnamed: str | None = None  # see start
+    unnamed: str | None = None  # path that messages must not begin with; see start()
 
     def take(self, line: str, stacklevel: int) -> None:
-        """Keeps a line that the program said, or warns of it."""
+        """Keeps a message of the program. A warning of the program becomes a `PoesyWarning`."""
         words = line.removeprefix(_BEGINNING)
         warns = line.startswith(_WARNING)
         words = words.removeprefix(_WARNING.removeprefix(_BEGINNING)) if warns else words
@@ -69,13 +69,13 @@ class Finished:
 
 
 def find() -> str:
-    """The program's path: ``poesy.program``, else the environment variable POESY, else the one of this virtual environment,
-    else the first `poesy` on PATH.
+    """The path of the program: ``poesy.program``, else the environment variable POESY, else the program in this virtual
+    environment, else the first `poesy` on PATH.
 
     Raises
     ------
     ProgramNotFound
-        Where there is none, or what is named cannot be started.
+        If there is no program, or the named file cannot be started.
     """
     chosen = getattr(sys.modules["poesy"], "program", None)
     for source, named in (("poesy.program", chosen), ("the environment variable POESY", os.environ.get("POESY"))):
@@ -83,7 +83,7 @@ def find() -> str:
             continue
         found = shutil.which(os.fspath(named))
         if found is None:
-            raise ProgramNotFound(f"{source} is {os.fspath(named)!r}, which is no program that can be started")
+            raise ProgramNotFound(f"{source} is {os.fspath(named)!r}, which is not a program that can be started")
         return str(Path(found).absolute())
     found = _of_environment() or shutil.which("poesy")
     if found is None:
@@ -95,14 +95,14 @@ def find() -> str:
 
 
 def _of_environment() -> str | None:
-    """The `poesy` that is installed beside this Python in a virtual environment, which is on PATH only while it is active."""
+    """The `poesy` in the virtual environment of this Python, which is on PATH only while the environment is active."""
     if sys.prefix == sys.base_prefix:
         return None
     return shutil.which("poesy", path=os.path.join(sys.prefix, "bin"))
 
 
 def call(*arguments: str | os.PathLike[str], folder: Path | None = None) -> str:
-    """Runs a command that is soon done; gives what it prints. Raises the exception of its exit code (`exception_of`)."""
+    """Runs a short command, and returns what it prints. Raises the exception of its exit code (`exception_of`)."""
     done = start(arguments, folder=folder)
     if done.code != DONE:
         raise exception_of(done)
@@ -117,11 +117,11 @@ def start(
 ) -> Finished:
     """Runs the program to its end. Its warnings become `PoesyWarning`.
 
-    unnamed: a file that the user does not know, so that no message begins with it.
+    unnamed: a path that the user does not know, which is removed from the beginning of messages.
 
-    Ctrl-C, and an exception in `on_progress`, stop the program as one Ctrl-C on a terminal does, wait for it, and go on as
-    exceptions; a second Ctrl-C ends it at once. The program is in a process group of its own, so that it gets one signal
-    and not two.
+    Ctrl-C, or an exception in `on_progress`, stops the program as one Ctrl-C on a terminal does. The exception
+    continues after the program has ended. A second Ctrl-C ends the program at once. The program has its own process
+    group, so that it does not get the signal twice.
     """
     command = [find(), *(os.fspath(word) for word in arguments)]
     done = Finished(code=0, unnamed=unnamed)
@@ -148,13 +148,13 @@ def start(
 
 
 def _follow(process: subprocess.Popen[str], done: Finished, on_progress: Callable[[Progress], object] | None) -> None:
-    """Reads what the program says until its end."""
+    """Reads the messages and the progress of the program until it ends."""
     assert process.stderr is not None
     for line in process.stderr:
         line = line.rstrip("\n")
         progress = _PROGRESS.match(line)
         if progress is None:
-            done.take(line, stacklevel=4)  # that of run() and evaluate()
+            done.take(line, stacklevel=4)  # shows the line that called run() or evaluate()
         elif on_progress is not None:
             on_progress(Progress(float(progress["percent"] or 0.0) / 100.0, int(progress["stage"] or 1), line))
     process.wait()
@@ -181,6 +181,6 @@ def exception_of(done: Finished) -> Error:
 
 
 def version() -> dict[str, Any]:
-    """``{"version": "0.2.0", "commit": "..."}`` of the program that would run. Raises `ProgramNotFound`."""
+    """``{"version": "0.2.0", "commit": "..."}`` of the program that `run` would start. Raises `ProgramNotFound`."""
     words = call("--version").split()
     return {"version": words[1], "commit": words[2].strip("()")}

@@ -1,4 +1,4 @@
-"""What a result ranks, as a small table."""
+"""The ranking of a result as a small table."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from ._result import Result
 
-# As the program has them: rounding above the first hides indices of interest (engine/stats/indices.h); with fewer samples
-# at a pose no first-order index is formed (engine/stats/first_order.h).
+# The same limits as in the program. Rounding errors above the first hide indices of interest (engine/stats/indices.h).
+# With fewer samples at a pose than the second, there is no first-order index (engine/stats/first_order.h).
 _INDEX_OF_INTEREST = 1e-6
 _FEWEST_INDEX_SAMPLES = 64
 _ROWS_SHOWN = 20
@@ -28,19 +28,19 @@ _ROWS_SHOWN = 20
 
 @dataclass(frozen=True)
 class SensitivityRow:
-    """An error and what it does to the response alone. Index and effect with the ends of their interval; zero where they
-    are no more than rounding, NaN where the error is too small to tell."""
+    """An error, and its effect on the response on its own. Index and effect have the ends of their intervals. They are
+    zero if they are only rounding errors, and NaN if the error is too small to tell."""
 
     rank: int
     name: str
-    effect: float  #: index x sigma, in `effect_unit`
+    effect: float  #: effect at the error's size in the study, index x sigma, in `effect_unit`
     effect_low: float
     effect_high: float
     effect_unit: str
     index: float  #: standard deviation of the response over that of the error, in `index_unit`
     index_low: float
     index_high: float
-    index_unit: str  #: "mm/deg"
+    index_unit: str  #: unit of the index, "mm/deg"
     sigma: float  #: standard deviation of the error in the study, in `unit`
     unit: str
     description: str
@@ -48,14 +48,14 @@ class SensitivityRow:
 
 @dataclass(frozen=True)
 class SobolRow:
-    """An error, or a group of errors: its shares of the response's variance over the poses together."""
+    """An error or a group of errors, and its shares of the response's variance, taken over all poses together."""
 
     rank: int
     name: str
-    ST: float  #: with all its interactions
+    ST: float  #: total index: the share with all interactions
     ST_low: float
     ST_high: float
-    S1: float  #: alone
+    S1: float  #: first-order index: the share of the error alone
     S1_low: float
     S1_high: float
     description: str
@@ -63,8 +63,8 @@ class SobolRow:
 
 @dataclass(frozen=True)
 class MonteCarloRow:
-    """An error: the share of the response's variance that it makes alone, from the draws themselves. NaN where it is
-    correlated with others."""
+    """An error, and its first-order index S1: its own share of the response's variance, estimated from the study's
+    draws. NaN if the error is correlated with others."""
 
     rank: int
     name: str
@@ -76,15 +76,15 @@ class MonteCarloRow:
 
 @dataclass(frozen=True)
 class YieldRow:
-    """An error of a study of machines with limits: what it adds to the mean square of the limited response, to first
-    order. NaN where it is correlated with others."""
+    """An error in a study of machines with limits, and its share of the limited response's mean square, to first order.
+    NaN if the error is correlated with others."""
 
     rank: int
     name: str
-    mean_square_share: float  #: over all poses, of a norm that of its vector
+    mean_square_share: float  #: over all poses; for a norm the share for its vector
     mean_square_share_low: float
     mean_square_share_high: float
-    change: float  #: what the yield changes by if the error's sigma grows by a tenth
+    change: float  #: change of the yield if the error's sigma grows by a tenth
     change_low: float
     change_high: float
     description: str
@@ -92,17 +92,17 @@ class YieldRow:
 
 @dataclass(frozen=True)
 class AllocationRow:
-    """A part of the drawing and its tolerance +-T."""
+    """A part, whose errors share one tolerance +-T of the drawing."""
 
     rank: int
     name: str
     tolerance: float  #: T, in `unit`
     unit: str
-    sigma: float  #: standard deviation about the mean, in `unit`
-    cost: float  #: in the study's currency; NaN where the aim has no costs
-    share: float  #: of the cost of all parts
-    mean_square_share: float  #: of what all parts add to the mean square under the tightest limit
-    members: str  #: the part's errors, with blanks between
+    sigma: float  #: standard deviation of the errors about their mean, in `unit`
+    cost: float  #: cost in the study's currency; NaN if the study's aim has no costs
+    share: float  #: share of the cost of all parts
+    mean_square_share: float  #: share of all parts' mean square of the response with the tightest limit
+    members: str  #: names of the part's errors, separated by blanks
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class IdentificationRow:
     rank: int
     name: str
     verdict: str  #: "deforms alone", "deforms in a coupling" or "absorbed"
-    share: float  #: of the poses where it deforms alone, the mean of the groups of sizes
+    share: float  #: share of poses where it deforms alone, averaged over the groups of sizes
     description: str
 
 
@@ -126,15 +126,15 @@ class Ranking(Sequence[Row]):
     Attributes
     ----------
     title
-        What is ranked, and by what.
+        What is ranked, and by which quantity.
     value
-        Name of the field that ranks: "effect", "ST", "S1", "cost", "mean_square_share" or "share".
+        Name of the field that determines the order: "effect", "ST", "S1", "cost", "mean_square_share" or "share".
     what
         What a row is: "error", "group" or "part".
     rows
-        All of one kind's row type.
+        The rows, all of the type for the kind of study.
     units
-        Units of fields that have one for all rows: ``{"effect": "mm"}``.
+        Units of fields whose unit is the same in all rows: ``{"effect": "mm"}``.
     """
 
     title: str
@@ -157,12 +157,12 @@ class Ranking(Sequence[Row]):
         return iter(self.rows)
 
     def to_dict(self) -> dict[str, list[Any]]:
-        """Columns by name, each as long as there are rows: ``pandas.DataFrame(ranking.to_dict())``."""
+        """The columns by name, for example for ``pandas.DataFrame(ranking.to_dict())``."""
         names = [one.name for one in fields(self.rows[0])] if self.rows else []
         return {name: [getattr(row, name) for row in self.rows] for name in names}
 
     def _table(self) -> tuple[list[str], list[list[str]]]:
-        """Headings and cells, without the column that is the same in words, and with no more rows than fit."""
+        """Headings and cells for display, without the descriptions, and with a limited number of rows."""
         columns = self.to_dict()
         columns.pop("description", None)
         for name in ("effect_unit", "index_unit"):
@@ -218,8 +218,8 @@ def ranking(result: Result, response: str | None) -> Ranking:
 
 
 def told_from_rounding(index: float, rounding: float) -> float:
-    """The index in SI, 0 where it is no more than rounding, NaN where the error is too small to tell. rounding: of the
-    response, divided by the error's sigma; both SI."""
+    """The index, SI. 0 if it is only rounding error, NaN if the error is too small to tell. rounding: the rounding
+    error of the response divided by the error's sigma, SI."""
     rounding = max(INDEX_ROUNDING, rounding)
     if math.isnan(index) or index >= rounding:
         return index
@@ -227,12 +227,12 @@ def told_from_rounding(index: float, rounding: float) -> float:
 
 
 def _in_order(values: Any) -> list[int]:
-    """Positions of the values, the largest first, NaN last; equal ones stay in their order."""
+    """The indices of the values, ordered by value, the largest first and NaN last. Equal values keep their order."""
     return sorted(range(len(values)), key=lambda at: -math.inf if math.isnan(values[at]) else values[at], reverse=True)
 
 
 def _with_ends(found: xarray.Dataset, name: str) -> list[tuple[float, float, float]]:
-    """Values with the ends of their intervals."""
+    """The values of a variable, each with the ends of its interval."""
     columns = (found[f"{name}{end}"].values.tolist() for end in ("", "_ci_low", "_ci_high"))
     return list(zip(*columns))
 
@@ -288,8 +288,8 @@ def _sobol(result: Result, response: str | None) -> Ranking:
 
 
 def limited_response(result: Result, response: str | None) -> str | None:
-    """Of the limited responses, those of which shares of the mean square are known, this one, by default the one that
-    rejects most machines. None where it is none of them."""
+    """The limited response by whose mean square errors are ranked, or None. It must be one whose shares of the mean
+    square are known. By default it is the response that rejects most machines."""
     if result.kind != "monte-carlo" or "yield" not in result.groups:
         return None
     found = result.to_xarray("yield")
@@ -396,7 +396,7 @@ def to_salib(result: Result, response: str | None) -> dict[str, Any]:
     if "S2" in found:
         below = np.tril_indices(len(indices["names"]))
         for name, values in (("S2", found["S2"].values.copy()), ("S2_conf", _half_width(found, "S2"))):
-            values[below] = np.nan  # each pair once, as SALib has them
+            values[below] = np.nan  # each pair appears once, as in SALib
             indices[name] = values
     return indices
 

@@ -1,4 +1,4 @@
-"""A result file: what it holds, ranked, drawn and as arrays."""
+"""A result file, with its data as rankings, pictures and arrays."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from ._verdict import verdict
 if TYPE_CHECKING:
     import xarray
 
-# Axes whose entries have units of their own: where the names and the units are.
-_LEADING = ("tip_position", "position")  # the responses that come first where there are no limits (engine/result/headline.h)
+_LEADING = ("tip_position", "position")  # lead if there are no limits (engine/result/headline.h)
+# For each axis whose entries have their own units, the datasets with the names and the units.
 _UNITS = {
     "response": ("responses/name", "responses/unit"),
     "factor": ("factors/name", "factors/unit"),
@@ -32,28 +32,29 @@ _UNITS = {
 
 
 class Result:
-    """A result of any kind of study. `run` and `read` give it.
+    """A result of any kind of study, as `run` and `read` return it.
 
-    Numbers in arrays are SI (m, rad, s), as in the file; numbers in rankings and plots are in mm and deg, as the program
-    shows them. Groups are read when they are first asked for.
+    Numbers in arrays are SI (m, rad, s), as in the file. Numbers in rankings and plots are in mm and deg, as the
+    program shows them. Groups are read on first use.
 
     Attributes
     ----------
     path : pathlib.Path
-        The file.
+        The result file.
     kind : str
-        "sensitivity", "monte-carlo", "sobol", "allocation", "identification", "coupling", "evaluate" or a later one.
+        "sensitivity", "monte-carlo", "sobol", "allocation", "identification", "coupling", "evaluate", "sweep" or a later
+        one.
     model, title : str
         Name of the mechanism; title of the study.
     attrs : dict
-        Attributes of the file: version of poesy, its commit, the hash of the content, and the above.
+        Attributes of the file: version and commit of poesy, hash of the content, kind, model and title.
     study : dict
         The study with every default filled in, and quantities as text in SI: ``study["analysis"]["samples"]``.
     verdict : str or None
-        "kept", "not kept" or "undecided" where the study states limits, "certified" or "not certified" where it looks for
-        tolerances, ``None`` where nothing was to be judged.
+        "kept", "not kept" or "undecided" if the study states limits, "certified" or "not certified" if it looks for
+        tolerances, ``None`` if the study asks for no judgement.
     messages : tuple of str
-        What the program said of the run, without its progress; empty for a file that was read.
+        Messages of the program about the run, without its progress; empty for a file that was read.
     """
 
     def __init__(self, path: str | os.PathLike[str], messages: tuple[str, ...] = ()) -> None:
@@ -78,7 +79,7 @@ class Result:
         self.study: dict[str, Any] = tomllib.loads(self._study_text)
 
     def keep_folder(self, folder: Path) -> None:
-        """Removes this folder, which holds the file, together with the result."""
+        """Makes the folder that holds the result file be removed together with this object."""
         weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
 
     def __repr__(self) -> str:
@@ -87,12 +88,12 @@ class Result:
 
     @property
     def plot(self) -> Plots:
-        """Pictures: ``result.plot.ranking()``."""
+        """Methods that draw the result, such as ``result.plot.ranking()``."""
         return Plots(self)
 
     @property
     def groups(self) -> tuple[str, ...]:
-        """Names of the file's groups: "poses", "sensitivity", "sensitivity/history", ..."""
+        """The names of the file's groups: "poses", "sensitivity", "sensitivity/history", ..."""
         return self._names
 
     @overload
@@ -100,19 +101,19 @@ class Result:
     @overload
     def to_xarray(self, group: str) -> xarray.Dataset: ...
     def to_xarray(self, group: str | None = None) -> dict[str, xarray.Dataset] | xarray.Dataset:
-        """Every group as a Dataset, or one of them.
+        """All groups as Datasets by name, or one group as a Dataset.
 
-        Dimensions have the names and labels of the file's own axes, so ``.sel(response="gap", factor="delta_1_1_y")``
-        works. Each variable has ``unit`` and ``description`` in its attributes, again as ``units`` and ``long_name`` for
-        xarray's own plots. Values are SI. Where the entries of an axis have units of their own, the coordinates
-        ``response_unit``, ``factor_unit`` and ``part_unit`` have them.
+        Dimensions have the names and labels of the file's axes, so ``.sel(response="gap", factor="delta_1_1_y")``
+        works. Each variable has the attributes ``unit`` and ``description``, and again as ``units`` and ``long_name``
+        for the plots of xarray. Values are SI. If the entries of an axis have their own units, these are in the
+        coordinates ``response_unit``, ``factor_unit`` and ``part_unit``.
 
         Raises
         ------
         NotInResult
-            For a group that this result does not have; the message lists those that it has.
+            If the result lacks the group; the message lists its groups.
         DamagedFile
-            Where the file is damaged there.
+            If this part of the file is damaged.
         """
         if group is None:
             return {name: self.to_xarray(name) for name in self._names}
@@ -124,27 +125,28 @@ class Result:
         return self._groups[group].copy(deep=True)
 
     def units(self, axis: str) -> dict[str, str]:
-        """SI units by name. axis: "response", "factor" (errors) or "part"."""
+        """The SI units on an axis by name. axis: "response", "factor" (errors) or "part"."""
         return dict(self._units.get(axis, {}))
 
     def description(self, axis: str, name: str) -> str:
-        """A response or an error in words: which limb, joint and axis. axis: "response" or "factor"."""
+        """The description of a response or an error, such as its limb, joint and axis. axis: "response" or "factor"."""
         return self._descriptions.get(axis, {}).get(name, "")
 
     @property
     def constant(self) -> frozenset[str]:
-        """Names of the responses that do not vary: what their samples scatter, if they do, is rounding. No error has a share
-        of them. Of kinds sensitivity, sobol, monte-carlo and coupling; of others none is said not to vary."""
+        """The names of responses that do not vary, apart from rounding errors. No error has a share of them. They are
+        known for the kinds sensitivity, sobol, monte-carlo and coupling; for other kinds the set is empty."""
         if self._constant is None:
             with _h5.opened(self.path) as file:
                 self._constant = constant_responses(self.kind, file)
         return self._constant
 
     def response(self, name: str | None = None) -> str:
-        """The response of this name, or the one that the program ranks by. Of those that vary it is a response with a
-        limit, the one whose limit is missed most often; without limits the displacement of the tool, without a tool that
-        of the platform; else of those that the mechanism puts first the first that is a length, or the first. Raises
-        `NotInResult` for a name that it does not have."""
+        """The response of this name, or by default the one by which the program ranks, chosen from those that vary.
+
+        It is the response whose limit is missed most often. Without limits it is the displacement of the tool, or else
+        of the platform. If there is neither, it is the first length among the responses that the mechanism puts first,
+        or else the first of these. Raises `NotInResult` for a name that the result does not have."""
         units = self._units["response"]
         if name is None:
             listed = self.to_xarray("responses").attrs.get("headline", list(units))
@@ -158,7 +160,7 @@ class Result:
         return name
 
     def _limited(self) -> list[str]:
-        """Responses with limits, the one whose limit is missed most often first."""
+        """The responses with limits, those first whose limits are missed most often."""
         if "limits" not in self._names:
             return []
         limits = self.to_xarray("limits")
@@ -166,11 +168,11 @@ class Result:
         return [str(limits["response"].values[k]) for k in np.argsort(-missed, kind="stable")]
 
     def response_unit(self, name: str) -> tuple[str, float]:
-        """The unit in which people read a response, and its size in SI: ("mm", 0.001)."""
+        """The unit in which the program shows a response, and the size of this unit in SI: ("mm", 0.001)."""
         return shown(self._units["response"][name])
 
     def ranking(self, response: str | None = None) -> Ranking:
-        """What the study ranks, most important first, in the program's order and with its numbers.
+        """The ranking of errors or parts, the most important first, in the order and with the numbers of the program.
 
         ==============  ===================================================================
         kind            rows
@@ -183,23 +185,23 @@ class Result:
         identification  errors by whether they deform the mechanism (`IdentificationRow`)
         ==============  ===================================================================
 
-        By a response that does not vary (`Result.constant`) shares have no rows, and the title says why.
+        For a response that does not vary (`Result.constant`), a ranking by shares has no rows, and its title says why.
 
         Parameters
         ----------
         response
-            By which to rank; default: the one of `poesy show`; with draws per machine and limits the limited one that
-            rejects most machines.
+            Response by which to rank; default: that of `poesy show`. With draws per machine and limits, the default is
+            the limited response that rejects most machines.
 
         Raises
         ------
         NotInResult
-            For a kind that ranks nothing, and for a response that is not there.
+            For a kind without a ranking, and for a response that the result does not have.
         """
         return ranking(self, response)
 
     def to_salib(self, response: str | None = None) -> dict[str, Any]:
-        """Sobol' indices over the poses together, as SALib's ``sobol.analyze`` gives them.
+        """The Sobol' indices over all poses together, in the form that ``sobol.analyze`` of SALib returns.
 
         Returns
         -------
@@ -210,24 +212,24 @@ class Result:
         Raises
         ------
         NotInResult
-            Where the study is not of kind sobol.
+            If the study is not of kind sobol.
         """
         return to_salib(self, response)
 
     def show(self, *options: str) -> str:
         """The tables of ``poesy show``, with its options: ``print(result.show("--top", "5"))``.
 
-        Raises as the program does.
+        Raises the exceptions of the program's exit codes.
         """
         return _program.call("show", self.path.absolute(), *options)
 
     def report(self, path: str | os.PathLike[str]) -> Path:
-        """Writes the report of ``poesy report``, one HTML file that needs nothing else. Raises as the program does."""
+        """Writes the report of ``poesy report``, one HTML file that needs no other file. Raises as `show` does."""
         _program.call("report", self.path.absolute(), "-o", path)
         return Path(path)
 
     def verify(self) -> None:
-        """Recomputes the hash of the content. Raises `DamagedFile` where it is not the one in the file."""
+        """Recomputes the hash of the content. Raises `DamagedFile` if the file states another hash."""
         try:
             _program.call("verify", self.path.absolute())
         except FileError as error:
@@ -240,8 +242,8 @@ def read(path: str | os.PathLike[str]) -> Result:
     Raises
     ------
     FileError
-        Where there is no such file.
+        If the file does not exist.
     DamagedFile
-        Where it is no result of poesy, is damaged, or is of a version of the format that this package does not read.
+        If it is not a result of poesy, is damaged, or has a version of the format that this package does not read.
     """
     return Result(path)

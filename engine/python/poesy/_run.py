@@ -1,4 +1,4 @@
-"""Runs a study by the program."""
+"""Runs a study with the program."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ import os
 import shutil
 import tempfile
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -28,28 +30,29 @@ def run(
     resume: bool = False,
     yes: bool = False,
 ) -> Result:
-    """Runs a study to its end and gives its result.
+    """Runs a study to its end, and returns its result.
 
-    A study that answers "no" is no error: where a limit is not kept, or tolerances are not certified, ``result.verdict``
-    says so. Where more samples did not converge than the study allows, that is warned of (`PoesyWarning`).
+    It is not an error if a limit is not kept or if tolerances are not certified; ``result.verdict`` tells. If more
+    samples did not converge than the study allows, there is a `PoesyWarning`.
 
     Parameters
     ----------
     study
-        A dict with what a study file holds (engine/docs/study-file.md); ``format`` and ``version`` may be left out, a
-        `Mechanism` may stand for its table, and files are relative to the current folder. Or the path of a study file.
+        The path of a study file, or its content as a dict (engine/docs/study-file.md). In a dict, ``format`` and
+        ``version`` may be left out, a `Mechanism` may replace its table, and files are relative to the current folder.
     output
-        The result file. Default: a file in a temporary folder, which is removed with the `Result`.
+        Path of the result file. Default: a file in a temporary folder, which is removed together with the `Result`.
     threads
-        Default: one for each processor. The numbers do not depend on it.
+        Number of threads; default: one for each processor. The result does not depend on it.
     seed
-        Instead of the study's.
+        Seed of the draws, in place of the study's.
     progress
         Called every five seconds of a long run with a `Progress`; ``True`` prints it.
     resume
-        Continues a run of the same study to the same output that was stopped; starts it where it kept no checkpoint.
+        Continues a stopped run of the same study to the same output. Starts from the beginning if there is no
+        checkpoint.
     yes
-        Starts a run that is going to take more than a day; without it that is a `StudyError`.
+        Allows a run that will take more than a day; otherwise such a run raises `StudyError`.
 
     Returns
     -------
@@ -60,15 +63,47 @@ def run(
     StudyError
         For a wrong study or argument; nothing was written.
     FileError
-        Where a file cannot be read or written.
+        If a file cannot be read or written.
     Interrupted
-        Where another process stopped the run; the checkpoint beside `output` is kept.
+        If another process stopped the run; the checkpoint beside `output` is kept.
     KeyboardInterrupt
-        On Ctrl-C, after the program has stopped and kept its checkpoint. A note says how to resume: the program's command
-        works, with a dict for `study` too, because the folder with the study's file is then kept.
+        On Ctrl-C, after the program has stopped and kept its checkpoint. A note has the program's command to resume. It
+        also works if `study` is a dict, because the folder with the study's file is kept.
     ProgramNotFound, InternalError
-        Where there is no program, or it fails.
+        If there is no program, or if it fails.
     """
+    with prepared(study, output) as place:
+        words = arguments(place, threads, seed, progress, resume, yes)
+        done = _program.start(["run", *words], on_progress=listener(progress), unnamed=place.unnamed)
+        result = result_of(done, place.result)
+    return place.kept(result)
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """The files of one call of the program."""
+
+    study: Path  # the study's file
+    result: Path  # the result's file
+    unnamed: str | None  # the study's file if the user does not know it
+    folder: Path | None  # a temporary folder with the study's file, the result's file, or both
+    own: bool  # whether the result is in that folder
+
+    def kept(self, result: Result) -> Result:
+        """The result, after its temporary folder is removed or bound to it, so that the folder is removed with it."""
+        if self.folder is not None and self.own:
+            result.keep_folder(self.folder)
+        else:
+            _remove(self.folder)
+        return result
+
+
+@contextmanager
+def prepared(
+    study: Mapping[str, Any] | str | os.PathLike[str], output: str | os.PathLike[str] | None
+) -> Iterator[Prepared]:
+    """Prepares the files. A dict is written as a study file, and its folder is removed on errors except
+    interruptions."""
     folder = None
     text = ""
     if isinstance(study, Mapping) or output is None:
@@ -80,9 +115,7 @@ def run(
         else:
             path = Path(study)
         result_path = Path(output) if output is not None else Path(folder or ".") / "study.h5"
-        words = _arguments(path, result_path, threads, seed, progress, resume, yes)
-        done = _program.start(words, on_progress=_listener(progress), unnamed=str(path) if text else None)
-        result = _result_of(done, result_path)
+        yield Prepared(path, result_path, str(path) if text else None, folder, output is None)
     except (Interrupted, KeyboardInterrupt):
         raise
     except StudyError as error:
@@ -91,11 +124,6 @@ def run(
     except BaseException:
         _remove(folder)
         raise
-    if folder is not None and output is None:
-        result.keep_folder(folder)
-    else:
-        _remove(folder)
-    return result
 
 
 def _remove(folder: Path | None) -> None:
@@ -103,16 +131,15 @@ def _remove(folder: Path | None) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _arguments(
-    study: Path,
-    result: Path,
+def arguments(
+    place: Prepared,
     threads: int | None,
     seed: int | None,
     progress: Callable[[Progress], object] | bool | None,
     resume: bool,
     yes: bool,
 ) -> list[str]:
-    words = ["run", str(study), "-o", str(result)]
+    words = [str(place.study), "-o", str(place.result)]
     for option, value in (("--threads", threads), ("--seed", seed)):
         if value is not None:
             words += [option, str(value)]
@@ -125,11 +152,11 @@ def _arguments(
     return words
 
 
-def _listener(progress: Callable[[Progress], object] | bool | None) -> Callable[[Progress], object] | None:
+def listener(progress: Callable[[Progress], object] | bool | None) -> Callable[[Progress], object] | None:
     return progress if callable(progress) else print if progress else None
 
 
-def _result_of(done: _program.Finished, path: Path) -> Result:
+def result_of(done: _program.Finished, path: Path) -> Result:
     if done.code == _program.TOO_MANY_NOT_CONVERGED:
         words = done.messages[-1] if done.messages else "too many samples did not converge"
         warnings.warn(words, PoesyWarning, stacklevel=3)

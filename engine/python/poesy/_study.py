@@ -1,4 +1,4 @@
-"""Writes a study that is a dict as a file, so that it means the same as the file would in the current folder."""
+"""Writes a study that is a dict to a file, which means the same as a study file in the current folder would."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ STUDY_NAME = "study.toml"
 
 
 def write_study(study: Mapping[str, Any], folder: Path) -> tuple[Path, str]:
-    """Writes STUDY_NAME into the folder; gives its path and text.
+    """Writes the file STUDY_NAME into the folder. Returns its path and its text.
 
-    Files that the study names, by keys ``file``, are relative to the study's folder, and are meant relative to the current
-    one. They are linked into the folder by the same name, so that the resolved study, which is part of the result and its
-    hash, has that name too and not one of a temporary folder. ``format`` and ``version`` may be left out.
+    The dict names files relative to the current folder, by keys ``file``, but a study file names them relative to its
+    own folder. So these files are linked into the folder under the same names. Then the resolved study, which is part
+    of the result and its hash, has no name of a temporary folder. ``format`` and ``version`` may be left out.
     """
     table = _linked({"format": "poesy-study", "version": 1, **study}, folder)
     text = _toml.dumps(table)
@@ -46,7 +46,8 @@ def _file(named: Any, folder: Path) -> Any:
 
 
 def _link(name: str, target: Path, folder: Path) -> str:
-    """The name by which the study finds the file: its own, unless that leads out of the folder or is taken."""
+    """Links a file into the folder. Returns its name there, or its full path if the name leads out of the folder or is
+    taken."""
     target = target.absolute()
     link = folder / name
     if Path(name).is_absolute() or ".." in Path(name).parts or name == STUDY_NAME or not target.exists():

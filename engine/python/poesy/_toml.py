@@ -1,4 +1,4 @@
-"""Writes TOML: the standard library only reads it."""
+"""Writes TOML, because the standard library can only read it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def dumps(table: Mapping[str, Any]) -> str:
 
 
 def plain(value: Any, path: tuple[str, ...] = ()) -> Any:
-    """The same with ``dict``, ``list``, ``str``, ``int``, ``float`` and ``bool`` alone. Raises as `dumps` does."""
+    """The value converted to ``dict``, ``list``, ``str``, ``int``, ``float`` and ``bool``. Raises as `dumps` does."""
     if isinstance(value, (bool, str, int, float)) and not isinstance(value, np.generic):
         return value
     if isinstance(value, Mapping):
@@ -51,7 +51,7 @@ def plain(value: Any, path: tuple[str, ...] = ()) -> Any:
 def _key_text(key: Any, path: tuple[str, ...]) -> str:
     if isinstance(key, str):
         return key
-    raise StudyError(f"the key {key!r} in {'.'.join(path) or 'the table'} is no text; keys of TOML are")
+    raise StudyError(f"the key {key!r} in {'.'.join(path) or 'the table'} is not a text; keys of TOML are")
 
 
 def _key(text: str) -> str:
@@ -86,7 +86,7 @@ def _is_tables(value: Any) -> bool:
 
 
 def _table_lines(table: dict[str, Any], path: tuple[str, ...]) -> Iterator[str]:
-    """Values first: what stands behind a heading belongs to it."""
+    """The lines of a table. Its values come first, because values below a heading would belong to that heading."""
     for key, value in table.items():
         if not isinstance(value, dict) and not _is_tables(value):
             yield f"{_key(key)} = {_value(value)}\n"

@@ -1,4 +1,4 @@
-"""What a study that was asked whether something holds found, from its result file alone."""
+"""The verdict on limits or tolerances in a result file."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import h5py
 
 
 def verdict(file: h5py.File) -> str | None:
-    """What `Result.verdict` says."""
+    """The value of `Result.verdict`."""
     if "allocation" in file:
         return "certified" if file["allocation"].attrs["certified"] == 1 else "not certified"
     if "limits" not in file:
@@ -22,8 +22,8 @@ def verdict(file: h5py.File) -> str | None:
 
 
 def _of_yield(found: Any, asked: float) -> str:
-    """By the one-sided bounds of Clopper and Pearson: each reaches `asked` where a tail of the binomial distribution is no
-    larger than 1 - conf_level."""
+    """The verdict on a yield, by the one-sided bounds of Clopper and Pearson. A bound reaches `asked` if a tail of the
+    binomial distribution is at most 1 - conf_level."""
     machines, rejects = int(found["machines"][()]), int(found["rejects"][()])
     alpha = 1.0 - float(found.attrs["conf_level"])
     if lower_tail(machines - rejects, machines, asked) < alpha:
@@ -32,7 +32,7 @@ def _of_yield(found: Any, asked: float) -> str:
 
 
 def lower_tail(most: int, trials: int, share: float) -> float:
-    """The probability of `most` or fewer successes of `trials`, each of probability `share`, above 0 and below 1."""
+    """The probability of at most `most` successes in `trials`, each of probability `share`, above 0 and below 1."""
     if most >= trials:
         return 1.0
     if most > trials * share:

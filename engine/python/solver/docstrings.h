@@ -29,7 +29,7 @@ inline constexpr char kEvaluatorText[] = R"(A mechanism and the errors that are 
 Threads may call one evaluator at the same time; each call has working memory of its own, which is kept for the next.)";
 
 inline constexpr char kInitText[] =
-    R"(Evaluator(mechanism, *, metric="platform", fidelity="exact", factors="all", calibrated=False)
+    R"(Evaluator(mechanism, *, metric="platform", fidelity="exact", factors="all", calibrated=False, geometry={})
 
 mechanism   a name of the catalog (`poesy models` lists them), or a mechanism's file: a path object, or a text that
             ends in ".toml" or holds a "/".
@@ -40,6 +40,7 @@ fidelity    "exact", or "first-order" where the mechanism has it.
 factors     the errors that are given, in the order of the rows of an array: a factor set, "all", or a list of names.
             The others are zero.
 calibrated  True: responses are what the best correction of the actuators leaves, each pose by itself.
+geometry    parameters of the geometry that differ from those of the mechanism: {"a": 0.26} in SI, or {"a": "260 mm"}.
 
 Raises InputError and FileError with the program's sentence.)";
 

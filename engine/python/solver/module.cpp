@@ -4,6 +4,7 @@
 
 #include <array>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -26,13 +27,14 @@ namespace {
 using SharedSolver = std::shared_ptr<const ArraySolver>;
 using Shape = std::vector<std::size_t>;
 
-/// A solver bound to a pose.
+/// A solver that is bound to one pose.
 struct AtPose {
   SharedSolver solver;
-  std::vector<double> pose;  ///< [coordinates], checked
+  std::vector<double> pose;  ///< [coordinates] SI, checked by ArraySolver::check_poses
 };
 
-/// Lets Python end a long call by Ctrl-C, which Python notices only if it is asked. Called without the GIL.
+/// Lets Ctrl-C end a long call. While the solver runs, Python notices Ctrl-C only if the solver asks for it. To be
+/// called without the GIL.
 class Interruption {
  public:
   void operator()() {
@@ -48,7 +50,7 @@ class Interruption {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Solves while other threads of Python run.
+/// Solves a job without the GIL, so that other threads of Python run meanwhile.
 void solve_without_gil(const ArraySolver& solver, const ArrayJob& job) {
   const std::size_t poses = job.poses.size() / solver.description().pose_coordinates.size();
   const std::size_t errors = (job.step > 0 ? poses : 1) * solver.factors().size() * job.samples;
@@ -91,7 +93,7 @@ py::dict units(const ArraySolver& solver) {
   return units;
 }
 
-/// A text unchanged; a path object as the name of a file.
+/// The mechanism that Python names. A text is taken as it is; a path object becomes the name of a file.
 std::string mechanism_text(const py::object& mechanism) {
   const auto text = py::module_::import("os").attr("fspath")(mechanism).cast<std::string>();
   const bool is_bare = text.find('/') == std::string::npos;
@@ -101,12 +103,14 @@ std::string mechanism_text(const py::object& mechanism) {
 using Factors = std::variant<std::string, std::vector<std::string>>;
 
 std::shared_ptr<ArraySolver> make_solver(const py::object& mechanism, const std::string& metric,
-                                         const std::string& fidelity, const Factors& factors, bool calibrated) {
+                                         const std::string& fidelity, const Factors& factors, bool calibrated,
+                                         const std::map<std::string, GeometryValue>& geometry) {
   const Request request{.mechanism = mechanism_text(mechanism),
                         .metric = metric,
                         .fidelity = fidelity,
                         .factors = factors,
-                        .calibrated = calibrated};
+                        .calibrated = calibrated,
+                        .geometry = geometry};
   return std::make_shared<ArraySolver>(study_of(request));
 }
 
@@ -162,7 +166,8 @@ std::string evaluator_text(const ArraySolver& solver) {
 void add_evaluator(py::module_& module) {
   py::class_<ArraySolver, std::shared_ptr<ArraySolver>>(module, "Evaluator", kEvaluatorText)
       .def(py::init(&make_solver), kInitText, py::arg("mechanism"), py::kw_only(), py::arg("metric") = "platform",
-           py::arg("fidelity") = "exact", py::arg("factors") = "all", py::arg("calibrated") = false)
+           py::arg("fidelity") = "exact", py::arg("factors") = "all", py::arg("calibrated") = false,
+           py::arg("geometry") = std::map<std::string, GeometryValue>())
       .def_property_readonly(
           "mechanism", [](const ArraySolver& solver) { return solver.description().name; }, kMechanismText)
       .def_property_readonly(
@@ -194,7 +199,7 @@ void add_at_pose(py::module_& module) {
 PYBIND11_MODULE(poesy_solver, module) {
   using namespace poesy::python;
   py::options options;
-  options.disable_function_signatures();  // the docstrings have them, in the words of the type hints
+  options.disable_function_signatures();  // the docstrings show the signatures, as type hints
   module.doc() = kModuleText;
   module.attr("__version__") = POESY_VERSION;
   py::register_exception<poesy::InputError>(module, "InputError", PyExc_ValueError).doc() = kInputErrorText;

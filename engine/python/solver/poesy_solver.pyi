@@ -2,7 +2,7 @@
 
 import enum
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal, TypedDict
 
 import numpy
@@ -43,6 +43,7 @@ class Evaluator:
         fidelity: Literal["exact", "first-order"] = "exact",
         factors: str | Sequence[str] = "all",
         calibrated: bool = False,
+        geometry: Mapping[str, float | str] = ...,
     ) -> None: ...
     @property
     def mechanism(self) -> str: ...

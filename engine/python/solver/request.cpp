@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
+#include <span>
 #include <string_view>
 
+#include "engine/schema/given_key.h"
 #include "engine/schema/keys.h"
 #include "engine/study/study_file.h"
 #include "engine/study/study_kind.h"
@@ -16,8 +19,8 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kEvaluatorKeys{"factors", "calibrated"};
 
-/// The only kind of study here: [analysis] states which errors vary, and whether the actuators correct them. So the
-/// module does not need the registry of kinds, nor what runs and stores studies.
+/// The only kind of study in this module. Its [analysis] states which errors vary, and whether the actuators correct
+/// them. So the module needs neither the registry of kinds nor the code that runs and stores studies.
 const StudyKind kEvaluator{.name = "evaluator",
                            .asks = "what given errors do",
                            .keys = kEvaluatorKeys,
@@ -26,9 +29,26 @@ const StudyKind kEvaluator{.name = "evaluator",
                              return AtPose{1.0, "errors", 1.0, "errors"};
                            }};
 
-Study study_of_text(const std::string& text) {
+Study study_of_text(const std::string& text, std::span<const GivenKey> given = {}) {
   static const StudyKinds kinds = study_kinds_of({&kEvaluator}, kEvaluatorKeys);
-  return poesy::study_of_text(text, "", registry(), StudyUse::evaluate, kinds);
+  return poesy::study_of_text(text, "", registry(), StudyUse::evaluate, kinds, nullptr, given);
+}
+
+/// The geometry parameters of the request as keys of a study. usual: a study of the mechanism, from which their
+/// dimensions are known.
+std::vector<GivenKey> geometry_keys(const Request& request, const Study& usual) {
+  std::vector<GivenKey> keys;
+  for (const auto& [name, value] : request.geometry) {
+    const auto* text = std::get_if<std::string>(&value);
+    const auto parameter = std::ranges::find(usual.model().geometry, name, &GeometryParameter::name);
+    const Dimension dimension = parameter == usual.model().geometry.end()
+                                    ? Dimension::length
+                                    // An unknown name is refused later, when the study is read.
+                                    : parameter->dimension;
+    keys.push_back(
+        {"mechanism.geometry." + name, text != nullptr ? *text : exact_value(std::get<double>(value), dimension)});
+  }
+  return keys;
 }
 
 std::string header_and_mechanism(const std::string& mechanism) {
@@ -42,7 +62,7 @@ std::string factors_text(const Request& request) {
   if (const auto* set = std::get_if<std::string>(&request.factors)) return in_quotes(*set);
   std::vector<std::string> quoted;
   for (const std::string& name : std::get<std::vector<std::string>>(request.factors)) quoted.push_back(in_quotes(name));
-  return fmt::format("[\n{}]", fmt::join(quoted, ",\n"));  // on separate lines, because a line has a largest length
+  return fmt::format("[\n{}]", fmt::join(quoted, ",\n"));  // on separate lines, because the length of a line is limited
 }
 
 }  // namespace
@@ -59,7 +79,7 @@ Study study_of(const Request& request) {
   if (!usual.model().metric.empty() || request.metric != defaults.metric) {
     text += fmt::format("[solver]\nmetric = {}\n", in_quotes(request.metric));
   }
-  Study study = study_of_text(text);
+  Study study = study_of_text(text, geometry_keys(request, usual));
   if (study.mechanism.compared) {
     throw InputError(
         {}, fmt::format("mechanism.fidelity is {}, but an evaluator solves at one", in_quotes(kBothFidelities)),

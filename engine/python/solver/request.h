@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <variant>
 #include <vector>
@@ -8,17 +9,23 @@
 
 namespace poesy::python {
 
-/// The options of an evaluator in Python, in the words of study files.
+/// A value of a geometry parameter: a number in SI, or a text with a unit ("260 mm").
+using GeometryValue = std::variant<double, std::string>;
+
+/// The options of an evaluator in Python, with the words of study files.
 struct Request {
-  std::string mechanism = {};       ///< a name of the catalog, or a mechanism's file
-  std::string metric = "platform";  ///< ignored if nothing is weighed
-  std::string fidelity = "exact";   ///< ignored if there is no choice
-  std::variant<std::string, std::vector<std::string>> factors = "all";  ///< a factor set, or names in any order
-  bool calibrated = false;                                              ///< see [analysis] of study files
+  std::string mechanism = {};       ///< name of the catalog, or path of a mechanism file
+  std::string metric = "platform";  ///< metric; ignored if the mechanism weighs no angles against lengths
+  std::string fidelity = "exact";   ///< fidelity; ignored if the mechanism offers no choice
+  /// A factor set, or names of errors in any order.
+  std::variant<std::string, std::vector<std::string>> factors = "all";
+  /// True if responses are those after the best correction of the actuators; see [analysis] of study files.
+  bool calibrated = false;
+  std::map<std::string, GeometryValue> geometry = {};  ///< parameters with other values than the mechanism's own
 };
 
-/// The study with the mechanism, the solver and the varied errors of the request; its other parts are unused. Throws
-/// InputError or FileError as reading a study file does, without a place in it.
+/// Makes a study with the mechanism, the solver settings and the varied errors of the request; its other members are
+/// unused. Throws InputError and FileError as reading a study file does, but without a place in the file.
 Study study_of(const Request& request);
 
 }  // namespace poesy::python

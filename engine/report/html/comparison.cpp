@@ -15,7 +15,7 @@ namespace {
                    "compare two results that share some");
 }
 
-/// The positions of options or items that are kept, in their new order.
+/// The indices of the options or items to keep, in their new order.
 using Kept = std::vector<std::size_t>;
 
 template <class Value>
@@ -25,13 +25,13 @@ std::vector<Value> picked(const std::vector<Value>& values, const Kept& kept) {
   return list;
 }
 
-/// The part of a Comparable with these options and items.
+/// The Comparable `from`, reduced to these options and items.
 Comparable kept_part(const Comparable& from, const Kept& options, const Kept& items) {
   Comparable part = from;
   part.options = picked(from.options, options);
   part.items = picked(from.items, items);
   if (!from.totals.empty()) part.totals = picked(from.totals, options);
-  Kept cells;  // positions in [R x P]
+  Kept cells;  // indices in [R x P]
   for (const std::size_t option : options) {
     for (const std::size_t item : items) cells.push_back(option * from.items.size() + item);
   }
@@ -47,14 +47,14 @@ Comparable kept_part(const Comparable& from, const Kept& options, const Kept& it
   return part;
 }
 
-/// The positions of the common names in the first or the second list.
+/// The indices of the common names in the first list (if `first`), or in the second list.
 Kept positions_in(const Common& both, bool first) {
   Kept kept;
   for (const auto& [of_a, of_b] : both) kept.push_back(first ? of_a : of_b);
   return kept;
 }
 
-/// The arrays of A, followed by those of B.
+/// The values of result A, followed by those of result B.
 std::vector<double> both(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> all = a;
   all.insert(all.end(), b.begin(), b.end());
@@ -77,7 +77,8 @@ Bars bars_of(const Comparison& compared, ArrayPool& pool) {
   return bars;
 }
 
-/// A scatter plot of the first quantity, A against B. Precondition: its unit is the same for all items.
+/// A scatter plot of the first quantity: its values in result A against those in result B. Precondition: the quantity
+/// has the same unit for all items.
 Scatter scatter_of(const Comparison& compared, ArrayPool& pool) {
   const ComparableQuantity& a = compared.a.quantities.front();
   Scatter scatter{{{compared.a.option_word, compared.a.options}},
@@ -89,7 +90,7 @@ Scatter scatter_of(const Comparison& compared, ArrayPool& pool) {
   return scatter;
 }
 
-/// The ranks, from 1, of the P items of one option; unknown values come last.
+/// The ranks, from 1, of the P items of one option. Items with unknown values come last.
 std::vector<std::size_t> ranks(std::span<const double> values) {
   std::vector<std::size_t> order = positions(values.size());
   const auto key = [&](std::size_t p) { return std::isnan(values[p]) ? -HUGE_VAL : std::abs(values[p]); };
@@ -99,8 +100,8 @@ std::vector<std::size_t> ranks(std::span<const double> values) {
   return rank;
 }
 
-/// The relative change from a to b. Zero for differences that may be rounding of solvers (about 1e-14 of 1e-3 rad or
-/// m).
+/// The relative change from a to b. Changes below 1e-10 count as zero, because they may be rounding errors of solvers
+/// (about 1e-14 of 1e-3 rad or m).
 double change_of(double a, double b) {
   constexpr double kRounding = 1e-10;
   const double change = (b - a) / std::abs(a);
@@ -112,11 +113,11 @@ std::string_view overlap(const ComparableQuantity& a, const ComparableQuantity& 
   return a.low[at] <= b.high[at] && b.low[at] <= a.high[at] ? "overlap" : "apart";
 }
 
-/// The table of one option.
+/// The table of one option: of the first quantity, which is that of the figures and of the answer.
 Table table_of(const Comparison& compared, std::size_t option) {
   const Comparable& all = compared.a;
-  const ComparableQuantity& a = all.quantities.back();
-  const ComparableQuantity& b = compared.b.quantities.back();
+  const ComparableQuantity& a = all.quantities.front();
+  const ComparableQuantity& b = compared.b.quantities.front();
   const std::vector<std::string>& unit = a.units[option];
   const std::size_t items = all.items.size();
   const std::size_t first = option * items;
@@ -129,8 +130,8 @@ Table table_of(const Comparison& compared, std::size_t option) {
   std::vector<FilledColumn> columns;
   if (all.ranked) {
     std::ranges::sort(order, {}, [&](std::size_t p) { return rank_a[p]; });
-    columns = {{number_column("rank_a", "rank in A"), [&](std::size_t p) { return count_cell(rank_a[p]); }},
-               {number_column("rank_b", "rank in B"), [&](std::size_t p) { return count_cell(rank_b[p]); }}};
+    columns = {{number_column("rank_a", "rank in A", "", 1), [&](std::size_t p) { return count_cell(rank_a[p]); }},
+               {number_column("rank_b", "rank in B", "", 1), [&](std::size_t p) { return count_cell(rank_b[p]); }}};
   }
   columns.push_back({text_column("item", all.item_word), [&](std::size_t p) { return text_cell(all.items[p]); }});
   columns.push_back({number_column("a", "A"), [&](std::size_t p) { return number_cell(a.value[first + p]); }});
@@ -152,7 +153,7 @@ Table table_of(const Comparison& compared, std::size_t option) {
   return table;
 }
 
-/// The table of the totals of each option, and their ratio B over A.
+/// The table of the totals of each option in the results A and B, and of the ratio of B to A.
 Table totals_table(const Comparison& compared) {
   const Comparable& a = compared.a;
   Table table{.name = "totals",
@@ -168,8 +169,8 @@ Table totals_table(const Comparison& compared) {
   return table;
 }
 
-/// The part of a caption that describes the order of bars. Quantities whose units differ by item are ordered like the
-/// first.
+/// The clause of a caption that describes the order of bars. If the units of a quantity differ between items, its bars
+/// have the order of the first quantity.
 std::string order_of(const Comparable& a) {
   const auto differ = [](const ComparableQuantity& quantity) {
     return std::ranges::any_of(quantity.units, [](const std::vector<std::string>& units) {
@@ -224,7 +225,7 @@ Answer comparison_answer(const Comparison& compared) {
   const ComparableQuantity& in_b = compared.b.quantities.front();
   const std::size_t items = a.items.size();
   const auto first = [&](const ComparableQuantity& of) { return std::span(of.value).first(items); };
-  std::size_t most = 0;  // position of the largest change
+  std::size_t most = 0;  // index of the item with the largest change
   for (std::size_t p = 0; p < items; ++p) {
     const auto change = [&](std::size_t n) { return std::abs(in_b.value[n] - in_a.value[n]); };
     if (change(p) > change(most) || std::isnan(change(most))) most = p;
@@ -246,9 +247,9 @@ Answer comparison_answer(const Comparison& compared) {
         "Answer", fmt::format("{}, {}: the largest is that of {} in A ({}) and of {} in B ({}).", a.options.front(),
                               in_a.label, a.items[top_a], value(in_a, top_a), a.items[top_b], value(in_b, top_b)));
   }
-  lines.emplace_back(
-      a.ranked ? "Largest change" : "Answer",
-      fmt::format("{} of {}, from {} to {}.", in_a.label, a.items[most], value(in_a, most), value(in_b, most)));
+  lines.emplace_back(a.ranked ? "Largest change" : "Answer",
+                     fmt::format("{}: {}, {}, from {} to {}.", a.options.front(), a.items[most], in_a.label,
+                                 value(in_a, most), value(in_b, most)));
   if (!in_a.low.empty() && !in_b.low.empty()) {
     std::size_t apart = 0;
     for (std::size_t p = 0; p < items; ++p) apart += overlap(in_a, in_b, p) == "apart" ? 1 : 0;
@@ -258,7 +259,7 @@ Answer comparison_answer(const Comparison& compared) {
   }
   lines.emplace_back(
       "What to do",
-      "Look at how the studies differ first: the rest of what differs follows from that, and from chance.");
+      "Look first at the settings that differ: they explain the other differences, as far as chance does not.");
   return lines;
 }
 

@@ -14,7 +14,7 @@ namespace poesy {
 
 using Json = nlohmann::ordered_json;
 
-// The JSON library finds these functions by argument-dependent lookup, also for lists of these types.
+// The JSON library finds these functions by argument-dependent lookup. It uses them for lists of these types, too.
 
 static void to_json(Json& json, const Choice& choice) { json = {{"label", choice.label}, {"options", choice.options}}; }
 
@@ -26,7 +26,7 @@ static void to_json(Json& json, const BarQuantity& quantity) {
   const auto name_or_null = [](const ArrayName& name) { return name.empty() ? Json(nullptr) : Json(name); };
   Json units = Json::array();
   for (const std::vector<std::string>& unit : quantity.units) {
-    units.push_back(unit.size() == 1 ? Json(unit.front()) : Json(unit));  // a list if items have different units
+    units.push_back(unit.size() == 1 ? Json(unit.front()) : Json(unit));  // a list only if items have different units
   }
   json = {{"label", quantity.label},
           {"units", std::move(units)},
@@ -117,6 +117,36 @@ static void to_json(Json& json, const Robot& robot) {
   if (!robot.motions.empty()) json["motions"] = robot.motions;
 }
 
+static void to_json(Json& json, const WhatIfSize& size) {
+  json = {{"label", size.label}, {"value", size.value}, {"unit", size.unit}};
+}
+
+static void to_json(Json& json, const WhatIfSlider& slider) {
+  json = {{"name", slider.name}, {"sizes", slider.sizes}, {"errors", slider.errors}};
+  if (!slider.costs.empty()) json["costs"] = slider.costs;
+}
+
+static void to_json(Json& json, const WhatIfLimit& limit) {  // JSON has no infinity, so an infinite end becomes null
+  json = {{"components", limit.components}, {"low", limit.low}, {"high", limit.high}};
+}
+
+static void to_json(Json& json, const WhatIf& what_if) {
+  json = {{"type", "whatIf"},
+          {"factors", what_if.factors},
+          {"sliders", what_if.sliders},
+          {"limits", what_if.limits},
+          {"machines", what_if.machines},
+          {"poses", what_if.poses},
+          {"components", what_if.components},
+          {"deviations", what_if.deviations},
+          {"slopes", what_if.slopes},
+          {"yield", {what_if.yield, what_if.yield_low, what_if.yield_high}},
+          {"quantile", what_if.quantile},
+          {"linearError", what_if.linear_error},
+          {"missed", what_if.missed},
+          {"otherCosts", what_if.other_costs}};
+}
+
 namespace {
 
 constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -135,7 +165,7 @@ std::string base64_floats(const std::vector<float>& values) {
   return base64(bytes);
 }
 
-/// Escapes "<", which in JSON occurs only in strings, by its number.
+/// Replaces "<" by its Unicode escape. In JSON it occurs only inside strings.
 std::string without_tags(std::string text) {
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
   return text;

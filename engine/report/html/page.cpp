@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
 
-/// Escapes one character of one byte.
+/// Escapes a character that has one byte.
 std::string_view escaped_ascii(std::string_view character) {
   constexpr std::pair<char, std::string_view> kEscapes[] = {
       {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
@@ -30,10 +30,12 @@ std::string_view escaped_ascii(std::string_view character) {
 std::string column_heading(const Column& column) {
   const std::string text =
       column.unit.empty() || column.unit == "1" ? column.heading : fmt::format("{} [{}]", column.heading, column.unit);
-  return element("th", text, column.kind == Column::Kind::number ? "scope=\"col\" class=\"n\"" : "scope=\"col\"");
+  std::string attributes = column.kind == Column::Kind::number ? "scope=\"col\" class=\"n\"" : "scope=\"col\"";
+  if (column.dispensable > 0) attributes += fmt::format(" data-spare=\"{}\"", column.dispensable);
+  return element("th", text, attributes);
 }
 
-/// A column of numbers as a page prints them (printed_numbers), each with the length of the text after its whole part.
+/// A column of numbers as a page prints them (printed_numbers()).
 struct NumberColumn {
   std::vector<PrintedNumber> cells;
   std::size_t longest_tail = 0;
@@ -42,35 +44,55 @@ struct NumberColumn {
 NumberColumn column_of_numbers(const Table& table, std::size_t c) {
   std::vector<Cell> cells;
   for (const std::vector<Cell>& row : table.rows) cells.push_back(row[c]);
-  constexpr int kShareDigits = 3;  // above 90 %, digits of the difference from 100 %
+  constexpr int kShareDigits = 3;  // digits of a share; above 90 %, digits of its difference from 100 %
   const bool shares = table.columns[c].unit == "%";
   NumberColumn column{printed_numbers(cells, shares ? kShareDigits : 0)};
   for (const PrintedNumber& one : column.cells) column.longest_tail = std::max(column.longest_tail, one.tail);
   return column;
 }
 
-/// A number, followed by enough space to align its decimal point with the others. A point is half as wide as a digit.
-std::string number_element(const PrintedNumber& cell, std::size_t longest_tail) {
+/// The attributes of a number's cell, with enough space behind it to align its decimal point with the others. A point
+/// is half as wide as a digit.
+std::string number_attributes(const PrintedNumber& cell, std::size_t longest_tail) {
   const double point = cell.tail == 0 ? 0.5 : 0.0;
   const double room = static_cast<double>(longest_tail - cell.tail) - point;
-  if (!cell.is_number || !(room > 0.0)) return element("td", cell.text, "class=\"n\"");
-  return element("td", cell.text, fmt::format("class=\"n\" style=\"--room:{}\"", room));
+  if (!cell.is_number || !(room > 0.0)) return "class=\"n\"";
+  return fmt::format("class=\"n\" style=\"--room:{}\"", room);
 }
 
-/// The CSS class of a column: short texts stay on one line, long ones get room for some words in each line.
-std::string_view width_class(const Table& table, std::size_t c) {
+std::string number_element(const PrintedNumber& cell, std::size_t longest_tail) {
+  return element("td", cell.text, number_attributes(cell, longest_tail));
+}
+
+bool is_long(const Cell& cell) {
   constexpr std::size_t kLong = 30;
-  const bool is_long =
-      std::ranges::any_of(table.rows, [&](const std::vector<Cell>& row) { return text_width(row[c].text) > kLong; });
-  return is_long ? "class=\"long\"" : "";
+  return text_width(cell.text) > kLong;
 }
 
-/// Replaces "+-" by the sign that print has: "+-0.1 mm".
+/// The CSS class of a column. Short texts stay on one line; a column of long texts gets room for some words in each
+/// line.
+std::string_view width_class(const Table& table, std::size_t c) {
+  const bool any = std::ranges::any_of(table.rows, [&](const std::vector<Cell>& row) { return is_long(row[c]); });
+  return any ? "class=\"long\"" : "";
+}
+
+/// The cell that names a row by a text.
+std::string row_heading(const Cell& cell) {
+  return element("th", cell.text, is_long(cell) ? "scope=\"row\" class=\"long\"" : "scope=\"row\"");
+}
+
+/// The cell that names a row by a number.
+std::string row_heading(const PrintedNumber& cell, std::size_t longest_tail) {
+  return element("th", cell.text, "scope=\"row\" " + number_attributes(cell, longest_tail));
+}
+
+/// Replaces "+-" at the beginning of a text, as in "+-0.1 mm", by the printed sign.
 std::string printed_text(std::string_view text) {
   return text.starts_with("+-") ? "\u00b1" + std::string(text.substr(2)) : std::string(text);
 }
 
-/// A tolerance frame as on a drawing. Where it is read aloud or its signs are missing, its title has them in words.
+/// A tolerance frame as on a drawing. Its title has the signs in words, for screen readers and for fonts without these
+/// signs.
 std::string frame_element(const Cell& cell) {
   std::string boxes;
   for (const std::string& box : cell.boxes) boxes += element("span", box);
@@ -79,7 +101,7 @@ std::string frame_element(const Cell& cell) {
                      words, boxes);
 }
 
-/// The rows of a table as HTML. The first column of texts is their heading.
+/// The rows of a table as HTML. The first column of texts is their heading, or the first of all if none has texts.
 std::string body_html(const Table& table) {
   const std::size_t columns = table.columns.size();
   const auto texts = std::ranges::find(table.columns, Column::Kind::text, &Column::kind);
@@ -95,7 +117,8 @@ std::string body_html(const Table& table) {
     for (std::size_t c = 0; c < columns; ++c) {
       if (table.columns[c].only_text) continue;
       const bool number = table.columns[c].kind == Column::Kind::number;
-      html += c == naming               ? element("th", cells[c].text, "scope=\"row\"")
+      html += c == naming && number     ? row_heading(numbers[c].cells[n], numbers[c].longest_tail)
+              : c == naming             ? row_heading(cells[c])
               : !cells[c].boxes.empty() ? frame_element(cells[c])
               : number                  ? number_element(numbers[c].cells[n], numbers[c].longest_tail)
                                         : element("td", printed_text(cells[c].text), width_class(table, c));
@@ -105,7 +128,7 @@ std::string body_html(const Table& table) {
   return html;
 }
 
-/// Allows scripts and styles of this document, and nothing from elsewhere.
+/// The content security policy: scripts and styles of this document are allowed, and nothing from elsewhere.
 constexpr std::string_view kPolicy =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:";
 
@@ -117,7 +140,7 @@ std::string head(const Page& page) {
       kReportMark, kPolicy, element("title", page.title), asset("report.css"));
 }
 
-/// The header of the page with links to its sections, followed by the sections.
+/// The body of the page: a header with links to the sections, then the sections.
 std::string sections(const Page& page) {
   std::string links;
   std::string html;
@@ -202,6 +225,11 @@ Section& Section::figure(std::string_view key, std::string_view caption, std::st
   return *this;
 }
 
+Section& Section::picture(std::string_view caption, std::string_view drawn) {
+  body_ += fmt::format("<figure><div class=\"plot\">{}</div>{}</figure>\n", drawn, element("figcaption", caption));
+  return *this;
+}
+
 Section& Section::table(const Table& table) {
   body_ += html_table(table);
   return *this;
@@ -227,6 +255,11 @@ Section& Section::folded_text(std::string_view summary, std::string_view text) {
 
 Section& Page::add_section(std::string id, std::string heading) {
   return sections.emplace_back(std::move(id), std::move(heading));
+}
+
+Section& Page::insert_section(std::string_view after, std::string id, std::string heading) {
+  const auto at = std::ranges::find(sections, after, &Section::id);
+  return *sections.emplace(at == sections.end() ? at : at + 1, std::move(id), std::move(heading));
 }
 
 std::string html_document(const Page& page) {

@@ -12,44 +12,47 @@
 
 namespace poesy {
 
-/// Identifies a report among other pages; it is in the first kilobyte of the file.
+/// The line by which a report is recognised among other pages. It is in the first kilobyte of the file.
 inline constexpr std::string_view kReportMark = "<meta name=\"generator\" content=\"poesy report\">";
 
-/// A part of a report's page: "d3.js", "plot.js", "report.js" (to be run in this order) or "report.css". It may be
-/// inserted into a script or style element unchanged; third-party scripts begin with their licences. Precondition: the
-/// name is one of these.
+/// The text of a file that is part of a report's page: "d3.js", "plot.js", "report.js" (to be run in this order) or
+/// "report.css". It may be inserted into a script or style element unchanged. Third-party scripts begin with their
+/// licences. Precondition: `name` is one of these four.
 std::string_view asset(std::string_view name);
 
 /// Escapes text for HTML, between tags and inside double quotes. Invalid UTF-8, and control characters except line
 /// feeds and tabs, become U+FFFD.
 std::string escaped(std::string_view text);
 
-/// `<TAG ATTRIBUTES>text</TAG>` with the text escaped. attributes: HTML, not escaped.
+/// An element `<TAG ATTRIBUTES>text</TAG>` with the text escaped. attributes: HTML, not escaped.
 std::string element(std::string_view tag, std::string_view text, std::string_view attributes = {});
 
-/// A table as HTML in a box that scrolls: caption, headings with units, cells, and notes below. The box has the
-/// attribute data-table with the table's name. A cell with boxes is drawn as a tolerance frame.
+/// A table as HTML in a box that scrolls: caption, headings with units, cells, and notes below. The box has the table's
+/// name in the attribute data-table. A cell with boxes is drawn as a tolerance frame.
 std::string html_table(const Table& table);
 
-/// A section of the report with a heading. All texts are escaped here.
+/// A section of the report with a heading. The functions escape all texts, but not arguments that are HTML.
 class Section {
  public:
-  /// id: the anchor; heading: text for people.
+  /// id: anchor of the section. heading: text for people.
   Section(std::string id, std::string heading) : id_(std::move(id)), heading_(std::move(heading)) {}
 
   Section& paragraph(std::string_view text);  ///< Adds a paragraph.
-  Section& definitions(
-      const std::vector<std::pair<std::string, std::string>>& list);  ///< Adds a list of names with their meanings.
-  /// Adds a place for a figure of the page, which a script draws. drawn: HTML that is shown without scripts.
+  /// Adds a list of names with their meanings.
+  Section& definitions(const std::vector<std::pair<std::string, std::string>>& list);
+  /// Adds the place of a figure that a script draws. key: key of the figure in FigureSet. drawn: HTML that is shown
+  /// without scripts.
   Section& figure(std::string_view key, std::string_view caption, std::string_view drawn = {});
+  /// Adds a picture that needs no script. drawn: HTML.
+  Section& picture(std::string_view caption, std::string_view drawn);
   Section& table(const Table& table);  ///< Adds a table, unfolded.
-  /// Adds the table of this name, if there is one.
+  /// Adds the table of this name, unfolded, if it exists.
   Section& table(std::span<const Table> tables, std::string_view name);
-  /// Adds folded tables.
+  /// Adds tables that the reader can unfold. summary: text that is always shown.
   Section& folded(std::string_view summary, std::span<const Table> tables);
-  /// Adds a folded table.
+  /// Adds a table that the reader can unfold.
   Section& folded(std::string_view summary, const Table& table) { return folded(summary, std::span(&table, 1)); }
-  /// Adds a long text, folded.
+  /// Adds a long text that the reader can unfold.
   Section& folded_text(std::string_view summary, std::string_view text);
 
   const std::string& id() const { return id_; }            ///< The anchor of the section.
@@ -62,23 +65,26 @@ class Section {
   std::string body_;
 };
 
-/// A line of the summary at the top of a report: its label ("Answer", "How sure", "What to do"), and a sentence or two.
+/// A line of the summary at the top of a report: a label ("Answer", "How sure", "What to do"), and a sentence or two.
 using AnswerLine = std::pair<std::string, std::string>;
 
-/// The summary at the top of a report, from the result's numbers: at most five lines.
+/// The summary at the top of a report: at most five lines.
 using Answer = std::vector<AnswerLine>;
 
 /// The content of a report.
 struct Page {
   std::string title;                  ///< title of the study, or of the result
-  std::string subtitle;               ///< below the title
-  Answer answer = {};                 ///< comes before everything else; empty: there is none
-  std::vector<std::string> warnings;  ///< warnings that come first
-  std::deque<Section> sections;       ///< in order
+  std::string subtitle;               ///< line below the title
+  Answer answer = {};                 ///< summary, before everything else; empty: there is none
+  std::vector<std::string> warnings;  ///< warnings, before the sections
+  std::deque<Section> sections;       ///< sections in their order on the page
   FigureSet figures;                  ///< figures of all sections
 
-  /// Appends an empty section. The reference is valid as long as the page.
+  /// Appends an empty section. The reference stays valid as long as the page.
   Section& add_section(std::string id, std::string heading);
+  /// Inserts an empty section after the section with the id `after`, or at the end if there is none. References to
+  /// other sections become invalid.
+  Section& insert_section(std::string_view after, std::string id, std::string heading);
 };
 
 std::string html_document(const Page& page);  ///< The page as one HTML document that needs no other file.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "engine/report/display.h"
@@ -10,6 +11,19 @@
 #include "engine/study/limit_keys.h"
 
 namespace poesy {
+namespace {
+
+/// The decision on a yield in words: "FAIL, 95 % are asked for: ". Empty if the study asks for no yield.
+std::string decision_text(const YieldVerdict& yield) {
+  using Decision = YieldVerdict::Decision;
+  const std::string_view word = yield.decision == Decision::kept        ? "PASS"
+                                : yield.decision == Decision::not_kept  ? "FAIL"
+                                : yield.decision == Decision::undecided ? "Undecided"
+                                                                        : "";
+  return word.empty() ? "" : fmt::format("{}, {} are asked for: ", word, percent_text(yield.asked));
+}
+
+}  // namespace
 
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions) {
   std::vector<std::string> list;
@@ -189,10 +203,15 @@ std::vector<Mark> limit_marks(const StoredResult& result, std::size_t response, 
   return marks;
 }
 
+std::string as_sentence(std::string clause) {
+  if (!clause.empty()) clause.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(clause.front())));
+  return clause + ".";
+}
+
 std::string limits_text(const StoredResult& result) {
   if (!result.verdicts) return {};
   if (const std::optional<YieldVerdict>& yield = result.verdicts->yield) {
-    return fmt::format("{} of {} are within all limits at all poses ({} interval {} to {}).",
+    return fmt::format("{}{} of {} are within all limits at all poses ({} interval {} to {}).", decision_text(*yield),
                        percent_text(yield->value), counted(yield->machines, "machine", "machines"),
                        percent_text(yield->conf_level), percent_text(yield->ci_low), percent_text(yield->ci_high));
   }
@@ -210,7 +229,7 @@ std::string limits_text(const StoredResult& result) {
 void add_limits(std::span<const Table> tables, Page& page) {
   for (const char* name : {"yield", "limits"}) {
     if (std::ranges::find(tables, name, &Table::name) == tables.end()) continue;
-    page.add_section("limits", "Are the limits kept").table(tables, name);
+    page.sections.emplace_front("limits", "Are the limits kept").table(tables, name);
   }
 }
 

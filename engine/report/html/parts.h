@@ -14,81 +14,87 @@
 #include "engine/report/html/page.h"
 #include "engine/result/result_file.h"
 
-/// Functions for the sections of all kinds of results.
+/// Functions for the sections that reports of all kinds of results have.
 namespace poesy {
 
 struct ReportKind;
 
-/// A result and its file.
+/// A result with what was read and built for its report.
 struct ReportedResult {
-  StoredResult stored;                           ///< the result
-  std::string path;                              ///< path of its file
-  std::shared_ptr<const Model> model = nullptr;  ///< model of the mechanism; null if it cannot be built again
+  StoredResult stored;                           ///< content of the result file
+  std::string path;                              ///< path of the result file
+  std::shared_ptr<const Model> model = nullptr;  ///< model of the result's mechanism; null if it cannot be built again
+  std::shared_ptr<const Study> study = nullptr;  ///< study of the result; null if it cannot be read again
 };
 
-/// The names at these positions.
+/// The names of those things that are at these indices.
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions);
-/// The responses of the headline: the one that ranks errors first (default_ranking), those that do not vary last.
+/// The indices of the headline's responses. The response that ranks errors (default_ranking()) comes first, and
+/// responses that do not vary come last.
 std::vector<std::size_t> headline_order(const StoredResult& result);
-/// All responses: those of the headline first, in that order; those that do not vary last.
+/// The indices of all responses: those of the headline in headline_order(), then the others. Responses that do not vary
+/// come last.
 std::vector<std::size_t> response_order(const StoredResult& result);
 
-/// The units of these responses, each as a list with one unit.
+/// The units in which these responses are shown, each as a list with one unit.
 std::vector<std::vector<std::string>> response_units(const StoredResult& result,
                                                      std::span<const std::size_t> responses);
-/// The part of a caption that describes the order of errors. mixed: whether their units differ.
+/// The words of a caption that describe the order of errors. mixed: true if the units of the errors differ.
 std::string order_by_effect(bool mixed);
-bool mixed_units(const std::vector<NamedUnit>& things);  ///< Whether the things have different units.
+bool mixed_units(const std::vector<NamedUnit>& things);  ///< Returns true if the things have different units.
 
-/// The part of a result's numbers that its figures show, so that a report stays small.
+/// The responses and poses whose numbers the figures of a result show. They are limited so that a report stays small.
 struct ShownCells {
-  /// If there are more numbers than this, responses outside the headline are left out, then poses.
+  /// The largest number of values at which figures show all responses. Above it, figures first leave out the responses
+  /// outside the headline, then poses.
   static constexpr std::size_t kMostWithAllResponses = 300'000;
-  static constexpr std::size_t kMost = 600'000;         ///< The largest number of numbers in a page.
-  static constexpr std::size_t kMostInLayer = 400'000;  ///< The largest number of numbers in one layer.
+  static constexpr std::size_t kMost = 600'000;         ///< The largest number of values in the figures of a page.
+  static constexpr std::size_t kMostInLayer = 400'000;  ///< The largest number of values in one layer of a figure.
 
-  std::vector<std::size_t> responses;  ///< positions of the responses shown
-  std::vector<std::size_t> poses;      ///< positions of the poses shown, ascending
+  std::vector<std::size_t> responses;  ///< indices of the responses that are shown
+  std::vector<std::size_t> poses;      ///< indices of the poses that are shown, ascending
   std::size_t all_responses = 0;       ///< number of responses in the result
   std::size_t all_poses = 0;           ///< number of poses in the result
 
-  /// The numbers at the poses that are shown. values: [rows x M] at all poses.
+  /// [rows x shown poses] The values at the poses that are shown. values: [rows x M] values at all poses.
   std::vector<double> at_poses(std::span<const double> values) const;
-  bool thinned() const { return poses.size() < all_poses; }  ///< Whether poses are left out.
-  std::string note() const;  ///< A sentence that says what is left out; empty if nothing is.
+  bool thinned() const { return poses.size() < all_poses; }  ///< Returns true if poses are left out.
+  std::string note() const;  ///< A sentence that says what is left out; empty if nothing is left out.
 };
 
-/// The numbers for each response and pose in figures that show summaries: mean or median, quantiles and so on.
+/// The number of values for each response and pose in figures that show summaries, such as mean or median and
+/// quantiles.
 inline constexpr std::size_t kSummaryRows = 4;
 
-/// The part of a result to show, for `rows` numbers of each response at each pose. responses: those that must be shown;
-/// none: all, or those of the headline.
+/// Chooses the responses and poses that figures show. rows: number of values of each response at each pose. responses:
+/// the responses to show; none: all responses, or those of the headline if all are too many.
 ShownCells shown_cells(const StoredResult& result, std::size_t rows,
                        std::optional<std::vector<std::size_t>> responses = std::nullopt);
 
-/// Makes the figures by pose of a result, for the part shown. Refers to the result and the page.
+/// Makes a result's figures by pose, with the responses and poses that are shown. Refers to the result and the page.
 class PoseFigures {
  public:
-  PoseFigures(const StoredResult& result, ShownCells shown, Page& page);  ///< For one page.
+  /// Refers to `result` and `page`. shown: the responses and poses that figures show.
+  PoseFigures(const StoredResult& result, ShownCells shown, Page& page);
 
-  const std::vector<std::size_t>& responses() const {
-    return shown_.responses;
-  }                                       ///< The positions of the responses shown.
-  void add_note(Section& section) const;  ///< Adds a note to the section if something is left out.
-  /// Adds values [rows x M] in units of `unit`, at the poses shown.
+  /// The positions of the responses shown.
+  const std::vector<std::size_t>& responses() const { return shown_.responses; }
+  void add_note(Section& section) const;  ///< Adds a note to the section if responses or poses are left out.
+  /// Adds values / unit at the poses shown to the page's arrays. values: [rows x M] at all poses.
   ArrayName add(const std::string& name, std::span<const double> values, double unit = 1.0) const;
-  /// Adds values of a response, SI, in the unit shown.
+  /// Adds values of a response (SI), in the unit shown, to the page's arrays. values: [rows x M] at all poses.
   ArrayName add(const std::string& name, std::span<const double> values, const NamedUnit& response) const;
 
-  /// The x axis of curves over poses: the time on a trajectory, otherwise the number of the pose.
+  /// The x axis of curves over poses: the time on a trajectory, otherwise the pose's number.
   Coordinate axis() const;
-  /// A heat map with these rows, whose columns are the poses in the order of time or of any coordinate.
+  /// A heat map with these rows. Its columns are the poses, which the reader orders by time or any coordinate. order:
+  /// first order; see HeatMap::order.
   HeatMap heat_map(std::vector<HeatLayer> layers, std::vector<std::string> rows, std::string order) const;
-  /// Adds the condition number of each pose, if the result has it.
+  /// Adds a field with the condition number of each pose.
   void add_condition(std::vector<Field>& fields) const;
-  Field not_converged(
-      std::span<const double> shares) const;  ///< A field with the share of solves that did not converge, [M].
-  /// Adds a map of the poses, coloured by these fields.
+  /// A field with the share of solves that did not converge, [M].
+  Field not_converged(std::span<const double> shares) const;
+  /// Adds a map of the poses to a section, coloured by these fields. key: key of the figure in the page.
   void add_workspace(Section& section, std::vector<Field> fields,
                      std::string_view caption = "Each dot is a pose of the study, coloured by what is chosen.",
                      const std::string& key = "workspace") const;
@@ -104,84 +110,91 @@ class PoseFigures {
   ShownCells shown_;
 };
 
-EstimateCourse with_ends(
-    EstimateCourse course);  ///< The course with intervals, computed from half-widths if necessary.
+/// The course with both ends of all intervals. They are computed from half-widths if the course has only these.
+EstimateCourse with_ends(EstimateCourse course);
 
-/// The curve of the quantity at this position of [R x P], with its band, in units of `unit`.
+/// The curve of one quantity over the number of samples, with its interval, in units of `unit`. at: index of the
+/// quantity in [R x P]. array: name of the stored arrays.
 Series series_of(const EstimateCourse& course, std::size_t at, double unit, std::string label, const std::string& array,
                  ArrayPool& pool);
 
-/// The axis of the number of samples for such curves, without panels.
+/// A figure with an x axis for the number of samples, and no panels yet.
 Lines over_samples(const EstimateCourse& course, ArrayPool& pool);
 
-/// Adds a section on the uncertainty of quantities, which begins by explaining the intervals. heading: "How sure are
-/// ...".
+/// Adds to the page a section on the uncertainty of estimates, which begins by explaining the intervals. heading: "How
+/// sure are ...".
 Section& add_how_sure(Page& page, std::string heading, double conf_level);
 
-/// The limit of a response as marks in its distribution or curves; on both sides of zero if it has negative values.
-/// Empty if the study does not limit it.
+/// The ends of a response's limit as marks for its distribution or curves. The lower end is left out unless the
+/// response has negative values. Empty if the study does not limit the response.
 std::vector<Mark> limit_marks(const StoredResult& result, std::size_t response, bool has_negative);
 
-/// A sentence for each limit, "gap keeps its limit of 12 mm with 3.05 mm.", or one on the yield; empty without limits.
+/// A sentence for each limit, "gap keeps its limit of 12 mm with 3.05 mm.", or one sentence on the yield. Empty if the
+/// study states no limits.
 std::string limits_text(const StoredResult& result);
 
-/// Adds the section on the study's limits if it states any. tables: those of the result.
+/// A clause as a sentence, with a capital letter and a full stop.
+std::string as_sentence(std::string clause);
+
+/// Adds to the page a section on the study's limits before all others, if the study states limits. tables: the result's
+/// tables.
 void add_limits(std::span<const Table> tables, Page& page);
 
-/// Adds the first section, which describes the responses in words.
+/// Adds to the page the section that describes the responses in words.
 void add_responses(const StoredResult& result, Page& page);
 
-/// Adds the section with the unit and the meaning of every error and every pose coordinate. Figures show these too if a
-/// reader points at a name.
+/// Adds to the page the section with the unit and the meaning of every error and every pose coordinate. Figures also
+/// show these if a reader points at a name.
 void add_glossary(const StoredResult& result, Page& page);
 
-/// Adds the section on solves that did not converge: how solves ended, their numbers by row and pose, and the listed
-/// failures with the commands that replay them.
+/// Adds to the page the section on solves that did not converge. It has how solves ended, counts by row and pose, and
+/// the listed failures with the commands that replay them.
 void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& page);
 
-/// Adds the section on what was run, of one result or of two side by side: differences first, and equal settings
-/// folded.
+/// Adds to the page the section on what was run, for one result or for several results side by side. Settings that
+/// differ come first, and equal settings are folded.
 void add_what_was_run(const ReportKind& kind, std::span<const ReportedResult> results, Page& page);
 
-/// Adds a figure to a page and a place for it to a section.
+/// Adds a figure to a page, and the place where it is drawn to a section. key: key of the figure in the page.
 void add_figure(Page& page, Section& section, const std::string& key, Figure figure, std::string_view caption);
 
-/// A quantity that is compared between results, for R options and P items, in the units shown.
+/// A quantity by which results are compared, with values for R options and P items, in the units shown.
 struct ComparableQuantity {
-  std::string label;                            ///< for people
-  std::string array;                            ///< prefix of the names of its arrays
+  std::string label;                            ///< label for people
+  std::string array;                            ///< prefix of the names of its arrays in the page
   std::vector<std::vector<std::string>> units;  ///< [R] a list with one unit for all items, or with P units
-  std::vector<double> value;                    ///< [R x P]
+  std::vector<double> value;                    ///< [R x P] values
   std::vector<double> low = {};                 ///< [R x P] lower ends of intervals; empty if there are none
   std::vector<double> high = {};                ///< [R x P] upper ends of intervals; empty if there are none
 };
 
-/// The part of a result that can be compared with another one of its kind.
+/// The numbers of a result that can be compared with those of another result of its kind.
 struct Comparable {
-  std::string option_word;           ///< "response"
-  std::vector<std::string> options;  ///< [R]
-  std::string item_word;             ///< "error"
-  std::vector<std::string> items;    ///< [P]
-  /// Bars show all quantities. Ranks and the scatter plot use the first one, the table the last one.
+  std::string option_word;           ///< what an option is: "response"
+  std::vector<std::string> options;  ///< [R] names of the options
+  std::string item_word;             ///< what an item is: "error"
+  std::vector<std::string> items;    ///< [P] names of the items
+  /// The compared quantities. Bars show all of them. Ranks and the scatter plot use the first quantity, and the table
+  /// uses the last one.
   std::vector<ComparableQuantity> quantities = {};
-  bool ranked = false;              ///< whether items are ordered by size
+  bool ranked = false;              ///< true if items are ordered by size
   std::string total_label = {};     ///< label of the totals; empty: there are none
-  std::vector<double> totals = {};  ///< [R] a number for all items together, in the units shown
+  std::vector<double> totals = {};  ///< [R] total over all items, in the units shown
 };
 
 /// A Comparable without quantities, whose options are the responses in the order of response_order().
 Comparable comparable_by_response(const StoredResult& result, std::string item_word, std::vector<std::string> items);
 
-/// Adds a quantity in the unit of each response. value(response, item): SI.
+/// Adds a quantity that has the unit of each response. value(response, item): the value, SI.
 void add_quantity(Comparable& to, const StoredResult& result, std::string label, std::string array,
                   const std::function<double(std::size_t, std::size_t)>& value);
 
-/// The parts of two results with the same options and items, in the order of A.
+/// Two results, with only the options and items that both have, in the order of the first result (A).
 struct Comparison {
-  Comparable a;                     ///< the first result
-  Comparable b;                     ///< the second result
-  std::vector<std::string> only_a;  ///< items that only the first has
-  std::vector<std::string> only_b;  ///< items that only the second has
+  Comparable a;                     ///< part of the first result
+  Comparable b;                     ///< part of the second result
+  std::vector<std::string> only_a;  ///< items that only the first result has
+  std::vector<std::string> only_b;  ///< items that only the second result has
 };
 
 /// Compares two results of this kind. Throws InputError if they have nothing in common.
@@ -190,7 +203,7 @@ Comparison comparison(const ReportKind& kind, const ReportedResult& a, const Rep
 /// The tables of a comparison, one for each option.
 std::vector<Table> comparison_tables(const Comparison& compared);
 
-/// The summary of a comparison.
+/// The summary of a comparison at the top of its report.
 Answer comparison_answer(const Comparison& compared);
 
 /// Adds sections with the figures and tables of a comparison to a page.

@@ -7,12 +7,13 @@
 #include "engine/base/contract.h"
 #include "engine/model/calibrated.h"
 #include "engine/report/display.h"
+#include "engine/report/html/forces.h"
 #include "engine/report/report_kind.h"
 
 namespace poesy {
 namespace {
 
-/// The condition number above which a pose is called ill-conditioned; a study refuses poses above 1e8.
+/// The condition number above which a report calls a pose ill-conditioned. A study refuses poses above 1e8.
 constexpr double kIllConditioned = 1e4;
 
 using Warnings = std::vector<std::string>;
@@ -83,7 +84,7 @@ void warn_of_calibration(const StoredResult& result, Warnings& list) {
   list.push_back(fmt::format("Calibrated: responses are {}.", kLeftByCalibration));
 }
 
-/// The warnings for a reader of this result, one or two sentences each.
+/// The warnings for the reader of a result, each one or two sentences.
 std::vector<std::string> warnings(const ReportKind& kind, const ReportedResult& result) {
   const StoredResult& stored = result.stored;
   const SolveTally tally = kind.tally(stored);
@@ -108,12 +109,13 @@ std::string subtitle(const StoredResult& result) {
 
 constexpr std::string_view kHowSure = "How sure";
 
-/// The summary of the kind, with how the solves ended.
+/// The kind's summary of a result, with how the solves ended added to the line "How sure".
 Answer answer(const ReportKind& kind, const StoredResult& result) {
   Answer lines = kind.answer(result);
   const auto sure = std::ranges::find(lines, kHowSure, &AnswerLine::first);
   if (sure == lines.end()) return lines;
   const SolveCounts solves = kind.tally(result).total();
+  if (solves.total() == 0) return lines;
   const std::string all = counted(solves.total(), "solve", "solves");
   sure->second += solves.not_converged() == 0
                       ? fmt::format(" All {} converged.", all)
@@ -122,41 +124,44 @@ Answer answer(const ReportKind& kind, const StoredResult& result) {
   return lines;
 }
 
-/// Adds the section with pictures of the mechanism, the places of its errors, and its file.
+/// Adds to the page the section with pictures of the mechanism, the places of its errors, and its file.
 void add_mechanism(const ReportKind& kind, const ReportedResult& result, Page& page) {
   Section section("mechanism", "The mechanism");
   const ErrorShares shares = kind.error_shares == nullptr ? ErrorShares() : kind.error_shares(result.stored);
   add_robot(result, shares, page, section);
+  add_forces(kind, result, section);
   if (!result.stored.mechanism_text.empty()) section.folded_text("Its file", result.stored.mechanism_text);
   if (!section.body().empty()) page.sections.push_back(std::move(section));
 }
 
-/// Adds the section with the features of the drawing, if there are any.
+/// Adds to the page the section with the features of the drawing, if there are any.
 void add_features(std::span<const Table> tables, Page& page) {
   Section section("features", "The features of the drawing");
   section.table(tables, "features");
   if (!section.body().empty()) page.sections.push_back(std::move(section));
 }
 
-/// The page of one result.
+/// The page of a report on one result.
 Page page_of(const ReportKind& kind, const ReportedResult& result) {
   Page page;
-  page.title = result.stored.title.empty() ? result.path : result.stored.title;
+  const StoredResult& stored = result.stored;
+  page.title = stored.title.empty() ? stored.model + ", " + stored.kind : stored.title;
   page.subtitle = subtitle(result.stored);
   page.answer = answer(kind, result.stored);
   page.warnings = warnings(kind, result);
   add_responses(result.stored, page);
   add_mechanism(kind, result, page);
   const std::vector<Table> tables = result_tables(kind, result.stored, {default_ranking(result.stored)});
-  kind.page(result.stored, tables, page);
   add_features(tables, page);
+  kind.page(result.stored, tables, page);
+  if (kind.solved_page != nullptr && result.study != nullptr && has_pictures(result)) kind.solved_page(result, page);
   add_glossary(result.stored, page);
   add_outcomes(kind, result, page);
   add_what_was_run(kind, {&result, 1}, page);
   return page;
 }
 
-/// Adds how the solves of both results ended.
+/// Adds to the page a table of how the solves of the results A and B ended.
 void add_unsolved(const SolveCounts& of_a, const SolveCounts& of_b, Page& page) {
   Table table{.name = "solves",
               .caption = "How the solves of A and B ended",
@@ -177,7 +182,7 @@ std::string name_of(const ReportedResult& result) {
   return result.stored.title.empty() ? result.path : fmt::format("{} ({})", result.stored.title, result.path);
 }
 
-/// Adds which result is better, by how much, and whether that is certain.
+/// Adds to the page a section on which result is better, by how much, and whether that is certain.
 void add_merits(std::span<const ReportedResult> results, std::span<const std::vector<Merit>> found, Page& page) {
   const std::optional<Table> table = merits_table(found);
   if (!table) return;
@@ -188,7 +193,8 @@ void add_merits(std::span<const ReportedResult> results, std::span<const std::ve
   section.table(*table);
 }
 
-/// Adds the differences between the studies, which explain those of their numbers.
+/// Adds to the page a section on the differences between the studies, because they explain differences between the
+/// results.
 void add_studies(std::span<const ReportedResult> results, Page& page) {
   Section& section = page.add_section("studies", "How the studies differ");
   const StoredResult& a = results.front().stored;
@@ -205,7 +211,7 @@ void add_studies(std::span<const ReportedResult> results, Page& page) {
   }
 }
 
-/// The line "Answer" of a comparison by figures of merit; empty if the results have none in common.
+/// The line "Answer" of a comparison by figures of merit. Empty if the results have no figure of merit in common.
 Answer merits_answer(std::span<const std::vector<Merit>> found) {
   std::string text;
   for (std::size_t n = 1; n < found.size(); ++n) {
@@ -215,12 +221,13 @@ Answer merits_answer(std::span<const std::vector<Merit>> found) {
   return text.empty() ? Answer() : Answer{{"Answer", text}};
 }
 
-/// Adds what is compared of two results: errors or other items, and how the solves ended.
+/// Adds to the page the comparison of two results by their errors or other items.
 void add_two(const ReportKind& kind, const ReportedResult& a, const ReportedResult& b, Page& page) {
   const Comparison compared = comparison(kind, a, b);
   for (auto& line : comparison_answer(compared)) {
     const bool known = line.first == "Answer" && !page.answer.empty();
-    page.answer.emplace_back(known ? "Largest effects" : line.first, std::move(line.second));
+    const std::string other = compared.a.ranked ? "Largest effects" : "Largest change";
+    page.answer.emplace_back(known ? other : line.first, std::move(line.second));
   }
   if (kind.compare != nullptr) {
     kind.compare(a, b, compared, page);
@@ -229,7 +236,7 @@ void add_two(const ReportKind& kind, const ReportedResult& a, const ReportedResu
   }
 }
 
-/// The page of two or more results.
+/// The page of a report that compares two or more results.
 Page comparison_page(const ReportKind& kind, std::span<const ReportedResult> results) {
   const ReportedResult& a = results.front();
   Page page;

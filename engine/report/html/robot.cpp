@@ -17,25 +17,26 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kMostPoses = 10;    // poses in a picture
-constexpr std::size_t kShownAtOnce = 3;   // poses that are visible without scripts
-constexpr std::size_t kMostErrors = 300;  // errors whose motions a page has
-constexpr std::size_t kOpenRows = 10;     // unfolded rows of the table of errors
-constexpr double kMillimetres = 1e3;      // in a metre
-constexpr double kShownMotion = 0.15;     // largest motion over the size of the picture, before rounding down
+constexpr std::size_t kMostPoses = 10;    // largest number of poses in a picture
+constexpr std::size_t kShownAtOnce = 3;   // number of poses that are visible without scripts
+constexpr std::size_t kMostErrors = 300;  // a page with more errors than this shows no motions
+constexpr std::size_t kOpenRows = 10;     // number of rows that the table of errors shows unfolded
+constexpr double kMillimetres = 1e3;      // millimetres in a metre
+// Largest motion as a share of the picture's size, before the factor of enlargement is rounded down.
+constexpr double kShownMotion = 0.15;
 
-/// A pose in the picture.
+/// A pose that the picture shows.
 struct RobotPose {
-  std::optional<std::size_t> pose;  ///< position among the poses of the result; none: home
-  std::string why;                  ///< reason why it is shown
+  std::optional<std::size_t> pose;  ///< index among the poses of the result; none: home
+  std::string why;                  ///< why the pose is shown
   Sketch sketch;
 };
 
-/// An error in the picture.
+/// An error that the picture shows.
 struct RobotError {
-  std::size_t at;      ///< position among the errors of the result
-  std::size_t factor;  ///< position among the factors of the model
-  double share;        ///< NaN if there are no shares
+  std::size_t at;      ///< index among the errors of the result
+  std::size_t factor;  ///< index among the factors of the model
+  double share;        ///< share of the error; NaN if errors have no shares
 };
 
 bool finite(const Sketch& sketch) {
@@ -49,7 +50,7 @@ bool finite(const Sketch& sketch) {
          });
 }
 
-/// The position of the largest number, or with sign -1 of the smallest; none if no number is known.
+/// The index of the largest number, or of the smallest if `sign` is -1; none if no number is known.
 std::optional<std::size_t> extreme(std::span<const double> values, double sign) {
   std::optional<std::size_t> found;
   for (std::size_t m = 0; m < values.size(); ++m) {
@@ -58,7 +59,7 @@ std::optional<std::size_t> extreme(std::span<const double> values, double sign) 
   return found;
 }
 
-/// The poses that interest a reader, each once and with the reason.
+/// Collects the poses that interest a reader, each once and with the reasons.
 class PoseChoice {
  public:
   PoseChoice(const StoredResult& result, const Model& model) : result_(&result), model_(&model) {
@@ -79,9 +80,7 @@ class PoseChoice {
       same->why += "; " + why;
     } else if (list.size() < kMostPoses) {
       const std::span<const double> at = pose ? result_->poses[PoseIndex(*pose)] : std::span<const double>();
-      if (pose && model_->unreachable(at)) return;  // a file may name any pose
-      std::optional<Sketch> sketch = model_->sketch(at);
-      if (sketch && finite(*sketch)) list.push_back({pose, why, std::move(*sketch)});
+      if (std::optional<Sketch> sketch = sketch_at(*model_, at)) list.push_back({pose, why, std::move(*sketch)});
     }
   }
 
@@ -106,7 +105,7 @@ std::vector<RobotPose> poses_of(const StoredResult& result, const Model& model, 
   return std::move(choice.list);
 }
 
-/// The errors of the result that the model has, those with the largest share first.
+/// The errors of the result that the model has, ordered by share, the largest first.
 std::vector<RobotError> errors_of(const StoredResult& result, const Model& model, const ErrorShares& shares) {
   const bool known = !shares.what.empty() && shares.values.size() == result.factors.size();
   std::vector<RobotError> list;
@@ -137,7 +136,8 @@ PartShares part_shares(const Sketch& sketch, const std::vector<RobotError>& erro
   return parts;
 }
 
-/// A part of the mechanism with the share of the errors there.
+/// A region of a limb with the share of the errors there. The joints `after` and `before` bound it, as in
+/// SketchedError.
 struct RankedPart {
   std::size_t limb;
   std::size_t after;
@@ -160,13 +160,13 @@ std::string part_words(const Sketch& sketch, const RankedPart& part) {
   return fmt::format("limb {} {}", part.limb + 1, between_words(sketch, part.limb, part.after, part.before));
 }
 
-std::string error_words(const Sketch& sketch, const Factor& factor, std::size_t position) {
+std::string error_words(const Sketch& sketch, std::size_t position) {
   const SketchedError& error = sketch.errors[position];
   return fmt::format("limb {}, {}: {}", error.limb + 1, between_words(sketch, error.limb, error.after, error.before),
-                     axis_words(sketch, error, factor.dimension));
+                     axis_words(sketch, error));
 }
 
-/// The description of a picture for screen readers.
+/// The description of a picture in words, for screen readers.
 std::string description(const Sketch& sketch, const PartShares& parts, const std::string& what) {
   constexpr std::size_t kMost = 3;
   std::vector<std::string> kinds;
@@ -187,13 +187,11 @@ std::string description(const Sketch& sketch, const PartShares& parts, const std
   return ranked.empty() ? text : text + ".";
 }
 
-std::string pose_title(const StoredResult& result, const RobotPose& pose) {
-  if (!pose.pose) return "At " + pose.why;
-  const std::string place = place_text(result, *pose.pose);
-  return fmt::format("P{}: {}", place.substr(1), pose.why);
+std::string title_of(const StoredResult& result, const RobotPose& pose) {
+  return pose.pose ? pose_title(result, *pose.pose, pose.why) : "At " + pose.why;
 }
 
-/// Adds the numbers of all frames of a sketch, 12 each: origin (mm), x, y, z.
+/// Adds the numbers of all frames of a sketch, 12 for each: origin in mm, then the x, y and z axes.
 void add_frames(const Sketch& sketch, std::vector<double>& to) {
   for (const auto& limb : sketch.frames) {
     for (const SketchedFrame& frame : limb) {
@@ -203,14 +201,15 @@ void add_frames(const Sketch& sketch, std::vector<double>& to) {
   }
 }
 
-/// The position of the error's frame among the frames of all limbs.
+/// The index of an error's frame among the frames of all limbs.
 std::size_t frame_number(const Sketch& sketch, const SketchedError& error) {
   std::size_t number = error.frame;
   for (std::size_t i = 0; i < error.limb; ++i) number += sketch.frames[i].size();
   return number;
 }
 
-/// The largest displacement (m) of the platform's joints, its origin, the tool and the points by a motion.
+/// The largest displacement (m) that a motion gives to the platform's joints, its origin, the tool and the named
+/// points.
 double displacement(const Sketch& sketch, const SketchTwist& motion) {
   std::vector<SketchVector> points = sketch.tool;
   points.push_back(sketch.platform);
@@ -225,7 +224,8 @@ double displacement(const Sketch& sketch, const SketchTwist& motion) {
   return largest;
 }
 
-/// Adds the motions of the platform in each limb for errors of one sigma, and the factor by which they are exaggerated.
+/// Adds the motion of the platform by each limb if an error has one standard deviation, and the factor by which the
+/// picture enlarges motions.
 void add_motions(const StoredResult& result, const std::vector<RobotPose>& poses, const std::vector<RobotError>& errors,
                  Robot& robot, ArrayPool& pool) {
   if (result.factor_sigma.size() != result.factors.size() || errors.size() > kMostErrors) return;
@@ -262,7 +262,7 @@ Robot robot_figure(const StoredResult& result, const Model& model, const std::ve
   for (const double c : view.centre) robot.centre.push_back(kMillimetres * c);
   std::vector<double> frames;
   for (const RobotPose& pose : poses) {
-    robot.poses.push_back(pose_title(result, pose));
+    robot.poses.push_back(title_of(result, pose));
     add_frames(pose.sketch, frames);
   }
   robot.frames = pool.add("robot_frames", frames);
@@ -271,8 +271,8 @@ Robot robot_figure(const StoredResult& result, const Model& model, const std::ve
     const Factor& factor = model.description().factors[one.factor];
     const SketchedError& error = home.errors[one.factor];
     const bool sized = result.factor_sigma.size() == result.factors.size();
-    robot.errors.push_back({factor.name, error_words(home, factor, one.factor), frame_number(home, error), error.axis,
-                            factor.dimension == Dimension::angle,
+    robot.errors.push_back({factor.name, error_words(home, one.factor), frame_number(home, error), error.axis,
+                            error.turns,
                             sized ? response_text(result.factors[one.at], result.factor_sigma[one.at]) : "",
                             std::isnan(one.share) ? "" : percent_text(one.share)});
   }
@@ -280,23 +280,33 @@ Robot robot_figure(const StoredResult& result, const Model& model, const std::ve
   return robot;
 }
 
-/// A table of the errors with their places, and their shares if there are any.
-Table errors_table(const StoredResult& result, const Model& model, const Sketch& sketch,
-                   std::span<const RobotError> errors, const ErrorShares& shares) {
+/// The description of an error in the mechanism's file. Empty if the file has none, or if the description is poesy's
+/// own.
+std::string own_words(const StoredResult& result, std::size_t error) {
+  const std::string& words = result.factors[error].description;
+  return result.mechanism_text.find(words) == std::string::npos ? std::string() : words;
+}
+
+/// A table of the errors with their places, their words in the mechanism's file, and their shares if there are any.
+Table errors_table(const StoredResult& result, const Sketch& sketch, std::span<const RobotError> errors,
+                   const ErrorShares& shares) {
   Table table{.name = "where_errors_are",
               .caption = "Where each error is",
-              .columns = {text_column("error", "error"), text_column("limb", "limb"), text_column("part", "part"),
-                          text_column("axis", "axis")}};
+              .columns = {text_column("error", "error"), text_column("limb", "limb", 1), text_column("part", "part", 2),
+                          text_column("axis", "axis", 3)}};
+  const bool has_words =
+      std::ranges::any_of(errors, [&](const RobotError& one) { return !own_words(result, one.at).empty(); });
+  if (has_words) table.columns.insert(table.columns.begin() + 1, text_column("words", "what it is"));
   const bool shared = has_shares({errors.begin(), errors.end()});
   if (shared) table.columns.push_back(percent_column("share", "share"));
   for (const RobotError& one : errors) {
     const SketchedError& error = sketch.errors[one.factor];
-    const Dimension dimension = model.description().factors[one.factor].dimension;
     std::vector<Cell>& row = table.rows.emplace_back();
     row.push_back(text_cell(result.factors[one.at].name));
+    if (has_words) row.push_back(text_cell(own_words(result, one.at)));
     row.push_back(text_cell(std::to_string(error.limb + 1)));
     row.push_back(text_cell(between_words(sketch, error.limb, error.after, error.before)));
-    row.push_back(text_cell(axis_words(sketch, error, dimension)));
+    row.push_back(text_cell(axis_words(sketch, error)));
     if (shared) row.push_back(percent_cell(one.share));
   }
   table.notes.emplace_back(
@@ -315,38 +325,25 @@ Table parts_table(const Sketch& sketch, const PartShares& parts, const ErrorShar
   return table;
 }
 
-/// The legend of the colours, from no share to the largest.
+/// The legend of the colours, from a share of 0 to the largest share.
 std::string legend(const PartShares& parts, const std::string& what) {
-  if (!(parts.largest > 0.0)) return {};
-  return fmt::format(
-      "<p class=\"robot-legend\"><span>{}:</span> <span class=\"robot-scale\">0 %<i "
-      "class=\"robot-ramp\"></i>{}</span></p>\n",
-      escaped("Colour and thickness, " + what), escaped(percent_text(parts.largest)));
+  return parts.largest > 0.0 ? colour_legend(what, "0 %", percent_text(parts.largest)) : std::string();
 }
 
-/// A picture as one SVG element. id: unique on the page.
-std::string picture(const std::string& id, const std::string& title, const std::string& description,
-                    const std::string& drawn) {
-  return fmt::format(
-      "<svg id=\"{0}\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {1:g} {2:g}\" role=\"img\" "
-      "aria-labelledby=\"{0}-title {0}-desc\">\n{3}\n{4}\n{5}</svg>\n",
-      id, kSketchWidth, kSketchHeight, element("title", title, fmt::format("id=\"{}-title\"", id)),
-      element("desc", description, fmt::format("id=\"{}-desc\"", id)), drawn);
-}
-
-/// The pictures of all poses; the first ones are visible without scripts.
+/// The pictures of all poses. The first ones are visible without scripts.
 std::string pictures(const StoredResult& result, const std::vector<RobotPose>& poses,
                      const std::vector<RobotError>& errors, const SketchView& view, const PartShares& parts,
                      const std::string& what) {
   std::string html = "<div class=\"robot-poses\">\n";
   const std::size_t none = poses.front().sketch.errors.size();
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    const std::string title = pose_title(result, poses[k]);
+    const std::string title = title_of(result, poses[k]);
     const std::size_t mark = has_shares(errors) ? errors.front().factor : none;
-    html += fmt::format("<div class=\"robot-pose\"{}>{}\n{}</div>\n", k < kShownAtOnce ? "" : " hidden",
-                        element("p", title, "class=\"plot-title\""),
-                        picture(fmt::format("robot-{}", k), title, description(poses[k].sketch, parts, what),
-                                turnable_sketch(poses[k].sketch, view, parts, mark)));
+    html += fmt::format(
+        "<div class=\"robot-pose\"{}>{}\n{}</div>\n", k < kShownAtOnce ? "" : " hidden",
+        element("p", title, "class=\"plot-title\""),
+        svg_picture(fmt::format("robot-{}", k), {kSketchWidth, view.height}, title,
+                    description(poses[k].sketch, parts, what), turnable_sketch(poses[k].sketch, view, parts, mark)));
   }
   return html + "</div>\n";
 }
@@ -391,28 +388,48 @@ std::vector<double> divided_shares(const StoredResult& result, const std::vector
   return values;
 }
 
+bool has_pictures(const ReportedResult& reported) {
+  return reported.model != nullptr &&
+         reported.model->description().pose_coordinates.size() == reported.stored.pose_coordinates.size();
+}
+
+std::optional<Sketch> sketch_at(const Model& model, std::span<const double> pose) {
+  if (!pose.empty() && model.unreachable(pose)) return std::nullopt;
+  std::optional<Sketch> sketch = model.sketch(pose);
+  return sketch && finite(*sketch) ? sketch : std::nullopt;
+}
+
+std::string pose_title(const StoredResult& result, std::size_t pose, const std::string& why) {
+  return fmt::format("P{}: {}", place_text(result, pose).substr(1), why);
+}
+
+std::string colour_legend(const std::string& what, const std::string& least, const std::string& largest) {
+  return fmt::format(
+      "<p class=\"robot-legend\"><span>{}:</span> <span class=\"robot-scale\">{}<i "
+      "class=\"robot-ramp\"></i>{}</span></p>\n",
+      escaped("Colour and thickness, " + what), escaped(least), escaped(largest));
+}
+
 void add_robot(const ReportedResult& reported, const ErrorShares& shares, Page& page, Section& section) {
-  if (reported.model == nullptr) return;
+  if (!has_pictures(reported)) return;
   const StoredResult& result = reported.stored;
   const Model& model = *reported.model;
-  if (model.description().pose_coordinates.size() != result.pose_coordinates.size())
-    return;  // a file may state any coordinates
   const std::vector<RobotPose> poses = poses_of(result, model, shares);
   if (poses.empty() || poses.front().pose) return;
   const Sketch& home = poses.front().sketch;
   const std::vector<RobotError> errors = errors_of(result, model, shares);
   std::vector<Sketch> sketches;
   for (const RobotPose& pose : poses) sketches.push_back(pose.sketch);
-  const SketchView view = sketch_view(sketches, kSketchYaw, kSketchPitch);
+  const SketchView view = sketch_view(sketches, kSketchYaw, kSketchPitch, kTallHeight);
   const PartShares parts = part_shares(home, errors);
   page.figures.figures["robot"] = robot_figure(result, model, poses, errors, view, page.figures.pool);
   section.figure("robot", caption(result, home, errors, shares),
                  legend(parts, shares.what) + pictures(result, poses, errors, view, parts, shares.what));
   if (errors.empty()) return;
   const std::size_t open = std::min(kOpenRows, errors.size());
-  section.table(errors_table(result, model, home, std::span(errors).first(open), shares));
+  section.table(errors_table(result, home, std::span(errors).first(open), shares));
   if (open < errors.size()) {
-    Table others = errors_table(result, model, home, std::span(errors).subspan(open), shares);
+    Table others = errors_table(result, home, std::span(errors).subspan(open), shares);
     others.name = "where_other_errors_are";
     section.folded("The other errors", others);
   }

@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "engine/report/display.h"
+#include "engine/report/drawn_errors.h"
 #include "engine/report/report_kind.h"
 
 namespace poesy {
 namespace {
 
-/// A description as a sentence.
+/// The description of a thing as a sentence.
 std::string sentence(const NamedUnit& thing) {
   std::string text = thing.description;
   if (text.empty()) return "-";
@@ -61,7 +62,7 @@ Table failures_table(const ReportedResult& result) {
   return table;
 }
 
-/// Adds bars for the rows that have solves without convergence.
+/// Adds to the page bars with the share of solves that did not converge in each row, if there are several rows.
 void add_bars(const SolveTally& outcomes, Page& page, Section& section) {
   if (outcomes.names.size() < 2) return;
   const std::vector<double> shares = outcomes.shares_by_row();
@@ -90,7 +91,8 @@ void add_figures(const ReportKind& kind, const StoredResult& result, const Solve
                         "not-converged-where");
 }
 
-/// A fact about a run with its label; empty if it is not known or does not apply.
+/// The label of a fact about a run, and the text of the fact, which is empty if the fact is not known or does not
+/// apply.
 using RunFact = std::pair<std::string, std::string>;
 
 std::string setting(const StoredResult& result, std::string_view section, std::string_view key) {
@@ -116,22 +118,13 @@ std::string samples_text(const StoredResult& result, const StudyWords& words) {
                      setting(result, "analysis", "samples.max"), setting(result, "analysis", "samples.relative_error"));
 }
 
-/// The number of errors with another distribution than the others of their unit.
-std::string own_distributions_text(const StoredResult& result) {
-  const auto own = std::ranges::count_if(result.factors, [&](const NamedUnit& factor) {
-    return !setting(result, "errors.override", factor.name).empty();
-  });
-  if (own == 0) return {};
-  return fmt::format("{} of {} errors have a distribution of their own", own, result.factors.size());
-}
-
 std::string speed_text(const RunFacts& run) {
   if (!(run.wall_seconds > 0.0)) return {};
   const double speed = static_cast<double>(run.solves) / run.wall_seconds;
   return count_text(static_cast<std::uint64_t>(std::llround(speed)));
 }
 
-/// How and where the result was made. Every result has the same labels in the same order.
+/// The facts on how and where a result was made. Every result has the same labels in the same order.
 std::vector<RunFact> run_facts(const ReportKind& kind, const ReportedResult& reported) {
   const StoredResult& result = reported.stored;
   const RunFacts& run = result.facts;
@@ -146,17 +139,17 @@ std::vector<RunFact> run_facts(const ReportKind& kind, const ReportedResult& rep
       {"fidelity of the model", setting(result, "mechanism", "fidelity")},
       {"poses", poses_text(result, words)},
       {"errors", result.factors.empty() ? "" : count_text(result.factors.size())},
-      {"linear errors", words.draws ? setting(result, "errors", "linear") : ""},
-      {"angular errors", words.draws ? setting(result, "errors", "angular") : ""},
-      {"other errors", words.draws ? own_distributions_text(result) : ""},
-      {"sizes of the errors", fmt::format("{}", fmt::join(words.sizes, "; "))},
+      {"sizes of the errors",
+       fmt::format("{}", fmt::join(words.draws ? drawn_sizes(result, words) : words.sizes, "; "))},
+      {"zones", words.draws ? setting(result, "errors", "zones") : ""},
+      {"draws", words.draws ? setting(result, "analysis", "draws") : ""},
       {"samples at each pose", samples_text(result, words)},
       {"metric", metric_text(result)},
       {"solver", setting(result, "solver", "method")},
       {fmt::format("tolerance of the solver [{}]", tolerance_unit), setting(result, "solver", "tolerance")},
       {"most iterations", setting(result, "solver", "max_iterations")},
       {"samples not converged", setting(result, "solver", "not_converged")},
-      {"seed", words.draws ? setting(result, "run", "seed") : ""},
+      {"seed", seed_text(result, words)},
       {"poesy", result.poesy_version},
       {"commit", result.git_commit},
       {"date (UTC)", run.created},
@@ -172,7 +165,8 @@ std::vector<RunFact> run_facts(const ReportKind& kind, const ReportedResult& rep
   };
 }
 
-/// The facts of one result, or those in which several agree (`same`) or differ.
+/// A table of facts. For one result it has all facts. For several results it has those in which they agree (`same`) or
+/// those in which they differ.
 Table facts_table(const ReportKind& kind, std::span<const ReportedResult> results, bool same) {
   const bool several = results.size() > 1;
   Table table{.name = same ? "what_was_run_alike" : "what_was_run",
@@ -222,6 +216,7 @@ void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& pa
   const StoredResult& stored = result.stored;
   const SolveTally outcomes = kind.tally(stored);
   const SolveCounts total = outcomes.total();
+  if (total.total() == 0 && !outcomes.second) return;  // not counted: a calibration solves again and again
   const std::string at_first = at_first_fidelity(outcomes);
   Section& section = page.add_section("not-solved", "What was not solved");
   if (total.not_converged() == 0) {

@@ -6,9 +6,9 @@ set(POESY_WEB ${CMAKE_CURRENT_BINARY_DIR}/report/web)
 
 # In the order in which report.js joins them.
 set(scripts data.js numbers.js names.js page.js drawing.js colours.js bars.js heatmap.js turning.js workspace.js lines.js
-    scatter.js robot.js main.js)
+    scatter.js robot.js tables.js what_if.js main.js)
 list(TRANSFORM scripts PREPEND ${web_source}/)
-set(styles ${web_source}/report.css ${web_source}/robot.css)
+set(styles ${web_source}/report.css ${web_source}/robot.css ${web_source}/what_if.css)
 set(assets_cpp ${POESY_WEB}/assets.cpp)
 set(assets d3.js plot.js report.js report.css)  # as files, which tests/browser reads
 list(TRANSFORM assets PREPEND ${POESY_WEB}/)

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "engine/base/text.h"
 #include "engine/study/study_kind.h"
@@ -16,7 +15,7 @@ using Select = PoseSelection::Select;
 
 constexpr std::size_t kCurvePoints = 201;
 
-/// Reads two ends, the lower one first: of a range of values, or of a part of a curve.
+/// Reads the two ends of a range, the lower end first: a range of values, or the range of time of a trajectory.
 Range read_range(const StudyValue& value, Dimension dimension) {
   const bool is_time = dimension == Dimension::time;
   const auto ends =
@@ -26,9 +25,11 @@ Range read_range(const StudyValue& value, Dimension dimension) {
     value.fail("is more than 1e9 s from 0", "count the time from the start of the motion");
   }
   if (range.lower < range.upper) return range;
-  const auto text = [&](double end) { return is_time ? readable_text({end, dimension}) : to_text({end, dimension}); };
+  const auto as_written = [](const StudyValue& end) {
+    return end.is_text() ? printable(end.text()) : shortest(end.number());
+  };
   value.fail(
-      "runs from " + text(range.lower) + " to " + text(range.upper),
+      "runs from " + as_written(ends[0]) + " to " + as_written(ends[1]),
       is_time ? "write the start first, and an end after it" : "write the lower end first, and two different ends");
 }
 
@@ -49,7 +50,7 @@ void read_limits(const StudyValue& value, Study& study, const Reading&) {
   });
 }
 
-/// Reads a whole number, or for a grid a table with a number for every pose coordinate.
+/// Reads the key `count`: a whole number, or for a grid a table with a number for every pose coordinate.
 void read_count(const StudyValue& value, Study& study, const Reading&) {
   PoseSelection& selection = study.poses;
   selection.count_place = value.place();
@@ -75,7 +76,7 @@ void read_count(const StudyValue& value, Study& study, const Reading&) {
 void read_pose_file(const StudyValue& value, Study& study, const Reading& reading) {
   study.poses.file = value.text();
   if (reading.use == StudyUse::evaluate) return;
-  const std::string path = beside_study(reading.root, study.poses.file);
+  const std::string path = named_file(value);
   study.poses.from_file = read_poses(path, study.model());
   study.poses.place = {path, 2, 1};
 }
@@ -119,7 +120,8 @@ const InnerRows<Trajectory>& trajectory_keys() {
   return keys;
 }
 
-/// The part of `what` that the study selects; the whole if it selects none.
+/// The range of time that the study takes from the range `whole`; all of it if the study states no range. Throws
+/// InputError if the study's range goes beyond `whole`. what: a name for `whole` in messages.
 Range part_of(const StudySection& section, const Trajectory& trajectory, const Range& whole, const std::string& what) {
   const Range time = trajectory.time.value_or(whole);
   if (time.lower < whole.lower || time.upper > whole.upper) {
@@ -152,13 +154,13 @@ void read_curve(const StudySection& section, const StudyValue& value, const Mode
   trajectory.time = part_of(section, trajectory, {curve.start, curve.end}, "curve '" + curve.name + "'");
 }
 
-/// Reads the file of a curve. With StudyUse::evaluate the file is not opened.
+/// Reads the file of a trajectory. With StudyUse::evaluate the file is not opened.
 void read_curve_file(const StudySection& section, const ModelDescription& model, const Reading& reading,
                      Trajectory& trajectory) {
   section.refuse("origin", "a trajectory from a file, whose points are as they are");
   if (trajectory.time && trajectory.points == 0) trajectory.points = kCurvePoints;
   if (reading.use == StudyUse::evaluate) return;
-  const std::string path = beside_study(section, trajectory.file);
+  const std::string path = named_file(section.require("file"));
   trajectory.from_file = read_trajectory(path, model);
   trajectory.first_row = {path, 2, 1};
   if (trajectory.points == 0) return;
@@ -199,7 +201,8 @@ std::string workspace_text(const std::vector<Range>& workspace, const ModelDescr
          "\n";
 }
 
-/// A trajectory that is not a whole file, as TOML.
+/// A trajectory as a TOML table. It names the curve and its origin, or the file with the points. The number of poses
+/// and the range of time follow, if the trajectory has them.
 std::string trajectory_text(const Trajectory& trajectory, const ModelDescription& model, ValueText value) {
   std::string text = "file = " + in_quotes(trajectory.file);
   if (trajectory.curve) {
@@ -245,7 +248,7 @@ std::string shown_count(const TemplateLines& lines, const Study& study) {
   return lines.usual("poses", "count") + "# count = " + grid + "\n";
 }
 
-/// The workspace of the model.
+/// The workspace of the model as ranges, SI.
 std::vector<Range> usual_workspace(const ModelDescription& model) {
   std::vector<Range> workspace;
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
@@ -264,7 +267,7 @@ std::string shown_workspace(const TemplateLines& lines, const Study& study) {
   return text + workspace_text(usual_workspace(model), model, readable_value);
 }
 
-/// The names of the joints, and an example of a range.
+/// The template's lines of the key `limits`: the names of the joints in a comment, and an example of a range.
 std::string shown_limits(const TemplateLines& lines, const Study& study) {
   const std::vector<JointDisplacement>& joints = study.model().joints;
   if (joints.empty()) return {};
@@ -359,10 +362,6 @@ std::vector<StudyRow> poses_rows() {
 
 }  // namespace
 
-std::string beside_study(const StudySection& section, const std::string& file) {
-  return (std::filesystem::path(section.place().file).parent_path() / file).string();
-}
-
 const StudyRows& poses_keys() {
   static const StudyRows keys{.paths = {"poses", "analysis.calibration.poses", "analysis.calibration.candidates"},
                               .meaning = "The poses of the platform.",
@@ -401,11 +400,14 @@ StudyTables poses_tables() {
 
 void read_poses_section(Study& study, const Reading& reading) {
   if (reading.use == StudyUse::run) static_cast<void>(reading.root.require("poses"));
+  if (reading.use == StudyUse::evaluate_at_poses) {
+    static_cast<void>(reading.root.require("poses", "write it, or give a table of poses: --poses P.csv"));
+  }
   read_pose_selection(reading.root.section("poses"), study, reading);
 }
 
 void read_pose_selection(const StudySection& section, Study& study, const Reading& reading) {
-  const bool complete = reading.use == StudyUse::run;
+  const bool complete = reading.use != StudyUse::evaluate;
   study.poses.place = section.place();
   read_keys(poses_keys(), section, study, reading, complete ? Extent::complete : Extent::partial);
   if (study.poses.select == PoseSelection::Select::file) static_cast<void>(section.require("file"));

@@ -3,9 +3,8 @@
 #include <cmath>
 
 #include "engine/calibration/inference.h"
-#include "engine/random/distribution.h"
-#include "engine/random/stream.h"
 #include "tests/engine/calibration/read_mechanism.h"
+#include "tests/engine/calibration/simulated_machines.h"
 
 namespace poesy::calibration {
 namespace {
@@ -13,14 +12,6 @@ namespace {
 constexpr std::size_t kMachines = 4000;
 constexpr double kSigma = 0.3e-3;  // m, of each error
 constexpr double kNoise = 5e-6;    // m, of a height
-
-/// Standard normal numbers of one stream.
-std::vector<double> normal_numbers(std::size_t stream, std::size_t count) {
-  std::vector<double> numbers(count);
-  fill_uniforms({17, Purpose::calibration, FactorIndex(stream), PoseIndex(1)}, SampleIndex(0), numbers);
-  for (double& number : numbers) number = normal_quantile(1.0, number);
-  return numbers;
-}
 
 /// The printer with 3 end stops and its radius, whose heights are measured at seven places.
 class Coverage : public testing::Test {
@@ -68,22 +59,16 @@ class Coverage : public testing::Test {
     return count / static_cast<double>(kMachines);
   }
 
-  /// The intervals are at 95 %. A share of 4000 machines has a standard error of 0.35 points; 1.5 points are 4.3 of
-  /// them, alpha = 2e-5 for each.
-  void expect_nominal(const Vector& shares) const {
-    for (Eigen::Index j = 0; j < shares.size(); ++j) EXPECT_NEAR(shares(j), 0.95, 0.015) << j;
-  }
-
   std::unique_ptr<Model> model_;
   ExactMachine machine_;
   FittedDirections directions_;
   std::vector<std::vector<double>> poses_;
 };
 
-TEST_F(Coverage, OfLeastSquares) { expect_nominal(held({}, Vector::Constant(4, kSigma), {false, 0.95, 7})); }
+TEST_F(Coverage, OfLeastSquares) { expect_nominal(held({}, Vector::Constant(4, kSigma), {false, 0.95, 7}), kMachines); }
 
 TEST_F(Coverage, OfEstimatedNoiseByStudentsT) {
-  expect_nominal(held({}, Vector::Constant(4, kSigma), {true, 0.95, 7}));
+  expect_nominal(held({}, Vector::Constant(4, kSigma), {true, 0.95, 7}), kMachines);
 }
 
 TEST_F(Coverage, WithTheTolerancesAsPrior) {
@@ -91,7 +76,7 @@ TEST_F(Coverage, WithTheTolerancesAsPrior) {
   Vector sigma = Vector::Constant(4, kSigma);
   sigma(3) /= std::sqrt(3.0);
   const Prior prior{sigma.cwiseInverse().asDiagonal(), Vector::Zero(4)};
-  expect_nominal(held(prior, sigma, {false, 0.95, 7}));
+  expect_nominal(held(prior, sigma, {false, 0.95, 7}), kMachines);
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 namespace poesy::calibration {
 
 /// The text of a mechanism among the data of the tests.
-inline std::string mechanism_text(const std::string& name) {
-  std::ifstream file(std::string(POESY_TEST_DATA) + "/calibration/" + name);
+inline std::string mechanism_text(const std::string& name, const std::string& folder = "calibration") {
+  std::ifstream file(std::string(POESY_TEST_DATA) + "/" + folder + "/" + name);
   std::stringstream text;
   text << file.rdbuf();
   return text.str();

@@ -116,12 +116,12 @@ TEST(WorstCase, OfADistanceAndAnOrientationAlone) {
 /// The worst division of a zone is never below the even one; where the middle alone acts it is twice it.
 TEST(WorstCase, DividesAZoneAtWorstByOneUseAlone) {
   const Feature axis = feature(FeatureKind::axis, 1.0, {});
-  EXPECT_NEAR(zone_squares(axis, 3.0, {1.0, 1.0, 0.0, 0.0}).worst, 2.0 / 36.0, 1e-16);
-  EXPECT_NEAR(zone_squares(axis, 3.0, {1.0, 1.0, 0.0, 0.0}).even, 1.0 / 36.0, 1e-16);
-  EXPECT_NEAR(zone_squares(axis, 3.0, {0.0, 0.0, 1.0, 1.0}).worst, 8.0 / 36.0, 1e-16);
+  EXPECT_NEAR(zone_squares(axis, {.sigmas = 3.0}, {1.0, 1.0, 0.0, 0.0}).worst, 2.0 / 36.0, 1e-16);
+  EXPECT_NEAR(zone_squares(axis, {.sigmas = 3.0}, {1.0, 1.0, 0.0, 0.0}).even, 1.0 / 36.0, 1e-16);
+  EXPECT_NEAR(zone_squares(axis, {.sigmas = 3.0}, {0.0, 0.0, 1.0, 1.0}).worst, 8.0 / 36.0, 1e-16);
   const Feature oriented = feature(FeatureKind::axis, 1.0, 0.4);
-  EXPECT_NEAR(zone_squares(oriented, 3.0, {1.0, 1.0, 0.0, 0.0}).worst, 2.0 * 0.84 / 36.0, 1e-16);
-  EXPECT_NEAR(zone_squares(oriented, 3.0, {0.0, 0.0, 1.0, 1.0}).worst, 2.0 * 0.16 / 9.0, 1e-16);
+  EXPECT_NEAR(zone_squares(oriented, {.sigmas = 3.0}, {1.0, 1.0, 0.0, 0.0}).worst, 2.0 * 0.84 / 36.0, 1e-16);
+  EXPECT_NEAR(zone_squares(oriented, {.sigmas = 3.0}, {0.0, 0.0, 1.0, 1.0}).worst, 2.0 * 0.16 / 9.0, 1e-16);
 }
 
 /// A length is the largest over directions: of discs it is the sum of their radii.

@@ -102,7 +102,7 @@ TEST(Fits, SayWhatTheyCannotRead) {
       {"0.9 h14", "'0.9 h14' has the grade IT14, which ISO 286-1 does not have for this size"},
       {"8 H7/g6", "'8 H7/g6' is a fit of two parts; write the zone of one of them, such as H7 or g6"}};
   for (const auto& [text, expected] : texts) EXPECT_EQ(problem(size_limits, text), expected);
-  EXPECT_EQ(problem(fit, "8 H7"), "'8 H7' is no fit; write the zones of hole and shaft, such as 8 H7/g6");
+  EXPECT_EQ(problem(fit, "8 H7"), "'8 H7' is not a fit; write the zones of hole and shaft, such as 8 H7/g6");
   EXPECT_EQ(problem(fit, "8 g6/H7"), "'8 g6/H7' is not a hole H before a shaft d, e, f, g or h");
   EXPECT_EQ(problem(fit, "8 H7/H7"), "'8 H7/H7' is not a hole H before a shaft d, e, f, g or h");
 }

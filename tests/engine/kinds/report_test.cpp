@@ -292,7 +292,10 @@ TEST_F(HtmlReport, DrawsTheHistogramOfAMonteCarloResultWithItsLimit) {
             (std::vector<float>{static_cast<float>(1.0 / unit), static_cast<float>(2.0 / unit)}));
   const std::vector<float> density = array(page, figure["panels"][0]["series"][0]["value"]);
   const std::vector<float> below = array(page, figure["panels"][1]["series"][0]["value"]);
-  expect_shown(density.at(0), 100.0 * 200.0 / 382.0 * unit);
+  // The bar is 57.3 deg wide.
+  EXPECT_EQ(figure["panels"][0]["label"], "share of the samples per 50 deg");
+  EXPECT_EQ(figure["panels"][0]["unit"], "%");
+  expect_shown(density.at(0), 100.0 * 200.0 / 382.0 * unit * 50.0);
   expect_shown(below.at(0), 100.0 * 100.0 / 382.0);
   expect_shown(below.at(1), 100.0 * 300.0 / 382.0);
   ASSERT_EQ(figure["marks"].size(), 1u);

@@ -185,7 +185,7 @@ TEST_P(BadAnalyses, AreRefused) {
 
 const std::string kEvaluate = "kind = \"evaluate\"\n";
 const std::string kIdentification = "kind = \"identification\"\n";
-const std::string kMonteCarlo = "kind = \"monte-carlo\"\n";
+const std::string kMonteCarlo = "kind = \"monte-carlo\"\ndraws = \"per pose\"\n";
 
 const auto kName = [](const auto& info) { return std::string(info.param.name); };
 

@@ -267,9 +267,13 @@ std::vector<double> costs_of_all(const AllocationProblem& problem) {
   std::vector<double> costs;
   const std::size_t parts = problem.parts.size();
   std::vector<std::size_t> most;
-  for (const auto& processes : problem.parts) most.push_back(processes.size());
-  for (const Within& pair : problem.pairs) most.push_back(pair.left_out == LeftOut::never ? 1 : 2);
-  std::vector<std::size_t> choice(most.size(), 0);
+  std::vector<std::size_t> choice;
+  const auto add = [&](std::size_t ways) {
+    most.push_back(ways);
+    choice.push_back(0);
+  };
+  for (const auto& processes : problem.parts) add(processes.size());
+  for (const Within& pair : problem.pairs) add(pair.left_out == LeftOut::never ? 1 : 2);
   for (std::size_t i = 0; i < choice.size();) {
     const std::vector<std::size_t> process(choice.begin(), choice.begin() + static_cast<std::ptrdiff_t>(parts));
     const std::vector<std::size_t> out(choice.begin() + static_cast<std::ptrdiff_t>(parts), choice.end());

@@ -67,6 +67,33 @@ TEST(FiguresJson, SaysWhatNamesMeanAndWhatIsADifference) {
   EXPECT_FALSE(json["figures"]["k"]["layers"][1].contains("signed"));
 }
 
+TEST(FiguresJson, HasNoNumberForAnInfiniteEndOfALimit) {
+  FigureSet set;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  set.figures.emplace("k",
+                      WhatIf{.factors = {0.5, 1.0},
+                             .sliders = {{"rail", {{"position", 0.1, "mm"}}, {0, 2}}, {"rod", {}, {1}, {2.0, 1.0}}},
+                             .limits = {{3, -1.0, 1.0}, {1, 0.5, kNone}}});
+  const nlohmann::json json = nlohmann::json::parse(figures_json(set))["figures"]["k"];
+  EXPECT_EQ(json["type"], "whatIf");
+  EXPECT_EQ(json["limits"][0]["high"], 1.0);
+  EXPECT_EQ(json["limits"][1]["low"], 0.5);
+  EXPECT_TRUE(json["limits"][1]["high"].is_null());
+  EXPECT_FALSE(json["sliders"][0].contains("costs"));
+  EXPECT_EQ(json["sliders"][1]["costs"], (std::vector{2.0, 1.0}));
+}
+
+TEST(Page, PutsASectionAfterTheNamedOneOrAtTheEnd) {
+  Page page;
+  page.add_section("a", "A");
+  page.add_section("b", "B");
+  page.insert_section("a", "after-a", "After A");
+  page.insert_section("none", "last", "Last");
+  std::vector<std::string> ids;
+  for (const Section& section : page.sections) ids.push_back(section.id());
+  EXPECT_EQ(ids, (std::vector<std::string>{"a", "after-a", "b", "last"}));
+}
+
 TEST(FiguresJson, HasNoTags) {
   FigureSet set;
   set.figures.emplace("k", HeatMap{.layers = {}, .rows = {"</script><!--"}, .column_label = "pose", .coordinates = {}});
@@ -89,6 +116,25 @@ TEST(HtmlTable, NamesRowsByTheFirstTextAndShowsUnitsAndNotes) {
                            "<p class=\"note\">a note</p>", "data-table=\"t\""}) {
     EXPECT_NE(html.find(part), std::string::npos) << part << "\n" << html;
   }
+}
+
+TEST(HtmlTable, NamesRowsByTheFirstNumberWhereItHasNoTexts) {
+  const Table table{.name = "t",
+                    .caption = "c",
+                    .columns = {{"x", "x", "mm", Column::Kind::number}, {"y", "y", "mm", Column::Kind::number}},
+                    .rows = {{{"-43.301", -43.301}, {"1", 1.0}}, {{"50", 50.0}, {"2", 2.0}}}};
+  const std::string html = html_table(table);
+  EXPECT_NE(html.find("<th scope=\"row\" class=\"n\">\u221243.301</th>"), std::string::npos) << html;
+  EXPECT_EQ(html.find("<th scope=\"row\">"), std::string::npos) << html;
+}
+
+TEST(HtmlTable, GivesLongNamesOfRowsLines) {
+  const Table table{.name = "t",
+                    .caption = "c",
+                    .columns = {{"error", "error", "", Column::Kind::text}, {"x", "x", "mm", Column::Kind::number}},
+                    .rows = {{{"18 errors whose effect cannot be told from zero", {}}, {"-", {}}}}};
+  const std::string html = html_table(table);
+  EXPECT_NE(html.find("<th scope=\"row\" class=\"long\">18 errors"), std::string::npos) << html;
 }
 
 TEST(HtmlTable, DrawsToleranceFramesInThePlaceOfTheirTexts) {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <regex>
+#include <sstream>
 
 namespace poesy {
 namespace {
@@ -52,6 +54,91 @@ std::pair<double, double> place_of(const std::string& svg, const std::string& na
 TEST(MechanismPicture, ShowsASlideBetweenTheJointsThatItConnects) {
   const std::string svg = mechanism_picture(sketch(), "slide");
   EXPECT_NEAR(place_of(svg, "q&lt;").second, (place_of(svg, "A").second + place_of(svg, "B").second) / 2, 0.11);
+}
+
+/// A Tricept: three legs with balls on the platform, and a tube that slides in a gimbal on the base.
+Sketch tricept(const SketchVector& slide) {
+  Sketch made{.limbs = {}, .platform = {0.0, 0.0, -0.7}, .tool = {}};
+  made.limbs = {{{"gimbal", 'U', false, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, false},
+                 {"slide", 'P', false, {0.0, 0.0, 0.0}, slide, false}}};
+  for (int leg = 0; leg < 3; ++leg) {
+    const double angle = 2.0 * std::numbers::pi * leg / 3.0;
+    const double x = std::cos(angle);
+    const double y = std::sin(angle);
+    made.limbs.push_back({{"A", 'U', false, {0.25 * x, 0.25 * y, 0.0}, {-y, x, 0.0}, false},
+                          {"q", 'P', true, {0.25 * x, 0.25 * y, 0.0}, {0.0, 0.0, -1.0}, false},
+                          {"B" + std::to_string(leg), 'S', false, {0.12 * x, 0.12 * y, -0.7}, {0.0, 0.0, 1.0}, false}});
+  }
+  return made;
+}
+
+/// The heights of a body's corners, mm, in the first view.
+std::vector<double> heights_of(const std::string& svg, const std::string& body) {
+  std::smatch match;
+  EXPECT_TRUE(std::regex_search(svg, match, std::regex("data-p=\"([^\"]*)\" class=\"" + body + "\"")));
+  std::istringstream corners(match[1]);
+  std::vector<double> heights;
+  for (std::string corner; corners >> corner;) heights.push_back(std::stod(corner.substr(corner.rfind(',') + 1)));
+  return heights;
+}
+
+TEST(MechanismPicture, ShowsAStrutBetweenItsJointAndThePlatform) {
+  const std::string svg = mechanism_picture(tricept({0.0, 0.0, -1.0}), "Tricept");
+  EXPECT_EQ(heights_of(svg, "platform"), std::vector<double>(3, -700.0));  // the platform does not reach to the gimbal
+  const double gimbal = place_of(svg, "gimbal").second;
+  const double ball = place_of(svg, "B0").second;
+  EXPECT_NEAR(place_of(svg, "slide").second, (gimbal + ball) / 2, 0.11);
+  EXPECT_NEAR(place_of(svg, "slide").first, place_of(svg, "gimbal").first, 0.11);
+}
+
+/// A slide across the way to the platform carries it where it is.
+TEST(MechanismPicture, LeavesOtherSlidesAtTheirJoint) {
+  const std::string svg = mechanism_picture(tricept({1.0, 0.0, 0.0}), "Tricept");
+  const std::vector<double> heights = heights_of(svg, "platform");
+  EXPECT_EQ(std::ranges::count(heights, 0.0), 1);
+  EXPECT_LT(std::abs(place_of(svg, "slide").second - place_of(svg, "gimbal").second), 20.0);
+}
+
+/// The angles of a body's corners about the z axis, deg, in the order of the first view.
+std::vector<double> corners_of(const std::string& svg, const std::string& body) {
+  std::smatch match;
+  EXPECT_TRUE(std::regex_search(svg, match, std::regex("data-p=\"([^\"]*)\" class=\"" + body + "\"")));
+  std::istringstream points(match[1]);
+  std::vector<double> angles;
+  for (std::string point; points >> point;) {
+    std::ranges::replace(point, ',', ' ');
+    std::istringstream numbers(point);
+    double x = 0.0;
+    double y = 0.0;
+    numbers >> x >> y;
+    angles.push_back(std::atan2(y, x) * 180.0 / std::numbers::pi);
+  }
+  return angles;
+}
+
+TEST(MechanismPicture, DrawsBodiesByTheirHulls) {
+  Sketch made{.limbs = {}, .platform = {0.0, 0.0, 0.5}, .tool = {}};
+  // As copies of two limbs give them: crossing each other in the order of limbs.
+  for (const double degrees : {10.0, 130.0, 250.0, -10.0, 110.0, 230.0}) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    const SketchVector foot{0.3 * std::cos(angle), 0.3 * std::sin(angle), 0.0};
+    const SketchVector ball{0.2 * std::cos(angle), 0.2 * std::sin(angle), 0.5};
+    made.limbs.push_back({{"foot", 'U', false, foot, {0.0, 0.0, 1.0}, false}, {"ball", 'S', false, ball, {}, false}});
+  }
+  made.limbs.push_back({{"post", 'U', false, {}, {0.0, 0.0, 1.0}, false},  // inside both bodies
+                        {"top", 'F', false, {0.01, 0.0, 0.5}, {}, false}});
+  const std::string svg = mechanism_picture(made, "hexapod");
+  for (const char* body : {"base", "platform"}) {
+    const std::vector<double> angles = corners_of(svg, body);
+    ASSERT_EQ(angles.size(), 6U) << body;
+    double round = 0.0;
+    for (std::size_t n = 0; n < angles.size(); ++n) {
+      const double turn = std::remainder(angles[(n + 1) % angles.size()] - angles[n], 360.0);
+      EXPECT_GT(turn * std::remainder(angles[1] - angles[0], 360.0), 0.0) << body;  // always to the same side
+      round += turn;
+    }
+    EXPECT_NEAR(std::abs(round), 360.0, 1e-9) << body;
+  }
 }
 
 TEST(MechanismPicture, ShowsFeaturesInTheFramesOfTheirParts) {

@@ -84,6 +84,8 @@ TEST(Merits, AreComparedWhereAllResultsHaveThem) {
             "B is better: the yield is 90 % in A and 95 % in B (+5 percentage points, interval +3.59 to +6.41).");
   EXPECT_EQ(merit_sentences({cost}, {Merit{.what = "cost of all parts", .value = 8.0}}, 'C'),
             "The cost of all parts is 10 in A and 8 in C (-20 %).");
+  const auto exact = [](double value) { return Merit{.what = "cost", .value = value, .low = value, .high = value}; };
+  EXPECT_EQ(merit_sentences({exact(10.0)}, {exact(8.0)}), "B is better: the cost is 10 in A and 8 in B (-20 %).");
 }
 
 TEST(ComparedResponse, IsOneThatAllHave) {

@@ -10,6 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/kinds/study_file.h"
+#include "engine/result/described.h"
 #include "engine/storage/version.h"
 #include "engine/study/study_file.h"
 #include "tests/engine/kinds/example_result.h"
@@ -111,6 +112,26 @@ TEST(ResultFile, SaysWhatErrorsAndResponsesAre) {
   for (std::size_t r = 0; r < stored.responses.size(); ++r) {
     EXPECT_EQ(stored.responses[r].description, model.responses[r].description);
   }
+}
+
+TEST(ResultFile, ReadsBackWhatARunSaysOfItsStudy) {
+  const TempFolder folder;
+  const Example example;
+  example.write_sensitivity(folder / "r.h5");
+  const StoredResult stored = read_result(folder / "r.h5");
+  const StoredResult said = described(example.study, *build_model(example.study.mechanism), example.poses);
+  EXPECT_EQ(said.kind, stored.kind);
+  EXPECT_EQ(said.title, stored.title);
+  EXPECT_EQ(said.model, stored.model);
+  EXPECT_EQ(said.metric, stored.metric);
+  EXPECT_EQ(said.metric_points, stored.metric_points);
+  EXPECT_EQ(names_with_units(said.pose_coordinates), names_with_units(stored.pose_coordinates));
+  EXPECT_EQ(names_with_units(said.responses), names_with_units(stored.responses));
+  EXPECT_EQ(said.headline, stored.headline);
+  EXPECT_EQ(said.signed_headline, stored.signed_headline);
+  expect_same(said.poses, stored.poses);
+  EXPECT_EQ(said.condition, stored.condition);
+  EXPECT_EQ(said.time, stored.time);
 }
 
 TEST(ResultFile, FactsReadBackAsWritten) {

@@ -249,7 +249,7 @@ TEST(DamagedResult, WithNamesThatLeadElsewhereIsRefused) {
     example.study.mechanism.entry = &catalog[0];
     example.write_sensitivity(folder / "r.h5");
     const std::string message = file_error([&] { export_tables(folder / "r.h5", folder / "tables"); });
-    expect_contains(message, "in /responses/name is no name");
+    expect_contains(message, "in /responses/name is not a name");
     EXPECT_TRUE(std::ranges::none_of(message, [](char c) { return c >= 0 && c < ' '; })) << message;
   }
 }

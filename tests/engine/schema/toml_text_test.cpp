@@ -51,6 +51,33 @@ TEST(ParseToml, LooksIntoTheDeepestTables) {
   expect_refused("[" + dots + "]\n" + dots + " = ^1e-999", {"a is 1e-999"});
 }
 
+TEST(ParseToml, NamesThePlaceOfAnOpenQuote) {
+  const std::vector<std::string> on_line{
+      "the text that begins here with \" is not closed on its line; write \" at its end"};
+  expect_refused("a = 1\nb = ^\"text\nc = 2\n", on_line);
+  expect_refused("b = ^\"text", on_line);
+  expect_refused("b = [\"a\", \"b\", ^\"c]\nd = 1\n", on_line);
+  expect_refused("b = \"a\\\"b\"\nc = ^\"a\\\"\n", on_line);
+  expect_refused("# it's \"\nb = ^\"x # y\n", on_line);
+  expect_refused("b = \"\"\nc = ^\"text\n", on_line);
+  expect_refused("b = ^'text\nc = 'd'\n", {"begins here with ' is not closed on its line"});
+  expect_refused("b = ^\"\"\"text\nc = 1\nd = \"\"\n", {"with \"\"\" is not closed up to the end of the file"});
+  expect_refused("a = \"\"\"x\n\"y\"\"\"\"\nb = ^'''text\n\"\"\"\n",
+                 {"with ''' is not closed up to the end of the file"});
+}
+
+TEST(ParseToml, SaysThatALineHasAQuoteTooMany) {
+  const std::vector<std::string> too_many{"the line has a quote too many, or one is missing before this place"};
+  expect_refused("a = [\"1 mm, \"^2 mm\"]\n", too_many);
+  expect_refused("a = t^ext\"\n", too_many);
+}
+
+/// A quote that is open elsewhere explains nothing.
+TEST(ParseToml, KeepsOtherReasonsBesideOpenQuotes) {
+  expect_refused("[a^\nb = 1\nc = \"text\n", {"this is not TOML: parsing table header"});
+  expect_refused("a = \"it's\" # don't\n[b^\n", {"this is not TOML: parsing table header"});
+}
+
 TEST(ParseToml, SaysWhatIsNotToml) {
   EXPECT_EQ(test::refusal_of([] { parsed("[a\n"); }),
             "f.toml:1:3: this is not TOML: parsing table header: expected ']', saw '\\n'; correct it");

@@ -1,4 +1,5 @@
 #include "engine/stats/first_order.h"
+#include "engine/random/normal_quantile.h"
 
 #include <gtest/gtest.h>
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/random/distribution.h"
+#include "engine/random/normal_quantile.h"
 
 namespace poesy {
 namespace {

@@ -5,7 +5,7 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <cmath>
 
-#include "engine/random/distribution.h"
+#include "engine/random/normal_quantile.h"
 #include "engine/random/stream.h"
 #include "tests/engine/stats/stored_bytes.h"
 

@@ -67,6 +67,61 @@ TEST(Proportion, OfNoTrialsIsNotKnown) {
   EXPECT_EQ(share.interval.high, 1.0);
 }
 
+/// The probability that n pairs of trials end so: some gained, some lost, the others alike.
+double trinomial(std::uint64_t gained, std::uint64_t lost, std::uint64_t n, double p_gained, double p_lost) {
+  const double p_of_rest = p_lost / (1.0 - p_gained);
+  return binomial(gained, n, p_gained) * binomial(lost, n - gained, p_of_rest);
+}
+
+TEST(PairedChange, CoversEveryChange) {
+  constexpr std::uint64_t kPairs = 60;
+  double sum = 0.0;
+  int cases = 0;
+  for (const double p_gained : {0.01, 0.05, 0.15, 0.3, 0.5}) {
+    for (const double p_lost : {0.002, 0.02, 0.1, 0.3, 0.45}) {
+      double coverage = 0.0;  // exact, by enumeration
+      for (std::uint64_t gained = 0; gained <= kPairs; ++gained) {
+        for (std::uint64_t lost = 0; lost <= kPairs - gained; ++lost) {
+          const Interval limits = paired_change(gained, lost, kPairs, 0.95).interval;
+          const double change = p_gained - p_lost;
+          if (limits.low <= change && change <= limits.high)
+            coverage += trinomial(gained, lost, kPairs, p_gained, p_lost);
+        }
+      }
+      EXPECT_GE(coverage, 0.93) << p_gained << ' ' << p_lost;
+      sum += coverage;
+      ++cases;
+    }
+  }
+  EXPECT_NEAR(sum / cases, 0.957, 0.012);  // neither too narrow nor much too wide on average
+}
+
+TEST(PairedChange, IsNarrowWhereTrialsEndAlike) {
+  const Estimate same = paired_change(0, 0, 1000, 0.95);
+  EXPECT_EQ(same.value, 0.0);
+  EXPECT_LT(same.interval.high, 0.003);
+  const Estimate change = paired_change(30, 10, 1000, 0.95);
+  EXPECT_EQ(change.value, 0.02);
+  // Two independent shares near one half have an interval of 1.96 sqrt(0.5 / 1000) on either side.
+  EXPECT_LT(change.interval.high - change.interval.low, 0.03);
+  EXPECT_GT(change.interval.low, 0.0);
+}
+
+TEST(PairedChange, ChangesItsSignWithTheOrder) {
+  const Estimate there = paired_change(7, 2, 50, 0.9);
+  const Estimate back = paired_change(2, 7, 50, 0.9);
+  EXPECT_EQ(there.value, -back.value);
+  EXPECT_EQ(there.interval.low, -back.interval.high);
+  EXPECT_EQ(there.interval.high, -back.interval.low);
+}
+
+TEST(PairedChange, OfNoTrialsIsNotKnown) {
+  const Estimate change = paired_change(0, 0, 0, 0.95);
+  EXPECT_TRUE(std::isnan(change.value));
+  EXPECT_EQ(change.interval.low, -1.0);
+  EXPECT_EQ(change.interval.high, 1.0);
+}
+
 TEST(TrialsWithoutFailure, AreTheFewestThatShowTheShare) {
   EXPECT_EQ(trials_without_failure(0.9973, 0.95), 1109U);
   for (const double share : {0.5, 0.9, 0.99, 0.9973, 0.999999}) {

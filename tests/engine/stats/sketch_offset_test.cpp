@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/random/distribution.h"
+#include "engine/random/normal_quantile.h"
 #include "engine/stats/buckets.h"
 #include "engine/stats/quantile_sketch.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/random/distribution.h"
+#include "engine/random/normal_quantile.h"
 #include "engine/random/stream.h"
 #include "engine/stats/squared_differences.h"
 

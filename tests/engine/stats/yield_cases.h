@@ -11,6 +11,7 @@
 
 #include "engine/random/distribution.h"
 #include "engine/random/normal_copula.h"
+#include "engine/random/normal_quantile.h"
 #include "engine/random/stream.h"
 #include "engine/random/weighted_points.h"
 #include "engine/stats/yield_gradient.h"

@@ -10,6 +10,7 @@
 
 #include "engine/random/distribution.h"
 #include "engine/random/normal_copula.h"
+#include "engine/random/normal_quantile.h"
 #include "engine/random/stream.h"
 #include "tests/engine/stats/stored_bytes.h"
 #include "tests/engine/stats/yield_cases.h"

@@ -47,7 +47,7 @@ TEST(BareNumbers, OfOtherCoordinatesOfPoses) {
 
 std::string study_text(std::string_view errors, std::string_view poses = "{ count = 3 }") {
   return "format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"fake\" }\nposes = " + std::string(poses) +
-         "\n[analysis]\nkind = \"monte-carlo\"\n[errors]\n" + std::string(errors);
+         "\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per pose\"\n[errors]\n" + std::string(errors);
 }
 
 std::string error_text(std::string_view errors, std::string_view table) {

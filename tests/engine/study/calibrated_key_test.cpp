@@ -52,8 +52,8 @@ double response_of(const Study& study) {
 }
 
 TEST(Calibrated, IsAKeyOfAnAnalysis) {
-  const Study plain = read("kind = \"monte-carlo\"\n");
-  const Study corrected = read("kind = \"monte-carlo\"\ncalibrated = true\n");
+  const Study plain = read("kind = \"monte-carlo\"\ndraws = \"per pose\"\n");
+  const Study corrected = read("kind = \"monte-carlo\"\ndraws = \"per pose\"\ncalibrated = true\n");
   EXPECT_FALSE(plain.mechanism.calibrated);
   EXPECT_TRUE(corrected.mechanism.calibrated);
   EXPECT_EQ(response_of(corrected), 0.5 * response_of(plain));
@@ -62,10 +62,10 @@ TEST(Calibrated, IsAKeyOfAnAnalysis) {
 }
 
 TEST(Calibrated, IsInTheResolvedTextWhereItHolds) {
-  const std::string plain = resolved_text(read("kind = \"monte-carlo\"\ncalibrated = false\n"));
-  EXPECT_EQ(plain, resolved_text(read("kind = \"monte-carlo\"\n")));
+  const std::string plain = resolved_text(read("kind = \"monte-carlo\"\ndraws = \"per pose\"\ncalibrated = false\n"));
+  EXPECT_EQ(plain, resolved_text(read("kind = \"monte-carlo\"\ndraws = \"per pose\"\n")));
   EXPECT_EQ(plain.find("calibrated"), std::string::npos);
-  const std::string text = resolved_text(read("kind = \"monte-carlo\"\ncalibrated = true\n"));
+  const std::string text = resolved_text(read("kind = \"monte-carlo\"\ndraws = \"per pose\"\ncalibrated = true\n"));
   EXPECT_NE(text.find("\ncalibrated = true\n"), std::string::npos) << text;
   const Study again = study_of_text(text, "again.toml", kCatalog, StudyUse::run);
   EXPECT_TRUE(again.mechanism.calibrated);
@@ -74,8 +74,9 @@ TEST(Calibrated, IsInTheResolvedTextWhereItHolds) {
 
 TEST(Calibrated, IsPartOfWhatARunContinues) {
   const PoseSet poses(3, {-0.2, 0.1, 0.1});
-  EXPECT_FALSE(identity_of(read("kind = \"monte-carlo\"\ncalibrated = true\n"), poses, std::nullopt) ==
-               identity_of(read("kind = \"monte-carlo\"\n"), poses, std::nullopt));
+  EXPECT_FALSE(
+      identity_of(read("kind = \"monte-carlo\"\ndraws = \"per pose\"\ncalibrated = true\n"), poses, std::nullopt) ==
+      identity_of(read("kind = \"monte-carlo\"\ndraws = \"per pose\"\n"), poses, std::nullopt));
 }
 
 TEST(Calibrated, IsRefusedByOtherKindsAndOtherModels) {
@@ -85,8 +86,9 @@ TEST(Calibrated, IsRefusedByOtherKindsAndOtherModels) {
                              {"study.toml", text.line, text.column}, words);
   };
   refused("kind = \"sensitivity\"\n^calibrated = true\n", kCatalog, {"analysis.calibrated does not belong"});
-  refused("kind = \"monte-carlo\"\ncalibrated = ^\"yes\"\n", kCatalog, {"analysis.calibrated", "true or false"});
-  refused("kind = \"monte-carlo\"\ncalibrated = ^true\n", test::fake_catalog(),
+  refused("kind = \"monte-carlo\"\ndraws = \"per pose\"\ncalibrated = ^\"yes\"\n", kCatalog,
+          {"analysis.calibrated", "true or false"});
+  refused("kind = \"monte-carlo\"\ndraws = \"per pose\"\ncalibrated = ^true\n", test::fake_catalog(),
           {"analysis.calibrated is true, but model \"fake\" has no actuated directions apart", "leave it out"});
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/kinds/study_file.h"
+#include "engine/random/normal_quantile.h"
 #include "engine/random/stream.h"
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
@@ -21,7 +22,8 @@ constexpr std::string_view kHead =
     "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n[poses]\ncount = 3\n";
 
 /// A Monte Carlo study of the fake mechanism's three errors.
-std::string study_text(const std::string& errors, const std::string& analysis = "kind = \"monte-carlo\"\n") {
+std::string study_text(const std::string& errors,
+                       const std::string& analysis = "kind = \"monte-carlo\"\ndraws = \"per pose\"\n") {
   return std::string(kHead) + "[analysis]\n" + analysis + "[errors]\n" + errors;
 }
 
@@ -169,7 +171,7 @@ TEST(CorrelatedErrorsFile, RefusesWhatIsNoCorrelation) {
   refused("\"all\"", "^[[1, 0.9, 0.9], [0.9, 1, -0.9], [0.9, -0.9, 1]]", {"smallest eigenvalue is -0.8"});
   refused("^[\"delta_1\"]", "[[1]]", {"names one error"});
   refused("[\"delta_1\", ^\"delta_1\"]", "[[1, 0.5], [0.5, 1]]", {"a second time"});
-  refused(kTwo, "^\"as measured\"", {"delta_1 is no column"});
+  refused(kTwo, "^\"as measured\"", {"delta_1 is not a column"});
   refused(kTwo, "^\"measured\"", {"unknown", "as measured"});
   expect_refused(study_text("correlated = ^\"as measured\"\n"), {"no two errors"});
   expect_refused(
@@ -181,12 +183,13 @@ TEST(CorrelatedErrorsFile, IsForErrorsThatVaryTogether) {
   const std::string two = "correlated = ^[{ factors = " + kTwo + ", correlation = [[1, 0.5], [0.5, 1]] }]\n";
   expect_refused(study_text(two, "kind = \"sensitivity\"\n"),
                  {"delta_1, epsilon_1", "varies one error at a time", "kind = \"monte-carlo\""});
-  expect_refused(study_text(two, "kind = \"monte-carlo\"\nfactors = [\"delta_1\", \"delta_2\"]\n"),
-                 {"'epsilon_1'", "does not vary"});
+  expect_refused(
+      study_text(two, "kind = \"monte-carlo\"\ndraws = \"per pose\"\nfactors = [\"delta_1\", \"delta_2\"]\n"),
+      {"'epsilon_1'", "does not vary"});
 }
 
 /// A plan of the fake mechanism's three errors, the first and the last correlated.
-Plan plan_of(const std::string& kind = "kind = \"monte-carlo\"\n") {
+Plan plan_of(const std::string& kind = "kind = \"monte-carlo\"\ndraws = \"per pose\"\n") {
   const Study study =
       read(study_text("override = { delta_2 = { distribution = \"uniform\", half_width = \"2 mm\" } }\n" +
                           block("[\"delta_2\", \"delta_1\"]", "[[1, 0.75], [0.75, 1]]"),

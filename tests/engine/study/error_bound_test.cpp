@@ -59,10 +59,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadSize{"HalfWidth",
                 "[errors]\noverride = { epsilon_1 = { distribution = \"uniform\", half_width = ^\"6 rad\" } }\n",
                 {"errors.override.epsilon_1.half_width gives epsilon_1", "three radians (171.887338539 deg)"}},
-        BadSize{
-            "MonteCarlo",
-            "[errors]\nlinear = { distribution = \"normal\", sigma = ^\"1 m\" }\n[analysis]\nkind = \"monte-carlo\"\n",
-            {"1000 mm"}},
+        BadSize{"MonteCarlo",
+                "[errors]\nlinear = { distribution = \"normal\", sigma = ^\"1 m\" }\n[analysis]\nkind = "
+                "\"monte-carlo\"\ndraws = \"per pose\"\n",
+                {"1000 mm"}},
         BadSize{"Background",
                 "[analysis]\nbackground = { factors = \"benign\", linear = ^\"-70 mm\" }\n",
                 {"analysis.background.linear gives delta_2 an error of -70 mm"}},

@@ -87,8 +87,8 @@ TEST_F(GivenMachines, AreAskedAboutBareNumbersFarBeyondTheSize) {
 TEST_F(GivenMachines, AreRefusedWhereTheyMakeNoSense) {
   const std::string file = "machines = ^\"parts.csv\"\n";
   const std::string plain = "machines = \"parts.csv\"\n";
-  for (const std::string_view analysis :
-       {"kind = \"sensitivity\"\n", "kind = \"monte-carlo\"\n", "kind = \"sobol\"\n", "kind = \"identification\"\n"}) {
+  for (const std::string_view analysis : {"kind = \"sensitivity\"\n", "kind = \"monte-carlo\"\ndraws = \"per pose\"\n",
+                                          "kind = \"sobol\"\n", "kind = \"identification\"\n"}) {
     expect_refused(
         study_text(file, analysis),
         {"errors.machines is set, but this study does not take machines as they are", "draws = \"per machine\""});
@@ -105,7 +105,7 @@ TEST_F(GivenMachines, AreRefusedWhereTheyMakeNoSense) {
   expect_refused(study_text("machines = ^3\n"), {"errors.machines"});
   const auto table = [](const std::string& keys) { return study_text("machines = { " + keys + " }\n"); };
   expect_refused(table("columns = [^\"delta_9\"], rows = [[1e-3], [2e-3]]"),
-                 {"errors.machines.columns[0] is 'delta_9', which is no error of the mechanism"});
+                 {"errors.machines.columns[0] is 'delta_9', which is not an error of the mechanism"});
   expect_refused(table("columns = [\"delta_1\"], rows = [[1e-3], ^[2e-3, 1]]"),
                  {"errors.machines.rows[1] has 2 numbers, but there are 1 columns"});
   expect_refused(

@@ -72,11 +72,12 @@ TEST(LimitKeys, LimitMagnitudesWhereEndsAreOpposite) {
   EXPECT_EQ(limit_of("gap = { to = \"1 mm\" }"), ValueLimit(1e-3));
   EXPECT_EQ(limit_of("gap = [\"0 mm\", \"1 mm\"]"), ValueLimit(1e-3));
   EXPECT_EQ(limit_of("gap = { to = \"1 mm\", share = 0.9 }"), ValueLimit(1e-3).at_share(0.9));
-  EXPECT_EQ(limit_of("gap = { to = \"1 mm\" }", "kind = \"monte-carlo\"\n"), ValueLimit(1e-3));
+  EXPECT_EQ(limit_of("gap = { to = \"1 mm\" }", "kind = \"monte-carlo\"\ndraws = \"per pose\"\n"), ValueLimit(1e-3));
 }
 
 TEST(LimitKeys, TakeEndsWhereAShareOfTheDrawsIsJudged) {
-  EXPECT_EQ(limit_of("z = [\"-1 mm\", \"2 mm\"]", "kind = \"monte-carlo\"\njudge = \"share\"\nshare = 0.99\n"),
+  EXPECT_EQ(limit_of("z = [\"-1 mm\", \"2 mm\"]",
+                     "kind = \"monte-carlo\"\ndraws = \"per pose\"\njudge = \"share\"\nshare = 0.99\n"),
             ValueLimit::between(-1e-3, 2e-3));
 }
 
@@ -87,8 +88,8 @@ struct BadLimit {
 };
 
 TEST(LimitKeys, SayWhatIsWrong) {
-  const std::string rms = "kind = \"monte-carlo\"\n";
-  const std::string share = "kind = \"monte-carlo\"\njudge = \"share\"\nshare = 0.9\n";
+  const std::string rms = "kind = \"monte-carlo\"\ndraws = \"per pose\"\n";
+  const std::string share = "kind = \"monte-carlo\"\ndraws = \"per pose\"\njudge = \"share\"\nshare = 0.9\n";
   const std::vector<BadLimit> list{
       {kPerMachine, "z = ^[\"2 mm\", \"-1 mm\"]", {"analysis.limits.z runs from 2 mm to -1 mm", "lower end first"}},
       {kPerMachine, "z = ^[\"2 mm\", \"2 mm\"]", {"two different ends"}},

@@ -365,7 +365,8 @@ TEST(OwnResponses, AreRefusedWithPlaceAndRemedy) {
   refused(height + "relative_to = { alpha = 0, beta = 0, z = ^600 }\n", {"relative_to.z", "mm"});
   refused(height + "relative_to = ^{ alpha = 0, beta = 0, z = \"9 m\" }\n",
           {"'a' is relative to a pose that the mechanism does not reach", "a pose of the workspace"});
-  refused(height + "relative_to = ^\"previous\"\n", {"'a' is relative to the pose before", "per machine"}, "");
+  refused(height + "relative_to = ^\"previous\"\n", {"'a' is relative to the pose before", "per machine"},
+          "draws = \"per pose\"\n");
   refused(kRise + std::string(kZero) + named + "sum = { rise = 1 }\nrelative_to = ^\"previous\"\n",
           {"made of 'rise', which is relative to a pose itself", "leave out one of them"});
   refused(named + "norm = [^\"position\", \"x\"]\n" + kZero, {"no sign", "components"});

@@ -23,11 +23,12 @@ const Catalog kForce = catalog_of(Dimension::force, Dimension::number);
 
 Study with_limits(const Catalog& catalog, const std::string& limits) {
   const test::TempFolder folder;
-  return read_study(folder.write("study.toml",
-                                 "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n"
-                                 "[poses]\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\nlimits = { " +
-                                     limits + " }\n"),
-                    catalog, StudyUse::run);
+  return read_study(
+      folder.write("study.toml",
+                   "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n"
+                   "[poses]\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per pose\"\nlimits = { " +
+                       limits + " }\n"),
+      catalog, StudyUse::run);
 }
 
 std::string refusal(const Catalog& catalog, const std::string& limits) {

@@ -261,7 +261,7 @@ INSTANTIATE_TEST_SUITE_P(
                                          10),
                              {"not TOML"}},
                     BadStudy{"InvalidUtf8", "\"A study\"", "\"A s^t\xC3\x28\"", {"not TOML", "utf-8"}},
-                    BadStudy{"OpenText", "\"A study\"\n", "\"A study^\n", {"not TOML"}},
+                    BadStudy{"OpenText", "\"A study\"\n", "^\"A study\n", {"is not closed on its line"}},
                     BadStudy{"NoValue", "count = 20\n", "count =^\n", {"not TOML"}},
                     BadStudy{"KeyTwice", "count = 20\n", "count = 20\ncount = ^21\n", {"not TOML", "count"}},
                     BadStudy{"NotClosed", "[solver]", "[solver^\n", {"not TOML"}},
@@ -306,9 +306,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         bad_poses("UnknownJoint", "interior", "count = 9\nlimits = { ^q_3 = [\"0 mm\", \"1 mm\"] }",
                   {": unknown joint 'q_3' in [poses.limits]; did you mean 'q_1'?"}),
-        bad_poses(
-            "LimitReversed", "boundary", "count = 9\nlimits = { q_1 = ^[\"8 mm\", \"-5 mm\"] }",
-            {": poses.limits.q_1 runs from 0.008 m to -0.005 m; write the lower end first, and two different ends"}),
+        bad_poses("LimitReversed", "boundary", "count = 9\nlimits = { q_1 = ^[\"8 mm\", \"-5 mm\"] }",
+                  {": poses.limits.q_1 runs from 8 mm to -5 mm; write the lower end first, and two different ends"}),
         bad_poses("LimitOfOne", "grid", "count = 9\nlimits = { q_1 = ^[\"8 mm\"] }",
                   {": poses.limits.q_1 has 1 values; write the two ends of the range"}),
         bad_poses("LimitDimension", "interior", "count = 9\nlimits = { q_2 = [\"-60 deg\", ^\"60 mm\"] }",
@@ -390,7 +389,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{"ReversedRange",
                  "z = [\"-300 mm\", \"-0.18 m\"]",
                  "z = ^[\"-0.18 m\", \"-300 mm\"]",
-                 {"poses.workspace.z runs from -0.18 m to -0.3 m", "lower end first"}},
+                 {"poses.workspace.z runs from -0.18 m to -300 mm", "lower end first"}},
         BadStudy{"EmptyRange", "[\"-0.5 rad\", \"0.5 rad\"]", "^[\"0.5 rad\", \"500 mrad\"]", {"two different ends"}},
         BadStudy{"RangeOfThree", "[\"-0.5 rad\", \"0.5 rad\"]", "^[\"-1 rad\", \"0 rad\", \"1 rad\"]", {"3 values"}},
         BadStudy{"RangeNotAList",
@@ -498,10 +497,11 @@ std::string with_limits(const std::string& kind, const std::string& lines) {
 }
 
 TEST(StudyFile, TakesLimitsInTheOrderOfTheModelsResponses) {
-  const Analysis by_rms = study_of(with_limits("monte-carlo",
-                                               "limits = { linear_deformation = \"0.03 mm\", angular_deformation = "
-                                               "\"0.5 deg\" }"))
-                              .analysis;
+  const Analysis by_rms =
+      study_of(with_limits("monte-carlo",
+                           "draws = \"per pose\"\nlimits = { linear_deformation = \"0.03 mm\", angular_deformation = "
+                           "\"0.5 deg\" }"))
+          .analysis;
   ASSERT_EQ(by_rms.limits.size(), 2u);
   EXPECT_EQ(by_rms.limits[0].response, 0u);
   EXPECT_DOUBLE_EQ(by_rms.limits[0].allowed.to(), 0.5 * kDegree);
@@ -543,9 +543,10 @@ INSTANTIATE_TEST_SUITE_P(
         bad_limits("UnknownJudge", "monte-carlo", "limits = { linear_deformation = \"1 mm\" }\njudge = ^\"median\"",
                    {"analysis.judge is 'median', which is unknown", "rms, share, yield"}),
         bad_limits("YieldOfDrawsPerPose", "monte-carlo",
-                   "limits = { linear_deformation = \"1 mm\" }\njudge = ^\"yield\"",
+                   "draws = \"per pose\"\nlimits = { linear_deformation = \"1 mm\" }\njudge = ^\"yield\"",
                    {"analysis.judge is \"yield\", but errors are drawn anew at each pose", "draws = \"per machine\""}),
-        bad_limits("YieldForRms", "monte-carlo", "limits = { linear_deformation = \"1 mm\" }\nyield = ^0.99",
+        bad_limits("YieldForRms", "monte-carlo",
+                   "draws = \"per pose\"\nlimits = { linear_deformation = \"1 mm\" }\nyield = ^0.99",
                    {"analysis.yield is set, but analysis.judge is \"rms\"", "draws = \"per machine\""}),
         bad_limits("YieldWithoutLimits", "monte-carlo", "draws = \"per machine\"\nyield = ^0.9",
                    {"analysis.yield is set, but the study states no limit"}),
@@ -564,7 +565,8 @@ INSTANTIATE_TEST_SUITE_P(
         bad_limits("ShareOfAllDraws", "monte-carlo",
                    "limits = { linear_deformation = \"1 mm\" }\njudge = \"share\"\nshare = ^1.0",
                    {"analysis.share is 1", "between 0 and 1"}),
-        bad_limits("ShareForRms", "monte-carlo", "limits = { linear_deformation = \"1 mm\" }\nshare = ^0.9973",
+        bad_limits("ShareForRms", "monte-carlo",
+                   "draws = \"per pose\"\nlimits = { linear_deformation = \"1 mm\" }\nshare = ^0.9973",
                    {"analysis.share is set, but analysis.judge is \"rms\""}),
         bad_limits("JudgeOfCases", "evaluate", "limits = { linear_deformation = \"1 mm\" }\n^judge = \"rms\"",
                    {"analysis.judge does not belong to kind = \"evaluate\""})),

@@ -167,10 +167,10 @@ std::vector<std::string> studies() {
           "0.95\nquantiles = [0.1, 0.2]\n" +
           background + "samples = { min = 500, max = 5000, relative_error = 0.1, conf_level = 0.95 }\n",
       head +
-          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per pose\"\n"
           "judge = \"rms\"\nlimits = { angular_deformation = \"1 deg\", linear_deformation = \"1 mm\" }\n",
       head +
-          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per pose\"\n"
           "judge = \"share\"\nshare = 0.99\nlimits = { angular_deformation = \"1 deg\" }\n",
       head +
           "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per machine\"\n"

@@ -18,7 +18,7 @@ inline const Catalog& catalog_of_errors() {
 
 inline std::string text_of_errors(const std::string& errors) {
   return "format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"fake\" }\nposes = { count = 3 }\n[analysis]\n"
-         "kind = \"monte-carlo\"\n[errors]\n" +
+         "kind = \"monte-carlo\"\ndraws = \"per pose\"\n[errors]\n" +
          errors;
 }
 

@@ -135,7 +135,8 @@ INSTANTIATE_TEST_SUITE_P(
                        "half_width = \"0.123456789012345678 mm\" }\n"),
         shortest_study("[poses]\ncount = 3\n[analysis]\nfactors = [\"epsilon_1\"]\n"
                        "background = { factors = [\"delta_2\", \"delta_1\"], linear = \"-1 um\" }\n"),
-        shortest_study("[poses]\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\njudge = \"share\"\nshare = 0.9973\n"
+        shortest_study("[poses]\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per pose\"\njudge = "
+                       "\"share\"\nshare = 0.9973\n"
                        "[analysis.limits]\nangular_deformation = \"0.1 deg\"\n"),
         shortest_study("[poses]\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per machine\"\n"
                        "yield = 0.99\n[analysis.limits]\nangular_deformation = \"0.1 deg\"\n"),

@@ -199,7 +199,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadTable{"RepeatedTime",
                  "t,z,beta,gamma\n0,0,0,0\n0.5,0,0,0\n^0.5,0,0,0\n",
-                 {"t = 0.5 s stands here a second time, after line 3", "sort the rows"}},
+                 {"t = 0.5 s appears a second time, after line 3", "sort the rows"}},
         BadTable{"UnsortedTime",
                  "t,z,beta,gamma\n0,0,0,0\n0.5,0,0,0\n^0.25,0,0,0\n",
                  {"t = 0.25 s follows t = 0.5 s of line 3", "sort the rows"}},
@@ -226,9 +226,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadTable{"UnknownFactor", "delta_1,^delta_9\n0,0\n", {"'delta_9'", "did you mean 'delta_1'?"}},
         BadTable{"UnknownFactorWithAUnit", "delta_1,^delta_9\n0,0.1 mm\n", {"'delta_9'", "did you mean 'delta_1'?"}},
-        BadTable{"UnknownFactorFurtherDown", "delta_1,^delta_9\n0,none\n0,-.5\n", {"'delta_9'", "no factor"}},
-        BadTable{"UnknownFactorWithoutValues", "delta_1,^delta_9\n0,\n", {"'delta_9'", "no factor"}},
-        BadTable{"UnknownFactorThatIsNoNumber", "delta_1,^delta_9\n0,nan\n", {"'delta_9'", "no factor"}},
+        BadTable{"UnknownFactorFurtherDown", "delta_1,^delta_9\n0,none\n0,-.5\n", {"'delta_9'", "not a factor"}},
+        BadTable{"UnknownFactorWithoutValues", "delta_1,^delta_9\n0,\n", {"'delta_9'", "not a factor"}},
+        BadTable{"UnknownFactorThatIsNoNumber", "delta_1,^delta_9\n0,nan\n", {"'delta_9'", "not a factor"}},
         BadTable{"RepeatedText", "delta_1,operator,^operator\n0,a,b\n", {"'operator'", "second time"}},
         BadTable{"RepeatedFactor", "delta_1,^delta_1\n0,0\n", {"'delta_1'", "second time"}},
         BadTable{"Word", "delta_1\n^x\n", {"'x'", "'delta_1'"}}, BadTable{"HeaderOnly", "delta_1\n^", {"no data"}},

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "models/assembly/first_order.h"
@@ -63,11 +65,12 @@ struct Block {
 
 enum class How { solve, map };
 
-Block block_of(const AssemblyModel& model, PoseProblem& problem, How how, Samples& samples) {
+Block block_of(const AssemblyModel& model, PoseProblem& problem, How how, Samples& samples,
+               const SolverOptions& options = kOptions) {
   const std::size_t count = samples.errors.size();
   Block made{std::vector<double>(responses_of(model).size() * count), std::vector<SolveStatus>(count),
              std::vector<std::uint32_t>(count)};
-  BlockSolver solver(model, kOptions);
+  BlockSolver solver(model, options);
   const OutcomeBlock outcomes{made.responses, made.status, made.iterations, {}};
   how == How::solve ? solver.solve(problem, samples.block(), outcomes) : solver.map(problem, samples.block(), outcomes);
   return made;
@@ -148,6 +151,12 @@ TEST_P(AssemblyKernel, MapsAsThePlainFirstOrder) {
   });
 }
 
+void expect_same_bits(const std::vector<double>& found, const std::vector<double>& wanted) {
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(found[n]), std::bit_cast<std::uint64_t>(wanted[n])) << "response " << n;
+  }
+}
+
 /// Samples in other orders, in blocks of other sizes.
 void expect_same_at_any_place(const AssemblyModel& model, PoseProblem& problem, How how, Samples& samples) {
   const Block wanted = block_of(model, problem, how, samples);
@@ -160,12 +169,7 @@ void expect_same_at_any_place(const AssemblyModel& model, PoseProblem& problem, 
     const Block found = block_of(model, problem, how, others);
     for (std::size_t k = 0; k < others.errors.size(); ++k) {
       EXPECT_EQ(found.iterations[k], wanted.iterations[order[k]]);
-      const std::vector<double> values = found.of(k);
-      const std::vector<double> same = wanted.of(order[k]);
-      for (std::size_t n = 0; n < values.size(); ++n) {
-        ASSERT_EQ(std::bit_cast<std::uint64_t>(values[n]), std::bit_cast<std::uint64_t>(same[n]))
-            << "sample " << order[k] << " at " << k << ", response " << n;
-      }
+      expect_same_bits(found.of(k), wanted.of(order[k]));
     }
   }
 }
@@ -175,6 +179,50 @@ TEST_P(AssemblyKernel, IsTheSameAtAnyPlace) {
     expect_same_at_any_place(model, problem, How::solve, samples);
     expect_same_at_any_place(model, problem, How::map, samples);
   });
+}
+
+/// Samples that are no numbers, or far too large, change nothing of their neighbours.
+TEST_P(AssemblyKernel, IgnoresWrongNeighbours) {
+  for_each_sample(19, [](const AssemblyModel& model, PoseProblem& problem, Samples& samples) {
+    for (const How how : {How::solve, How::map}) {
+      const Block wanted = block_of(model, problem, how, samples);
+      for (const double wrong : {std::nan(""), std::numeric_limits<double>::infinity(), 1e200}) {
+        Samples spoilt = samples;
+        for (std::size_t b = 0; b < spoilt.errors.size(); b += 3) std::ranges::fill(spoilt.errors[b], wrong);
+        const Block found = block_of(model, problem, how, spoilt);
+        for (std::size_t b = 0; b < spoilt.errors.size(); ++b) {
+          if (b % 3 == 0) {
+            const bool is_linear = how == How::map && std::isfinite(wrong);
+            EXPECT_TRUE(is_linear || !solved(found.status[b])) << wrong;
+            continue;
+          }
+          EXPECT_EQ(found.status[b], wanted.status[b]);
+          EXPECT_EQ(found.iterations[b], wanted.iterations[b]);
+          expect_same_bits(found.of(b), wanted.of(b));
+        }
+      }
+    }
+  });
+}
+
+TEST_P(AssemblyKernel, SaysWhatIsNotSolved) {
+  const AssemblyModel model = with_reactions(cases()[1], Metric::platform);
+  PoseProblem problem(model, model.at(cases()[1].pose), kOptions);
+  Samples samples = drawn(model, 0.1, 11);
+  samples.errors[4].front() = std::nan("");
+  const Block found = block_of(model, problem, How::solve, samples);
+  SolverOptions capped = kOptions;
+  capped.max_iterations = 1;
+  PoseProblem capped_problem(model, model.at(cases()[1].pose), capped);
+  const Block given_up = block_of(model, capped_problem, How::solve, samples, capped);
+  for (std::size_t b = 0; b < samples.errors.size(); ++b) {
+    EXPECT_EQ(found.status[b], b == 4 ? SolveStatus::non_finite : SolveStatus::converged);
+    EXPECT_EQ(given_up.status[b], b == 4 ? SolveStatus::non_finite : SolveStatus::iteration_cap);
+  }
+  const Block mapped = block_of(model, problem, How::map, samples);
+  for (std::size_t b = 0; b < samples.errors.size(); ++b) {
+    EXPECT_EQ(mapped.status[b], b == 4 ? SolveStatus::non_finite : SolveStatus::converged);
+  }
 }
 
 TEST(AssemblyKernels, HaveTheSameBitsByAllSetsThatFuse) {

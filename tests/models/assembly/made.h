@@ -14,7 +14,7 @@
 #include "models/assembly/block_solver.h"
 #include "models/assembly/model.h"
 #include "models/chain/metric.h"
-#include "models/file/branched_model.h"
+#include "models/file/balanced_model.h"
 #include "tests/models/file/files.h"
 
 // Assemblies of mechanism files, random errors of theirs, and what these do.
@@ -31,7 +31,7 @@ inline constexpr double kDegree = 0.017453292519943295;
 
 inline const SolverOptions kOptions{.tolerance = chain::kToleranceByMetric};
 
-/// The mechanism of a file's text, also where the product would compare limbs in pairs.
+/// The mechanism of a file's text.
 inline AssemblyModel made(const std::string& text, Metric metric) {
   const file::MechanismFile read = file::read_mechanism_file(text, "m.toml");
   const file::Checked found =

@@ -116,10 +116,7 @@ TEST_P(AssemblyOracle, Responses) {
     for (const Factor& factor : description.factors) errors.push_back(one["errors"].value(factor.name, 0.0));
     for (const std::size_t fidelity : {0u, 1u}) {
       SCOPED_TRACE(metric + " " + description.fidelities[fidelity] + " " + one["pose"].dump());
-      // Limbs from base to platform alone are compared in pairs where no stiffness is known.
-      const bool by_pairs = metric == "platform" && one.contains("exact_pairs");
-      const auto wanted = fidelity == 0 && by_pairs ? one["exact_pairs"].get<std::map<std::string, double>>()
-                                                    : wanted_of(one[fidelity == 0 ? "exact" : "first_order"], metric);
+      const auto wanted = wanted_of(one[fidelity == 0 ? "exact" : "first_order"], metric);
       const std::unique_ptr<Model> model = build(entry, fidelity);
       ASSERT_EQ(model->unreachable(pose), std::nullopt);
       std::vector<double> found(description.responses.size());

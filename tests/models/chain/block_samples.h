@@ -1,7 +1,6 @@
 #pragma once
 
 #include <numeric>
-#include <optional>
 #include <random>
 #include <span>
 #include <vector>
@@ -22,8 +21,7 @@ struct BlockSamples {
   std::vector<FrameEntry> varied;
   double range = 0.0;
   std::size_t count = 0;
-  std::vector<double> values;         ///< [varied x count]
-  std::optional<Metric> metric = {};  ///< none: as published
+  std::vector<double> values;  ///< [varied x count]
 
   double value(std::size_t v, std::size_t b) const { return values[v * count + b]; }
 };
@@ -111,24 +109,6 @@ inline BlockSamples random_chain_samples(std::span<const std::size_t> joints, Pa
   return samples;
 }
 
-/// The same samples by the metric of points scattered about the platform.
-inline BlockSamples by_metric(BlockSamples samples, std::mt19937_64& engine) {
-  std::vector<lie::Vector3<double>> points;
-  for (int n = 0; n < 4; ++n) points.push_back(0.2 * lie::random_screw(1.0, engine).tail<3>());
-  samples.metric = platform_metric(samples.chain, points, samples.displacements);
-  return samples;
-}
-
-/// Options by a metric.
-inline SolverOptions platform_options(SolverOptions::Method method = SolverOptions::Method::newton,
-                                      int max_iterations = 50) {
-  SolverOptions options;
-  options.method = method;
-  options.tolerance = kToleranceByMetric;
-  options.max_iterations = max_iterations;
-  return options;
-}
-
 /// Largest difference of the residuals of sample b.
 inline double distance(const BlockOutcome& one, const BlockOutcome& other, std::size_t b) {
   const auto column = static_cast<Eigen::Index>(b);
@@ -161,8 +141,7 @@ inline std::vector<lie::Transform<double>> frames_of(const BlockSamples& samples
 }
 
 inline void prepare(BlockSolver& solver, const BlockSamples& samples) {
-  solver.prepare(samples.displacements, samples.errors, samples.varied, samples.range,
-                 samples.metric ? &*samples.metric : nullptr);
+  solver.prepare(samples.displacements, samples.errors, samples.varied, samples.range);
 }
 
 /// Solves samples that the solver is prepared for.
@@ -199,8 +178,7 @@ inline BlockOutcome solve_by_reference(const BlockSamples& samples, const Solver
     std::vector<double> q = samples.displacements;
     const Deformation found =
         solver.solve(frames_of(samples, b), q,
-                     {outcome.delta_mu.col(static_cast<Eigen::Index>(b)).data(), static_cast<std::size_t>(rows)},
-                     samples.metric ? &*samples.metric : nullptr);
+                     {outcome.delta_mu.col(static_cast<Eigen::Index>(b)).data(), static_cast<std::size_t>(rows)});
     outcome.status.push_back(found.status);
     outcome.iterations.push_back(found.iterations);
   }

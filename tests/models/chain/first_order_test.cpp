@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "models/chain/loops.h"
 #include "models/chain/metric.h"
-#include "tests/models/chain/closed_chain.h"
+#include "models/chain/residual_space.h"
+#include "tests/models/chain/block_samples.h"
 
 namespace poesy::chain {
 namespace {
@@ -70,6 +72,80 @@ TEST(DeterminantSlopes, AreDifferencesOfTheLogarithm) {
             (2.0 * kStep);
         EXPECT_NEAR(slopes[frame].dot(first_order.motion(entry)), expected, 1e-5 * (1.0 + std::abs(expected)));
       }
+    }
+  }
+}
+
+/// The 2UPR-RPU and random chains.
+std::vector<BlockSamples> every_chain(std::size_t count, double size) {
+  std::mt19937_64 engine(7);
+  std::vector<BlockSamples> all;
+  for (int n = 0; n < 5; ++n) {
+    all.push_back(all_error_samples(random_pose(engine), size, count, engine));
+    using Joints = std::vector<std::size_t>;
+    for (const Joints& joints : {Joints{3, 3}, Joints{4, 4, 4}, Joints{3, 4, 5}, Joints{3, 3, 3, 3, 3}}) {
+      all.push_back(random_chain_samples(joints, PassiveJoints::mixed, size / 5.0, count, engine));
+    }
+  }
+  return all;
+}
+
+/// By differences of solves: what the joints give way is seen in what they leave.
+TEST(FirstOrderOfAChain, IsTheDerivativeOfTheSolution) {
+  constexpr double kStep = 1e-5;
+  for (BlockSamples samples : every_chain(1, 0.0)) {
+    FirstOrder first_order(samples.chain);
+    ASSERT_TRUE(first_order.prepare(samples.displacements, nullptr));
+    DeformationSolver solver(samples.chain, gauss_newton());
+    const std::size_t rows = 6 * samples.chain.pairs.size();
+    const auto solved_at = [&](std::size_t v, double value) {
+      std::ranges::fill(samples.values, 0.0);
+      samples.values[v] = value;
+      std::vector<double> q = samples.displacements;
+      Eigen::VectorXd mu(static_cast<Eigen::Index>(rows));
+      solver.solve(frames_of(samples, 0), q, {mu.data(), rows});
+      return mu;
+    };
+    for (std::size_t v = 0; v < samples.varied.size(); v += 3) {
+      Eigen::VectorXd effect(static_cast<Eigen::Index>(rows));
+      std::vector<double> displacements(samples.chain.passive_joints());
+      first_order.effect(samples.varied[v], {effect.data(), rows}, displacements);
+      const Eigen::VectorXd truth = (solved_at(v, kStep) - solved_at(v, -kStep)) / (2.0 * kStep);
+      EXPECT_LE((effect - truth).cwiseAbs().maxCoeff(), 1e-7) << "entry " << v;
+    }
+  }
+}
+
+/// Three of twelve independent mismatches are left to the 2UPR-RPU's nine passive joints: it is over-constrained
+/// thrice.
+TEST(FirstOrderOfAChain, HasACoordinateForEachConstraintTooMany) {
+  for (const BlockSamples& samples : every_chain(1, 0.0)) {
+    FirstOrder first_order(samples.chain);
+    ASSERT_TRUE(first_order.prepare(samples.displacements, nullptr));
+    ResidualSpace space(samples.chain);
+    space.prepare(first_order);
+    ASSERT_EQ(space.dimensions(), 6 * (samples.chain.limbs.size() - 1) - samples.chain.passive_joints());
+    Eigen::VectorXd effect(static_cast<Eigen::Index>(6 * samples.chain.pairs.size()));
+    std::vector<double> displacements(samples.chain.passive_joints());
+    for (const FrameEntry& entry : samples.varied) {
+      Eigen::VectorXd y = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(space.dimensions()));
+      space.add(first_order, entry, 1.0, {y.data(), space.dimensions()});
+      first_order.effect(entry, {effect.data(), static_cast<std::size_t>(effect.size())}, displacements);
+      EXPECT_LE((space.delta_mu() * y - effect).cwiseAbs().maxCoeff(), 1e-11 * (1.0 + effect.norm()));
+      EXPECT_NEAR(y.norm(), effect.norm(), 1e-11 * (1.0 + effect.norm()));
+    }
+  }
+}
+
+TEST(FirstOrderOfAChain, IsWhatTheEvaluatorOfSmallErrorsGives) {
+  for (const BlockSamples& samples : every_chain(5, 1e-6)) {
+    BlockSolver linear(samples.chain, {}, Fidelity::first_order);
+    prepare(linear, samples);
+    const BlockOutcome mapped = solve(linear, samples);
+    const BlockOutcome exact = solve(samples, {});
+    for (std::size_t b = 0; b < samples.count; ++b) {
+      EXPECT_EQ(mapped.status[b], SolveStatus::converged);
+      EXPECT_LE(distance(mapped, exact, b), 1e-4 * exact.delta_mu.col(static_cast<Eigen::Index>(b)).norm());
     }
   }
 }

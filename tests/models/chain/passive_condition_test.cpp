@@ -77,54 +77,6 @@ TEST_P(PassiveCondition, DoesNotDependOnTheUnitOfLength) {
   EXPECT_NEAR(passive_condition(scaled(chain, 1000.0), longer(chain, q)) / expected, 1.0, 1e-10);
 }
 
-/// Points of the platform, in its frame.
-const std::vector<lie::Vector3<double>> kPoints{{0.2, 0.0, 0.1}, {-0.1, 0.3, 0.0}, {0.0, -0.2, -0.1}};
-
-double condition_by_metric(const ParallelChain& chain, std::span<const double> q,
-                           const std::vector<lie::Vector3<double>>& points) {
-  const Metric metric = platform_metric(chain, points, q);
-  return passive_condition(chain, q, &metric);
-}
-
-TEST_P(PassiveCondition, ByMetricIsOfThePoints) {
-  std::mt19937_64 engine(15);
-  for (int n = 0; n < 50; ++n) {
-    const std::vector<double> q = random_displacements(12, 0.8, engine);
-    const ParallelChain chain = closed_chain(std::vector<std::size_t>{4, 4, 4}, GetParam(), q, engine);
-    const Eigen::MatrixXd j = jacobian(chain, home_frames(chain), q);
-    const lie::Transform<double> platform = platform_pose(chain.limbs[0], chain.limbs[0].home, std::span(q).first(4));
-    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(j.rows() / 6 * 9, j.cols());  // the points, for each pair
-    for (Eigen::Index pair = 0; pair < j.rows() / 6; ++pair) {
-      for (Eigen::Index a = 0; a < 3; ++a) {
-        const lie::Vector3<double> point = platform.R * kPoints[static_cast<std::size_t>(a)] + platform.p;
-        moved.middleRows(9 * pair + 3 * a, 3) =
-            j.middleRows(6 * pair + 3, 3) - lie::hat<double>(point) * j.middleRows(6 * pair, 3);
-      }
-    }
-    for (Eigen::Index column = 0; column < j.cols(); ++column) moved.col(column) /= moved.col(column).norm();
-    const Eigen::VectorXd values = moved.jacobiSvd().singularValues();
-    const double expected = values.maxCoeff() / values.minCoeff();
-    if (expected > 1e4) continue;  // differences have no more digits
-    EXPECT_NEAR(condition_by_metric(chain, q, kPoints) / expected, 1.0, 1e-5) << expected;
-  }
-}
-
-TEST_P(PassiveCondition, ByMetricHasNoUnitNorFrame) {
-  std::mt19937_64 engine(16);
-  const std::vector<double> q = random_displacements(12, 0.8, engine);
-  const ParallelChain chain = closed_chain(std::vector<std::size_t>{4, 4, 4}, GetParam(), q, engine);
-  const double expected = condition_by_metric(chain, q, kPoints);
-
-  std::vector<lie::Vector3<double>> larger_points = kPoints;
-  for (lie::Vector3<double>& point : larger_points) point *= 1000.0;
-  EXPECT_NEAR(condition_by_metric(scaled(chain, 1000.0), longer(chain, q), larger_points) / expected, 1.0, 1e-9);
-
-  ParallelChain moved = chain;
-  const lie::Transform<double> move = lie::exp(lie::random_screw(2.0, engine));
-  for (Limb& limb : moved.limbs) limb.home[0] = move * limb.home[0];
-  EXPECT_NEAR(condition_by_metric(moved, q, kPoints) / expected, 1.0, 1e-9);
-}
-
 INSTANTIATE_TEST_SUITE_P(Joints, PassiveCondition, testing::Values(PassiveJoints::revolute, PassiveJoints::mixed),
                          test::named({"Revolute", "Mixed"}));
 

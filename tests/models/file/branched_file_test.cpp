@@ -126,7 +126,8 @@ TEST(BranchedFile, RefusesWhatIsWrongWithBodies) {
           {"name = \"carriage\"\ncopies", "name = \"tip\"\ncopies",
            "m.toml:18:8: body[0].name is 'tip', which every mechanism has; give the body another name"},
           {"name = \"carriage\"\ncopies", "name = \"two words\"\ncopies",
-           "m.toml:18:8: body[0].name 'two words' is no name; write letters, digits, _ and -, and do not begin with -"},
+           "m.toml:18:8: body[0].name 'two words' is not a name; write letters, digits, _ and -, and do not begin with "
+           "-"},
           {"name = \"carriage\"\ncopies", "copies",
            "m.toml:17:1: key 'name' is missing in [body[0]]; write name = \"carriage\""},
           {"name = \"carriage\"\ncopies", "nmae = \"carriage\"\ncopies",
@@ -215,7 +216,7 @@ TEST(BranchedFile, RefusesWhatIsWrongWithLimbsBetweenBodies) {
           {"name = \"rail\"", "name = \"1\"",
            "m.toml:30:8: limb[0].name is '1', which a number could be; give it a name with a letter"},
           {"name = \"rail\"", "name = \"\"",
-           "m.toml:30:8: limb[0].name '' is no name; write letters, digits, _ and -, and do not begin with -"},
+           "m.toml:30:8: limb[0].name '' is not a name; write letters, digits, _ and -, and do not begin with -"},
           {"name = \"right\"", "name = \"left\"",
            "m.toml:46:8: limb[2].name 'left' is the name of another limb; give it a name of its own"},
           {"name = \"plate\"", "name = \"left_2\"",
@@ -373,19 +374,22 @@ TEST(BranchedFile, RefusesWhatIsWrongWithLinks) {
       kText,
       {
           {"{ from = \"B\", to = \"C\"", "{ from = \"A\", to = \"C\"",
-           "m.toml:43:20: limb[1].links[0].from 'A' is no joint of this limb, and not the body 'carriage' where it "
+           "m.toml:43:20: limb[1].links[0].from 'A' is not a joint of this limb, and not the body 'carriage' where it "
            "begins; known: B, C, carriage"},
           {"{ from = \"B\", to = \"C\"", "{ from = \"B\", to = \"Cc\"",
-           "m.toml:43:30: limb[1].links[0].to 'Cc' is no joint of this limb, and not the body 'platform' where it "
+           "m.toml:43:30: limb[1].links[0].to 'Cc' is not a joint of this limb, and not the body 'platform' where it "
            "ends; did you mean 'C'?"},
           {"{ from = \"B\", to = \"C\"", "{ from = \"base\", to = \"C\"",
-           "m.toml:43:20: limb[1].links[0].from 'base' is no joint of this limb, and not the body 'carriage' where it "
+           "m.toml:43:20: limb[1].links[0].from 'base' is not a joint of this limb, and not the body 'carriage' where "
+           "it "
            "begins; known: B, C, carriage"},
           {"{ from = \"B\", to = \"C\"", "{ from = \"platform\", to = \"C\"",
-           "m.toml:43:20: limb[1].links[0].from 'platform' is no joint of this limb, and not the body 'carriage' where "
+           "m.toml:43:20: limb[1].links[0].from 'platform' is not a joint of this limb, and not the body 'carriage' "
+           "where "
            "it begins; known: B, C, carriage"},
           {"{ from = \"B\", to = \"C\"", "{ from = \"B\", to = \"carriage\"",
-           "m.toml:43:30: limb[1].links[0].to 'carriage' is no joint of this limb, and not the body 'platform' where "
+           "m.toml:43:30: limb[1].links[0].to 'carriage' is not a joint of this limb, and not the body 'platform' "
+           "where "
            "it ends; known: B, C, platform"},
           {"{ from = \"B\", to = \"C\"", "{ from = \"C\", to = \"B\"",
            "m.toml:43:11: limb[1].links[0] from 'C' to 'B' goes backwards; write the joint first that is first in the "

@@ -188,7 +188,7 @@ TEST(Features, AreRefusedWithPlaceAndRemedy) {
           {"kind = \"axis\", length = \"500 mm\", at", "kind = \"axis\", at",
            "m.toml:19:3: key 'length' is missing in [limb[0].features[1]]; write length = \"30 mm\""},
           {"joint = \"q\", kind", "joint = \"Q\", kind",
-           "m.toml:19:28: limb[0].features[1].joint 'Q' is no joint of this limb; known: O, q, B, C"},
+           "m.toml:19:28: limb[0].features[1].joint 'Q' is not a joint of this limb; known: O, q, B, C"},
           {"joint = \"q\", kind", "kind",
            "m.toml:19:3: key 'joint' is missing in [limb[0].features[1]]; write joint = \"A\""},
           {"joint = \"B\", axis = 2", "joint = \"B\", axis = 3",
@@ -250,7 +250,7 @@ TEST(Features, AreRefusedWithPlaceAndRemedy) {
           {"at = [\"R\", 0, \"300 mm\"]", "x = \"z\", at = [\"R\", 0, \"300 mm\"]",
            "m.toml:19:71: limb[0].features[1] 'rail' has x parallel to z; write another x"},
           {"at = [\"R\", 0, \"300 mm\"]", "at = \"C0\"",
-           "m.toml:19:72: limb[0].features[1].at 'C0' is no joint of this limb and no point; did you mean 'C'?"},
+           "m.toml:19:72: limb[0].features[1].at 'C0' is neither a joint of this limb nor a point; did you mean 'C'?"},
           {"direction = \"z\"", "direction = [0, 0, 0]",
            "m.toml:20:64: limb[0].features[2].direction is zero and has no direction; give it a length, e.g. [0, 0, "
            "1]"},
@@ -260,7 +260,7 @@ TEST(Features, AreRefusedWithPlaceAndRemedy) {
            "m.toml:26:53: limb[0].features[8].part is 'behind', which is unknown; known: before, after"},
           {"part = \"after\", kind", "part = \"after\", fit = 3, kind",
            "m.toml:26:62: unknown key 'fit' in [limb[0].features[8]]; known: kind, name, joint, axis, part, at, "
-           "length, size, diameter, direction, nominal_size, z, ... (29 in all)"},
+           "length, size, diameter, direction, nominal_size, z, ... (30 in all)"},
           {"\"A|B\" } } ]",
            "\"A|B\" } } ]\n\n[[error]]\nname = \"k\"\nlimb = 1\nframe = 1\ncomponent = \"delta_x\"\ncomponents = { "
            "delta_y = 1 }\n",

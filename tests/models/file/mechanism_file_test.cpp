@@ -40,9 +40,9 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
           {"version = 1", "version = \"1\"", "m.toml:2:11: version is the text '1'; write a whole number"},
           {"version = 1", "versoin = 1", "m.toml:2:1: unknown key 'versoin'; did you mean 'version'?"},
           {"name    = \"rps3\"", "name    = \"3 rps\"",
-           "m.toml:3:11: name '3 rps' is no name; write letters, digits, _ and -, and do not begin with -"},
+           "m.toml:3:11: name '3 rps' is not a name; write letters, digits, _ and -, and do not begin with -"},
           {"name    = \"rps3\"", "name    = \"-rps3\"",
-           "m.toml:3:11: name '-rps3' is no name; write letters, digits, _ and -, and do not begin with -"},
+           "m.toml:3:11: name '-rps3' is not a name; write letters, digits, _ and -, and do not begin with -"},
           {"name    = \"rps3\"", "", "m.toml:1:1: key 'name' is missing; write name = \"rps3\""},
           {"[geometry]", "[geometri]", "m.toml:6:2: unknown key 'geometri'; did you mean 'geometry'?"},
           {"\"250 mm\"", "250",
@@ -106,9 +106,9 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:16:5: platform.x is parallel to platform.z; give another direction"},
           {"tool        = [0, 0, \"100 mm\"]", "points = [[0, 0, 0], [0, 0, \"h\"], [0, 0, \"a\"]]",
            "m.toml:16:10: the metric has no meaning: the points are on one line, about which the platform may turn "
-           "unseen; write points = [...] in [platform], three or more that are on no line"},
+           "unseen; write metric_points = [...] in [platform], three or more that are not on one line"},
           {"tool        = [0, 0, \"100 mm\"]", "points = [[0, 0, 0], [0, 0, \"h\"]]",
-           "m.toml:16:10: platform.points has fewer than three points; give three that are on no line"},
+           "m.toml:16:10: platform.points has fewer than three points; give three that are not on one line"},
           {"[[limb]]", "[limb]", "m.toml:18:1: limb is one table; write double brackets: [[limb]]"},
           {"count = 3", "count = 0", "m.toml:19:20: limb[0].copies.count is 0; it must be at least 1"},
           {"count = 3", "count = 2.5", "m.toml:19:20: limb[0].copies.count is the number 2.5; write a whole number"},
@@ -177,11 +177,11 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:21:36: limb[0].joints[0].at[0] 'b' has an unknown parameter 'b'; known: a, c, h, sqrt, sin, cos, "
            "tan, atan2, pi"},
           {"at = [\"a\", 0, 0], axis = \"y\"", "at = \"corner\", axis = \"y\"",
-           "m.toml:21:34: limb[0].joints[0].at 'corner' is no joint of this limb and no point; known: A, q, S"},
+           "m.toml:21:34: limb[0].joints[0].at 'corner' is neither a joint of this limb nor a point; known: A, q, S"},
           {"at = [\"a\", 0, 0], axis = \"y\"", "at = \"A\", axis = \"y\"",
            "m.toml:21:3: limb[0].joints[0] 'A' takes its point from itself; write at = [x, y, z] for one of them"},
           {"from = \"A\"", "from = \"B\"",
-           "m.toml:22:36: limb[0].joints[1].from 'B' is no joint of this limb and no point; known: A, q, S"},
+           "m.toml:22:36: limb[0].joints[1].from 'B' is neither a joint of this limb nor a point; known: A, q, S"},
           {"from = \"A\"", "from = \"S\"",
            "m.toml:22:46: limb[0].joints[1].to 'S' and 'S' are one point at home, so no direction goes from one to the "
            "other; write axis = instead, or move one of them"},
@@ -198,7 +198,8 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
           {"actuated = true", "actuated = \"yes\"",
            "m.toml:22:62: limb[0].joints[1].actuated is the text 'yes'; write true or false without quotes"},
           {"actuated = true", "actuated = \"motor 1\"",
-           "m.toml:22:62: limb[0].joints[1].actuated 'motor 1' is no name; write letters, digits, _ and -, and do not "
+           "m.toml:22:62: limb[0].joints[1].actuated 'motor 1' is not a name; write letters, digits, _ and -, and do "
+           "not "
            "begin with -"},
           {"actuated = true", "actuated = \"z\"",
            "m.toml:22:3: the drive of joint 'q' has the name 'z' of a coordinate; give it another name, because files "
@@ -220,7 +221,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:23:49: limb[0].joints[2].actuated does not belong to type = \"S\"; remove it"},
           {"\"S\", at = [\"c\", 0, \"h\"] }", "\"S\", at = [0, 0, \"h\"] }",
            "m.toml:11:1: the metric has no meaning: the points are on one line, about which the platform may turn "
-           "unseen; write points = [...] in [platform], three or more that are on no line"},
+           "unseen; write metric_points = [...] in [platform], three or more that are not on one line"},
           {"joints = [", "joints = []\nx = [",
            "m.toml:21:1: unknown key 'x' in [limb[0]]; known: name, from, to, copies, points, joints, links, features, "
            "clearances, "
@@ -241,7 +242,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
           {"frames = \"all\"", "frames = \"all\"\n[sets]\nfew = [\"gamma_*\"]",
            "m.toml:29:8: sets.few[0] 'gamma_*' fits no error; they have names like epsilon_1_0_x"},
           {"frames = \"all\"", "frames = \"all\"\n[sets]\n\"a b\" = [\"*\"]",
-           "m.toml:29:9: sets.a b 'a b' is no name; write letters, digits, _ and -, and do not begin with -"},
+           "m.toml:29:9: sets.a b 'a b' is not a name; write letters, digits, _ and -, and do not begin with -"},
           {"frames = \"all\"", "frames = \"all\"\n[sets]\n" + std::string(49, 's') + " = [\"*\"]",
            "m.toml:29:53: sets." + std::string(49, 's') + " '" + std::string(49, 's') +
                "' is too long; write at most 48 letters"},
@@ -271,16 +272,17 @@ TEST(MechanismFile, RefusesWhatIsWrongInOthers) {
           {"{ phi = \"rz\" }", "{ phi = \"rw\" }",
            "m.toml:13:34: platform.coordinates[2].phi is 'rw', which is unknown; did you mean 'rx'?"},
           {"at = \"elbow\"", "at = \"ellbow\"",
-           "m.toml:23:34: limb[0].joints[1].at 'ellbow' is no joint of this limb and no point; did you mean 'elbow'?"},
+           "m.toml:23:34: limb[0].joints[1].at 'ellbow' is neither a joint of this limb nor a point; did you mean "
+           "'elbow'?"},
           {"elbow = [\"220 mm\"", "C = [\"220 mm\"",
-           "m.toml:23:34: limb[0].joints[1].at 'elbow' is no joint of this limb and no point; known: A, B, C, C"},
+           "m.toml:23:34: limb[0].joints[1].at 'elbow' is neither a joint of this limb nor a point; known: A, B, C, C"},
           {"elbow = [\"220 mm\"", "elbow = [\"220 deg\"",
            "m.toml:17:10: points.elbow[0] '220 deg' is an angle, but must be a length; correct the expression or its "
            "unit"},
           {"name = \"l\"", "name = \"l l\"",
-           "m.toml:27:8: error[0].name 'l l' is no name; write letters, digits, _ and -, and do not begin with -"},
+           "m.toml:27:8: error[0].name 'l l' is not a name; write letters, digits, _ and -, and do not begin with -"},
           {"name = \"l\"", "name = \"-l\"",
-           "m.toml:27:8: error[0].name '-l' is no name; write letters, digits, _ and -, and do not begin with -"},
+           "m.toml:27:8: error[0].name '-l' is not a name; write letters, digits, _ and -, and do not begin with -"},
           {"name = \"l\"", "nmae = \"l\"", "m.toml:27:1: unknown key 'nmae' in [error[0]]; did you mean 'name'?"},
           {"limb = \"each\"", "limb = \"all\"",
            "m.toml:28:8: error[0].limb is 'all', which no limb is named; write a limb's number, its name, a list of "
@@ -298,7 +300,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInOthers) {
           {"[[limb]]", "[[limb]]\nname = \"each\"",
            "m.toml:20:8: limb[0].name is 'each', which means all limbs; give the limb another name"},
           {"[[limb]]", "[[limb]]\nname = \"a b\"",
-           "m.toml:20:8: limb[0].name 'a b' is no name; write letters, digits, _ and -, and do not begin with -"},
+           "m.toml:20:8: limb[0].name 'a b' is not a name; write letters, digits, _ and -, and do not begin with -"},
           {"limb = \"each\"", "limb = 4", "m.toml:28:8: error[0].limb is 4; it must be at most 3"},
           {"limb = \"each\"", "limb = 0", "m.toml:28:8: error[0].limb is 0; it must be at least 1"},
           {"frame = 1", "frame = 4", "m.toml:29:9: error[0].frame is 4; the last frame of limb 1 is 3"},

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/models/file/files.h"
 
 namespace poesy::file {
@@ -156,6 +159,28 @@ TEST(Mobility, DrivesMustHoldThePlatformElsewhere) {
       problem.starts_with("m.toml:23:3: the drives do not hold the platform at some poses, which has 6 freedoms "
                           "and 6 drives: joint '"))
       << problem;
+}
+
+/// A Delta whose rods have their last axes in the wrong order: the platform turns, about no coordinate of it.
+TEST(Mobility, TellsTheAngleByWhichThePlatformTurns) {
+  std::string text = text_of("linear-delta-drawing");
+  const std::string right = R"(axis = ["h", 0, "r - R"], axis2 = "y")";
+  ASSERT_NE(text.find(right), std::string::npos);
+  text.replace(text.find(right), right.size(), R"(axis = "y", axis2 = ["h", 0, "r - R"])");
+  text.erase(text.find("features = ["));
+  const MechanismFile file = read_mechanism_file(text, "m.toml");
+  const Mechanism made = mechanism(file, default_geometry(file));
+  std::size_t turned_about_several = 0;
+  for (const PoseMobility& at : workspace_mobility(made)) {
+    ASSERT_TRUE(at.reached());
+    const auto turn = (at.tracked.platform.R * made.platform.R.transpose()).eval();
+    EXPECT_NEAR(at.turned, std::acos(0.5 * (turn.trace() - 1.0)), 1e-7);
+    EXPECT_LT(at.moved, 1e-12);
+    const double largest =
+        std::max({std::abs(at.tracked.pose[3]), std::abs(at.tracked.pose[4]), std::abs(at.tracked.pose[5])});
+    if (at.turned > 1.01 * largest) ++turned_about_several;
+  }
+  EXPECT_GT(turned_about_several, 0u);
 }
 
 TEST(Mobility, SomeOfTheWorkspaceMustBeInReach) {

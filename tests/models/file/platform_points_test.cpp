@@ -176,7 +176,7 @@ TEST(NamedPoints, AreRefusedWithPlaceAndRemedy) {
   refused("points.a = ^\"10 mm\"", {"platform.points.a", "list"});
   refused("points.a = [0, 0, ^\"10 deg\"]", {"platform.points.a[2]", "length"});
   refused("points.a = [0, 0, \"^hh\"]", {"hh", "did you mean 'h'"});
-  refused("points.\"a b\" = ^[0, 0, 0]", {"'a b' is no name", "letters"});
+  refused("points.\"a b\" = ^[0, 0, 0]", {"'a b' is not a name", "letters"});
   refused("points = ^\"nozzle\"", {"platform.points", "list"});
   refused("points = ^[[0, 0, 0]]", {"fewer than three points"});
   refused("metric_points = ^[[0, 0, 0]]", {"fewer than three points"});

@@ -1,4 +1,5 @@
-// Ranked horizontal bars with the interval of each; several series stand below each other, told apart by filling.
+// Horizontal bars, ranked, each with its interval. Bars of several series are drawn below each other in different
+// fills.
 
 const FIRST_BARS = 25;
 const BAR = 14; // px
@@ -15,7 +16,7 @@ function bars(figure, data) {
   let all = false;
 
   const SCALES = ["linear", "logarithmic"];
-  let scale; // a position among them that the reader chose
+  let scale; // index of the scale that the reader chose
 
   const place = new Place(figure, (width) => {
     const rows = rowsShown();
@@ -55,19 +56,19 @@ function bars(figure, data) {
     return Array.isArray(unit) ? unit[p] : unit;
   }
 
-  /// (series, item) -> the number in the array of that name; NaN where there is none.
+  /// A function of series and item that gives the number in the array of this name, or NaN if there is none.
   function at(name) {
     const array = values(name);
     if (!array) return () => NaN;
     return (s, p) => array[(s * (array.length / names.length / series.length) + choices.row) * names.length + p];
   }
 
-  /// Whether all items have one unit in that quantity: values in several say nothing about which is larger.
+  /// Whether all items of a quantity have the same unit. Values in different units do not say which is larger.
   function comparable({ units }) {
     return !Array.isArray(units[choices.row]) || new Set(units[choices.row]).size === 1;
   }
 
-  /// The quantity by which items are sorted; undefined where they stand as they come.
+  /// The quantity by which items are sorted; undefined if items keep their order.
   function measure() {
     if (data.sort === "none") return undefined;
     return comparable(quantity) ? quantity : data.quantities.find(comparable);
@@ -80,7 +81,7 @@ function bars(figure, data) {
     return ranked(names.map((_, p) => d3.max(series, (_, s) => Math.abs(value(s, p)))));
   }
 
-  /// [{name, unit, series, value, low, high}], a row for each item shown and series.
+  /// [{name, unit, series, value, low, high}], one for each item that is shown and each series.
   function rowsShown() {
     const [value, low, high] = [quantity.value, quantity.low, quantity.high].map(at);
     return order().slice(0, all ? names.length : FIRST_BARS).flatMap((p) =>
@@ -95,8 +96,8 @@ function bars(figure, data) {
     );
   }
 
-  /// Whether bars stand on a logarithmic axis: as the reader chose, else where series are hundredfold apart, so that
-  /// the shorter bars could not be seen.
+  /// Whether the axis is logarithmic: as the reader chose, or else if series of an item differ a hundredfold, because
+  /// then shorter bars could not be seen.
   function isLog(rows) {
     if (!differ(rows)) return false;
     if (scale !== undefined) return scale === 1;
@@ -142,7 +143,7 @@ function bars(figure, data) {
     return element("p", { class: "swatches" }, ...entries);
   }
 
-  /// Says by what bars are sorted where it is not by what they show.
+  /// A text for the caption that names the quantity by which bars are sorted, if they show another one.
   function ordered() {
     const by = measure();
     return by && by !== quantity ? `, in the order of: ${by.label}` : "";
@@ -162,7 +163,7 @@ function bars(figure, data) {
 
 const HUNDREDFOLD = 100;
 
-/// Whether values without sign are hundredfold apart, so that a logarithmic axis shows them better.
+/// Whether values differ a hundredfold, so that a logarithmic axis shows them better. Never if a value is negative.
 function differ(rows) {
   const numbers = rows.map(({ value }) => value).filter(Number.isFinite);
   if (d3.min(numbers) < 0) return false;
@@ -170,7 +171,8 @@ function differ(rows) {
   return high >= HUNDREDFOLD * low;
 }
 
-/// The axis of bars, which holds 0 unless it is logarithmic; bars begin at start, at(value) is where a value stands.
+/// The axis of bars. It includes 0 unless it is logarithmic. Bars begin at `start`; at(value) is the position of a
+/// value.
 function barAxis(rows, unit, log) {
   const numbers = rows.flatMap(({ value, low, high }) => [value, low, high]).filter(Number.isFinite);
   if (log) return logAxis(rows, unit, d3.max(numbers));
@@ -182,7 +184,8 @@ function barAxis(rows, unit, log) {
   return { ...axis, options, start: 0, at: (v) => v / axis.factor };
 }
 
-/// From half the smallest value, and at most six powers of ten, for what is less is rounding; a 0 has no length.
+/// A logarithmic axis for bars. It starts at half the smallest value, but at most six powers of ten below the largest,
+/// because smaller values are rounding errors. A value of 0 has no bar.
 function logAxis(rows, unit, high) {
   const smallest = d3.min(rows, ({ value }) => (value > 0 ? value : undefined));
   const start = Math.max(0.5 * smallest, 1e-6 * high);
@@ -195,7 +198,7 @@ function logAxis(rows, unit, high) {
   return { factor: 1, unit: unit ?? "", options, start, at: (v) => Math.max(v, start) };
 }
 
-/// The bars of series s of so many, their intervals, and their values behind them.
+/// The bars of series s with their intervals, and their values to the right. of: number of series.
 function seriesMarks(rows, s, of, axis, valueText) {
   const mine = rows.filter((d) => d.series === s);
   const dy = (s + 0.5 - of / 2) * BAR;

@@ -1,13 +1,16 @@
 // Colours of fields, and legends.
 
-/// An entry of a legend: a patch of colour and what it stands for.
+/// An entry of a legend: a patch of colour and its meaning.
 function swatch(fill, stroke, text) {
   const patch = element("i", { class: "swatch", style: `background:${fill};border-color:${stroke}` });
   return element("span", { class: "entry" }, patch, element("span", {}, ...named(text)));
 }
 
-/// Like PuOr, but 0 is near the dark paper, so that what differs stands out there too.
+/// Colours like those of PuOr, but with 0 near the colour of dark paper, so that differences stand out there, too.
 const DARK_DIFFERENCES = d3.piecewise(d3.interpolateRgb, ["#d3c2ff", "#9276dd", "#2a2f37", "#c9771f", "#ffcb8a"]);
+
+/// Viridis without its darkest part, which would not stand out from dark paper.
+const DARK_VALUES = (t) => d3.interpolateViridis(0.2 + 0.8 * t);
 
 /// The colours of a field: colour(value), null where it is not known, and legend(width) with its label and unit.
 /// A field with both signs, and a difference whatever its values, has two hues that meet at 0; another one has the
@@ -15,7 +18,9 @@ const DARK_DIFFERENCES = d3.piecewise(d3.interpolateRgb, ["#d3c2ff", "#9276dd", 
 function fieldColours(array, { label, unit, signed }) {
   const domain = symmetric(valueExtent(array), signed);
   const differs = domain[0] < 0 && domain[1] > 0;
-  const interpolate = !differs ? d3.interpolateViridis : isDark() ? DARK_DIFFERENCES : d3.interpolatePuOr;
+  const interpolate = differs
+    ? (isDark() ? DARK_DIFFERENCES : d3.interpolatePuOr)
+    : (isDark() ? DARK_VALUES : d3.interpolateViridis);
   const scale = d3.scaleSequential(domain, interpolate);
   const colour = (value) => (Number.isFinite(value) ? scale(value) : null);
   const unknown = known(array).length < array.length ? [swatch("var(--unknown)", "var(--unknown)", "unknown")] : [];
@@ -43,7 +48,7 @@ function fieldColours(array, { label, unit, signed }) {
   return { colour, legend };
 }
 
-/// A range with both signs, or of a difference, is made as long on either side of 0.
+/// Makes the range of a field symmetric about 0, if it has both signs or is of differences.
 function symmetric([low, high], signed) {
   const largest = Math.max(-low, high);
   return signed || (low < 0 && high > 0) ? [-largest, largest] : [low, high];

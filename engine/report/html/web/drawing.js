@@ -1,4 +1,4 @@
-// SVGs: texts, descriptions, and what Plot does not have.
+// Helpers for SVG figures: texts, descriptions, and marks that Plot lacks.
 
 const FONT_SIZE = 12;
 const FIGURE_STYLE = { fontSize: `${FONT_SIZE}px`, fontFamily: "var(--sans)" };
@@ -12,7 +12,7 @@ function textWidth(...texts) {
   return d3.max(texts, (text) => d3.sum(pieces(text), set)) ?? 0;
 }
 
-/// The text, its end left out where it is wider than the width in px.
+/// The text, cut at its end if it is wider than this width in px.
 function shortened(text, width) {
   if (textWidth(text) <= width) return text;
   let end = text.length;
@@ -20,7 +20,8 @@ function shortened(text, width) {
   return `${text.slice(0, end)}…`;
 }
 
-/// Plot.plot with what all figures share: an SVG that is one picture to a screen reader, described by one sentence.
+/// Plot.plot with the options that all figures share. For a screen reader the SVG is one picture, described by one
+/// sentence.
 function draw(description, options) {
   const [x, y] = [options.x, options.y].map(withTicks);
   const svg = Plot.plot({ ...options, x, y, style: FIGURE_STYLE });
@@ -29,13 +30,13 @@ function draw(description, options) {
   return svg;
 }
 
-/// A linear scale whose ticks are written as all numbers are.
+/// A linear scale whose ticks are written like all other numbers.
 function withTicks(scale) {
   const written = !scale || scale.axis === null || scale.tickFormat || (scale.type ?? "linear") !== "linear";
   return written ? scale : { ...scale, tickFormat: tickText };
 }
 
-/// Makes an SVG of Plot's one picture with one description, not a group of unnamed parts with labels.
+/// Makes Plot's SVG one picture with one description, instead of a group of unnamed parts with labels.
 function describe(svg, description) {
   for (const part of svg.querySelectorAll("[aria-label]")) {
     part.dataset.mark = part.getAttribute("aria-label");
@@ -45,7 +46,7 @@ function describe(svg, description) {
   svg.setAttribute("aria-label", description);
 }
 
-/// What is said of the item under the pointer. The tables say it to those who have none.
+/// A box with a text on the item under the pointer. Readers without a pointer find the same in the tables.
 function tip(items, options, pointer = Plot.pointer) {
   return Object.assign(Plot.tip(items, pointer(options)), { ariaLabel: undefined });
 }
@@ -54,7 +55,7 @@ function title(text) {
   return element("p", { class: "plot-title" }, ...named(text));
 }
 
-/// What stands where there is nothing to draw.
+/// A paragraph that is shown if there is nothing to draw.
 function nothing(text = "No value is known here.") {
   return element("p", { class: "plot-nothing" }, text);
 }

@@ -1,7 +1,8 @@
-// A field over items and poses as an image of one pixel for each value, with a cursor that pointer and arrow keys move.
+// A heat map of items and poses, drawn as an image, with a cursor that the pointer and the arrow keys move.
 
 const ROW_HEIGHT = 16;
 const MAP_HEIGHT = 1400;
+const PRINT_MAP_HEIGHT = 590; // no more than a page has, so that names are not printed smaller
 
 function heatmap(figure, data) {
   const rows = data.rows;
@@ -37,7 +38,7 @@ function heatmap(figure, data) {
   const said = readout("Point at the map, or focus it and use the arrow keys, to read a value.");
   place.plot.after(said);
 
-  /// The poses as they stand from left to right.
+  /// The columns in their order from left to right.
   function order() {
     const { by } = orderedBy;
     return d3.range(count).sort((a, b) => (by ? d3.ascending(by(a), by(b)) : 0) || a - b);
@@ -47,7 +48,7 @@ function heatmap(figure, data) {
     const array = values(layer.value);
     const poses = order();
     const colours = fieldColours(array, layer);
-    const rowHeight = Math.max(2, Math.min(ROW_HEIGHT, MAP_HEIGHT / rows.length));
+    const rowHeight = Math.max(2, Math.min(ROW_HEIGHT, (printing ? PRINT_MAP_HEIGHT : MAP_HEIGHT) / rows.length));
     const named = d3.range(0, rows.length, Math.ceil((ROW_HEIGHT - 1) / rowHeight));
     const marginLeft = Math.min(textWidth(...rows) + 10, width * 0.36);
     const ticks = ticksAt(poses, width - marginLeft);
@@ -94,10 +95,10 @@ function heatmap(figure, data) {
     return [colours.legend(width), map];
   }
 
-  /// Columns that are numbered below the map.
+  /// The columns that are numbered below the map.
   function ticksAt(poses, width) {
     const { by } = orderedBy;
-    const square = !coordinates.length && count === rows.length; // its columns are its rows
+    const square = !coordinates.length && count === rows.length; // columns and rows are the same items
     if (square && width / count > textWidth(...rows) + 8) return rows.map((name, c) => ({ at: c + 0.5, text: name }));
     if (!by)
       return d3
@@ -164,7 +165,8 @@ function heatmap(figure, data) {
     });
   }
 
-  /// One pixel for each column, for the image may be drawn smaller; as many for each row as it is high.
+  /// The map as an image. A column is one pixel wide, because the image is stretched when drawn; a row has its height
+  /// in pixels.
   function image(array, poses, colour, rowHeight) {
     const small = element("canvas", { width: count, height: rows.length }).getContext("2d");
     const pixels = small.createImageData(count, rows.length);
@@ -183,8 +185,8 @@ function heatmap(figure, data) {
   return place;
 }
 
-/// [{name, unit, by}] for a map's columns: by(m) of column m, or none, as they come; coordinates, and the magnitudes of
-/// those with both signs.
+/// [{name, unit, by}] for the orders of a map's columns, which are sorted by by(m) of column m. Columns without `by`
+/// keep their order. There is an order for each coordinate, and one for the magnitude of a coordinate with both signs.
 function columnOrders(coordinates) {
   const orders = [{ name: "number" }];
   for (const { name, unit, value } of coordinates) orders.push({ name, unit, by: (m) => values(value)[m] });
@@ -195,7 +197,8 @@ function columnOrders(coordinates) {
   return orders;
 }
 
-/// value -> [red, green, blue, alpha], transparent where unknown; each colour is parsed once.
+/// A function that converts a value to [red, green, blue, alpha], transparent if the value is unknown. Each colour is
+/// parsed once.
 function colourTable(colour) {
   const parsed = new Map();
   return (value) => {
@@ -209,7 +212,7 @@ function colourTable(colour) {
   };
 }
 
-/// The image over the whole frame. Pixels stay sharp where they are larger than the screen's.
+/// The image, stretched over the whole frame. Pixels stay sharp if they are larger than those of the screen.
 function imageMark(source, columns) {
   return (index, scales, channels, { width, height, marginLeft, marginTop, marginRight, marginBottom }) => {
     const shown = width - marginLeft - marginRight;

@@ -1,8 +1,8 @@
-// Lines over a common axis, in panels; each line is named at its end, or below the panel where its name is too wide for
-// that, and intervals are bands. Over pose numbers, which are in no order, values are dots that no line joins.
+// Lines over a common axis, in panels. Each line is named at its end, or below the panel if its name is too wide; its
+// interval is a band. Over pose numbers, which have no order, values are dots that are not joined.
 
 const MOST_PANELS = 4;
-// What tells series apart beside their colours.
+// How series differ in addition to their colours.
 const STYLES = {
   solid: { dash: undefined, symbol: "circle", sign: "●" },
   dashed: { dash: "6 4", symbol: "triangle", sign: "▲" },
@@ -18,7 +18,7 @@ function lines(figure, data) {
   const x = values(data.x.value);
   const joined = data.x.label !== UNORDERED;
   const xMarks = (data.marks ?? []).map((mark) => ({ ...mark, unit: data.x.unit }));
-  const ticked = new Set(names.slice(0, data.most ?? names.length));
+  const ticked = new Set(firstNames(data, names));
   let panel = 0;
 
   const place = new Place(figure, (width) => {
@@ -54,18 +54,18 @@ function lines(figure, data) {
     return element(
       "fieldset",
       { class: "checkboxes" },
-      element("legend", {}, "Lines shown"),
+      element("legend", {}, joined ? "Lines shown" : "Dots shown"),
       element("div", {}, ...boxes),
     );
   }
 
-  /// Styles other than solid are kept; solid lines take turns where there are more than colours.
+  /// The style of a series. Solid lines take turns with other styles if there are more series than colours.
   function styleOf(label, style) {
     if (style && style !== "solid") return style;
     return STYLE_NAMES[Math.floor(names.indexOf(label) / SERIES_COLOURS.length) % STYLE_NAMES.length];
   }
 
-  /// [{label, colour, style, points: [{x, y, low, high}]}] of the series ticked.
+  /// [{label, colour, style, points: [{x, y, low, high}]}] for the series that the reader ticked.
   function seriesShown({ series }) {
     return series
       .filter(({ label }) => ticked.has(label))
@@ -93,7 +93,7 @@ function lines(figure, data) {
     const yMarks = (one.marks ?? []).filter(({ value }) => isNear(value, numbers));
     const domain = valueExtent([...numbers, ...yMarks.map(({ value }) => value)]);
     const axis = axisUnit(domain, unit);
-    const alone = names.length === 1; // named in the title
+    const alone = names.length === 1; // its name is in the title
     const labelWidth = textWidth(...shown.map(({ label }) => label)) + 16;
     const below = !joined || labelWidth > width * 0.4;
     const marginRight = below || alone ? 16 : labelWidth;
@@ -120,7 +120,7 @@ function lines(figure, data) {
       ].flat(),
     );
     const [from, to] = extent([...x, ...xMarks.map(({ value }) => value)]);
-    const room = ({ value, beyond }) => value + { above: 0.04, below: -0.04 }[beyond] * (to - from); // for the tint
+    const room = ({ value, beyond }) => value + { above: 0.04, below: -0.04 }[beyond] * (to - from); // room for the tint
     const xDomain = d3.extent([from, to, ...xMarks.filter(({ beyond }) => beyond).map(room)]);
     const svg = draw(sentence(one, shown, unit), {
       width,
@@ -138,7 +138,7 @@ function lines(figure, data) {
         labelArrow: "none",
         ...(log
           ? { ticks: logTicks(xDomain, (width - marginRight - 56) / 60), tickFormat: logTick }
-          : { ticks: Math.max(4, Math.floor((width - marginRight) / 90)) }),
+          : { ticks: linearTicks(xDomain, Math.max(4, Math.floor((width - marginRight) / 90)), joined) }),
         grid: true,
       },
       y: {
@@ -152,7 +152,7 @@ function lines(figure, data) {
         beyondLimits(xMarks, data.x.unit),
         levels(yMarks, axis.factor, unit),
         ...marks,
-        markedValues(xMarks, xDomain, data.x.unit),
+        markedValues(xMarks, shown, xDomain, domain, data.x.unit),
         below || alone ? [] : endLabels(shown, axis.factor),
       ],
     });
@@ -183,6 +183,12 @@ function lines(figure, data) {
   return place;
 }
 
+/// The names that are ticked at first: as many as the report says, and the first of each panel, which matters most there.
+function firstNames({ panels, most }, names) {
+  const firsts = panels.length > MOST_PANELS ? [] : panels.flatMap(({ series }) => series.slice(0, 1));
+  return [...names.slice(0, most ?? names.length), ...firsts.map(({ label }) => label)];
+}
+
 function line(points, scaled, colour, style) {
   return [
     Plot.areaY(points, { x: "x", y1: scaled("low"), y2: scaled("high"), fill: colour, fillOpacity: 0.13 }),
@@ -197,24 +203,29 @@ function line(points, scaled, colour, style) {
   ].flat();
 }
 
+/// Ticks of an axis; pose numbers are whole.
+function linearTicks(domain, most, joined) {
+  return joined ? most : d3.ticks(...domain, most).filter(Number.isInteger);
+}
+
 /// A level that is so far from the numbers that they would be pressed together is not drawn.
 function isNear(value, numbers) {
   return Math.abs(value) <= 3 * d3.max(numbers, Math.abs);
 }
 
-/// "limit 0.03 mm"; a pure number says less than its label.
+/// The text of a mark: "limit 0.03 mm", or only its label if the value has no unit.
 function markText({ label, value }, unit) {
   return isUnit(unit) ? `${label} ${withUnit(plain(value), unit)}` : label;
 }
 
-/// Limits stand out from other values that are marked.
+/// The colour of a mark; limits differ from other marked values.
 function markColour({ beyond }) {
   return beyond ? "var(--limit)" : "var(--ink)";
 }
 
 const MARK = { stroke: markColour, strokeWidth: 1.5, strokeDasharray: "5 3" };
 
-/// What lies beyond limits of x, which is not allowed, in a tint over the whole height.
+/// Tints the areas beyond limits of x, over the whole height.
 function beyondLimits(xMarks) {
   return (index, scales, channels, { marginTop, marginBottom, marginLeft, width, marginRight, height }) => {
     const group = svgElement("g", { fill: "var(--limit)", "fill-opacity": 0.09 });
@@ -228,7 +239,7 @@ function beyondLimits(xMarks) {
   };
 }
 
-/// Levels of y, each named above its line.
+/// Marks at values of y, each a horizontal line with its name above.
 function levels(yMarks, factor, unit) {
   const y = ({ value }) => value / factor;
   const text = (mark) => markText(mark, unit);
@@ -236,18 +247,23 @@ function levels(yMarks, factor, unit) {
   return [Plot.ruleY(yMarks, { y, ...MARK }), Plot.text(yMarks, { y, text, ...place, stroke: "var(--paper)", strokeWidth: 3 })];
 }
 
-/// A rule at each value, named on the side where there is more room.
-function markedValues(xMarks, [from, to], unit) {
+/// A rule at each value, named on the side where there is more room; at the bottom where lines pass through the top there.
+function markedValues(xMarks, shown, [from, to], [low, high], unit) {
   const onTheRight = ({ value }) => value > (from + to) / 2;
+  const isTaken = (mark) => {
+    const ends = [mark.value, mark.value + (onTheRight(mark) ? -0.2 : 0.2) * (to - from)].sort(d3.ascending);
+    const isThere = ({ x, y }) => x >= ends[0] && x <= ends[1] && y > low + 0.85 * (high - low);
+    return shown.some(({ points }) => points.some(isThere));
+  };
   const text = (mark) => markText(mark, unit);
   const halo = { fill: markColour, stroke: "var(--paper)", strokeWidth: 3, fontWeight: 600 };
-  const name = (some, side, dx) =>
-    Plot.text(some, { x: "value", text, frameAnchor: "top", textAnchor: side, dx, dy: 2, ...halo });
-  return [
-    Plot.ruleX(xMarks, { x: "value", ...MARK }),
-    name(xMarks.filter(onTheRight), "end", -5),
-    name(xMarks.filter((mark) => !onTheRight(mark)), "start", 5),
-  ];
+  const names = d3.cross([false, true], [false, true], (right, taken) => {
+    const some = xMarks.filter((mark) => onTheRight(mark) === right && isTaken(mark) === taken);
+    const side = right ? { textAnchor: "end", dx: -5 } : { textAnchor: "start", dx: 5 };
+    const end = taken ? { frameAnchor: "bottom", dy: -4 } : { frameAnchor: "top", dy: 2 };
+    return Plot.text(some, { x: "value", text, ...side, ...end, ...halo });
+  });
+  return [Plot.ruleX(xMarks, { x: "value", ...MARK }), ...names];
 }
 
 function dots(points, scaled, colour, style) {
@@ -260,7 +276,7 @@ function dots(points, scaled, colour, style) {
   ];
 }
 
-/// The names of lines or dots, each behind a piece of it.
+/// A legend of series: each name with a piece of its line or with its dot.
 function seriesLegend(shown, joined) {
   const piece = ({ colour, style }) =>
     joined
@@ -270,7 +286,7 @@ function seriesLegend(shown, joined) {
   return element("p", { class: "swatches below" }, ...entries);
 }
 
-/// The name of each line beside its last point; moved apart where they would overlap.
+/// The names of lines beside their last points, moved apart if they would overlap.
 function endLabels(shown, factor) {
   return (index, scales, channels, { width: whole, height, marginRight, marginTop, marginBottom }) => {
     const labels = shown
@@ -293,7 +309,7 @@ function endLabels(shown, factor) {
   };
 }
 
-/// Moves the sorted labels apart to LABEL_STEP, within the frame.
+/// Moves sorted labels apart by LABEL_STEP, within the frame.
 function spread(labels, top, bottom) {
   for (let k = 1; k < labels.length; ++k) labels[k].y = Math.max(labels[k].y, labels[k - 1].y + LABEL_STEP);
   let limit = bottom;

@@ -1,7 +1,7 @@
-// Draws every figure of the page at once, before a frame is shown. One that fails leaves the others, and the tables, as
-// they are.
+// Draws every figure of the page before a frame is shown, and fits the tables. If a figure fails, the other figures and
+// the tables are still drawn.
 
-const DRAWINGS = { bars, heatmap, workspace, lines, scatter, robot };
+const DRAWINGS = { bars, heatmap, workspace, lines, scatter, robot, whatIf };
 
 for (const figure of document.querySelectorAll("figure[data-figure]")) {
   const data = report.figures[figure.dataset.figure];
@@ -13,3 +13,4 @@ for (const figure of document.querySelectorAll("figure[data-figure]")) {
 }
 
 setTexts(document.body);
+for (const wrap of document.querySelectorAll(".table-wrap")) new FittedTable(wrap).fit();

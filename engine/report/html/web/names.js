@@ -1,5 +1,5 @@
-// Names as print has them: epsilon_1_4_y is an epsilon with its indices below. What is copied, searched and read aloud
-// stays the plain name.
+// Shows names as in print: epsilon_1_4_y becomes an epsilon with its indices below. Copied text, searches and screen
+// readers get the plain name.
 
 const GREEK = {
   alpha: "α", beta: "β", gamma: "γ", delta: "δ", epsilon: "ε", zeta: "ζ", eta: "η", theta: "θ", iota: "ι", kappa: "κ",
@@ -7,21 +7,21 @@ const GREEK = {
   omega: "ω",
 };
 const INDEX = /^(\d+(\.\d+)?|[A-Za-z]{1,2})$/;
-// A word that may be a name, not part of a path, of another word or of what is called.
+// A word that may be a name. It is not part of a path or of another word, and is not followed by a bracket.
 const WORD = /(?<![\w./-])[A-Za-z]+(?:_(?:\d+(?:\.\d+)?|[A-Za-z]+\d*))*(?![\w(]|\.\w)/g;
 const SUB_SIZE = 0.78;
 
-/// {letter, index} of a letter with indices, or of a Greek letter's name; undefined for any other word.
+/// {letter, index} of a name that is a letter with indices or a Greek letter; undefined for any other word.
 function symbolOf(word) {
   const [first, ...indices] = word.split("_");
-  if (word === "delta") return undefined; // a robot, in prose
+  if (word === "delta") return undefined; // in prose this word means a kind of robot
   const letter = GREEK[first] ?? (first.length === 1 && indices.length ? first : undefined);
   const shown = indices.map((index) => GREEK[index] ?? index);
   const fits = indices.every((index) => index in GREEK || INDEX.test(index));
   return letter && fits ? { letter, index: shown.join(",") } : undefined;
 }
 
-/// The text in pieces: plain ones as {text}, names as {text, letter, index}.
+/// The pieces of a text: plain ones as {text}, names as {text, letter, index}.
 function pieces(text) {
   const list = [];
   let end = 0;
@@ -36,7 +36,7 @@ function pieces(text) {
   return list;
 }
 
-/// Nodes of a text: names are shown by generated content, which is neither copied nor read aloud.
+/// The nodes for a text. Names are shown by generated content, which is neither copied nor read aloud.
 function named(text) {
   return pieces(text).map(({ text: plain, letter, index }) => {
     if (!letter) return plain;
@@ -49,7 +49,7 @@ function named(text) {
   });
 }
 
-/// Sets the names in the texts of an SVG.
+/// Shows names as in print in the texts of an SVG.
 function setNames(svg) {
   for (const text of svg.querySelectorAll("text")) {
     if (text.children.length || !text.textContent) continue;
@@ -71,12 +71,13 @@ function setNames(svg) {
   }
 }
 
-// What a command, a file or a choice says is typed as it stands.
+// Elements whose text stays as it is typed, because a reader may copy it: commands, files, choices.
 const AS_IT_STANDS =
   "script, style, pre, code, select, textarea, svg, [role=status], .name, [data-table^=settings], [data-table^=what_was]";
 const NUMBERS = /(\d{1,3}(?: \d{3})+(?!\d)(?: %)?|\d[\d.]* %)/;
 
-/// Sets the names in the page's texts, and keeps numbers in one piece: those whose digits stand in groups, and percents.
+/// Shows names as in print in the texts of an element, and keeps numbers on one line that have groups of digits or are
+/// percentages.
 function setTexts(root) {
   const texts = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
   const found = [];

@@ -1,4 +1,4 @@
-// Numbers as a reader sees them.
+// Numbers as texts for readers.
 
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
@@ -7,13 +7,13 @@ function powerOfTen(exponent) {
   return `10${exponent < 0 ? "⁻" : ""}${digits}`;
 }
 
-/// Digits of a whole number in groups of three, as the tables have them.
+/// The digits of a whole number in groups of three, as in the tables.
 function grouped(digits) {
   return digits.replace(/\B(?=(\d{3})+$)/g, "\u202f");
 }
 
-/// Three significant digits, as in the tables without zeros behind them; powers of ten where zeros would have to be
-/// counted.
+/// A number with three significant digits, as in the tables but without trailing zeros. Powers of ten are used if a
+/// reader would have to count zeros.
 function number(value) {
   if (!Number.isFinite(value)) return "unknown";
   if (value === 0) return "0";
@@ -24,12 +24,12 @@ function number(value) {
   return sign + (exponent >= 3 ? grouped(text) : text);
 }
 
-/// At full precision as far as it is short: for coordinates and counts.
+/// A number with up to five significant digits, for coordinates and counts.
 function plain(value) {
   return Number.isFinite(value) ? String(Number(value.toPrecision(5))).replace("-", "−") : "unknown";
 }
 
-/// "1" is the unit of pure numbers.
+/// Whether a quantity has a unit. The unit of numbers without unit is "1".
 function isUnit(unit) {
   return Boolean(unit) && unit !== "1";
 }
@@ -38,18 +38,18 @@ function withUnit(text, unit) {
   return isUnit(unit) ? `${text}\u202f${unit}` : text;
 }
 
-/// The value, and on a line of its own its interval where that is known.
+/// A value with its unit, and its interval on a second line if it is known.
 function withInterval({ value, low, high }, unit) {
   const text = withUnit(number(value), unit);
   return Number.isFinite(low) ? `${text}\ninterval ${number(low)} to ${withUnit(number(high), unit)}` : text;
 }
 
-/// "label [unit]", as the tables write it.
+/// A label with its unit, "label [unit]", as in the tables.
 function labelled(label, unit) {
   return isUnit(unit) ? `${label} [${unit}]` : label;
 }
 
-/// What an axis is divided by so that its ticks are short numbers, and the unit that then stands beside it.
+/// The factor by which an axis is divided so that its ticks are short numbers, and the unit that follows from it.
 function axisUnit(domain, unit) {
   const largest = Math.max(Math.abs(domain[0]), Math.abs(domain[1]));
   const exponent = largest > 0 ? Math.floor(Math.log10(largest)) : 0;
@@ -58,7 +58,7 @@ function axisUnit(domain, unit) {
   return { factor: 10 ** power, unit: `${powerOfTen(power)}${isUnit(unit) ? ` ${unit}` : ""}` };
 }
 
-/// Ticks of a logarithmic axis, at most that many: powers of ten, and their multiples by 2 and 5 where there are few.
+/// Ticks of a logarithmic axis, at most `most`: powers of ten, and also their multiples by 2 and 5 if these are few.
 function logTicks([low, high], most) {
   const powers = d3.range(Math.floor(Math.log10(low)), Math.ceil(Math.log10(high)) + 1);
   const all = (multiples) =>
@@ -70,7 +70,7 @@ function logTicks([low, high], most) {
   return tens.filter((_, k) => k % step === 0);
 }
 
-/// A tick of a linear axis, with as many decimals as the distance between ticks asks for.
+/// The text of a tick of a linear axis, with as many decimals as the distance between ticks needs.
 function tickText(value, k, ticks) {
   const step = ticks?.length > 1 ? Math.abs(ticks[1] - ticks[0]) : Math.abs(value) || 1;
   const decimals = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9) + (isRound(step) ? 0 : 1));
@@ -79,7 +79,7 @@ function tickText(value, k, ticks) {
   return value < 0 && Number(text.replace(/\s/g, "")) !== 0 ? `−${text}` : text;
 }
 
-/// Whether a step has one significant digit.
+/// Whether the step between ticks has one significant digit.
 function isRound(step) {
   const digits = step / 10 ** Math.floor(Math.log10(step) + 1e-9);
   return Math.abs(digits - Math.round(digits)) < 1e-6;

@@ -1,6 +1,6 @@
-// Elements, controls and the place of a figure on the page.
+// Elements and controls, and the place of a figure on the page.
 
-/// An element with attributes (undefined ones are left out), listeners ("on...") and children.
+/// Makes an element with attributes, listeners ("on...") and children. Attributes that are undefined are left out.
 function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -11,8 +11,8 @@ function element(tag, attributes = {}, ...children) {
   return made;
 }
 
-/// A select with a visible label; change(index) is called when another option than the first one is chosen. Hidden where
-/// nothing can be.
+/// A select with a visible label. change(index) is called when the reader chooses another option. Hidden if there is
+/// nothing to choose.
 function select(label, options, change, first = 0) {
   const made = element("select", { onchange: () => change(made.selectedIndex) });
   made.append(...options.map((option) => element("option", {}, option)));
@@ -25,7 +25,33 @@ function select(label, options, change, first = 0) {
   );
 }
 
-/// Selects for a figure's choices, whose options number the rows of its arrays; the first choice varies slowest.
+/// A slider from 0 to `last` with a visible label. text(k): the words of a screen reader for position k. change(k) is
+/// called when the slider moves. Returns { control, say }; say() updates the words.
+function slider(label, last, text, change) {
+  const input = element("input", {
+    type: "range",
+    min: 0,
+    max: last,
+    step: 1,
+    value: 0,
+    oninput: () => {
+      change(Number(input.value));
+      say();
+    },
+  });
+  const say = () => input.setAttribute("aria-valuetext", text(Number(input.value)));
+  say();
+  const control = element(
+    "label",
+    { class: "control", ...(last < 1 && { hidden: "" }) },
+    element("span", {}, label),
+    input,
+  );
+  return { control, say };
+}
+
+/// Selects for the choices of a figure. Together their options number the rows of the figure's arrays; the first choice
+/// varies slowest.
 class Choices {
   constructor(choices, change) {
     this.choices = choices ?? [];
@@ -45,7 +71,7 @@ class Choices {
   }
 }
 
-// Paper is light whatever the screen is.
+// Paper is light, whatever the scheme of the screen is.
 const darkScheme = matchMedia("(prefers-color-scheme: dark)");
 let printing = false;
 addEventListener("beforeprint", () => (printing = true));
@@ -55,8 +81,8 @@ function isDark() {
   return darkScheme.matches && !printing;
 }
 
-/// Where a figure is drawn: controls above, then the plot, drawn by draw(width): at first by fit(), when the figure is
-/// whole, and again whenever its width changes.
+/// The place of a figure: controls above, then the plot. fit() calls draw(width) when the figure is complete, and again
+/// when its width changes.
 class Place {
   constructor(figure, draw) {
     this.plot = figure.querySelector(".plot");
@@ -64,7 +90,7 @@ class Place {
     this.plot.before(this.controls);
     this.width = 0;
     this.draw = draw;
-    // In the next frame: what is drawn here changes the height that is observed.
+    // Waits for the next frame, because drawing changes the height that is observed.
     new ResizeObserver(() => requestAnimationFrame(() => this.fit())).observe(this.plot);
     addEventListener("beforeprint", () => this.redraw(PRINT_WIDTH));
     addEventListener("afterprint", () => this.redraw());
@@ -80,7 +106,7 @@ class Place {
 }
 
 const PRINT_WIDTH = 680;
-/// A line for the value under the cursor, which a screen reader says when it changes.
+/// A line of text about the value under the cursor. A screen reader reads it when it changes.
 function readout(hint) {
   return element("p", { class: "readout", role: "status" }, hint);
 }

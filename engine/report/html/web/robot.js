@@ -1,9 +1,9 @@
-// The mechanism: what C++ drew is turned, pose by pose, with the frame of a chosen error and what it does.
+// The picture of the mechanism. The poses that C++ drew can be turned, with the frame and the effect of a chosen error.
 
 const NO_ERROR = "none";
-const DISPLACEMENTS = { none: 0, same: 1, own: 2 }; // by which factor they are exaggerated
-const SHOWN_MOTION = 0.15; // of the picture's height, at most, by a factor of its own
-const FRAME_AXIS = 36; // pixels, as in sketch_picture.cpp
+const DISPLACEMENTS = { none: 0, same: 1, own: 2 }; // one factor for all, or each error its own
+const SHOWN_MOTION = 0.15; // largest displacement over the picture's height, if each error has its own factor
+const FRAME_AXIS = 36; // pixels, the same as in sketch_picture.cpp
 const NAME_WIDTH = 150; // pixels
 const ARC = 18; // pixels, radius of the arrow of a rotation
 
@@ -11,12 +11,12 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const moved = (a, scale, b) => a.map((v, k) => v + scale * b[k]);
 
-/// Points of data-p="x,y,z x,y,z".
+/// The points in an attribute data-p="x,y,z x,y,z".
 function robotPoints(part, name = "p") {
   return part.dataset[name].split(" ").map((point) => point.split(",").map(Number));
 }
 
-/// The place of a point in a picture, as SketchView gives it.
+/// The function that gives the place of a point in the picture, as SketchView::at() does.
 function robotProjection(data, { yaw, pitch }, { width, height }) {
   const [sinYaw, cosYaw, sinPitch, cosPitch] = [yaw, pitch].flatMap((angle) => [
     Math.sin((angle * Math.PI) / 180),
@@ -31,16 +31,16 @@ function robotProjection(data, { yaw, pitch }, { width, height }) {
   };
 }
 
-/// Puts a name beside the end of its axis, on the side to which that goes if there is room.
+/// Puts the name of an axis beside the axis' end, on the side to which the axis points if there is room.
 function turnAway(text, toRight) {
   const x = text.parentElement.transform.baseVal.consolidate().matrix.e;
-  const width = 1.4 * textWidth(text.textContent);
+  const width = text.getBBox().width || 1.4 * textWidth(text.textContent); // 0 while the picture is hidden
   const room = { left: x - width, right: text.ownerSVGElement.viewBox.baseVal.width - x - width };
   const left = toRight < 0 ? room.left > 0 || room.right < 0 : room.right < 0;
   setAttributes(text, { "text-anchor": left ? "end" : "start", x: left ? -4 : 4 });
 }
 
-/// Puts lines, outlines and what stands at a point where their points are seen.
+/// Moves lines, outlines and groups of a picture to where their points are seen.
 function placeParts(svg, project) {
   for (const part of svg.querySelectorAll("[data-p]")) {
     const at = robotPoints(part).map(project);
@@ -55,14 +55,14 @@ function placeParts(svg, project) {
   }
 }
 
-/// A part of a picture with its points.
+/// A part of a picture, with its points as an attribute.
 function robotPart(tag, points, attributes, text) {
   const part = svgElement(tag, { ...attributes, "data-p": points.map((p) => p.join(",")).join(" ") });
   if (text !== undefined) part.append(svgElement("text", { x: 4, y: -4 }, text));
   return part;
 }
 
-/// The frame of an error, its axis strong, with an arrow around it where the error turns.
+/// The frame of an error with the error's axis emphasised. A rotation has an arrow around the axis.
 function markedFrame(data, k, error) {
   const count = values(data.frames).length / 12 / data.poses.length;
   const numbers = Array.from(row(values(data.frames), k * count + error.frame, 12));
@@ -87,8 +87,8 @@ function markedFrame(data, k, error) {
   return group;
 }
 
-/// How each limb moves the platform by the error at its size, [rotation; displacement]; one motion where all are alike;
-/// none where it is not known.
+/// The motion of the platform by each limb if the error has its size, [rotation; displacement]. Only one motion if all
+/// limbs give the same; none if it is not known.
 function motionsOf(data, k, e) {
   if (!data.motions) return [];
   const at = (k * data.errors.length + e) * data.limbs;
@@ -101,7 +101,7 @@ function motionsOf(data, k, e) {
 
 const displacement = (motion, p) => moved(motion.slice(3), 1, cross(motion.slice(0, 3), p));
 
-/// By what the motions are exaggerated: one factor for all errors, or that which shows these as well as may be.
+/// The factor by which motions are enlarged: the same one for all errors, or the one that shows these motions best.
 function exaggerationOf(data, motions, svg, choice) {
   if (choice !== DISPLACEMENTS.own) return choice === DISPLACEMENTS.none ? 0 : data.exaggeration;
   const points = robotPoints(svg.querySelector(".platform"));
@@ -112,7 +112,7 @@ function exaggerationOf(data, motions, svg, choice) {
   return power * (most < 2 * power ? 1 : most < 5 * power ? 2 : 5);
 }
 
-/// The platform as each limb holds it; once where all limbs hold it alike.
+/// The displaced platform as each limb holds it. Only one if all limbs hold it alike.
 function displacedPlatforms(motions, svg, times) {
   const group = svgElement("g", { class: "displaced" });
   if (times === 0) return group;
@@ -128,7 +128,7 @@ function displacedPlatforms(motions, svg, times) {
   return group;
 }
 
-/// What is shown, in words.
+/// What the picture shows, in words.
 function robotWords(data, k, e, motions, times, choice) {
   const error = data.errors[e];
   if (!error) return `${data.poses[k]}.`;
@@ -150,7 +150,7 @@ function robot(figure, data) {
   const said = readout("");
   for (const mark of box.querySelectorAll(".marked")) mark.remove();
 
-  // Others than the one that is shown are drawn only to be printed.
+  // Only the pose that is shown is drawn, except for printing.
   const update = (all = false) => {
     pictures.forEach((picture, k) => {
       picture.classList.toggle("other", k !== shown.pose);
@@ -180,7 +180,7 @@ function robot(figure, data) {
   return { fit: () => update(true) };
 }
 
-/// A slider over poses, and selects of the error and of its displacement; choose(e) chooses an error.
+/// A slider over poses, and selects for the error and its displacement. choose(e) chooses an error.
 function robotControls(data, shown, update) {
   const choose = (e) => {
     shown.error = e;
@@ -202,25 +202,16 @@ function robotControls(data, shown, update) {
     },
     shown.times,
   );
-  const slider = element("input", {
-    type: "range",
-    min: 0,
-    max: data.poses.length - 1,
-    step: 1,
-    value: 0,
-    "aria-valuetext": data.poses[0],
-    oninput: () => {
-      shown.pose = Number(slider.value);
-      slider.setAttribute("aria-valuetext", data.poses[shown.pose]);
+  const poses = slider(
+    "pose",
+    data.poses.length - 1,
+    (k) => data.poses[k],
+    (k) => {
+      shown.pose = k;
       update();
     },
-  });
-  const poses = element(
-    "label",
-    { class: "control robot-slider", ...(data.poses.length < 2 && { hidden: "" }) },
-    element("span", {}, "pose"),
-    slider,
-  );
+  ).control;
+  poses.classList.add("robot-slider");
   const chooseHere = (e) => {
     errors.querySelector("select").selectedIndex = e + 1;
     choose(e);
@@ -228,7 +219,7 @@ function robotControls(data, shown, update) {
   return { controls: element("div", { class: "controls" }, poses, errors, displacement), choose: chooseHere };
 }
 
-/// A click on the name of an error in a table chooses it; pointing there says where the error is.
+/// Lets a click on the name of an error in a table choose this error. Pointing at the name tells where the error is.
 function chooseInTables(errors, choose) {
   const positions = new Map(errors.map(({ name }, e) => [name, e]));
   for (const cell of document.querySelectorAll("[data-table] tbody th")) {

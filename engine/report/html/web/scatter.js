@@ -1,4 +1,5 @@
-// Two results against each other, a dot for each item; the largest, and those farthest from the diagonal, are named.
+// A scatter plot of two results, with a dot for each item. The largest items, and those farthest from the diagonal, are
+// named.
 
 const MOST_NAMES = 12;
 
@@ -64,13 +65,14 @@ function positive({ x, y }) {
   return x > 0 && y > 0;
 }
 
-/// Whether some item is hundredfold larger in one of two results, so that both axes are logarithmic; without signs only.
+/// Whether some item differs a hundredfold between the two results, so that both axes are logarithmic. Never if a value
+/// is negative.
 function apart(points) {
   if (points.some(({ x, y }) => x < 0 || y < 0)) return false;
   return points.filter(positive).some(({ x, y }) => Math.max(x / y, y / x) >= HUNDREDFOLD);
 }
 
-/// Names beside dots, the most telling first, where no dot and no other name is in the way.
+/// Names beside dots, the most important first, as far as they cover no dot and no other name.
 function pointNames(points, at) {
   const telling = d3.sort(
     points,

@@ -1,7 +1,8 @@
 // Views that can be turned.
 
-/// Lets a box that draws a view be turned: by dragging it and by arrow keys, `step` degrees each. view: its { yaw, pitch }
-/// in degrees; Home and a button make them those of `start`. show() draws it. The box with its button.
+/// Lets a reader turn the view that a box shows, by dragging and by arrow keys, each of which turns it by `step`
+/// degrees. view: its { yaw, pitch } in degrees; the key Home and a button set them to those of `start`. show() draws
+/// the view. Returns the box with its button.
 function turnable(box, what, view, start, step, show) {
   const turn = (yaw, pitch) => {
     view.yaw = (view.yaw + yaw) % 360;

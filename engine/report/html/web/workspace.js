@@ -1,15 +1,20 @@
-// Poses as dots coloured by a field: a view for each pair of three coordinates, and one that can be turned.
+// Poses as dots that are coloured by a field. There is a view for each pair of three coordinates, and one that can be
+// turned.
 
 const START_VIEW = { yaw: 35, pitch: 22 };
 const TURN_STEP = 10;
-// So that the ends of the colours stand out from light and dark paper.
+const SLICES = 10;
+const FAINT = 0.12;
+// An edge by which dots of light and dark colours stand out from light and dark paper.
 const DOT_EDGE = { stroke: "var(--ink)", strokeOpacity: 0.4, strokeWidth: 0.6 };
 
 function workspace(figure, data) {
   const count = values(data.coordinates[0].value).length;
   const numberOf = (m) => (data.numbers ? values(data.numbers)[m] : m);
   let field = data.fields[0];
-  let item = 0;
+  let item = firstItem(field);
+  let slice = 0; // 0: all poses; k: those in the k-th of SLICES overlapping parts of the third coordinate's range
+  let say = () => {}; // writes beside the slider which slice it is
   const axes = data.coordinates.slice(0, 3).map((_, k) => k);
   const view = { ...START_VIEW };
 
@@ -25,27 +30,71 @@ function workspace(figure, data) {
       data.fields.map(({ label }) => label),
       (i) => {
         field = data.fields[i];
-        item = 0;
+        item = firstItem(field);
         offerItems();
         redraw();
       },
     ),
     items,
     ...axisControls(),
+    ...(axes.length > 2 ? [sliceControl()] : []),
   );
   offerItems();
+
+  /// The ends of the chosen slice, as values of the third coordinate.
+  function sliceEnds() {
+    const [low, high] = d3.extent(values(data.coordinates[axes[2]].value));
+    const step = (high - low) / SLICES;
+    return slice === 0 ? [low, high] : [low + (slice - 1.5) * step, low + (slice + 0.5) * step];
+  }
+
+  function sliceWords() {
+    const { name, unit } = data.coordinates[axes[2]];
+    if (slice === 0) return `all ${name}`;
+    const [low, high] = d3.extent(values(data.coordinates[axes[2]].value));
+    const [from, to] = sliceEnds();
+    return `${name} from ${number(Math.max(from, low))} to ${withUnit(number(Math.min(to, high)), unit)}`;
+  }
+
+  /// A slider through the third coordinate. In the first view, poses outside the chosen slice are faint.
+  function sliceControl() {
+    const said = element("span", {}, sliceWords());
+    const { control, say: sayAloud } = slider("slice", SLICES, sliceWords, (k) => {
+      slice = k;
+      say();
+      redraw();
+    });
+    say = () => {
+      said.textContent = sliceWords();
+      sayAloud();
+    };
+    control.append(said);
+    return control;
+  }
 
   function offerItems() {
     items.replaceChildren(
       ...(field.rows
         ? [
-            select("of", field.rows, (i) => {
-              item = i;
-              redraw();
-            }),
+            select(
+              "of",
+              field.rows,
+              (i) => {
+                item = i;
+                redraw();
+              },
+              item,
+            ),
           ]
         : []),
     );
+  }
+
+  /// The first item, or that which differs most: others may differ nowhere.
+  function firstItem({ rows, signed, value }) {
+    if (!rows || !signed) return 0;
+    const most = (k) => d3.max(row(values(value), k, count), Math.abs);
+    return Math.max(0, d3.maxIndex(rows, (_, k) => most(k)));
   }
 
   /// Which three of more coordinates are shown.
@@ -55,6 +104,7 @@ function workspace(figure, data) {
     return axes.map((k) => {
       const control = select(`Axis ${k + 1}`, names, (i) => {
         axes[k] = i;
+        say();
         redraw();
       });
       control.querySelector("select").selectedIndex = k;
@@ -85,14 +135,16 @@ function workspace(figure, data) {
     const largest = `${withUnit(number(highest.value), field.unit)} at ${positionOf(highest.m, chosen).join(", ")}`;
     const sentence = `${what} at ${count} poses; the largest is ${largest}.`;
 
-    const flat = (pairs.length ? pairs : [[0, 0]]).map(([a, b]) =>
-      projection(poses, chosen, a, b, size, text, sentence),
+    const [from, to] = axes.length > 2 ? sliceEnds() : [0, 0];
+    const isFaint = ({ at }) => slice > 0 && (at[2] < from || at[2] > to);
+    const flat = (pairs.length ? pairs : [[0, 0]]).map(([a, b], n) =>
+      projection(poses, chosen, a, b, size, text, sentence, n === 0 ? isFaint : () => false),
     );
     const views = axes.length > 2 ? [...flat, turning(poses, chosen, size, sentence)] : flat;
     return [legend(width), element("div", { class: "views" }, ...views)];
   }
 
-  function projection(poses, chosen, a, b, size, text, sentence) {
+  function projection(poses, chosen, a, b, size, text, sentence, isFaint) {
     const coordinate = (k) => (pose) => pose.at[k];
     const labels = [a, b].map((k) => labelled(chosen[k].name, chosen[k].unit));
     const domains = [a, b].map((k) => extent(poses.map(coordinate(k))));
@@ -107,7 +159,11 @@ function workspace(figure, data) {
       x: { domain: domains[0], label: labels[0], labelAnchor: "center", labelArrow: "none", ticks: 5, grid: true },
       y: a === b ? { axis: null } : { domain: domains[1], label: labels[1], labelArrow: "none", ticks: 5, grid: true },
       marks: [
-        Plot.dot(poses, { x: coordinate(a), y, fill: "colour", r: dotSize(count), ...DOT_EDGE }),
+        Plot.dot(poses.filter(isFaint), { x: coordinate(a), y, fill: "colour", r: dotSize(count), opacity: FAINT }),
+        Plot.dot(
+          poses.filter((pose) => !isFaint(pose)),
+          { x: coordinate(a), y, fill: "colour", r: dotSize(count), ...DOT_EDGE },
+        ),
         tip(poses, { x: coordinate(a), y, title: text }),
       ],
     });
@@ -123,7 +179,7 @@ function workspace(figure, data) {
   return place;
 }
 
-// The edges of the box that are its axes: at the start, in front below and at the left. Each is named at its far end.
+// The edges of the box that serve as axes: at the front, below and at the left. Each is named at its far end.
 const AXIS_STARTS = [
   [-0.5, -0.5, -0.5],
   [-0.5, -0.5, -0.5],
@@ -134,7 +190,7 @@ function dotSize(count) {
   return Math.max(1.6, Math.min(4.5, 90 / Math.sqrt(count)));
 }
 
-/// The three coordinates, each over its range, as an orthographic picture of the box that they fill.
+/// An orthographic picture of the box that the three coordinates fill, each over its range.
 function turned(poses, chosen, size, { yaw, pitch }, sentence) {
   const ranges = chosen.map((_, k) => extent(poses.map(({ at }) => at[k])));
   const [sinYaw, cosYaw, sinPitch, cosPitch] = [yaw, pitch].flatMap((angle) => [
@@ -158,12 +214,13 @@ function turned(poses, chosen, size, { yaw, pitch }, sentence) {
     to: project(to),
     axis: from.every((v, j) => v === AXIS_STARTS[k][j]),
   }));
-  const names = chosen.map(({ name, unit }, k) => ({
-    ...project(AXIS_STARTS[k].with(k, 0.6)),
-    text: labelled(name, unit),
-  }));
   // A little outside the box, so that numbers and dots do not cover each other.
   const besides = (k, at) => AXIS_STARTS[k].map((v, j) => (j === k ? at : 1.22 * v));
+  // Names of the axes below stand behind their last numbers, where those of the upright axis do not reach.
+  const names = chosen.map(({ name, unit }, k) => ({
+    ...project(k === 2 ? AXIS_STARTS[k].with(k, 0.6) : besides(k, 0.62)),
+    text: labelled(name, unit),
+  }));
   const numbers = chosen.flatMap((_, k) =>
     d3.ticks(...ranges[k], 3).map((v) => ({
       ...project(besides(k, (v - ranges[k][0]) / (ranges[k][1] - ranges[k][0]) - 0.5)),

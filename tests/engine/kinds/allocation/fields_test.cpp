@@ -136,7 +136,7 @@ TEST_F(AllocationFile, KeepsTheZonesOfADrawing) {
             "inside,grade,remark\n"
             "\"1, 3\",rail,position,\u2316,0.01234,cylinder,A|B,500,2.5,0.25,0.5,3,0.9779,none,perpendicularity: not "
             "needed\n"
-            "none,plate,tolerance,\u00b1,0.025,interval,none,NaN,0.5,0.05,0.125,3,NaN,IT7,given\n");
+            "none,plate,tolerance,\u00b1,0.025,interval,none,,0.5,0.05,0.125,3,,IT7,given\n");
   EXPECT_NE(problem_with("/allocation/zone_key", "/allocation/zone_feature").find("unknown zone"), std::string::npos);
 }
 

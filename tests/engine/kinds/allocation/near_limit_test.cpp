@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "engine/random/distribution.h"
+#include "engine/random/normal_quantile.h"
 
 namespace poesy::test {
 namespace {

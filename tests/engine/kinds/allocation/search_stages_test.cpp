@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/kinds/allocation/search_constants.h"
-#include "engine/random/distribution.h"
+#include "engine/random/normal_quantile.h"
 #include "tests/engine/kinds/allocation/function_allocation.h"
 
 namespace poesy::allocation {

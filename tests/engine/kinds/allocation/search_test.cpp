@@ -13,6 +13,7 @@
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/search.h"
 #include "engine/kinds/study_run.h"
+#include "engine/random/normal_quantile.h"
 #include "engine/stats/proportion.h"
 #include "tests/engine/kinds/allocation/function_allocation.h"
 

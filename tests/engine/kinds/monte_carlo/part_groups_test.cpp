@@ -9,8 +9,8 @@
 #include <numeric>
 #include <vector>
 
-#include "engine/random/distribution.h"
 #include "engine/random/normal_copula.h"
+#include "engine/random/normal_quantile.h"
 
 namespace poesy {
 namespace {

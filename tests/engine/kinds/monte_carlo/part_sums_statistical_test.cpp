@@ -11,6 +11,7 @@
 #include "engine/kinds/monte_carlo/part_sums.h"
 #include "engine/random/distribution.h"
 #include "engine/random/normal_copula.h"
+#include "engine/random/normal_quantile.h"
 #include "engine/random/stream.h"
 #include "engine/stats/proportion.h"
 #include "engine/stats/rank_correlation.h"

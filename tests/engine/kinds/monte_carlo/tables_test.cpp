@@ -131,6 +131,23 @@ TEST(LimitsTable, SaysPassOrFailWithBothNumbers) {
             "within: the share of all draws that are within the limit\n");
 }
 
+/// Estimates have four digits, and six where four read as the limit; the cell has the number.
+TEST(LimitsTable, HasTheDigitsThatTellAValueFromItsLimit) {
+  StoredResult result = example();
+  const auto cell = [&](double value, const ValueLimit& limit) {
+    result.verdicts = LimitVerdicts{
+        .judge = Judge::rms,
+        .share = 0.0,
+        .limits = {{.response = 0, .limit = limit, .value = value, .passed = true, .tried = 9, .within = 9}}};
+    const Cell shown = limits_table(result)->rows[0][4];
+    EXPECT_EQ(shown.value, value / 1e-3);
+    return shown.text;
+  };
+  EXPECT_EQ(cell(4.97177e-5, ValueLimit(6e-5)), "0.04972");
+  EXPECT_EQ(cell(5.00012e-5, ValueLimit(5e-5)), "0.0500012");
+  EXPECT_EQ(cell(-2.00003e-5, ValueLimit::between(-2e-5, 1e-4)), "-0.0200003");
+}
+
 TEST(LimitsTable, NamesTheWorstPlace) {
   StoredResult result = example();
   result.verdicts = LimitVerdicts{
@@ -236,7 +253,7 @@ TEST(MonteCarloTable, ShowsFirstWhatMakesTheLimitedResponse) {
       "so these shares say little");
 }
 
-TEST(MonteCarloTable, PutsWhatIsNotToldFromZeroIntoOneLine) {
+TEST(MonteCarloTable, PutsWhatIsNotCertainIntoOneLine) {
   const StoredResult result = example_of_machines();
   Table table = monte_carlo_tables(result)[1];
   EXPECT_EQ(table.name, "yield_gradient");
@@ -247,7 +264,7 @@ TEST(MonteCarloTable, PutsWhatIsNotToldFromZeroIntoOneLine) {
             "                                                  [%]    [%]    [%]\n"
             "epsilon_1                                         -20  -25    -15    -3.491\n"
             "delta_1                                            -1   -1.5   -0.5  -0.01\n"
-            "2 errors whose effect cannot be told from zero      -      -      -       -\n"
+            "2 errors whose effects are not certain              -      -      -       -\n"
             "1 error of which these machines do not tell it      -      -      -       -\n");
 }
 
@@ -264,6 +281,36 @@ TEST(MonteCarloTable, SaysThatFewRejectsTellLittle) {
   EXPECT_FALSE(says(20));
 }
 
+TEST(MonteCarloTable, ShowsNoEffectThatIsChanceAmongMany) {
+  StoredResult result = example_of_machines();
+  YieldResult& yield = *monte_carlo_in(result).machines->yield;
+  yield.change_ci_high = {{5}, {-0.0005, -0.15, 0.003, 0.0001, yield.change(4)}};  // delta_1 alone is told at 95 %
+  yield.change_ci_low = {{5}, {-0.0195, -0.25, -0.001, -0.004, yield.change(4)}};
+  const Table table = monte_carlo_tables(result)[1];
+  EXPECT_EQ(table.rows[0][0].text, "epsilon_1");
+  EXPECT_EQ(table.rows[1][0].text, "3 errors whose effects are not certain");
+  EXPECT_EQ(
+      table.notes[1],
+      "shown are errors whose effect is certain at 95 % for all 4 together (Holm 1979): of so many intervals some "
+      "exclude zero by chance");
+}
+
+/// However certain its effect seems.
+TEST(MonteCarloTable, ShowsNoEffectOfAnErrorWithoutAShare) {
+  StoredResult result = example_of_machines();
+  YieldResult& yield = *monte_carlo_in(result).machines->yield;
+  yield.mean_square_share(0, 1) = yield.mean_square_share(1, 1) = 0.0;
+  const Table table = monte_carlo_tables(result)[1];
+  EXPECT_EQ(table.rows[0][0].text, "delta_1");
+  EXPECT_EQ(table.rows[1][0].text, "3 errors whose effects are not certain");
+  // A share that may be zero comes after those that are not.
+  yield.mean_square_share(0, 1) = 0.001;
+  yield.mean_square_share_ci_low(0, 1) = yield.mean_square_share_ci_low(1, 1) = 0.0;
+  const Table other = monte_carlo_tables(result)[1];
+  EXPECT_EQ(other.rows[0][0].text, "delta_1");
+  EXPECT_EQ(other.rows[1][0].text, "epsilon_1");
+}
+
 /// Files of version 0.2 have the slope alone.
 TEST(MonteCarloTable, TakesAPartOfTheSlopeWhereAFileHasNoChange) {
   StoredResult result = example_of_machines();
@@ -277,7 +324,7 @@ TEST(MonteCarloTable, TakesAPartOfTheSlopeWhereAFileHasNoChange) {
   ASSERT_EQ(table.name, "yield_gradient");
   EXPECT_NEAR(table.rows[0][1].value.value(), -2.0, 1e-12);
   EXPECT_EQ(table.rows[0][2].value.value(), -75.0);  // all of the yield and no more
-  EXPECT_EQ(table.rows[2][0].text, "2 errors whose effect cannot be told from zero");
+  EXPECT_EQ(table.rows[2][0].text, "2 errors whose effects are not certain");
 }
 
 TEST(DefaultRanking, IsTheFirstLengthOfTheHeadline) {
@@ -346,7 +393,7 @@ TEST(NoIndices, HaveTheirTrueReason) {
   EXPECT_NE(notes_of_indices(result).find("no S1 is formed below 64 samples"), std::string::npos);
   found.count(0, 0) = 100;
   result.study_text = "[analysis]\n\n[[errors.correlated]]\n";
-  EXPECT_NE(notes_of_indices(result).find("each is correlated with others"), std::string::npos);
+  EXPECT_NE(notes_of_indices(result).find("each is correlated or drawn with others"), std::string::npos);
   result.constant = {0};
   EXPECT_NE(notes_of_indices(result).find("linear_deformation does not vary"), std::string::npos);
 }

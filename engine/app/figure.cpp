@@ -1,0 +1,81 @@
+#include <unistd.h>
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/app/command_line.h"
+#include "engine/app/results.h"
+#include "engine/app/terminal.h"
+#include "engine/base/error.h"
+#include "engine/storage/file_writer.h"
+
+namespace poesy::app {
+namespace {
+
+struct FigureOptions {
+  std::string result;
+  std::string figure;
+  std::string response;
+  std::string size = "85mm";
+};
+
+/// The Python program that draws. It calls the command `figure` of the package poesy, if Python has this package and
+/// matplotlib.
+constexpr const char* kDraw = R"py(
+import sys
+sys.path = [folder for folder in sys.path if folder]  # no modules of the present folder
+try:
+    import matplotlib
+    from poesy.__main__ import main
+except ImportError as missing:
+    print(f"poesy: {sys.argv[3]}: is not drawn: {sys.executable} cannot import {missing.name or missing}; activate the "
+          "environment of ./quickstart python, or install python3-poesy, with python3-matplotlib", file=sys.stderr)
+    sys.exit(2)
+sys.exit(main(["figure", *sys.argv[1:]]))
+)py";
+
+/// Returns true if the file may be replaced: matplotlib wrote it, as its content says, or it is empty.
+bool may_be_replaced(const std::string& path) {
+  const std::optional<std::string> content = content_of(path);
+  return content && (content->empty() || content->find("atplotlib") != std::string::npos);
+}
+
+/// Replaces this process by Python, so that the exit code is Python's.
+int figure(const FigureOptions& options) {
+  const std::string path = check_output_path(options.figure, {"figure", may_be_replaced}, {{options.result}});
+  read_result_with_warning(options.result);
+  std::fflush(stdout);
+  // A path that begins with a dash must not be taken for an option.
+  const auto plain = [](const std::string& name) { return name.starts_with('-') ? "./" + name : name; };
+  std::vector<std::string> words{"python3",  "-c",        kDraw,    plain(options.result),
+                                 "--output", plain(path), "--size", options.size};
+  if (!options.response.empty()) words.insert(words.end(), {"--response", options.response});
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execvp("python3", arguments.data());
+  throw InputError({.file = path}, "is not drawn: no python3 is on PATH",
+                   "install it, and the package poesy for Python (./quickstart python)");
+}
+
+}  // namespace
+
+Command& add_figure(Command& program) {
+  const auto [command, options] =
+      program.add_command("figure", "the figure of a result that a paper prints, drawn by Python's matplotlib", figure);
+  command.add_value("result", options.result, "RESULT.h5", "result file of any kind")->required();
+  command.add_value("-o,--output", options.figure, "FIGURE.pdf", "figure; it ends in .pdf, .svg or .png")->required();
+  command.add_value("--response", options.response, "NAME",
+                    "response, or a sweep's figure of merit; default: the one of poesy show");
+  command.add_value("--size", options.size, "WIDTH", "width; default: 85mm, one column of a journal; 170mm are two");
+  command.notes = {
+      "python3 on PATH draws it; it needs the package poesy (./quickstart python, or python3-poesy) and matplotlib."};
+  command.examples = {
+      {"one column wide", "poesy figure result.h5 -o figure.pdf"},
+      {"the page's width", "poesy figure result.h5 -o figure.svg --size 170mm --response tip_position"}};
+  return command;
+}
+
+}  // namespace poesy::app

@@ -1,0 +1,41 @@
+#include "engine/app/long_run.h"
+
+#include <fmt/format.h>
+
+#include <new>
+
+#include "engine/app/expected_time.h"
+#include "engine/app/progress.h"
+#include "engine/app/terminal.h"
+#include "engine/base/error.h"
+#include "engine/kinds/study_run.h"
+
+namespace poesy::app {
+
+double seconds_of_long_run(const Study& study, const Model& model, const PoseSet& poses, std::size_t threads) {
+  // With fewer draws a run is short, because a solve takes far less than a second and nearly all solves are of draws.
+  constexpr double kFewDraws = 1e7;
+  // Shorter than kLongRun, because the duration is estimated roughly from a single piece.
+  constexpr double kShort = kLongRun / 4.0;
+  constexpr double kTrial = 0.25;  // s, for measuring
+  const double draws = static_cast<double>(study.analysis.samples) * static_cast<double>(poses.size()) *
+                       static_cast<double>(study.analysis.factors.size());
+  if (draws < kFewDraws) return 0.0;
+  try {
+    const Outlook expected = outlook(study, model, poses);
+    const auto seconds = [&](double trial) { return expected_time(expected, threads, trial).least; };
+    return seconds(0.0) < kShort ? 0.0 : seconds(kTrial);
+  } catch (const std::bad_alloc&) {
+    return 0.0;  // there is not enough memory; the run itself reports how much it needs
+  }
+}
+
+void ask_about(double seconds, const std::string& study_path, std::size_t threads, const std::atomic<bool>& stop) {
+  if (seconds <= kLongRun) return;
+  const std::string text =
+      fmt::format("this run takes about {} on {} threads of this machine", readable_duration(seconds), threads);
+  if (asked(text + "; start it?").value_or(false) || stop) return;
+  throw InputError({study_path}, text, "give --yes to start it all the same, or ask for fewer samples or poses");
+}
+
+}  // namespace poesy::app

@@ -1,0 +1,264 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/app/command_line.h"
+#include "engine/app/expected_time.h"
+#include "engine/app/long_run.h"
+#include "engine/app/progress.h"
+#include "engine/app/results.h"
+#include "engine/app/resumable.h"
+#include "engine/app/terminal.h"
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/kinds/study_file.h"
+#include "engine/kinds/study_run.h"
+#include "engine/kinds/sweep/kind.h"
+#include "engine/kinds/sweep/sweep.h"
+#include "engine/report/solves.h"
+#include "engine/report/table.h"
+#include "engine/result/checkpoint_identity.h"
+#include "engine/result/described.h"
+#include "engine/result/result_file.h"
+#include "engine/run/run_options.h"
+#include "engine/storage/content_hash.h"
+#include "models/registry.h"
+
+namespace poesy::app {
+namespace {
+
+struct SweepOptions {
+  std::string study;
+  std::vector<std::string> set;
+  std::string result;
+  std::string response;
+  std::size_t threads = 0;
+  std::optional<std::uint64_t> seed;
+  bool quiet = false;
+  bool yes = false;  ///< true to start a long sweep without asking
+  ResumeOptions resume;
+  std::string program;  ///< name with which the program was called
+};
+
+/// The command line that continues this sweep.
+std::string resume_command(const SweepOptions& options) {
+  std::vector<std::string> words{options.program, "sweep", options.study};
+  const auto add = [&](const std::string& name, const std::string& value) { words.insert(words.end(), {name, value}); };
+  for (const std::string& set : options.set) add("--set", set);
+  if (!options.result.empty()) add("-o", options.result);
+  if (!options.response.empty()) add("--response", options.response);
+  if (options.threads != 0) add("--threads", std::to_string(options.threads));
+  if (options.seed) add("--seed", std::to_string(*options.seed));
+  options.resume.add_words(words);
+  if (options.quiet) words.emplace_back("--quiet");
+  if (options.yes) words.emplace_back("--yes");
+  words.emplace_back("--resume");
+  return shell_command(words);
+}
+
+/// The values of a design in words: "mechanism.geometry.R = 260 mm".
+std::string words_of(std::span<const GivenKey> given) {
+  std::string text;
+  for (const GivenKey& one : given) text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", one.key, one.value);
+  return printable(text, 200);
+}
+
+/// Calls act(). If it throws, the message of the error begins with the values of the design.
+template <class Act>
+auto naming(std::span<const GivenKey> given, const Act& act) {
+  try {
+    return act();
+  } catch (const InputError& error) {
+    throw InputError({}, fmt::format("with {}: {}", words_of(given), error.what()), "");
+  }
+}
+
+/// The study with these values in place of its own.
+Study study_with(const SweepOptions& options, std::span<const GivenKey> given) {
+  Study study = naming(given, [&] { return read_study(options.study, registry(), StudyUse::run, given); });
+  if (options.seed) study.seed = *options.seed;
+  return study;
+}
+
+/// The design with these values. None if it was stopped while it looked for poses.
+std::optional<SweptDesign> design_of(const SweepOptions& options, const std::vector<GivenKey>& given,
+                                     const std::atomic<bool>& stop) {
+  Study study = study_with(options, given);
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  auto poses = naming(given, [&] { return find_poses(study, *model, {.quiet = options.quiet, .stop = &stop}); });
+  if (!poses) return std::nullopt;
+  return SweptDesign{given, std::move(study), *std::move(poses)};
+}
+
+/// The designs with these values. None if the search for poses was stopped.
+std::optional<std::vector<SweptDesign>> designs_of(const SweepOptions& options,
+                                                   std::span<const std::vector<GivenKey>> grid,
+                                                   const std::atomic<bool>& stop) {
+  std::vector<SweptDesign> designs;
+  for (const std::vector<GivenKey>& given : grid) {
+    std::optional<SweptDesign> design = design_of(options, given, stop);
+    if (!design) return std::nullopt;
+    designs.push_back(*std::move(design));
+  }
+  check_sweep(designs, options.study);
+  return designs;
+}
+
+/// The identity of a sweep. It is that of its first design, except that it has the studies and the poses of all
+/// designs.
+CheckpointIdentity identity_of(std::span<const SweptDesign> designs) {
+  CheckpointIdentity all;
+  std::string poses;
+  for (const SweptDesign& design : designs) {
+    const CheckpointIdentity own = poesy::identity_of(design.study, design.poses.poses);
+    const std::string studies = all.study + own.study + "\n";
+    if (poses.empty()) all = own;
+    all.study = studies;
+    poses += own.poses;
+  }
+  all.poses = hex(sha256(std::as_bytes(std::span(poses))));
+  return all;
+}
+
+double seconds_of(std::span<const SweptDesign> designs, std::size_t threads) {
+  const SweptDesign& first = designs.front();
+  const std::unique_ptr<Model> model = build_model(first.study.mechanism);
+  return static_cast<double>(designs.size()) * seconds_of_long_run(first.study, *model, first.poses.poses, threads);
+}
+
+/// Runs all designs. On failure, also says what happens to the checkpoints.
+std::optional<SweepResult> run_with_progress(const SweepOptions& options, std::span<const SweptKey> keys,
+                                             std::span<const SweptDesign> designs, const std::string& path,
+                                             RunOptions run, ResumableRun& resumable) {
+  const auto act = [&]() -> std::optional<SweepResult> {
+    ProgressPrinter printer(options.quiet);
+    run.progress = [&](const Progress& progress) {
+      printer(progress);
+      resumable.check_time();
+    };
+    std::optional<SweepResult> found = run_sweep(keys, designs, options.response, run);
+    if (!found) return std::nullopt;
+    const SolveCounts solves = total_of(found->solves);
+    const RunTime time = resumable.time();
+    RunFacts facts = run_facts(time.wall, run.threads, solves.total());
+    facts.checkpoint_seconds = time.checkpoints;
+    write_result(path, kSweepKind.study.name, kSweepFile, designs.front().study, designs.front().poses, *found, facts);
+    print(fmt::format("{}: {} designs, {} solves in {:.2f} s on {} {}, {}\n", printable_line(path), designs.size(),
+                      facts.solves, facts.wall_seconds, facts.threads, facts.threads == 1 ? "thread" : "threads",
+                      unsolved_in_short(solves)));
+    print(
+        fmt::format("Written: {}, with what the tables below show. The whole results of the designs are not written.\n",
+                    printable_line(path)));
+    return found;
+  };
+  const auto too_little = [&] {
+    const SweptDesign& first = designs.front();
+    const std::unique_ptr<Model> model = build_model(first.study.mechanism);
+    return too_little_memory(path, "this sweep",
+                             memory_text(outlook(first.study, *model, first.poses.poses).memory.peak()));
+  };
+  return run_to_end(resumable, act, too_little);
+}
+
+/// Prints what was found and returns the exit code. path: of the result.
+int report(const SweepOptions& options, const SweptDesign& first, const SweepResult& found, const std::string& path) {
+  StoredResult result = described(first.study, *build_model(first.study.mechanism), first.poses);
+  result.kind = kSweepKind.study.name;
+  result.found = found;
+  print("\n" + text_of(kSweepReport.tables(result, {}), output_width()));
+  std::vector<std::string> failed;
+  for (std::size_t d = 0; d < found.designs(); ++d) {
+    if (share_not_converged(found.solves[d]) > first.study.max_not_converged) failed.push_back(design_name(found, d));
+  }
+  if (!failed.empty()) {
+    return complain(fmt::format("{}: more samples did not converge than solver.max_not_converged allows in {} of {} "
+                                "designs, first {}; {} is written",
+                                options.study, failed.size(), found.designs(), failed.front(), printable(path)),
+                    kTooManyNotConverged);
+  }
+  if (std::ranges::any_of(found.verdict.all(), [](const std::string& verdict) { return verdict != "not kept"; })) {
+    return kDone;
+  }
+  return complain(options.study + ": every design is beyond a limit of the study; " + printable(path) + " is written",
+                  kLimitNotKept);
+}
+
+int interrupted(const ResumableRun& resumable) {
+  resumable.explain_interruption();
+  return kInterrupted;
+}
+
+int sweep(const SweepOptions& options) {
+  const std::atomic<bool>& stop = catch_interrupts();
+  std::vector<SweptKey> keys;
+  std::ranges::transform(options.set, std::back_inserter(keys), parse_swept);
+  const std::vector<std::vector<GivenKey>> grid = grid_of(keys);
+  const std::string stem = std::filesystem::path(options.study).stem().string();
+  const Study first = study_with(options, grid.front());
+  const std::string path =
+      check_result_path(options.result.empty() ? stem + "_sweep.h5" : options.result, inputs_of(options.study, first));
+  const std::size_t threads = resolved_threads(options.threads);
+  start_threads(threads);  // Threads start before any checkpoint is written.
+  ResumableRun resumable(options.resume, path, resume_command(options));
+  const auto designs = designs_of(options, grid, stop);
+  if (!designs) return interrupted(resumable);
+  if (!options.yes && !resumable.continues() && !resumable.ends_within(kLongRun)) {
+    ask_about(seconds_of(*designs, threads), options.study, threads, stop);
+    if (stop) return interrupted(resumable);
+  }
+  resumable.start(identity_of(*designs), options.quiet);
+  const auto found = run_with_progress(options, keys, *designs, path,
+                                       {.threads = threads,
+                                        .stop = &stop,
+                                        .checkpoints = &resumable.checkpoints(),
+                                        .keep_checkpoint = options.resume.keep_checkpoint},
+                                       resumable);
+  if (!found) return interrupted(resumable);
+  resumable.finish();
+  return report(options, designs->front(), *found, path);
+}
+
+}  // namespace
+
+Command& add_sweep(Command& program) {
+  const auto [command, options] =
+      program.add_command("sweep", "run a study for several values of a key, and compare the designs", sweep);
+  command.add_value("study", options.study, "STUDY.toml", "study file (TOML)")->required();
+  command
+      .add_value("--set", options.set, "KEY=VALUES",
+                 "key of the study and its values: FROM:TO:STEP or A,B,C, with a unit after the last; given several "
+                 "times, each combination is a design")
+      ->required()
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_value("-o,--output", options.result, "RESULT.h5",
+                    "result file; default: the study's name with _sweep.h5, in this folder");
+  command.add_value("--response", options.response, "NAME",
+                    "response whose root mean square is compared; default: the one that ranks in the first design");
+  command.add_whole_number("--threads", options.threads, "N", "number of threads; default: one per processor", 1, 1024);
+  command.add_whole_number("--seed", options.seed, "S", "seed, instead of the study's", 0, 0x7fffffffffffffff);
+  options.resume.add_to(command);
+  command.add_flag("--quiet", options.quiet, "no progress");
+  command.add_flag("--yes", options.yes, "start a sweep of more than a day without a question");
+  command.notes = {
+      "All designs draw the same errors, and each has the same bits as the run of its own study. One file is written, "
+      "with the values, the figures of merit and their changes; the whole result of a design is what 'poesy run' "
+      "writes for its values. The exit code is 6 if every design is beyond a limit that the study states."};
+  command.examples = {{"ten base radii; geometry. means mechanism.geometry.",
+                       "poesy sweep tricept.toml --set geometry.a=150:375:25mm -o radii.h5"},
+                      {"every combination of two keys",
+                       "poesy sweep study.toml --set geometry.a=200,250mm --set errors.linear.sigma=5,10,20um"}};
+  command.callback([&program, &called = options.program] { called = program.get_name(); });
+  return command;
+}
+
+}  // namespace poesy::app

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/calibration/drive_correction.h"
+#include "engine/calibration/left.h"
+
+namespace poesy::calibration {
+
+/// The controllers of B calibrated machines.
+struct Controllers {
+  Matrix errors;  ///< [all errors x machines] errors that each controller corrects, SI; NaN if the machine was not
+                  ///< calibrated
+  /// [places x machines] Fitted numbers of the measuring device's frame and of the target; their true values are 0.
+  Matrix phi;
+};
+
+/// Solves calibrated machines, each with its drives where its own controller moves them. The responses of the
+/// platform's displacement state what remains: the displacement from the commanded pose as the measuring device sees
+/// it. All other responses are those of the machine at that position. The outcome is non_finite if the machine was not
+/// calibrated, or if its controller finds no drive positions.
+class CorrectedEvaluator final : public Evaluator {
+ public:
+  /// The responses are those of solving_model(model). Throws std::invalid_argument as ExactMachine does.
+  CorrectedEvaluator(const Model& model, const SolverOptions& solver, CoordinateError commanded, Frame frame);
+
+  /// Sets the controllers for the next blocks of samples. Precondition: each of these blocks has one sample for each
+  /// controller.
+  void set(Controllers controllers) { controllers_ = std::move(controllers); }
+
+  void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override;
+
+ private:
+  /// The outcomes of two sets of errors at one pose: what the controller knows, and the true errors.
+  struct Pair {
+    std::vector<double> responses;  ///< [responses x 2] responses of both sets
+    std::vector<double> details;    ///< [components x 2] additional outputs of both sets
+    std::array<SolveStatus, 2> status;
+    std::array<std::uint32_t, 2> iterations;
+
+    /// The values for the second set of errors, from rows with a value for each set.
+    static std::vector<double> second(const std::vector<double>& rows);
+  };
+  /// The outcome of one machine.
+  struct Outcome {
+    std::vector<double> responses;
+    std::vector<double> details;
+    SolveStatus status = SolveStatus::non_finite;
+    std::uint32_t iterations = 0;
+  };
+
+  /// The largest number of poses for which a CommandedPose is kept. Later samples use the same poses again.
+  static constexpr std::size_t kMostPoses = 1024;
+
+  const CommandedPose& commanded_at(std::span<const double> pose);
+  /// [all errors x 2] The errors that the controller knows, and the true errors of sample b.
+  Matrix errors_of(const SampleBlock& samples, std::size_t b) const;
+  /// Solves the machine at a pose with the errors that the controller knows, and with the true errors of the sample.
+  Pair solve(std::span<const double> pose, const Matrix& errors, std::size_t details);
+  /// The displacement of the platform for one set of errors (0 or 1), from the responses that are its components.
+  Displacement displacement_of(const Pair& pair, std::size_t set) const;
+  /// Solves sample b with the drive positions of its controller. uncorrected: the displacement at the pose that the
+  /// controller expects without a correction.
+  Outcome corrected(const SampleBlock& samples, std::size_t b, const CommandedPose& commanded,
+                    const Displacement& uncorrected, std::size_t details);
+  /// Replaces the responses of the platform's displacement by those of the remaining displacement `left`, as the device
+  /// sees it.
+  void move(const CommandedPose& commanded, const Displacement& left, std::size_t b, Outcome& outcome) const;
+
+  ExactMachine machine_;
+  DriveCorrection correction_;
+  Frame frame_;
+  Controllers controllers_;
+  /// [responses] Position in kComponents of each response; none for a response that is not a component of the
+  /// displacement.
+  std::vector<std::optional<std::size_t>> component_;
+  std::map<std::vector<double>, CommandedPose> poses_;
+  std::vector<FactorIndex> all_;  ///< positions of all errors of the model
+};
+
+}  // namespace poesy::calibration

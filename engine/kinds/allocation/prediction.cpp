@@ -1,0 +1,104 @@
+#include "engine/kinds/allocation/prediction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "engine/kinds/allocation/kind.h"
+#include "engine/kinds/allocation/programme.h"
+#include "engine/kinds/allocation/result.h"
+#include "engine/kinds/allocation/summary.h"
+#include "engine/kinds/confirming_study.h"
+#include "engine/kinds/what_if/what_if.h"
+
+namespace poesy {
+namespace {
+
+/// The cost law of a part at its tolerance: that of the part, or of its process.
+CostLaw law_of(const ToleranceProgramme& programme, const TolerancePoint& point, std::size_t part) {
+  const AllocatedPart& stated = programme.parts()[part];
+  if (stated.choice != AllocatedPart::Choice::processes) return stated.cost.cost_law();
+  return programme.processes()[part][point.process[part]].cost;
+}
+
+/// The tolerance with its sign, in display units.
+WhatIfSize size_of(const AllocationResult& found, std::size_t part) {
+  const Unit& unit = display_unit(dimension_of(found.part_unit(part)));
+  const bool is_zone = found.has_zones() && !found.zone_key(part).empty();
+  return {is_zone ? found.zone_key(part) : "\u00b1", found.tolerance(part) / unit.si, std::string(unit.name)};
+}
+
+/// Adds a part to a group of errors that are scaled together, with the cost of its tolerance at each factor.
+void add_part(const AllocationResult& found, const ToleranceProgramme& programme, const TolerancePoint& point,
+              std::size_t part, SizedErrors& errors) {
+  for (const ErrorFactor& one : programme.weights(point, part).errors) {
+    if (std::ranges::find(errors.slots, one.error) == errors.slots.end()) errors.slots.push_back(one.error);
+  }
+  if (programme.is_void(point, part)) return;  // the drawing does not have it
+  errors.name += (errors.name.empty() ? "" : ", ") + found.part_names[part];
+  errors.sizes.push_back(size_of(found, part));
+  if (!has_costs(found)) return;
+  const CostLaw law = law_of(programme, point, part);
+  errors.costs.resize(what_if_factors().size(), 0.0);
+  std::ranges::transform(what_if_factors(), errors.costs, errors.costs.begin(),
+                         [&](double factor, double cost) { return cost + law.at(factor * found.tolerance(part)); });
+}
+
+/// The parts as groups of errors. Location and orientation of a feature form one group, because they determine the same
+/// errors.
+std::vector<SizedErrors> sized_parts(const AllocationResult& found, const ToleranceProgramme& programme) {
+  const TolerancePoint point = programme.at_most(found.tolerance.all());
+  std::vector<SizedErrors> list;
+  for (std::size_t part = 0; part < programme.size(); ++part) {
+    if (std::ranges::find(programme.pairs(), part, &Within::inner) != programme.pairs().end()) continue;
+    SizedErrors errors;
+    add_part(found, programme, point, part, errors);
+    const auto pair = std::ranges::find(programme.pairs(), part, &Within::outer);
+    if (pair != programme.pairs().end()) add_part(found, programme, point, pair->inner, errors);
+    list.push_back(std::move(errors));
+  }
+  return list;
+}
+
+/// [poses] At each pose, the use of the limit that is used most there.
+std::vector<double> pose_weights(const AllocationResult& found) {
+  std::vector<double> weights(found.poses(), 0.0);
+  for (std::size_t r = 0; r < found.limit_use.length<axis::Response>(); ++r) {
+    for (std::size_t m = 0; m < weights.size(); ++m) weights[m] = std::max(weights[m], found.limit_use(r, m));
+  }
+  return weights;
+}
+
+/// Whether the study that was read again belongs to this result.
+bool fits(const ReportedResult& reported, const AllocationResult& found) {
+  const Study& study = *reported.study;
+  if (study.analysis.kind != &kAllocationStudy || study.analysis.calibration != nullptr) return false;
+  if (study.analysis.factors.size() != reported.stored.factors.size()) return false;
+  return asked_of<AllocationOptions>(study.analysis).parts.size() == found.parts() &&
+         found.poses() == reported.stored.poses.size();
+}
+
+}  // namespace
+
+void add_prediction(const ReportedResult& reported, Page& page) {
+  const AllocationResult& found = allocation_of(reported.stored);
+  if (found.parts() == 0 || found.poses() == 0 || !fits(reported, found)) return;
+  const ToleranceProgramme programme(*reported.study, *reported.model);
+  Study certificate = as_confirming_study(programme.at(found.tolerance.all()), "certificate");
+  certificate.seed = found.certificate_seed;
+  certificate.analysis.samples = found.certificate.machines;
+  add_what_if({.study = certificate,
+               .model = *reported.model,
+               .poses = reported.stored.poses,
+               .errors = sized_parts(found, programme),
+               .pose_weights = pose_weights(found),
+               .machines = found.certificate.machines,
+               .yield = found.certificate.value,
+               .yield_low = found.certificate.ci_low,
+               .yield_high = found.certificate.ci_high,
+               .conf_level = found.certificate.conf_level},
+              "drawing", page);
+}
+
+}  // namespace poesy

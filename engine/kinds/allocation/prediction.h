@@ -1,0 +1,11 @@
+#pragma once
+
+#include "engine/report/html/parts.h"
+
+namespace poesy {
+
+/// Adds to the page a section that predicts yield and cost with other tolerances of the parts, for the machines of the
+/// certificate. Adds nothing if the study cannot be read and solved again, or if what_if() predicts nothing.
+void add_prediction(const ReportedResult& reported, Page& page);
+
+}  // namespace poesy

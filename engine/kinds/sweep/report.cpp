@@ -1,0 +1,324 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/kinds/sweep/kind.h"
+#include "engine/kinds/sweep/result.h"
+#include "engine/report/display.h"
+#include "engine/report/merits.h"
+#include "engine/report/tables.h"
+
+namespace poesy {
+namespace {
+
+constexpr int kDigits = 4;
+
+/// The text with all characters except letters and digits replaced by '_': "root_mean_square_of_gap".
+std::string slug(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return !((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')); }, '_');
+  return text;
+}
+
+bool has_numbers(const SweepResult& found, std::size_t key) {
+  for (std::size_t d = 0; d < found.designs(); ++d) {
+    if (std::isnan(found.number(d, key))) return false;
+  }
+  return true;
+}
+
+bool has_any(std::span<const double> values) {
+  return std::ranges::any_of(values, [](double value) { return !std::isnan(value); });
+}
+
+std::string value_text(const SweepResult& found, std::size_t q, double value) {
+  const std::string& unit = found.quantity_unit(q);
+  if (unit == "%") return percent_text(value / 100.0);
+  return number_text(value, kDigits) + (unit.empty() ? "" : " " + unit);
+}
+
+std::string unit_of_change(const SweepResult& found, std::size_t q) {
+  const std::string& unit = found.quantity_unit(q);
+  return unit == "%" ? " percentage points" : unit.empty() ? "" : " " + unit;
+}
+
+/// Whether a design is "better" or "worse" than the first one, or "not told apart" if the interval of the change
+/// includes zero.
+std::string_view verdict_on_change(const SweepResult& found, std::size_t q, std::size_t d) {
+  const double low = found.change_low(q, d);
+  const double high = found.change_high(q, d);
+  if (std::isnan(low) || std::isnan(high)) return "";
+  if (low <= 0.0 && high >= 0.0) return "not told apart";
+  return (low > 0.0) == (found.most_is_best(q) != 0) ? "better" : "worse";
+}
+
+/// The design with the best value; none if all values are unknown.
+std::optional<std::size_t> best_design(const SweepResult& found, std::size_t q) {
+  std::optional<std::size_t> best;
+  for (std::size_t d = 0; d < found.designs(); ++d) {
+    if (std::isnan(found.merit(q, d))) continue;
+    const bool is_better = !best || (found.most_is_best(q) != 0 ? found.merit(q, d) > found.merit(q, *best)
+                                                                : found.merit(q, d) < found.merit(q, *best));
+    if (is_better) best = d;
+  }
+  return best;
+}
+
+std::string names_of_keys(const SweepResult& found) {
+  std::string text;
+  for (std::size_t k = 0; k < found.keys.size(); ++k) text += (k == 0 ? "" : " and ") + short_key(found, k);
+  return text;
+}
+
+/// A sentence on the best design: "The yield is largest at R = 375 mm: 78.9 %, at R = 150 mm it is 14.1 % (+64.8
+/// percentage points, interval +63.5 to +66.1)."
+std::string best_text(const SweepResult& found, std::size_t q) {
+  const std::optional<std::size_t> best = best_design(found, q);
+  if (!best) return fmt::format("The {} is not known of any design.", found.quantities[q]);
+  std::string text =
+      fmt::format("The {} is {} at {}: {}", found.quantities[q], found.most_is_best(q) != 0 ? "largest" : "smallest",
+                  design_name(found, *best), value_text(found, q, found.merit(q, *best)));
+  if (*best == 0) return text + ", the first design.";
+  text += fmt::format("; at {} it is {} ({:+.3g}{}", design_name(found, 0), value_text(found, q, found.merit(q, 0)),
+                      found.change(q, *best), unit_of_change(found, q));
+  if (!std::isnan(found.change_low(q, *best))) {
+    text += fmt::format(", interval {:+.3g} to {:+.3g}", found.change_low(q, *best), found.change_high(q, *best));
+  }
+  return text + ").";
+}
+
+std::string interval_note(const SweepResult& found, std::size_t q) {
+  const std::string level = percent_text(found.conf_level);
+  if (found.is_paired(q) != 0) {
+    return fmt::format(
+        "low, high: {} intervals; those of a change are paired, because machine n has the same errors in all designs",
+        level);
+  }
+  return fmt::format("low, high: {} intervals; those of a change are as if both designs were drawn independently",
+                     level);
+}
+
+Cell change_cell(double change) {
+  Cell cell = number_cell(change, 3);
+  if (change > 0.0) cell.text.insert(0, "+");
+  return cell;
+}
+
+/// What `run` and `show` print of the limits of one design; empty if it has none.
+std::string_view limits_word(std::string_view verdict) {
+  if (verdict == "kept") return "PASS";
+  if (verdict == "not kept") return "FAIL";
+  return verdict == "undecided" ? "UNDECIDED" : "";
+}
+
+FilledColumn key_column(const SweepResult& found, std::size_t k) {
+  const std::string name = short_key(found, k);
+  if (!has_numbers(found, k)) {
+    return {text_column(slug(found.keys[k]), name),
+            [&found, k](std::size_t d) { return text_cell(found.value(d, k)); }};
+  }
+  return {number_column(slug(found.keys[k]), name, found.unit(k)),
+          [&found, k](std::size_t d) { return number_cell(found.number(d, k), 12); }};
+}
+
+/// The table of one figure of merit, with a row for each design.
+Table quantity_table(const SweepResult& found, std::size_t q) {
+  const std::string& unit = found.quantity_unit(q);
+  Table table{.name = slug(found.quantities[q]),
+              .caption = fmt::format("The {} by {}, and its change from the first design", found.quantities[q],
+                                     names_of_keys(found)),
+              .columns = {}};
+  std::vector<FilledColumn> columns;
+  for (std::size_t k = 0; k < found.keys.size(); ++k) columns.push_back(key_column(found, k));
+  const auto number = [&](const std::string& name, const std::string& heading, const SweepResult::Numbers& numbers,
+                          int dispensable = 0) {
+    columns.push_back({number_column(name, heading, unit, dispensable),
+                       [&numbers, q](std::size_t d) { return number_cell(numbers(q, d), kDigits); }});
+  };
+  const auto change = [&](const std::string& name, const std::string& heading, const SweepResult::Numbers& numbers,
+                          int dispensable = 0) {
+    columns.push_back({number_column(name, heading, unit == "%" ? "points" : unit, dispensable),
+                       [&numbers, q](std::size_t d) { return change_cell(numbers(q, d)); }});
+  };
+  number("value", "value", found.merit);
+  const bool has_intervals = has_any(found.low.row(q));
+  if (has_intervals) {
+    number("low", "low", found.low, 1);
+    number("high", "high", found.high, 1);
+  }
+  change("change", "change", found.change);
+  if (has_intervals) {
+    change("change_low", "low", found.change_low);
+    change("change_high", "high", found.change_high);
+    columns.push_back({text_column("verdict", "against the first"),
+                       [&, q](std::size_t d) { return text_cell(verdict_on_change(found, q, d)); }});
+    table.notes.push_back(interval_note(found, q));
+  }
+  if (std::ranges::any_of(found.verdict.all(), [](const std::string& verdict) { return verdict != "none"; })) {
+    columns.push_back(
+        {text_column("limits", "limits"), [&](std::size_t d) { return text_cell(limits_word(found.verdict(d))); }});
+  }
+  fill(table, positions(found.designs()), columns);
+  return table;
+}
+
+std::vector<Table> sweep_tables(const StoredResult& result, const TableOptions&) {
+  const SweepResult& found = sweep_of(result);
+  std::vector<Table> tables;
+  for (std::size_t q = 0; q < found.quantities.size(); ++q) tables.push_back(quantity_table(found, q));
+  tables.back().notes.push_back(
+      "The file of the sweep has these figures of each design, not its whole result; the run of a design's own study "
+      "writes that, with the same bits (/sweep/content_sha256 says which)");
+  return tables;
+}
+
+std::vector<std::string> design_names(const SweepResult& found) {
+  std::vector<std::string> names;
+  for (std::size_t d = 0; d < found.designs(); ++d) names.push_back(design_name(found, d));
+  return names;
+}
+
+SolveTally tally(const StoredResult& result) {
+  const SweepResult& found = sweep_of(result);
+  return {"design", design_names(found), 1, found.solves};
+}
+
+Answer answer(const StoredResult& result) {
+  const SweepResult& found = sweep_of(result);
+  std::string best;
+  for (std::size_t q = 0; q < found.quantities.size(); ++q) best += (q == 0 ? "" : " ") + best_text(found, q);
+  const bool paired = std::ranges::any_of(found.is_paired.all(), [](std::uint8_t is) { return is != 0; });
+  const std::size_t q = 0;
+  const std::optional<std::size_t> first_best = best_design(found, q);
+  const bool at_an_end = first_best && (*first_best == 0 || *first_best + 1 == found.designs());
+  return {{"Answer", best},
+          {"How sure", paired ? "All designs have the same machines, so their differences are surer than their values."
+                              : "All designs draw the same errors."},
+          {"What to do", at_an_end ? "The best design is at an end of the sweep: look beyond it."
+                                   : "The best design lies within the sweep: look closer around it."}};
+}
+
+/// Designs as points of curves over the first key, with a curve for each combination of the other keys' values.
+struct Grid {
+  std::size_t points = 0;  ///< number of values of the first key
+  std::size_t curves = 0;  ///< number of combinations of the other keys' values
+
+  explicit Grid(const SweepResult& found) {
+    // The last key changes fastest, so the first key keeps its value for as many designs as there are curves.
+    const auto is_first = [&](std::size_t d) { return found.value(d, 0) == found.value(0, 0); };
+    while (curves < found.designs() && is_first(curves)) ++curves;
+    points = found.designs() / curves;
+  }
+};
+
+std::string curve_name(const SweepResult& found, std::size_t design) {
+  std::string text;
+  for (std::size_t k = 1; k < found.keys.size(); ++k) {
+    text += fmt::format("{}{} = {}", k == 1 ? "" : ", ", short_key(found, k), found.value(design, k));
+  }
+  return text;
+}
+
+/// Draws numbers of all designs as curves, with intervals if there are any.
+class Curves {
+ public:
+  Curves(const SweepResult& found, ArrayPool& pool) : found_(found), grid_(found), pool_(pool) {}
+
+  Coordinate x() const {
+    std::vector<double> values(grid_.points);
+    const bool numbers = has_numbers(found_, 0);
+    for (std::size_t n = 0; n < grid_.points; ++n) {
+      values[n] = numbers ? found_.number(n * grid_.curves, 0) : static_cast<double>(n);
+    }
+    const std::string name = short_key(found_, 0);
+    return {numbers ? name : "number of " + name, numbers ? found_.unit(0) : "", pool_.add("swept", values)};
+  }
+  Panel panel(const std::string& label, const std::string& unit, std::size_t q, const SweepResult::Numbers& value,
+              const SweepResult::Numbers& low, const SweepResult::Numbers& high) const {
+    Panel panel{label, unit, {}};
+    for (std::size_t c = 0; c < grid_.curves; ++c) {
+      const std::string name = grid_.curves > 1 ? curve_name(found_, c) : found_.quantities[q];
+      const auto add = [&](const char* what, const SweepResult::Numbers& numbers) {
+        if (!has_any(numbers.row(q))) return ArrayName();
+        return pool_.add(fmt::format("{}/{}/{}/{}", label, what, q, c), curve(numbers.row(q), c));
+      };
+      panel.series.push_back({name, add("value", value), add("low", low), add("high", high)});
+    }
+    return panel;
+  }
+
+ private:
+  std::vector<double> curve(std::span<const double> values, std::size_t c) const {
+    const std::span<const double> whole = values.first(grid_.points * grid_.curves);  // a damaged file may have more
+                                                                                      // designs than the grid
+    const ArrayView<const double, Axis<"point">, Axis<"curve">> grid(whole, {grid_.points, grid_.curves});
+    std::vector<double> of_curve;
+    for (std::size_t n = 0; n < grid_.points; ++n) of_curve.push_back(grid(n, c));
+    return of_curve;
+  }
+
+  const SweepResult& found_;
+  Grid grid_;
+  ArrayPool& pool_;
+};
+
+void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  const SweepResult& found = sweep_of(result);
+  const Curves curves(found, page.figures.pool);
+  for (std::size_t q = 0; q < found.quantities.size(); ++q) {
+    const std::string& what = found.quantities[q];
+    const std::string& unit = found.quantity_unit(q);
+    Section& section = page.add_section("quantity-" + std::to_string(q), "The " + what + " of each design");
+    Lines lines{.x = curves.x(), .panels = {curves.panel(what, unit, q, found.merit, found.low, found.high)}};
+    if (found.is_paired(q) != 0) {
+      lines.panels.push_back(curves.panel("change from the first design", unit == "%" ? "points" : unit, q,
+                                          found.change, found.change_low, found.change_high));
+    }
+    add_figure(page, section, "sweep-" + std::to_string(q), std::move(lines),
+               fmt::format("The {} by {}, with intervals where there are some.", what, names_of_keys(found)));
+    section.table(tables[q]);
+  }
+}
+
+Comparable comparable(const StoredResult& result, const StoredResult&) {
+  const SweepResult& found = sweep_of(result);
+  Comparable all{
+      .option_word = "quantity", .options = found.quantities, .item_word = "design", .items = design_names(found)};
+  const auto list = [](const SweepResult::Numbers& numbers) {
+    return std::vector<double>(numbers.all().begin(), numbers.all().end());
+  };
+  std::vector<std::vector<std::string>> units;
+  for (const std::string& unit : found.quantity_unit.all()) units.push_back({unit});
+  all.quantities.push_back({"value", "value", std::move(units), list(found.merit), list(found.low), list(found.high)});
+  return all;
+}
+
+/// A study cannot have this kind, so there is nothing to run.
+std::optional<StudyResult> run_nothing(const StudyRun&) { return std::nullopt; }
+
+AtPose nothing_at_pose(const Study&) { return {0.0, "values", 0.0, "solves"}; }
+
+const StudyKind kSweepStudy{
+    .name = "sweep", .asks = "which of several designs is best", .keys = {}, .at_pose = nothing_at_pose};
+
+}  // namespace
+
+constinit const ReportKind kSweepReport{
+    .tally = tally,
+    .tables = sweep_tables,
+    .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
+    .answer = answer,
+    .shown_cells = [](const StoredResult& result) { return shown_cells(result, 1); },
+    .page = add_page,
+    .comparable = comparable};
+
+constinit const Kind kSweepKind{
+    .study = kSweepStudy, .run = {run_nothing, nullptr, nullptr}, .file = kSweepFile, .report = kSweepReport};
+
+}  // namespace poesy

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/base/array.h"
+#include "engine/base/nan.h"
+#include "engine/result/result_file.h"
+#include "engine/run/result.h"
+
+namespace poesy {
+
+namespace axis {
+using Design = Axis<"design">;      ///< Designs of a sweep; each is one study.
+using SweptKey = Axis<"key">;       ///< Keys that differ between designs.
+using Quantity = Axis<"quantity">;  ///< Figures of merit by which designs are compared.
+}  // namespace axis
+
+/// The result of a sweep over several designs. Numbers are in display units, as in the tables of
+/// figures of merit.
+struct SweepResult {
+  using Numbers = Array<double, axis::Quantity, axis::Design>;  ///< a number for each figure of merit and design
+
+  std::string kind;                                        ///< kind of the studies
+  std::string response;                                    ///< response that the figures of merit are about
+  std::vector<std::string> keys;                           ///< full names of the keys that differ between designs
+  Array<std::string, axis::Design, axis::SweptKey> value;  ///< value of each key, as the study states it
+  Array<double, axis::Design, axis::SweptKey> number;      ///< value as a number; NaN for a text
+  Array<std::string, axis::SweptKey> unit;                 ///< unit of these numbers; empty if they have none
+  Array<std::string, axis::Design> content_sha256;         ///< content hash of the result that a run of this design
+                                                           ///< alone has
+  Array<std::string, axis::Design> verdict;                ///< verdict on the limits: "kept", "not kept",
+                                                           ///< "undecided"; "none" without limits
+  std::vector<SolveCounts> solves;                         ///< [designs] how the solves of the design ended
+
+  std::vector<std::string> quantities;               ///< names of the figures of merit: "yield", ...
+  Array<std::string, axis::Quantity> quantity_unit;  ///< unit of each: "%", "mm", ...; empty for pure numbers
+  Array<std::uint8_t, axis::Quantity> most_is_best;  ///< 1 if a larger value is better, otherwise 0
+  Array<std::uint8_t, axis::Quantity> is_paired;     ///< 1 if the change is judged by the same machines
+                                                     ///< in both designs, otherwise 0
+  Numbers merit;                                     ///< figures of merit
+  Numbers low;          ///< lower ends of the intervals of the figures of merit; NaN if there are none
+  Numbers high;         ///< upper ends of the intervals of the figures of merit
+  Numbers change;       ///< figure of merit minus that of the first design
+  Numbers change_low;   ///< lower ends of the intervals of changes
+  Numbers change_high;  ///< upper ends of the intervals of changes
+  /// Number of machines that are good in this design and rejected in the first one; empty unless yields are
+  /// paired.
+  Array<std::uint64_t, axis::Design> gained;
+  Array<std::uint64_t, axis::Design> lost;      ///< number of machines that are rejected in this design and good in the
+                                                ///< first one
+  Array<std::uint64_t, axis::Design> machines;  ///< number of machines in each design
+  double conf_level = kNaN;                     ///< confidence level of the intervals; NaN if there are none
+
+  std::size_t designs() const { return solves.size(); }  ///< The number of designs.
+};
+
+/// The name of a design, from the last parts of the keys' names: "R = 260 mm, sigma = 0.02 mm".
+std::string design_name(const SweepResult& found, std::size_t design);
+
+/// The last part of a key's name; the whole name if another key has the same last part.
+std::string short_key(const SweepResult& found, std::size_t key);
+
+/// The sweep in a stored result. Precondition: the result is of kind `sweep`.
+inline const SweepResult& sweep_of(const StoredResult& result) { return found_of<SweepResult>(result); }
+
+}  // namespace poesy

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/kinds/sweep/result.h"
+#include "engine/kinds/sweep/settings.h"
+#include "engine/run/run_options.h"
+#include "engine/study/poses/pose_selection.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+
+/// A design of a sweep: a study with the poses that it selects.
+struct SweptDesign {
+  std::vector<GivenKey> given;  ///< keys and values that replace those of the study's file
+  Study study;                  ///< the study with these values
+  SelectedPoses poses;          ///< the poses that it selects
+};
+
+/// Throws InputError, with the path of the study, if these designs cannot be compared: their kind has no figures of
+/// merit, or they differ in kind.
+void check_sweep(std::span<const SweptDesign> designs, const std::string& path);
+
+/// Runs the study of each design with the same draws, and compares each design with the first one. Returns nothing if
+/// the run was stopped. response: the response that figures of merit are about; empty: the one that ranks errors in the
+/// first design. options: must have checkpoints; their stages are those of all designs, in the order of the designs.
+/// The result of each design has the same bits as a run of this design alone. Precondition: check_sweep(). Throws
+/// InputError if the designs have no response or no figure of merit in common.
+std::optional<SweepResult> run_sweep(std::span<const SweptKey> keys, std::span<const SweptDesign> designs,
+                                     const std::string& response, const RunOptions& options);
+
+}  // namespace poesy

@@ -1,0 +1,72 @@
+#include "engine/report/drawn_errors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include "engine/base/units.h"
+#include "engine/report/display.h"
+#include "engine/report/tables.h"
+#include "engine/schema/settings.h"
+#include "engine/study/limit_keys.h"
+
+namespace poesy {
+namespace {
+
+/// The keys of [errors] by which all errors of a dimension have one distribution.
+constexpr std::array<std::string_view, 3> kOfDimensions{"linear", "angular", "relative"};
+
+/// Whether the study sets errors by their dimension alone: no zones, overrides, parts, machines or correlations.
+bool sizes_by_dimension(const StoredResult& result) {
+  return std::ranges::all_of(study_settings(result.study_text), [](const StudySetting& one) {
+    const bool of_dimension =
+        one.section == "errors" && std::ranges::find(kOfDimensions, one.key) != kOfDimensions.end();
+    return of_dimension || !(one.section.starts_with("errors") || one.section.starts_with("analysis.parts"));
+  });
+}
+
+/// "linear: distribution = normal, sigma = 0.02 mm" for each dimension that an error has.
+std::vector<std::string> sizes_of_dimensions(const StoredResult& result) {
+  std::vector<std::string> sizes;
+  for (const std::string_view key : kOfDimensions) {
+    const bool has = std::ranges::any_of(
+        result.factors, [&](const NamedUnit& factor) { return error_kind(dimension_of(factor.unit)) == key; });
+    const std::string size = has ? readable_setting(result.study_text, "errors", key) : std::string();
+    if (!size.empty()) sizes.push_back(fmt::format("{}: {}", key, size));
+  }
+  return sizes;
+}
+
+/// "24 normal with standard deviations of 0.002 to 0.02 mm" for each distribution and unit of the errors.
+std::vector<std::string> sizes_of_distributions(const StoredResult& result) {
+  std::map<std::pair<std::string, std::string>, std::vector<double>> groups;
+  for (std::size_t p = 0; p < result.factor_sigma.size(); ++p) {
+    const Unit& unit = display(result.factors[p]);
+    groups[{std::string(unit.name), result.factor_distribution[p]}].push_back(result.factor_sigma[p] / unit.si);
+  }
+  std::vector<std::string> sizes;
+  for (const auto& [key, sigmas] : groups) {
+    const auto [least, most] = std::ranges::minmax(sigmas);
+    const std::string range = least == most ? fmt::format("a standard deviation of {:.4g}", most)
+                                            : fmt::format("standard deviations of {:.4g} to {:.4g}", least, most);
+    sizes.push_back(fmt::format("{} {} with {} {}", sigmas.size(), key.second, range, key.first));
+  }
+  return sizes;
+}
+
+}  // namespace
+
+std::vector<std::string> drawn_sizes(const StoredResult& result, const StudyWords& words) {
+  if (!words.drawn.empty()) return words.drawn;
+  return sizes_by_dimension(result) ? sizes_of_dimensions(result) : sizes_of_distributions(result);
+}
+
+std::string seed_text(const StoredResult& result, const StudyWords& words) {
+  if (!words.draws) return {};
+  return words.seed ? std::to_string(*words.seed) : readable_setting(result.study_text, "run", "seed");
+}
+
+}  // namespace poesy

@@ -1,0 +1,237 @@
+#include "engine/report/latex.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "engine/base/text.h"
+#include "engine/base/units.h"
+#include "engine/model/feature.h"
+#include "engine/report/display.h"
+#include "engine/storage/file_writer.h"
+#include "engine/storage/output_folder.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::size_t kMostRowsOfAPage = 40;
+/// Most columns of a page; tables with more leave out columns that are dispensable.
+constexpr std::size_t kMostColumns = 9;
+constexpr std::size_t kFewColumns = 6;  ///< tables with at most this many columns are printed in the size of the text
+
+std::string_view escaped(char c) {
+  switch (c) {
+    case '\\':
+      return "\\textbackslash{}";
+    case '~':
+      return "\\textasciitilde{}";
+    case '^':
+      return "\\textasciicircum{}";
+    case '<':
+      return "\\textless{}";
+    case '>':
+      return "\\textgreater{}";
+    case '|':
+      return "\\textbar{}";
+    case '"':
+      return "\\char34{}";  // \textquotedbl needs another font encoding
+    case '&':
+      return "\\&";
+    case '%':
+      return "\\%";
+    case '$':
+      return "\\$";
+    case '#':
+      return "\\#";
+    case '_':
+      return "\\_";
+    case '{':
+      return "\\{";
+    case '}':
+      return "\\}";
+    default:
+      return {};
+  }
+}
+
+/// A sign beyond ASCII with what standard LaTeX has for it.
+struct Sign {
+  std::string_view sign;   ///< UTF-8
+  std::string_view latex;  ///< LaTeX code of the sign, for pdflatex without further packages
+};
+
+constexpr std::array kSigns{Sign{"\u00b1", "$\\pm$"},     Sign{"\u2300", "\\O{}"},       Sign{"\u00b0", "$^\\circ$"},
+                            Sign{"\u00b5", "$\\mu$"},     Sign{"\u00d7", "$\\times$"},   Sign{"\u00b7", "$\\cdot$"},
+                            Sign{"\u00b2", "$^2$"},       Sign{"\u00b3", "$^3$"},        Sign{"\u2212", "$-$"},
+                            Sign{"\u2013", "--"},         Sign{"\u2014", "---"},         Sign{"\u2018", "`"},
+                            Sign{"\u2019", "'"},          Sign{"\u201c", "``"},          Sign{"\u201d", "''"},
+                            Sign{"\u2026", "\\ldots{}"},  Sign{"\u00a0", "~"},           Sign{"\u202f", "\\,"},
+                            Sign{"\u2264", "$\\leq$"},    Sign{"\u2265", "$\\geq$"},     Sign{"\u221e", "$\\infty$"},
+                            Sign{"\u03b1", "$\\alpha$"},  Sign{"\u03b2", "$\\beta$"},    Sign{"\u03b3", "$\\gamma$"},
+                            Sign{"\u03b4", "$\\delta$"},  Sign{"\u03b5", "$\\epsilon$"}, Sign{"\u03b8", "$\\theta$"},
+                            Sign{"\u03bb", "$\\lambda$"}, Sign{"\u03bc", "$\\mu$"},      Sign{"\u03c0", "$\\pi$"},
+                            Sign{"\u03c3", "$\\sigma$"},  Sign{"\u03c6", "$\\phi$"},     Sign{"\u03c8", "$\\psi$"},
+                            Sign{"\u03c9", "$\\omega$"},  Sign{"\u0394", "$\\Delta$"}};
+
+/// A character beyond ASCII: a letter of Latin alphabets as it is, because LaTeX reads UTF-8; a sign by its command,
+/// one of a drawing by its word; "?" for others, which pdflatex refuses.
+std::string beyond_ascii(std::string_view character) {
+  const auto known = std::ranges::find(kSigns, character, &Sign::sign);
+  if (known != kSigns.end()) return std::string(known->latex);
+  const auto zone = std::ranges::find(zone_traits(), character, &ZoneTraits::sign);
+  if (zone != zone_traits().end()) return latex_text(zone->key);
+  const bool is_latin = character >= std::string_view("\u00c0") && character <= std::string_view("\u017f");
+  return is_latin ? std::string(character) : "?";
+}
+
+/// A unit in upright letters: "N\,m", "$\mu$m".
+std::string latex_unit(const std::string& unit) {
+  std::string text;
+  for (const char c : unit) text += c == ' ' ? "\\," : escaped(c).empty() ? std::string(1, c) : std::string(escaped(c));
+  const bool is_micro = text.size() > 1 && text[0] == 'u' && (text[1] == 'm' || text[1] == 'J');
+  return is_micro ? "$\\mu$" + text.substr(1) : text;
+}
+
+/// A number such as "-1.2e-05" in LaTeX's mathematics mode; none if the text is not a number. Blanks between groups of
+/// digits are allowed.
+std::optional<std::string> latex_number(const std::string& text) {
+  std::string digits = text;
+  std::erase(digits, ' ');
+  const std::string bare = digits.starts_with('+') ? digits.substr(1) : digits;
+  if (!parse_number(bare)) return std::nullopt;
+  const std::size_t e = digits.find_first_of("eE");
+  if (e != std::string::npos) {
+    const std::string power = std::to_string(std::stoi(digits.substr(e + 1)));
+    return "$" + digits.substr(0, e) + "\\times10^{" + power + "}$";
+  }
+  std::string grouped;
+  for (const char c : text) grouped += c == ' ' ? "\\," : std::string(1, c);
+  return "$" + grouped + "$";
+}
+
+std::string latex_cell(const Cell& cell, Column::Kind kind) {
+  if (cell.text == "-") return "--";
+  if (kind == Column::Kind::text) return latex_text(cell.text);
+  if (cell.text == "inf" || cell.text == "-inf") return cell.text.front() == '-' ? "$-\\infty$" : "$\\infty$";
+  return latex_number(cell.text).value_or(latex_text(cell.text));
+}
+
+/// Whether a paper prints a column: not where it is dispensable in a table of many columns, and not a column of words
+/// that says nothing.
+bool is_printed(const Table& table, std::size_t c) {
+  if (table.columns.size() <= kMostColumns) return true;
+  if (table.columns[c].dispensable > 0) return false;
+  return std::ranges::any_of(table.rows, [c](const std::vector<Cell>& row) { return row[c].text != "-"; });
+}
+
+/// The table with the columns that a paper prints.
+Table printed(const Table& table) {
+  Table made = table;
+  for (std::size_t c = table.columns.size(); c-- > 0;) {
+    if (is_printed(table, c)) continue;
+    const auto at = static_cast<std::ptrdiff_t>(c);
+    made.columns.erase(made.columns.begin() + at);
+    for (std::vector<Cell>& row : made.rows) row.erase(row.begin() + at);
+  }
+  return made;
+}
+
+template <class Things, class Text>
+std::string line_of(const Things& things, const Text& text) {
+  std::string line;
+  for (std::size_t c = 0; c < things.size(); ++c) line += (c == 0 ? "" : " & ") + text(c);
+  return line + " \\\\\n";
+}
+
+std::string headings(const Table& table) {
+  return line_of(table.columns, [&](std::size_t c) {
+    const Column& column = table.columns[c];
+    return latex_text(column.heading.empty() ? column.name : column.heading) +
+           (column.unit.empty() ? "" : " [" + latex_unit(column.unit) + "]");
+  });
+}
+
+std::string alignment(const Table& table) {
+  std::string letters;
+  for (const Column& column : table.columns) letters += column.kind == Column::Kind::number ? 'r' : 'l';
+  return letters;
+}
+
+Table named_table(const char* name, const char* word, const char* caption, const std::vector<NamedUnit>& things) {
+  Table table{
+      .name = name,
+      .caption = caption,
+      .columns = {text_column("name", word), text_column("unit", "unit"), text_column("description", "what it is")}};
+  for (const NamedUnit& thing : things) {
+    table.rows.push_back({text_cell(thing.name), text_cell(unit_text(thing)), text_cell(thing.description)});
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string latex_text(std::string_view text) {
+  std::string all;
+  const std::string line = printable_line(text);
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t length = std::max<std::size_t>(character_length(std::string_view(line).substr(at)), 1);
+    const std::string_view character = std::string_view(line).substr(at, length);
+    const std::string_view instead = length == 1 ? escaped(character.front()) : std::string_view();
+    all += length > 1 ? beyond_ascii(character) : std::string(instead.empty() ? character : instead);
+    at += length;
+  }
+  return all;
+}
+
+std::string latex_of(const Table& whole) {
+  const Table table = printed(whole);
+  const bool is_long = table.rows.size() > kMostRowsOfAPage;
+  const std::string caption = fmt::format("\\caption{{{}.}}\\label{{tab:{}}}", latex_text(table.caption), table.name);
+  std::string rows;
+  for (const std::vector<Cell>& row : table.rows) {
+    rows += line_of(row, [&](std::size_t c) { return latex_cell(row[c], table.columns[c].kind); });
+  }
+  std::string notes;
+  for (const std::string& note : table.notes) notes += "\\par\\footnotesize " + latex_text(note) + ".\n";
+  const std::string head = headings(table);
+  const bool is_wide = table.columns.size() > kFewColumns;
+  const std::string narrow = "\\footnotesize\\setlength{\\tabcolsep}{3pt}\n";
+  if (is_long) {
+    return fmt::format(
+        "% needs \\usepackage{{booktabs,longtable}}\n"
+        "{}\\begin{{longtable}}{{{}}}\n{}\\\\\n\\toprule\n{}\\midrule\n\\endhead\n\\bottomrule\n\\endfoot\n{}"
+        "\\end{{longtable}}\n{}{}",
+        is_wide ? "\\begingroup" + narrow : "", alignment(table), caption, head, rows, notes,
+        is_wide ? "\\endgroup\n" : "");
+  }
+  return fmt::format(
+      "% needs \\usepackage{{booktabs}}\n"
+      "\\begin{{table}}\n\\centering\n{}\n{}\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n{}\\bottomrule\n"
+      "\\end{{tabular}}\n{}\\end{{table}}\n",
+      caption, is_wide ? narrow : "", alignment(table), head, rows, notes);
+}
+
+std::vector<Table> name_tables(const StoredResult& result) {
+  return {named_table("coordinates", "coordinate", "Coordinates of a pose", result.pose_coordinates),
+          named_table("errors", "error", "Errors", result.factors),
+          named_table("responses", "response", "Responses", result.responses)};
+}
+
+std::vector<std::string> write_latex(const StoredResult& result, std::span<const Table> tables,
+                                     const std::string& folder) {
+  OutputFolder output(folder, valid_hash(result));
+  for (const Table& table : tables) output.claim(table.name + ".tex");
+  std::vector<std::string> paths;
+  output.fill([&] {
+    for (const Table& table : tables) {
+      paths.push_back(output.file(table.name + ".tex"));
+      write_text(paths.back(), latex_of(table));
+    }
+  });
+  return paths;
+}
+
+}  // namespace poesy

@@ -1,0 +1,125 @@
+#include "engine/report/method.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <vector>
+
+#include "engine/model/calibrated.h"
+#include "engine/report/display.h"
+#include "engine/report/drawn_errors.h"
+#include "engine/report/solves.h"
+#include "engine/report/tables.h"
+#include "engine/schema/settings.h"
+#include "engine/study/limit_keys.h"
+
+namespace poesy {
+namespace {
+
+std::string setting(const StoredResult& result, std::string_view section, std::string_view key) {
+  return readable_setting(result.study_text, section, key);
+}
+
+std::string errors_sentence(const StoredResult& result, const StudyWords& words) {
+  if (result.factors.empty()) return {};
+  std::string text = counted(result.factors.size(), "geometric error was", "geometric errors were");
+  if (!words.draws) return fmt::format("{} given values.", text);
+  const std::vector<std::string> sizes = drawn_sizes(result, words);
+  return fmt::format("{} drawn{}.", text, sizes.empty() ? "" : fmt::format(" ({})", fmt::join(sizes, "; ")));
+}
+
+std::string poses_sentence(const StoredResult& result, const StudyWords& words) {
+  const std::string choice = words.from_tables ? std::string() : setting(result, "poses", "select");
+  std::string text = "The mechanism was solved at " + counted(result.poses.size(), "pose", "poses");
+  if (!choice.empty()) text += fmt::format(" (selected: {})", choice);
+  const std::string samples = setting(result, "analysis", "samples");
+  const bool machines = setting(result, "analysis", "draws") == "per machine";
+  if (words.draws && !words.samples.empty()) {
+    text += ", for " + words.samples;
+  } else if (words.draws && !samples.empty()) {
+    text += machines ? fmt::format(", for {} machines, each with one set of errors at all poses", samples)
+                     : fmt::format(", with {} samples at each", samples);
+  }
+  return text + ".";
+}
+
+/// What a study with [analysis.calibration] takes away before responses are stated; `calibrated = true` likewise.
+std::string calibration_sentence(const StoredResult& result, const StudyWords& words) {
+  constexpr std::string_view kTable = "analysis.calibration";
+  if (words.from_tables) return {};
+  if (setting(result, "analysis", "calibrated") == "true") return fmt::format("Responses are {}.", kLeftByCalibration);
+  const std::string fit = setting(result, kTable, "fit");
+  if (fit.empty()) return {};
+  std::vector<std::string> parts{"fitted: " + fit};
+  for (const StudySetting& one : study_settings(result.study_text)) {
+    const bool is_noise = one.section == "analysis.calibration.noise";
+    const bool says = one.section == kTable && (one.key == "measured" || one.key == "frame" || one.key == "prior");
+    if (!is_noise && !says) continue;
+    parts.push_back(fmt::format("{}{}: {}", is_noise ? "noise of " : "", one.key, readable_setting(one.value)));
+  }
+  return fmt::format("Responses are what a calibration of each machine leaves ({}).", fmt::join(parts, "; "));
+}
+
+std::string solves_sentence(const SolveCounts& solves) {
+  const std::string all = counted(solves.total(), "solve", "solves");
+  if (solves.total() == 0) return {};
+  if (solves.not_converged() == 0) return fmt::format("All {} converged.", all);
+  return fmt::format("{} of {} {} ({}).", count_text(solves.not_converged()), all, why_unsolved(solves),
+                     percent_text(share_not_converged(solves)));
+}
+
+std::string limits_sentence(const StoredResult& result) {
+  if (!result.verdicts) return {};
+  std::string text;
+  for (const LimitVerdict& one : result.verdicts->limits) {
+    const NamedUnit& response = result.responses[one.response];
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", response.name,
+                        limit_text(one.limit, [&](double value) { return response_text(response, value); }));
+  }
+  if (text.empty()) {  // a certificate judges all limits together, without a verdict on each
+    for (const StudySetting& one : study_settings(result.study_text)) {
+      if (one.section != "analysis.limits") continue;
+      text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", one.key, readable_setting(one.value));
+    }
+  }
+  text = text.empty() ? "" : "Limits: " + text + ".";
+  const std::optional<YieldVerdict>& yield = result.verdicts->yield;
+  if (!yield) return text;
+  return text + fmt::format(" The yield is {}, with a {} interval of {} to {} (Clopper and Pearson).",
+                            percent_text(yield->value), percent_text(yield->conf_level), percent_text(yield->ci_low),
+                            percent_text(yield->ci_high));
+}
+
+std::string repeat_sentence(const StoredResult& result, const StudyWords& words) {
+  const std::string seed = seed_text(result, words);
+  return fmt::format("{}The same study gives the same bits on any number of threads (SHA-256 of the result: {}).",
+                     seed.empty() ? "" : fmt::format("Draws are addressed by the seed {} (Philox). ", seed),
+                     result.content_sha256);
+}
+
+}  // namespace
+
+std::string method_text(const ReportKind& kind, const StoredResult& result) {
+  const StudyWords words = kind.words(result);
+  std::string text = fmt::format("The study of kind {} of the mechanism {} was made with poesy {} ({}).", result.kind,
+                                 result.model, result.poesy_version, result.git_commit);
+  for (const std::string& sentence :
+       {errors_sentence(result, words), poses_sentence(result, words), calibration_sentence(result, words),
+        result.metric.empty() ? std::string() : "Mismatch is weighed by the metric " + metric_text(result) + ".",
+        solves_sentence(kind.tally(result).total()), limits_sentence(result), repeat_sentence(result, words)}) {
+    if (!sentence.empty()) text += " " + sentence;
+  }
+  return text;
+}
+
+std::string method_references(const StoredResult& result) {
+  return fmt::format(
+      "@misc{{poesy,\n"
+      "  author = {{{{The poesy developers}}}},\n"
+      "  title = {{poesy: a parallel Monte Carlo sensitivity engine for precision parallel robots}},\n"
+      "  note = {{Version {}, commit {}}}\n"
+      "}}\n",
+      result.poesy_version, result.git_commit);
+}
+
+}  // namespace poesy

@@ -1,0 +1,57 @@
+#include "engine/stats/told_together.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+
+#include "engine/base/contract.h"
+
+namespace poesy {
+namespace {
+
+bool is_tested(const Estimate& estimate) {
+  return !std::isnan(estimate.interval.low) && !std::isnan(estimate.interval.high);
+}
+
+/// By how much Student's quantile may grow until the interval reaches zero.
+double reach(const Estimate& estimate, const Interval& bounds) {
+  const auto [value, interval] = estimate;
+  double below = value - interval.low;
+  double above = interval.high - value;
+  const double facing = value > 0.0 ? below : above;
+  if (interval.low <= bounds.low) below = above;
+  if (interval.high >= bounds.high) above = below;
+  if (!(facing > 0.0)) return std::abs(value) > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+  const double in_proportion = std::abs(value) / facing;
+  const double square = below * above - value * (above - below);
+  return square > 0.0 ? std::min(in_proportion, std::abs(value) / std::sqrt(square)) : in_proportion;
+}
+
+}  // namespace
+
+std::vector<bool> told_together(std::span<const Estimate> estimates, const Interval& bounds, double freedom,
+                                double conf_level) {
+  POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
+  std::vector<bool> told(estimates.size(), false);
+  if (!(freedom >= 1.0)) return told;
+  struct Test {
+    std::size_t position;
+    double reach;
+  };
+  std::vector<Test> tests;
+  for (std::size_t p = 0; p < estimates.size(); ++p) {
+    if (is_tested(estimates[p])) tests.push_back({p, reach(estimates[p], bounds)});
+  }
+  std::ranges::stable_sort(tests, std::ranges::greater(), &Test::reach);
+  const double one = two_sided_student_quantile(freedom, conf_level);
+  for (std::size_t k = 0; k < tests.size(); ++k) {
+    const auto others = static_cast<double>(tests.size() - k);
+    if (tests[k].reach * one < two_sided_student_quantile(freedom, 1.0 - (1.0 - conf_level) / others)) break;
+    told[tests[k].position] = true;
+  }
+  return told;
+}
+
+}  // namespace poesy

@@ -1,0 +1,108 @@
+#include "engine/stats/told_together.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "engine/base/nan.h"
+#include "engine/stats/yield_gradient.h"
+
+namespace poesy {
+namespace {
+
+constexpr Interval kNoBounds{-1.0, 1.0};
+constexpr double kFreedom = 1e6;  // Student's quantiles are those of the normal: 1.96 at 95 %, 2.241 at 97.5 %
+
+Estimate symmetric(double value, double half) { return {value, {value - half, value + half}}; }
+
+TEST(ToldTogether, IsHolm) {
+  // Of three, the first is tested at 1 - 0.05/3 (2.394), the next at 97.5 % (2.241), the last at 95 % (1.960).
+  const auto told = [](double a, double b, double c) {
+    std::vector<Estimate> estimates;
+    for (const double z : {a, b, c}) estimates.push_back(symmetric(0.01 * z, 0.01 * 1.95996));
+    return told_together(estimates, kNoBounds, kFreedom, 0.95);
+  };
+  EXPECT_EQ(told(2.40, 2.25, 1.97), (std::vector{true, true, true}));
+  EXPECT_EQ(told(1.97, -2.40, 2.25), (std::vector{true, true, true}));
+  EXPECT_EQ(told(2.40, 2.25, 1.95), (std::vector{true, true, false}));
+  EXPECT_EQ(told(2.40, 2.23, 1.97), (std::vector{true, false, false}));  // no further step after one that fails
+  EXPECT_EQ(told(2.38, 2.38, 2.38), (std::vector{false, false, false}));
+}
+
+TEST(ToldTogether, IsTheIntervalOfOne) {
+  EXPECT_TRUE(told_together(std::array{symmetric(0.1, 0.099)}, kNoBounds, 30.0, 0.95)[0]);
+  EXPECT_FALSE(told_together(std::array{symmetric(0.1, 0.101)}, kNoBounds, 30.0, 0.95)[0]);
+  EXPECT_FALSE(told_together(std::array{Estimate{0.1, {kNaN, kNaN}}}, kNoBounds, 30.0, 0.95)[0]);
+  EXPECT_FALSE(told_together(std::array{symmetric(0.1, 0.01)}, kNoBounds, 0.0, 0.95)[0]);
+  EXPECT_FALSE(told_together(std::array{Estimate{0.0, {0.0, 0.0}}}, kNoBounds, 30.0, 0.95)[0]);
+}
+
+TEST(ToldTogether, DoesNotCountWhatIsNotTested) {
+  std::vector<Estimate> estimates(50, {kNaN, {kNaN, kNaN}});
+  estimates[7] = symmetric(0.0197, 0.0196);
+  EXPECT_TRUE(told_together(estimates, kNoBounds, kFreedom, 0.95)[7]);
+}
+
+/// The interval at the level of the first step, from the same sums, says the same.
+TEST(ToldTogether, FollowsSkewedIntervalsAtAnotherLevel) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  constexpr std::size_t kOthers = 20;
+  int told = 0;
+  for (int n = 0; n < 2000; ++n) {
+    PowerSums powers;
+    const double mean = 0.6 * uniform(random) - 0.35;
+    for (int k = 0; k < 40; ++k) powers.add(mean - std::log(uniform(random)) - 1.0);  // skewed
+    const auto at = [&](double level) { return skewed_mean(powers, 40, {0.0, 0.0}, 39.0, level); };
+    std::vector<Estimate> estimates(kOthers, symmetric(0.0, 1.0));
+    estimates[0] = at(0.95);
+    const Interval strict = at(1.0 - 0.05 / kOthers).interval;
+    const bool found = told_together(estimates, {-1e9, 1e9}, 39.0, 0.95)[0];
+    told += found ? 1 : 0;
+    if (found) {
+      EXPECT_TRUE(strict.low > -1e-12 || strict.high < 1e-12) << n;
+    }
+    // Not wider than in proportion, where the long tail is behind the end that faces zero.
+    const bool short_tail =
+        estimates[0].interval.high - estimates[0].value < estimates[0].value - estimates[0].interval.low;
+    if (estimates[0].value > 0.0 ? short_tail : !short_tail) {
+      EXPECT_EQ(found, estimates[0].value > 0.0 ? strict.low >= 0.0 : strict.high <= 0.0) << n;
+    }
+  }
+  EXPECT_GT(told, 50);
+}
+
+TEST(ToldTogether, TakesTheOtherSideWhereAnEndIsAtABound) {
+  // By the moved end alone the product of both distances would be too small, and the effect certain.
+  std::vector<Estimate> estimates(64, symmetric(0.0, 1.0));
+  estimates[0] = {-0.0079, {-0.008, -0.0001}};
+  EXPECT_FALSE(told_together(estimates, {-0.008, 0.992}, kFreedom, 0.95)[0]);
+}
+
+/// Of 64 that are zero at most 5 % of all tables tell any. Alpha 1e-6 in 4000 tables.
+TEST(ToldTogether, KeepsTheLevelOfAllTogether) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  constexpr int kTables = 4000;
+  int wrong = 0;
+  int single = 0;
+  for (int n = 0; n < kTables; ++n) {
+    std::vector<Estimate> estimates;
+    for (int p = 0; p < 64; ++p) estimates.push_back(symmetric(1e-3 * normal(random), 1e-3 * 1.95996));
+    for (int p = 0; p < 3; ++p) estimates.push_back(symmetric(-0.05, 1e-3 * 1.95996));  // large ones
+    const std::vector<bool> told = told_together(estimates, kNoBounds, kFreedom, 0.95);
+    EXPECT_TRUE(told[64] && told[65] && told[66]);
+    wrong += std::find(told.begin(), told.begin() + 64, true) != told.begin() + 64 ? 1 : 0;
+    single += std::any_of(estimates.begin(), estimates.begin() + 64,
+                          [](const Estimate& one) { return one.interval.low > 0.0 || one.interval.high < 0.0; });
+  }
+  const double noise = 4.9 * std::sqrt(0.05 * 0.95 / kTables);
+  EXPECT_LE(wrong, kTables * (0.05 + noise));
+  EXPECT_GE(wrong, kTables * (0.04 - noise));  // and is not far below it
+  EXPECT_GT(single, kTables * 0.9);            // what each interval alone would show
+}
+
+}  // namespace
+}  // namespace poesy

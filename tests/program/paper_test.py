@@ -1,0 +1,200 @@
+"""What a paper takes from a result: tables as LaTeX, and the method in words."""
+
+import json
+import re
+import shutil
+import subprocess
+
+from poesy_program import GALLERY, MECHANISMS, ProgramTest, main
+
+MACHINES = """\
+format = "poesy-study"
+version = 1
+mechanism = { model = "2upr-rpu" }
+solver = { metric = "platform" }
+poses = { count = 3 }
+errors.linear = { distribution = "normal", sigma = "0.02 mm" }
+errors.angular = { distribution = "normal", sigma = "0.01 deg" }
+[analysis]
+kind = "monte-carlo"
+draws = "per machine"
+factors = "deforming-all"
+samples = 1500
+limits = { gap = "0.04 mm" }
+"""
+MACROS = {"textbackslash{}": "\\", "textasciitilde{}": "~", "textasciicircum{}": "^", "textless{}": "<", "textgreater{}": ">",
+          "textbar{}": "|", "char34{}": '"'}
+DRAWING = """\
+format = "poesy-study"
+version = 1
+mechanism.file = "linear-delta-drawing.toml"
+poses.count = 3
+errors.zones = { distribution = "normal", sigmas = 3 }
+[analysis]
+kind = "allocation"
+limits = { tip_position = "0.15 mm" }
+yield = 0.95
+samples = 600
+[[analysis.parts]]
+zones = "all"
+identical_limbs = [1, 2, 3]
+each = true
+cost = { law = "reciprocal", b = 1, unit = "mm" }
+"""
+# What LaTeX has without packages, and the rules of booktabs.
+COMMANDS = {"begin", "end", "centering", "caption", "label", "toprule", "midrule", "bottomrule", "par", "footnotesize",
+            "begingroup", "endgroup", "setlength", "tabcolsep", "endhead", "endfoot", "times", "textbar", "textless",
+            "textgreater", "textbackslash", "char", "O", "pm", "mu", "infty"}
+
+
+def plain(cell):
+    """A cell of LaTeX as `poesy show --json` has it."""
+    if cell == "--":
+        return "-"
+    if re.fullmatch(r"\$[^$]*\$", cell):
+        number = cell[1:-1].replace("\\,", " ").replace("\\infty", "inf")
+        times = re.fullmatch(r"(.*)\\times10\^\{(-?)(\d+)\}", number)
+        return number if times is None else f"{times[1]}e{times[2] or '+'}{int(times[3]):02d}"
+    for macro, sign in MACROS.items():
+        cell = cell.replace("\\" + macro, sign)
+    return re.sub(r"\\([&%$#_{}])", r"\1", cell)
+
+
+def rows_of(text):
+    """The cells of all rows between the rules."""
+    body = text.split("\\midrule\n")[1].split("\\bottomrule\n")[0 if "longtable" not in text else 1].replace("\\endfoot\n", "")
+    body = body.split("\\end{")[0]
+    return [[cell for cell in line.removesuffix(" \\\\").split(" & ")] for line in body.splitlines() if line]
+
+
+def printed(table, text):
+    """The positions of the columns that a file has, by its headings."""
+    headings = [plain(cell) for cell in text.split("\\toprule\n")[1].split(" \\\\\n")[0].split(" & ")]
+    kept = []
+    for position, column in enumerate(table["columns"]):
+        heading = column["heading"] or column["name"]
+        if len(kept) < len(headings) and re.sub(r" \[[^]]*\]$", "", headings[len(kept)]) == heading:
+            kept.append(position)
+    assert len(kept) == len(headings), (headings, table["columns"])
+    return kept
+
+
+class Paper(ProgramTest):
+    def run_machines(self):
+        self.write("study.toml", MACHINES)
+        self.assertIn(self.poesy("run", "study.toml", "--quiet").returncode, (0, 6))
+
+    def test_tables_have_the_cells_that_are_shown(self):
+        self.run_machines()
+        shown = json.loads(self.succeeds("show", "study.h5", "--json"))["tables"]
+        written = self.succeeds("export", "study.h5", "-d", "tables", "--latex").split()
+        self.assertEqual(written, [f"tables/{table['name']}.tex" for table in shown] +
+                         [f"tables/{name}.tex" for name in ("coordinates", "errors", "responses")])
+        for table in shown:
+            text = (self.folder / f"tables/{table['name']}.tex").read_text()
+            rows = rows_of(text)
+            kept = printed(table, text)
+            if len(table["columns"]) <= 9:
+                self.assertEqual(len(kept), len(table["columns"]))
+            self.assertEqual([[plain(cell) for cell in row] for row in rows], [[row[c] for c in kept] for row in table["shown"]],
+                             table["name"])
+            self.assertIn(f"\\label{{tab:{table['name']}}}", text)
+            for environment in re.findall(r"\\begin\{(\w+)\}", text):
+                self.assertEqual(text.count(f"\\end{{{environment}}}"), 1)
+        errors = (self.folder / "tables/errors.tex").read_text()
+        self.assertIn("delta\\_1\\_1\\_y & mm & ", errors)
+        self.assertIn("\\begin{longtable}{lll}", errors)
+
+    def test_a_drawing_compiles_without_further_packages(self):
+        self.write("linear-delta-drawing.toml", (MECHANISMS / "linear-delta-drawing.toml").read_text())
+        self.write("study.toml", DRAWING)
+        self.assertIn(self.poesy("run", "study.toml", "--quiet").returncode, (0, 6))
+        self.succeeds("export", "study.h5", "-d", "tables", "--latex")
+        for path in (self.folder / "tables").glob("*.tex"):
+            text = path.read_text(encoding="utf-8")
+            self.assertTrue(text.isascii(), path.name)
+            self.assertRegex(text.split("\n")[0], r"^% needs \\usepackage\{booktabs(,longtable)?\}$")
+            code = "\n".join(text.split("\n")[1:])
+            self.assertLessEqual(set(re.findall(r"\\([A-Za-z]+)", code)), COMMANDS, path.name)
+            self.assertEqual(code.count("{"), code.count("}") , path.name)
+        drawing = (self.folder / "tables/drawing.tex").read_text()
+        table = next(one for one in json.loads(self.succeeds("show", "study.h5", "--json"))["tables"] if one["name"] == "drawing")
+        self.assertGreaterEqual(len(table["columns"]), 15)
+        self.assertEqual([table["columns"][c]["name"] for c in printed(table, drawing)],
+                         ["feature", "symbol", "zone", "datums", "over", "cost", "mean_square_share", "remark"])
+        rail = next(line for line in drawing.split("\n") if line.startswith("1-3 rail & "))
+        self.assertRegex(rail, r"^1-3 rail & position & \\O\{\}0\.\d+ mm & A\\textbar\{\}B & 500 mm & ")
+        self.assertIn("$\\pm$", drawing)
+        self.compile()
+
+    def test_own_names_and_descriptions(self):
+        """Signs of LaTeX in the words of a mechanism's file change nothing but the words."""
+        mechanism = (GALLERY / "tricept/tricept.toml").read_text()
+        mechanism = mechanism.replace('"length of a leg"', "'a $leg_{1}$ & 100 % of \\\\it#~^'")
+        self.assertIn("$leg_", mechanism)
+        self.write("tricept.toml", mechanism)
+        study = (GALLERY / "tricept/study.toml").read_text().replace("samples = 1000", "samples = 20").replace("count = 20", "count = 2")
+        self.write("study.toml", study)
+        self.succeeds("run", "study.toml", "--quiet")
+        self.succeeds("export", "study.h5", "-d", "tables", "--latex")
+        errors = (self.folder / "tables/errors.tex").read_text()
+        self.assertIn("a \\$leg\\_\\{1\\}\\$ \\& 100 \\% of \\textbackslash{}\\textbackslash{}it\\#\\textasciitilde{}\\textasciicircum{}", errors)
+        self.compile()
+
+    def compile(self):
+        """Compiles all tables where there is a LaTeX."""
+        if shutil.which("pdflatex") is None:
+            return
+        tables = "".join(f"\\input{{{path}}}\n" for path in sorted((self.folder / "tables").glob("*.tex")))
+        self.write("paper.tex", "\\documentclass{article}\n\\usepackage{booktabs,longtable}\n"
+                                f"\\begin{{document}}\n{tables}\\end{{document}}\n")
+        done = subprocess.run(["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "paper.tex"], cwd=self.folder,
+                              capture_output=True, timeout=300, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout.decode(errors="replace")[-2000:])
+
+    def test_tables_are_kept_beside_csv_of_the_same_result(self):
+        self.run_machines()
+        self.succeeds("export", "study.h5", "-d", "tables")
+        before = {path.name for path in (self.folder / "tables").iterdir()}
+        self.succeeds("export", "study.h5", "-d", "tables", "--latex")
+        after = {path.name for path in (self.folder / "tables").iterdir()}
+        self.assertLess(before, after)
+        self.compile()
+
+    def test_the_method_has_the_numbers_of_the_study(self):
+        self.run_machines()
+        text = self.succeeds("show", "study.h5", "--method", "--width", "1000")
+        words = " ".join(text.split())
+        result = json.loads(self.succeeds("show", "study.h5", "--json"))
+        for said in ("kind monte-carlo of the mechanism 2upr-rpu", f"poesy {result['poesy_version']} ({result['git_commit']})",
+                     "41 geometric errors were drawn (linear: ", "0.02 mm", "0.01 deg", "solved at 3 poses (selected: interior)",
+                     "for 1500 machines", "platform", "All 4 500 solves converged", "gap (0.04 mm)", "The yield is ",
+                     "the seed 1", result["content_sha256"], "@misc{poesy,"):
+            self.assertIn(said, words)
+        self.assertNotIn("relative: ", words)  # no error is
+        done = self.poesy("show", "study.h5", "study.h5", "--method")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(b"--method describes one result", done.stderr)
+        done = self.poesy("show", "study.h5", "--method", "--json")
+        self.assertEqual(done.returncode, 2)
+
+    def test_the_method_states_what_overrides_and_parts_draw(self):
+        study = (GALLERY / "tricept" / "yield.toml").read_text()
+        shutil.copyfile(GALLERY / "tricept" / "tricept.toml", self.folder / "tricept.toml")
+        self.write("parts.csv", "leg_1 [mm]\n" + "".join(f"{0.01 * k}\n" for k in range(-5, 6)))
+        changed = study.replace("samples = 5000", "samples = 200").replace("[analysis]", """[errors.override]
+leg_1 = { distribution = "measured", file = "parts.csv", column = "leg_1" }
+leg_2 = { distribution = "uniform", half_width = "0.03 mm" }
+
+[analysis]""")
+        self.write("study.toml", changed)
+        self.poesy("run", "study.toml", "-o", "study.h5")
+        words = " ".join(self.succeeds("show", "study.h5", "--method").split())
+        for said in ("1 measured with a standard deviation of 0.03317 mm", "1 uniform with a standard deviation of 0.01732 mm",
+                     "normal with a standard deviation of 0.02 mm", "normal with a standard deviation of 0.01 deg"):
+            self.assertIn(said, words)
+        self.assertNotIn("linear: ", words)
+
+
+if __name__ == "__main__":
+    main()
