@@ -153,7 +153,7 @@ class BalancedModel final : public TrackedModel {
 
 }  // namespace
 
-assembly::AssemblyModel assembly_model(const Mechanism& mechanism, std::shared_ptr<const Tracker> tracker,
+assembly::AssemblyModel assembly_model(const Mechanism& mechanism, std::shared_ptr<const PoseTracker> tracker,
                                        const Mobility& home, assembly::Metric metric) {
   assembly::AssemblyModel model{
       .assembly = assembly_of(mechanism, metric),

@@ -4,6 +4,7 @@
 
 #include "models/assembly/model.h"
 #include "models/chain/block_solver.h"
+#include "models/file/pose_tracker.h"
 #include "models/file/rounding.h"
 #include "models/file/tracked_model.h"
 
@@ -11,7 +12,7 @@ namespace poesy::file {
 
 /// The mechanism in the form that solvers of limbs between bodies need. home: its mobility at the home pose. Throws
 /// InputError if rigid limbs over-constrain each other and the metric is "stiffness".
-assembly::AssemblyModel assembly_model(const Mechanism& mechanism, std::shared_ptr<const Tracker> tracker,
+assembly::AssemblyModel assembly_model(const Mechanism& mechanism, std::shared_ptr<const PoseTracker> tracker,
                                        const Mobility& home, assembly::Metric metric);
 
 /// The model in which limbs and bodies are in equilibrium according to a metric. Throws InputError if rigid limbs

@@ -10,6 +10,7 @@
 #include "models/chain/passive_condition.h"
 #include "models/chain/separation.h"
 #include "models/chain/sketch.h"
+#include "models/file/pose_tracker.h"
 #include "models/file/structure.h"
 
 namespace poesy::file {
@@ -17,7 +18,7 @@ namespace {
 
 /// Returns a function that gives the displacements of joints and fixed frames at a pose.
 std::function<std::vector<double>(std::span<const double>)> displacements_by(const Mechanism& mechanism,
-                                                                             std::shared_ptr<const Tracker> tracker,
+                                                                             std::shared_ptr<const PoseTracker> tracker,
                                                                              const chain::ParallelChain& chain) {
   if (!chain.rounded) {
     return [mechanism, tracker = std::move(tracker)](std::span<const double> pose) {
@@ -29,7 +30,7 @@ std::function<std::vector<double>(std::span<const double>)> displacements_by(con
   };
 }
 
-chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<const Tracker> tracker,
+chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<const PoseTracker> tracker,
                                     const Mobility& home) {
   chain::DeformationModel model;
   const std::vector<std::size_t> drives = shared_drives(mechanism);

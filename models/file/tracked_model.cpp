@@ -53,7 +53,7 @@ ModelDescription describe(const MechanismFile& file, const Mechanism& mechanism,
 TrackedModel::TrackedModel(const MechanismFile& file, Checked found)
     : mechanism_(std::move(found.mechanism)),
       mismatch_(found.mismatch),
-      tracker_(std::make_shared<const Tracker>(mechanism_)),
+      tracker_(std::make_shared<const PoseTracker>(mechanism_)),
       charts_(charts_of(mechanism_)),
       description_(describe(file, mechanism_, charts_)) {}
 

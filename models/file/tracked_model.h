@@ -9,6 +9,7 @@
 
 #include "engine/model/model.h"
 #include "models/file/charts.h"
+#include "models/file/pose_tracker.h"
 #include "models/file/rounding.h"
 
 namespace poesy::file {
@@ -42,7 +43,7 @@ class TrackedModel : public Model {
   /// The mechanism and its tracker, for derived classes that solve the mechanism.
   /// @{
   const Mechanism& mechanism() const { return mechanism_; }
-  const std::shared_ptr<const Tracker>& tracker() const { return tracker_; }
+  const std::shared_ptr<const PoseTracker>& tracker() const { return tracker_; }
   /// @}
   /// The description, for derived classes that complete it.
   ModelDescription& described() { return description_; }
@@ -50,7 +51,7 @@ class TrackedModel : public Model {
  private:
   Mechanism mechanism_;
   double mismatch_;  ///< largest mismatch of perfect limbs, m
-  std::shared_ptr<const Tracker> tracker_;
+  std::shared_ptr<const PoseTracker> tracker_;
   std::vector<Chart> charts_;
   ModelDescription description_;
 };

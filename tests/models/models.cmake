@@ -28,6 +28,7 @@ poesy_test(mechanism_file_test LABELS property
                    models/file/mechanism_file_test.cpp
                    models/file/mobility_test.cpp models/file/oracle_test.cpp models/file/rounding_test.cpp
                    models/file/tracking_test.cpp
+                   models/file/pose_tracker_test.cpp
            LINKS poesy_models nlohmann_json::nlohmann_json DATA)
 poesy_test(assembly_oracle_test LABELS unit SOURCES models/assembly/closure_test.cpp models/assembly/oracle_test.cpp
            LINKS poesy_models nlohmann_json::nlohmann_json DATA)
