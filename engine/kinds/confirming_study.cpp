@@ -62,6 +62,14 @@ void name_files_beside(Study& confirming, const std::string& stem) {
   confirming.analysis.calibration = std::move(calibration);
 }
 
+std::vector<std::string> files_beside(const Study& confirming) {
+  std::vector<std::string> names;
+  if (confirming.mechanism.file) names.push_back(confirming.mechanism.file->name);
+  if (confirming.poses.select == PoseSelection::Select::file) names.push_back(confirming.poses.file);
+  if (measures_at_file(confirming)) names.push_back(confirming.analysis.calibration->poses->file);
+  return names;
+}
+
 void write_files_beside(const std::string& folder, const Study& confirming, const PoseSet& poses) {
   if (confirming.mechanism.file) {
     const MechanismText& mechanism = *confirming.mechanism.file;

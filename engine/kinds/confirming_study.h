@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
@@ -16,6 +17,9 @@ Study as_confirming_study(Study study, const std::string& stem);
 /// Changes the paths: poses from a file will be in STEM_poses.csv, those of a calibration in STEM_measured.csv, a
 /// mechanism from a file in STEM_mechanism.toml.
 void name_files_beside(Study& confirming, const std::string& stem);
+
+/// The names of the files that write_files_beside() writes.
+std::vector<std::string> files_beside(const Study& confirming);
 
 /// Writes the files that a study needs into a folder. poses: the poses of the study. Throws FileError.
 void write_files_beside(const std::string& folder, const Study& confirming, const PoseSet& poses);

@@ -2,9 +2,10 @@
 
 import csv
 import math
+import shutil
 
 import h5py
-from poesy_program import STUDY, ProgramTest, main
+from poesy_program import GALLERY, STUDY, ProgramTest, main
 
 RESPONSE = "gap"
 # epsilon_1_1_z moves one length alone, and by the published metric has no effect on angles.
@@ -160,6 +161,22 @@ class Tolerances(ProgramTest):
                 path.unlink()
                 self.assertEqual(list(self.folder.glob("confirm*")) + list(self.folder.glob("*.csv")), [])
         self.succeeds(*own)
+        self.succeeds(*own)
+
+    def test_a_mechanism_of_the_user_is_not_replaced(self):
+        """Of a study of a mechanism's file, the studies that confirm have a copy of it, which belongs to the manifest."""
+        shutil.copyfile(GALLERY / "tricept" / "tricept.toml", self.folder / "tricept.toml")
+        self.write("study.toml", 'format = "poesy-study"\nversion = 1\nmechanism.file = "tricept.toml"\nposes.count = 3\n'
+                   'errors.linear = { distribution = "normal", sigma = "0.1 mm" }\n'
+                   'errors.angular = { distribution = "normal", sigma = "0.01 deg" }\nanalysis.samples = 200\n')
+        self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
+        own = ("tolerances", "r.h5", "--response", "position", "--limit", "0.05 mm", "--extrapolate", "-d", ".")
+        path = self.write("confirm_mechanism.toml", "mine\n")
+        self.refuses(*own[1:], words=["confirm_mechanism.toml", "would be lost", "-d"])
+        self.assertEqual(path.read_text(), "mine\n")
+        path.unlink()
+        self.succeeds(*own)
+        self.assertIn("confirm_mechanism.toml", (self.folder / "poesy_manifest.txt").read_text())
         self.succeeds(*own)
 
     def test_responses_are_listed(self):

@@ -293,8 +293,7 @@ void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, con
   folder.claim("tolerances.csv");
   if (!tolerances.limit) return;
   for (const char* study : {kEqualEffect, kEqualTolerance}) folder.claim(std::string(study) + ".toml");
-  const bool with_poses = monte_carlo_study(result, catalog).poses.select == PoseSelection::Select::file;
-  if (with_poses) folder.claim(std::string(kStem) + "_poses.csv");
+  for (const std::string& file : files_beside(monte_carlo_study(result, catalog))) folder.claim(file);
 }
 
 Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
