@@ -357,8 +357,6 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
     if (any(!fitted)) safe = safe & (fitted | contracts());
   } else if constexpr (pass == KernelPass::follow) {
     safe = safe & contracts();
-  } else {
-    contracts();
   }
   safe = safe & newton_step(step_);
   const T size = largest(step_);
