@@ -7,13 +7,13 @@
 
 namespace poesy {
 
-/// A mechanism whose sets of errors are calibrated machines: its responses are the deviations that remain after
-/// calibration. Measurements have no noise, so an outcome depends only on the pose and the errors. An evaluator fits
-/// again only when the errors of a block of samples differ from those of the block before it, so a caller should solve
-/// the same errors at one pose after another.
+/// The model of calibrated machines. Each set of errors is a machine that is calibrated from measurements without
+/// noise, and the responses of the platform's displacement state what remains after the calibration. An outcome depends
+/// only on the pose and the errors. An evaluator fits again only when the errors of a block of samples differ from
+/// those of the block before it, so a caller should solve the same errors at one pose after another.
 class CalibratedModel final : public ForwardingModel {
  public:
-  /// model: as for the calibration. The calibration must outlive this object.
+  /// model: the model for which the calibration was made. The calibration must outlive this object.
   CalibratedModel(std::unique_ptr<Model> model, const MachineCalibration& calibration)
       : ForwardingModel(std::move(model)), calibration_(&calibration) {}
 
@@ -23,8 +23,9 @@ class CalibratedModel final : public ForwardingModel {
   const MachineCalibration* calibration_;
 };
 
-/// The model of a study that solves given or single errors: the mechanism, or with a calibration one that calibrates
-/// each set of errors. Refers to the study and the model. Throws as MachineCalibration does.
+/// The model that a study solves if it has given errors, or varies one error at a time: `model`, or a CalibratedModel
+/// if the study has [analysis.calibration]. Refers to the study and the model. Throws InputError as the constructor of
+/// MachineCalibration does.
 std::shared_ptr<const Model> studied_model(const Study& study, const Model& model, const PoseSet& poses);
 
 }  // namespace poesy

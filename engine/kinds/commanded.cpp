@@ -25,7 +25,8 @@ using calibration::Placement;
 using calibration::Vector;
 using calibration::Vector3;
 
-/// The largest difference of two coordinates that count as the same: a length as a share of the reach, or rad.
+/// Two values of a coordinate are equal if they differ by less than this: a share of the machine's reach for a length,
+/// rad for an angle.
 constexpr double kSameCoordinate = 1e-9;
 constexpr const char* kDrives = "actuators";
 
@@ -45,8 +46,8 @@ Vector3 angles_in_order(const Matrix3& R, const std::array<Eigen::Index, 3>& ord
   return angles;
 }
 
-/// All functions that may be this coordinate: components of the position of P, or angles about an axis in any
-/// convention.
+/// All functions of the placement that may be a coordinate of this dimension: the components of the position of P; or
+/// the components of the rotation vector, and the angles of rotations about the axes in any order.
 std::vector<PlaceCoordinate> possible_coordinates(Dimension dimension) {
   std::vector<PlaceCoordinate> list;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -83,7 +84,8 @@ std::vector<std::vector<double>> test_poses(const Model& model, const PoseSet& p
   return list;
 }
 
-/// Recognises the coordinates of a mechanism.
+/// Finds for a coordinate of the mechanism the function of the platform's placement that has its values at all test
+/// poses.
 class Recognition {
  public:
   Recognition(const Model& model, const calibration::ExactMachine& machine, const PoseSet& poses)
@@ -127,7 +129,7 @@ Placement moved(const Placement& nominal, const Displacement& by) {
           nominal.tip + by.moved + (by.turn - Matrix3::Identity()) * (nominal.tip - nominal.origin)};
 }
 
-/// The number of drives of a mechanism, counted in its sketch.
+/// The number of drives of a mechanism. Actuated joints of its sketch that name the same drive are one drive.
 std::size_t count_drives(const Model& model) {
   std::set<std::string> named;
   std::size_t alone = 0;

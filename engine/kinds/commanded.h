@@ -10,9 +10,11 @@
 
 namespace poesy {
 
-/// The coordinates that the controller of a study commands, as functions of the platform's placement. Each is
-/// recognised by comparison with placements at test poses. Throws InputError if a coordinate is not recognised, or if
-/// the number of drives differs from the number of coordinates.
+/// A function that computes the errors of the coordinates which the study's controller commands, from the displacement
+/// of the platform. Each coordinate is recognised by its values at test poses: they must be equal to a component of the
+/// platform's position or to an angle of its rotation. Throws InputError if a coordinate is not recognised, or if the
+/// drives do not fit: their number is not that of the pose coordinates, or the drives of one motor do not move
+/// together.
 calibration::CoordinateError commanded_coordinates(const Study& study, const Model& model,
                                                    const calibration::ExactMachine& machine, const PoseSet& poses);
 
@@ -20,8 +22,8 @@ calibration::CoordinateError commanded_coordinates(const Study& study, const Mod
 /// drives of the model.
 std::vector<NamedUnit> drives_of(const Study& study);
 
-/// [drives] The displacement of each drive at `drive_at` minus that at `pose`. NaN for a drive that moves several
-/// joints.
+/// [drives] The displacement of each drive of the perfect mechanism at pose `drive_at`, minus that at `pose`. NaN for a
+/// drive that moves several joints.
 std::vector<double> drive_shift(const Model& model, const std::vector<NamedUnit>& drives, std::span<const double> pose,
                                 std::span<const double> drive_at);
 

@@ -19,7 +19,7 @@ const StudyKind& kind_with_yields() {
   return (*std::ranges::find_if(kinds(), [](const Kind* kind) { return kind->study.ask_yield != nullptr; }))->study;
 }
 
-/// Whether the poses at which machines are measured are those of a file of their own.
+/// Whether machines are measured at poses that a file lists for the calibration.
 bool measures_at_file(const Study& study) {
   const auto& calibration = study.analysis.calibration;
   return calibration != nullptr && calibration->poses && calibration->poses->select == PoseSelection::Select::file;

@@ -14,18 +14,19 @@ namespace poesy {
 /// `stem` begins the names of its files, as in name_files_beside().
 Study as_confirming_study(Study study, const std::string& stem);
 
-/// Changes the paths: poses from a file will be in STEM_poses.csv, those of a calibration in STEM_measured.csv, a
-/// mechanism from a file in STEM_mechanism.toml.
+/// Sets the paths of the files that the study reads: poses from a file will be in STEM_poses.csv, those of a
+/// calibration in STEM_measured.csv, a mechanism from a file in STEM_mechanism.toml. STEM is `stem`.
 void name_files_beside(Study& confirming, const std::string& stem);
 
 /// The names of the files that write_files_beside() writes.
 std::vector<std::string> files_beside(const Study& confirming);
 
-/// Writes the files that a study needs into a folder. poses: the poses of the study. Throws FileError.
+/// Writes into a folder the files that name_files_beside() names, as far as the study needs them. poses: the poses of
+/// the study. Throws FileError.
 void write_files_beside(const std::string& folder, const Study& confirming, const PoseSet& poses);
 
-/// Writes a study as NAME.toml and returns the path. The file begins with the comment, if it is not empty, and includes
-/// the constant errors. Throws FileError.
+/// Writes a study as NAME.toml and returns the path. The file begins with comments: one that states the errors which
+/// are held constant, if there are any, then `comment`, if it is not empty. Throws FileError.
 std::string write_confirming_study(const std::string& folder, const std::string& name, const Study& confirming,
                                    const std::string& comment);
 

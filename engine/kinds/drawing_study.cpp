@@ -28,7 +28,7 @@ constexpr std::string_view kNone = "-";
 /// at most a share of 1e-9.
 constexpr double kDifferenceStep = 1.0 / 16.0;
 
-/// The features of which every error varies in the study.
+/// The features that scatter, in a tolerance zone or a clearance, and of which every error varies in the study.
 std::vector<Feature> varied_features(const Study& study) {
   const auto varies = [&](FactorIndex error) {
     return std::ranges::find(study.analysis.factors, error) != study.analysis.factors.end();
@@ -79,7 +79,8 @@ class Slopes {
     evaluator_->evaluate(samples, {found_.all(), status_.all(), iterations_, {}});
   }
 
-  /// The slopes of a response with a sign with respect to the errors of a feature; NaN if the pose is not solved.
+  /// The slopes of a response with a sign with respect to the errors of a feature. NaN for an error whose steps were
+  /// not solved at the pose.
   OfErrors of(std::size_t response, std::size_t feature) const {
     OfErrors list;
     for (std::size_t e = first_[feature]; e < first_[feature + 1]; ++e) {
@@ -103,7 +104,7 @@ class Slopes {
 };
 
 /// The responses with a sign that make up a response: the response itself, or its components if it is a norm. Empty if
-/// there are none, or more than three.
+/// the response has no sign but no components, or has more than three components.
 std::vector<std::size_t> components(const ModelDescription& model, std::size_t response) {
   const Response& one = model.responses[response];
   if (one.has_no_sign || one.components.size() > 3) return {};
@@ -169,8 +170,8 @@ DrawingResult described(const StudyRun& run, const std::vector<Feature>& feature
   return made;
 }
 
-/// [features] the variances (m^2) of the errors of features that do not scatter as their zones say, because the study
-/// gives one of their errors a distribution of its own, such as a measured one; empty for others.
+/// [features] The variances (SI) of a feature's errors, if the study gives one of them a distribution of its own, such
+/// as a measured one. Empty for a feature that scatters as its zones say.
 std::vector<OfErrors> own_variances(const Study& study, const std::vector<Feature>& features) {
   const auto by_zones = distributions_by_zones(study);
   std::vector<OfErrors> variances(features.size());
@@ -188,27 +189,29 @@ std::vector<OfErrors> own_variances(const Study& study, const std::vector<Featur
   return variances;
 }
 
-/// The mean square of a response by errors with these variances. squares: of its slopes.
+/// The mean square of a response under errors with these variances. squares: squared slope of the response for each
+/// error.
 drawing::ZoneSquares own_squares(const OfErrors& variances, const OfErrors& squares) {
   double sum = 0.0;
   for (std::size_t e = 0; e < squares.size(); ++e) sum += squares[e] * variances[e];
   return {.even = sum, .worst = sum};
 }
 
-/// What features do to one response, over the poses so far.
+/// The effects of features on one response, over the poses so far.
 struct OverPoses {
-  std::vector<double> squares;     ///< [features] sum over poses of the feature's mean square
+  std::vector<double> squares;     ///< [features] sum over the poses of the mean square that each feature causes
   double worst = -1.0;             ///< largest worst case over the poses
   std::vector<double> at_worst{};  ///< [features] contribution of each feature to that worst case
 };
 
-/// How features scatter.
+/// How features scatter: as their zones say, or with variances of their own.
 struct FeatureScatter {
   drawing::ZoneScatter in_zones;
-  std::vector<OfErrors> own;  ///< variances of each feature's own errors, see own_variances()
+  std::vector<OfErrors> own;  ///< [features] see own_variances()
 };
 
-/// Adds a pose. slopes: [features][components].
+/// Adds pose m to the sums of response r, and sets the result at this pose. slopes: [features][components of the
+/// response].
 void add_pose(const std::vector<Feature>& features, const FeatureScatter& scatter,
               const std::vector<std::vector<OfErrors>>& slopes, std::size_t r, std::size_t m, OverPoses& sums,
               DrawingResult& result) {

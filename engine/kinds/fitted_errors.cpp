@@ -58,7 +58,7 @@ bool has_tolerance(const CalibrationTable& table, FactorIndex factor) {
   return std::ranges::binary_search(table.with_tolerance, factor);
 }
 
-/// The errors with a tolerance among those of the fitted errors, ascending.
+/// The errors that have a tolerance and occur in a fitted error, ascending.
 std::vector<FactorIndex> fitted_with_tolerance(const CalibrationTable& table) {
   std::set<FactorIndex> list;
   for (const FittedErrors& fitted : table.fit) {

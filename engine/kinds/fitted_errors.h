@@ -9,8 +9,8 @@
 
 namespace poesy {
 
-/// What the tolerances of [errors] say about errors before any measurement: mean and covariance. Correlated errors have
-/// the correlation of their normal scores.
+/// What the tolerances of [errors] say about errors before any measurement: mean and covariance. The correlation of
+/// correlated errors is that of their normal scores.
 struct ToleranceKnowledge {
   std::vector<FactorIndex> factors;  ///< [errors] the errors, ascending
   calibration::Vector mean;          ///< [errors] mean of each error, SI
@@ -20,21 +20,22 @@ struct ToleranceKnowledge {
 /// The mean and covariance of these errors. factors: ascending, each with a tolerance.
 ToleranceKnowledge tolerance_knowledge(const ErrorModel& errors, std::vector<FactorIndex> factors);
 
-/// The matrix F of the fitted errors (FittedDirections) with one column for each, its scales and difference steps, and
-/// the prior.
+/// The directions, scales and difference steps of the fitted errors, and the prior. A fitted error is one number of the
+/// fit: a single error, or a weighted sum of errors. Each has a column in the matrix F of FittedDirections.
 struct FittedColumns {
-  calibration::FittedDirections directions;  ///< directions of the fitted errors. The scale of each is its tolerance.
-                                             ///< Without a tolerance it is 1 mm, or 1 mm / reach for an angle.
-  calibration::Prior prior;                  ///< empty if the study does not use tolerances as a prior
-  bool has_tolerances = false;               ///< whether the scale of every column is a tolerance
+  /// Directions of the fitted errors. The scale of a fitted error is its tolerance. Without a tolerance, the scale is 1
+  /// mm for a length, and 1 mm / reach for an angle.
+  calibration::FittedDirections directions;
+  calibration::Prior prior;     ///< empty if the study does not use tolerances as a prior
+  bool has_tolerances = false;  ///< whether the scale of every column is a tolerance
 };
 
 /// The columns of the fitted errors of a study.
 FittedColumns fitted_columns(const Study& study, const CalibrationTable& table,
                              const calibration::ExactMachine& machine);
 
-/// The columns of all errors that may differ from 0: one column for each error with a tolerance, and one for each
-/// fitted error, restricted to its errors without a tolerance.
+/// The columns of all errors that may differ from 0. First comes one column for each error with a tolerance. Then comes
+/// one column for each fitted error that has errors without a tolerance, with the weights of these errors only.
 FittedColumns all_columns(const Study& study, const CalibrationTable& table, const calibration::ExactMachine& machine);
 
 }  // namespace poesy

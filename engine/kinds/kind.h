@@ -25,7 +25,7 @@ namespace poesy {
 struct StudyResult {
   std::any found;                         ///< the result, in the kind's own type, for instance SensitivityResult
   std::optional<LimitVerdicts> verdicts;  ///< verdicts on the limits that the study states; empty without limits
-  std::vector<std::string> row_names;     ///< names of the rows of errors to which a verdict may refer
+  std::vector<std::string> row_names;     ///< names of the rows of given errors, for verdicts that name a row
   std::optional<Study> confirming = std::nullopt;       ///< a study that confirms the result; none if the kind makes
                                                         ///< none
   std::optional<DrawingResult> drawing = std::nullopt;  ///< effects of a drawing's features; none if no features
@@ -68,12 +68,13 @@ struct RunKind {
 /// A function for Kind::most_shards if the shards of the kind are groups of poses.
 inline std::size_t shards_by_pose(const Study&, std::size_t poses) { return poses; }
 
-/// Solves of errors that were given instead of drawn: names, addresses and errors. Refers to the result.
+/// The given errors of a result whose errors were not drawn, and how `poesy replay` names its solves: by the pose, and
+/// by the number or the name of a row of errors. Refers to the result.
 struct GivenErrors {
   std::string_view word;           ///< what a named row is called in messages: "case"
   std::vector<std::string> names;  ///< names of the rows; empty if they have none
-  std::size_t samples = 0;  ///< number of solves at each pose, if a solve has a number as its address; 0 if its address
-                            ///< is the name of its row of errors
+  /// Number of solves at each pose, if a solve is named by its number. 0 if a solve is named by its row of errors.
+  std::size_t samples = 0;
   Pairing pairing = Pairing::every_pose_with_every_row;  ///< how poses and rows are combined
   std::span<const double> values;                        ///< errors, [rows x errors in the result], SI
 };
@@ -101,7 +102,7 @@ struct Kind {
   RunKind run;               ///< how its studies are run
   const FileKind& file;      ///< how its results are stored
   const ReportKind& report;  ///< how tables and reports show its results
-  /// The given errors of a result; null if the kind draws errors, or if its solves have no addresses.
+  /// Returns the given errors of a result. Null if the kind draws errors, or if `poesy replay` cannot name its solves.
   GivenErrors (*given_errors)(const StoredResult& result) = nullptr;
   SetTolerances set_tolerances = nullptr;  ///< null if the kind sets no tolerances
 };

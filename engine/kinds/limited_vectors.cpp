@@ -40,8 +40,9 @@ LimitedVectors::LimitedVectors(const Plan& plan, const Model& model, const Analy
     vectors_.push_back(std::move(vector));
   }
   const std::size_t errors = plan.factors().size();
-  const std::size_t products = plan.per_pose().empty() ? 0 : errors * errors;  // number of products of errors that a
-                                                                               // fit at each pose sums
+  // Number of products of two errors that the fit at a pose sums. Without errors that machines draw anew at each pose,
+  // it sums none.
+  const std::size_t products = plan.per_pose().empty() ? 0 : errors * errors;
   if (plan.poses().size() * (rows_ * (errors + 1) + products) <= kMostSums) return;
   vectors_.clear();
   rows_ = 0;

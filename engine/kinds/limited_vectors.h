@@ -17,14 +17,14 @@ namespace poesy {
 namespace axis {
 /// Components of the model's additional outputs (Detail in model/model.h).
 using DetailComponent = Axis<"detail_component">;
-using VectorRow = Axis<"vector_row">;  ///< Components of the vectors behind all limited responses.
+using VectorRow = Axis<"vector_row">;  ///< Components of the vectors behind all responses with a limit.
 }  // namespace axis
 
-/// The vector whose norm is a limited response. To first order, its components are linear in the errors. A response
-/// with a sign is its own only component. If the limit is on the spread of such a response over the poses, its mean
-/// over the poses is subtracted, which does not change the spread.
+/// The vector whose norm is a response with a limit. To first order, its components are linear in the errors. The
+/// vector of a response with a sign has this response as its only component. If the limit is on the spread of such a
+/// response over the poses, the mean of the response over the poses is subtracted, which does not change the spread.
 struct LimitedVector {
-  std::size_t response;                ///< the limited response
+  std::size_t response;                ///< the response with a limit
   ValueLimit limit;                    ///< the limit on this response
   std::vector<std::size_t> responses;  ///< the responses that are the components; empty if Model::norm_of_details
                                        ///< computes the components instead
@@ -33,8 +33,8 @@ struct LimitedVector {
   bool is_centred;                     ///< whether the mean over the poses is subtracted
 };
 
-/// The vectors of all limited responses of a study, and how their components are computed from the outcomes of solves.
-/// A linear model of the components is fitted at each pose.
+/// The vectors (LimitedVector) of all responses that a study limits, and how their components are computed from the
+/// outcomes of solves. Users of this class fit a linear model of the components at each pose.
 class LimitedVectors {
  public:
   /// Refers to the plan and the model. There are no vectors if the study states no limit, or if the fits at all poses

@@ -83,8 +83,8 @@ std::string unseen_text(const calibration::Confounded& part, const Matrix& proje
 
 double stated_noise(const CalibrationTable& table, std::string_view what) {
   const auto found = std::ranges::find(table.noise, what, &StatedNoise::what);
-  return found->sd / std::sqrt(static_cast<double>(table.repeats));  // a study without this noise was refused on
-                                                                     // reading
+  // The noise is found: a study without it was refused on reading.
+  return found->sd / std::sqrt(static_cast<double>(table.repeats));
 }
 
 }  // namespace
@@ -159,8 +159,8 @@ void MachineCalibration::set_weights() {
     throw InputError(place, "noise is 0, so nothing can be weighed against the tolerances",
                      "state the noise, or write prior = \"none\"");
   }
-  constexpr double kEqual = 1e-6;  // m or rad: the fit converges when a step changes the values by a small share of
-                                   // this
+  // In m or rad. The fit has converged when a step changes the values by less than a small share of this.
+  constexpr double kEqual = 1e-6;
   weights_.setConstant(kEqual);
 }
 

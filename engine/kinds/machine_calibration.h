@@ -26,7 +26,7 @@ class MachineCalibration {
   MachineCalibration(const Study& study, const Model& model, const PoseSet& poses);
 
   /// This calibration for the machines of another study, which differs only in the sizes of its errors and in its seed.
-  /// Only a prior depends on the sizes. Refers to the other study.
+  /// Only the scales of the fitted errors and the prior depend on the sizes. Refers to the other study.
   MachineCalibration of(const Study& study) const;
 
   const Study& study() const { return *study_; }                   ///< The study.
@@ -39,15 +39,17 @@ class MachineCalibration {
   const calibration::FittedDirections& directions() const { return columns_.directions; }
   /// Prior knowledge of the errors; empty: none.
   const calibration::Prior& prior() const { return columns_.prior; }
-  /// [values] Standard deviation by which each residual is divided: the noise, or equal values if all noise is 0.
+  /// [values] Standard deviation by which the residual of each measured value is divided: the noise, or equal values if
+  /// all noise is 0.
   const calibration::Vector& weights() const { return weights_; }
   /// The polynomials from which the derivatives of the measurement are computed at any estimate.
   const calibration::Expansion& expansion() const { return *expansion_; }
 
-  /// The measurement of this study, whose measured values are still 0. machine: computes the displacements of measured
-  /// machines.
+  /// A measurement at the calibration's poses, in which all measured values are still 0. machine: solves the machines
+  /// that are measured.
   calibration::Measurement measurement(calibration::ExactMachine& machine) const;
-  /// An evaluator of calibrated machines, for one thread. Its responses are those of the model.
+  /// An evaluator of calibrated machines, for one thread. It computes the responses of the model without those that the
+  /// study defines.
   std::unique_ptr<calibration::CorrectedEvaluator> corrected() const;
   /// An evaluator of calibrated machines with these controllers. It computes all responses of the model, also those
   /// that the study defines.
@@ -77,28 +79,32 @@ class MachineCalibration {
 /// The calibration of a study's machines; none if the study has no [analysis.calibration].
 std::optional<MachineCalibration> machine_calibration(const Study& study, const Model& model, const PoseSet& poses);
 
-/// What the calibration costs in addition to the solves of a study, for `check`. each: "machine" or "case".
+/// What the calibration costs in addition to the solves of a study, as text for `poesy check`. each: "machine" or
+/// "case".
 std::string calibration_cost_text(const MachineCalibration& calibration, std::string_view each);
 
-/// [F x B] All errors of the samples of a block, SI.
+/// [all errors x samples] The values of all errors in the samples of a block, SI.
 calibration::Matrix all_errors(const SampleBlock& samples);
 
-/// Calibrates machines: measures each with noise, and fits it. Owns the scratch of one thread. What it finds of a
+/// Calibrates machines: measures each with noise, and fits its errors. Owns the scratch of one thread. The result for a
 /// machine depends only on the study, the machine's number and its errors.
 class MachineCalibrator {
  public:
   /// The calibration must outlive this object and must not be moved.
   explicit MachineCalibrator(const MachineCalibration& calibration);
 
-  /// The controllers of machines with these numbers [B], which determine the noise. errors: [F x B], SI.
+  /// Calibrates machines and returns their controllers. errors: [all errors x machines], SI. machines: the number of
+  /// each machine, which determines its noise.
   calibration::Controllers operator()(const calibration::Matrix& errors, std::span<const std::size_t> machines);
-  /// The controllers of machines [F x B] that are measured without noise.
+  /// Calibrates machines that are measured without noise. errors: [all errors x machines], SI.
   calibration::Controllers without_noise(const calibration::Matrix& errors);
-  /// The controllers of machines [F x B] whose values are measured with this noise [m x B], SI.
+  /// Calibrates machines that are measured with this noise. errors: [all errors x machines], SI. noise: [measured
+  /// values x machines], SI.
   calibration::Controllers with_noise(const calibration::Matrix& errors, const calibration::Matrix& noise);
 
  private:
-  /// [m x B] Noise of each value, from streams of its own.
+  /// [measured values x machines] The noise of each value of each machine. Each value has a stream of random numbers of
+  /// its own.
   calibration::Matrix noise(std::span<const std::size_t> machines) const;
 
   const MachineCalibration* calibration_;

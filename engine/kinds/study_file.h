@@ -28,19 +28,21 @@ std::string study_reference();
 
 /// A study as it was run, with the poses that it was run at.
 struct StoredStudy {
-  Study study;          ///< the resolved study
+  Study study;          ///< the study, with all defaults filled in
   SelectedPoses poses;  ///< the poses of the result, even if the study's files no longer exist
 };
 
-/// Reads the resolved study in a shard, with its poses. Opens no other file: files of poses, of a trajectory or of the
-/// mechanism need not exist. Do not select poses again from the study that is returned. Throws FileError with the
-/// shard's path if this program cannot read the text, or if the poses do not belong to the mechanism.
+/// Reads the study in a shard, which has all defaults filled in, with its poses. Opens no other file: files of poses,
+/// of a trajectory or of the mechanism need not exist. Do not select poses again from the study that is returned.
+/// Throws FileError with the shard's path if this program cannot read the text, or if the poses do not belong to the
+/// mechanism.
 StoredStudy stored_study(const StoredShard& shard, const Catalog& catalog);
 
-/// The resolved study in a result, with its poses without the rejected ones. path: names the result in messages.
+/// The study in a result, which has all defaults filled in, with its poses. Rejected poses are not listed. path: names
+/// the result in messages.
 StoredStudy stored_study(const StoredResult& result, const std::string& path, const Catalog& catalog);
 
-/// The resolved study in a result; none if this program cannot read it.
+/// The study in a result, which has all defaults filled in; none if this program cannot read it.
 std::optional<Study> study_in(const StoredResult& result, const Catalog& catalog);
 
 }  // namespace poesy

@@ -8,8 +8,8 @@
 /// Reads and writes the cost of a part in study files, as a function of its tolerance.
 namespace poesy {
 
-StudyTable cost_table();  ///< The keys of a cost in study files; they are the same for the cost of a part and the cost
-                          ///< of a process.
+/// The keys of a cost in study files. They are the same for the cost of a part and the cost of a process.
+StudyTable cost_table();
 
 /// Reads a cost. dimension: whether the tolerance is a length or an angle. Throws InputError at the value if it is not
 /// a cost.

@@ -19,8 +19,8 @@ double load_before_deciding(const std::vector<double>& load, std::uint64_t rejec
   return rejects == 0 ? std::numeric_limits<double>::infinity() : deciding_load(load, rejects - 1);
 }
 
-/// The factor on all tolerances that brings the deciding machine just within the limit. The machine with the next
-/// larger load stays beyond the limit, however close the two loads are.
+/// The factor on all tolerances that brings the machine with the deciding load (deciding_load()) just within the limit.
+/// The machine with the next larger load stays beyond the limit, however close the two loads are.
 double factor_to_limit(double deciding, double before) {
   constexpr double kWithin = 1.0 + 0.5 * kFinalLoadTolerance;
   const double between = before > deciding && std::isfinite(before) ? std::sqrt(before / deciding) : kWithin;

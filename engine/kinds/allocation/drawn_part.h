@@ -25,7 +25,7 @@ double mean_square_per_tolerance(const Spread& spread);
 
 /// Errors whose mean squares depend equally on the tolerance T of a part.
 struct DrawnErrors {
-  std::vector<std::size_t> errors;  ///< positions of the errors among the P errors of the study
+  std::vector<std::size_t> errors;  ///< positions of the errors among those of the study
   /// The mean square of each error, divided by T^2. It is negative for errors that become larger if the tolerance
   /// becomes finer: a finer zone of orientation leaves more of the zone of location to the middle of its feature.
   double mean_square;
@@ -36,9 +36,9 @@ struct DrawnPart {
   std::vector<DrawnErrors> groups;  ///< the errors; each error is in at most one group
 };
 
-/// [L x N] The effect of T^2 of each of N parts on L mean squares: the sum over the part's groups of mean_square times
-/// the sum of error_effects over the group. error_effects: [L x P] the effect of the variance of each of P errors.
-/// errors: P.
+/// [mean squares x parts] The effect of each part's T^2 on each mean square: the sum over the part's groups of
+/// mean_square times the sum of error_effects over the group. error_effects: [mean squares x errors] the effect of the
+/// variance of each error on each mean square. errors: the number of errors.
 std::vector<double> part_effects(std::span<const double> error_effects, std::size_t errors,
                                  std::span<const DrawnPart> parts);
 

@@ -26,8 +26,8 @@ std::vector<double> shares_by_multipliers(const ToleranceLimits& limits, const C
   return shares;
 }
 
-/// The machines with the largest ratios of a response to its limit (loads). The gradient of the yield is estimated from
-/// them.
+/// The machines with the largest loads. The load of a machine is its largest ratio of a response to its limit. The
+/// gradient of the yield is estimated from these machines.
 std::vector<std::uint32_t> machines_of_largest_load(const SearchProblem& problem, const ToleranceDesign& design) {
   const auto& [numbers, load] = design.screened;
   const std::size_t share = std::min<std::size_t>(kMaxGradientMachines, design.load.size() / 30);

@@ -55,8 +55,8 @@ class LoadSolver : protected UnitSolver {
     plan_->transform(std::span(values_).first(errors * count), count);
   }
 
-  /// Calibrates the machines whose errors are in values_ [P x B], if machines are calibrated. The next solves are of
-  /// these machines.
+  /// Calibrates the machines whose errors are in values_ [errors x machines], if machines are calibrated. The next
+  /// solves are of these machines.
   void calibrate(std::span<const std::size_t> machines) {
     if (calibrator_ == nullptr) return;
     calibrated_ = calibration_->evaluator((*calibrator_)(all_errors(drawn(machines.size())), machines));
@@ -73,7 +73,7 @@ class LoadSolver : protected UnitSolver {
     return errors;
   }
 
-  /// Prepares to record what limits over poses need from this number of machines.
+  /// Prepares to record what limits that are judged over several poses need from this number of machines.
   void begin_poses(std::size_t machines) {
     const std::size_t poses = plan_->poses().size();
     if (limits_.any_over_poses()) at_poses_.assign(limits_.size() * machines * poses, 0.0);

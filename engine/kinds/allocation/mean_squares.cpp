@@ -17,15 +17,17 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kNodes = 3;  ///< values of an error at which it is solved: mu - sigma, c, mu + sigma, where c is
-                                   ///< Distribution::centre()
+/// Number of values of an error at which the mechanism is solved (nodes): mu - sigma, c and mu + sigma, where c is
+/// Distribution::centre().
+constexpr std::size_t kNodes = 3;
 constexpr std::size_t kDrawsOfPiece = 16;  ///< number of draws in a piece of work
 /// A sample that is not solved counts as this multiple of the limit.
 constexpr double kUnsolvedOverLimit = 10.0;
 constexpr double kLargestSum = 1e100;  ///< the largest sum of squares that a state may hold, so that slopes computed
                                        ///< from it are finite
 
-/// What adds to mean squares: the errors that vary, then the noise of the measured values of a calibration.
+/// The sources of scatter, which add to mean squares: the errors that vary, then the noise of the measured values of a
+/// calibration.
 struct Sources {
   std::size_t errors;
   std::size_t noises;
@@ -40,16 +42,16 @@ Sources sources_of(const Plan& plan, const MachineCalibration* calibration) {
   return {plan.factors().size(), is_noisy ? calibration->values() : 0};
 }
 
-/// The result of a piece of work at its pose, for K limits and P sources of scatter (errors, then measured values whose
-/// noise counts).
+/// The squares that one piece of work adds at its pose. A source of scatter is an error, or a measured value whose
+/// noise counts.
 struct AddedSquares {
   /// [limits] Square of the response of the mechanism with all errors at their centres. NaN if it is not solved, and in
   /// pieces in which the other errors are drawn.
   std::vector<double> base;
-  std::vector<double> added;    ///< [K x P] sums over the draws
-  std::vector<double> counted;  ///< [P] draws that were solved
-  /// [K x P x kNodes] For limits on spreads: the response at each node of each source alone. NaN where it is not
-  /// solved, and in pieces where the other errors are drawn. Empty without such a limit.
+  std::vector<double> added;    ///< [limits x sources] squares that each source adds, summed over the draws
+  std::vector<double> counted;  ///< [sources] number of draws that were solved
+  /// [limits x sources x kNodes] For limits on spreads: the response with each source alone, at each of its three
+  /// values. NaN if it is not solved, and in pieces in which the other errors are drawn. Empty without such a limit.
   std::vector<double> nodes;
 
   AddedSquares() = default;
@@ -111,7 +113,7 @@ class AddedSquaresEvaluator : private UnitSolver {
   }
 
  private:
-  /// The value that an error has in a sample while another error is varied.
+  /// The value that the error at this position of Plan::factors() has in a sample while another error is varied.
   double other(std::size_t n, std::size_t sample, std::size_t slot) const {
     if (pieces_.alone(n)) return plan_->distributions()[slot].centre();
     return draws_[slot * pieces_.draws + pieces_.first_draw(n) + sample];
@@ -151,7 +153,8 @@ class AddedSquaresEvaluator : private UnitSolver {
     solve_by(evaluator.get());
   }
 
-  /// [m x 3 pairs] The noise of measured values at the nodes of each pair: of an error there is none.
+  /// [measured values x 3 pairs] The noise of the measured values at the nodes of each pair; 0 for a pair with an
+  /// error.
   calibration::Matrix noise_of(std::size_t first, std::size_t pairs) const {
     const auto columns = static_cast<Eigen::Index>(pairs * kNodes);
     calibration::Matrix noise = calibration::Matrix::Zero(static_cast<Eigen::Index>(calibration_->values()), columns);
@@ -202,20 +205,21 @@ class AddedSquaresEvaluator : private UnitSolver {
   std::unique_ptr<MachineCalibrator> calibrator_;  ///< null: machines are not calibrated
   /// Evaluators of calibrated machines for a block of pairs (a sample and a source), by the position of its first pair.
   std::map<std::size_t, std::unique_ptr<Evaluator>> calibrated_;
-  std::vector<double> draws_;     ///< [P x draws] draws of all errors, SI
-  std::vector<double> rounding_;  ///< [K] rounding of the limited responses (Model::rounding)
+  std::vector<double> draws_;     ///< [errors x draws] draws of all errors, SI
+  std::vector<double> rounding_;  ///< [limits] rounding of the response with the limit (Model::rounding)
 };
 
-/// The sums over all pieces of work, for K limits, P sources of scatter and M poses. Each limit at each pose has a row,
-/// so there are L = K x M rows.
+/// The sums over all pieces of work. A source of scatter is an error, or a measured value whose noise counts. There is
+/// one row for each limit at each pose, limit by limit.
 struct SquareSums {
   const Pieces* pieces;
-  std::size_t sources;          ///< number P of sources
-  std::vector<double> base;     ///< [L] square of the response with all errors at their centres
-  std::vector<double> alone;    ///< [L x P] added mean squares of each source alone
-  std::vector<double> among;    ///< [L x P] added mean squares of each source among other errors, summed over draws
-  std::vector<double> counted;  ///< [M x P] number of draws that were solved
-  std::vector<double> nodes;    ///< [L x P x kNodes] see AddedSquares::nodes; empty without a limit on a spread
+  std::size_t sources;        ///< number of sources
+  std::vector<double> base;   ///< [rows] square of the response with all errors at their centres
+  std::vector<double> alone;  ///< [rows x sources] added mean squares of each source alone
+  /// [rows x sources] added mean squares of each source among other errors, summed over draws
+  std::vector<double> among;
+  std::vector<double> counted;  ///< [poses x sources] number of draws that were solved
+  std::vector<double> nodes;  ///< [rows x sources x kNodes] see AddedSquares::nodes; empty without a limit on a spread
 
   SquareSums(const Pieces& all, const RelativeLimits& limits, std::size_t source_count)
       : pieces(&all),

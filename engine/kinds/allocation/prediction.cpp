@@ -22,14 +22,15 @@ CostLaw law_of(const ToleranceProgramme& programme, const TolerancePoint& point,
   return programme.processes()[part][point.process[part]].cost;
 }
 
-/// The tolerance with its sign, in display units.
+/// The tolerance of a part in its display unit, with "±" or the key of its zone as name.
 WhatIfSize size_of(const AllocationResult& found, std::size_t part) {
   const Unit& unit = display_unit(dimension_of(found.part_unit(part)));
   const bool is_zone = found.has_zones() && !found.zone_key(part).empty();
   return {is_zone ? found.zone_key(part) : "\u00b1", found.tolerance(part) / unit.si, std::string(unit.name)};
 }
 
-/// Adds a part to a group of errors that are scaled together, with the cost of its tolerance at each factor.
+/// Adds the errors of a part to a group of errors that one slider scales. Adds to the group's costs the cost of the
+/// part's tolerance at each factor of the slider.
 void add_part(const AllocationResult& found, const ToleranceProgramme& programme, const TolerancePoint& point,
               std::size_t part, SizedErrors& errors) {
   for (const ErrorFactor& one : programme.weights(point, part).errors) {

@@ -445,7 +445,7 @@ ChoiceOfTolerances ToleranceProgramme::least(const ToleranceLimits& limits, cons
   const LeastCost& found = std::get<LeastCost>(outcome);
   ChosenTolerances chosen{{found.best.tolerance, {}, 0.0}, found.lower_bound, found.multiplier};
   if (std::ranges::all_of(chosen.multiplier, [](double one) { return one == 0.0; })) {
-    // Between single values all multipliers are 0, so those of the relaxation are used.
+    // If all parts have single values, all multipliers are 0. Then those of the relaxation are used.
     chosen.multiplier = found.relaxed;
   }
   for (std::size_t i = 0; i < size(); ++i) chosen.process.push_back(kept[i][found.best.process[i]]);

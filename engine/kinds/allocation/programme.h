@@ -19,14 +19,14 @@
 
 namespace poesy {
 
-/// Tolerances of all N parts, and their cost.
+/// Tolerances of all parts, and their cost.
 struct TolerancePoint {
   std::vector<double> tolerance;     ///< [parts] tolerance of each part, SI
   std::vector<std::size_t> process;  ///< [parts] position of the process among those of the part
   double cost = 0.0;                 ///< total cost; NaN if no part has a cost
 };
 
-/// The tolerances that a convex programme chose under L limits.
+/// The tolerances that a convex programme chose under the limits.
 struct ChosenTolerances : TolerancePoint {
   double lower_bound = 0.0;        ///< lower bound on the least cost; NaN if the aim has no costs
   std::vector<double> multiplier;  ///< [limits] cost saved per unit of additional room; empty if the aim has no costs
@@ -49,7 +49,7 @@ class ToleranceProgramme {
   /// Refers to the study. A part without an upper bound gets one: a quarter of the size that Model::error_bound gives.
   ToleranceProgramme(const Study& study, const Model& model);
 
-  std::size_t size() const { return parts().size(); }  ///< The number of parts, N.
+  std::size_t size() const { return parts().size(); }  ///< The number of parts.
   const std::vector<AllocatedPart>& parts() const;     ///< The parts as the study states them.
   /// [parts] The processes of each part. Each of several values, grades or ranges is a process.
   const std::vector<std::vector<Process>>& processes() const { return processes_; }

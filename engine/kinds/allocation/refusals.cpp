@@ -29,7 +29,7 @@ RelativeLimits stated_limits(const SearchProblem& problem) {
           problem.calibration_of(study).get()};
 }
 
-/// How parts can have lower tolerances.
+/// Advice on how parts can have lower tolerances.
 std::string finer_parts(const SearchProblem& problem) {
   const bool has_steps =
       std::ranges::any_of(problem.programme.parts(), [](const AllocatedPart& part) { return part.round.has_value(); });

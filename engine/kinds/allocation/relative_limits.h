@@ -23,8 +23,8 @@ using Limit = Axis<"limit">;  ///< Limits of a study.
 /// the centre is zero. For a limit on the spread over the poses, it is the mean over the poses.
 class RelativeLimits {
  public:
-  /// Solves this mechanism at all poses of the plan, if a limit is not on magnitudes. calibration: how it is
-  /// calibrated, without noise; null: it is not.
+  /// Solves the mechanism with all errors at their centres at all poses of the plan, if a limit is not on magnitudes.
+  /// calibration: how this mechanism is calibrated, without noise; null: it is not calibrated.
   RelativeLimits(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                  const MachineCalibration* calibration = nullptr);
 

@@ -157,8 +157,8 @@ struct AllocationResult {
                               ///< possible value
   Parts<std::string> chosen;  ///< name of the process or grade, and of the series of numbers to which T is rounded
                               ///< down; empty without these
-  /// Predicted share of good machines in the design if only this part is made 5 % coarser, or gets its next larger
-  /// value; NaN if it cannot be coarser.
+  /// Predicted share of good machines, among those with which the tolerances were found, if only this part is made 5 %
+  /// coarser, or gets its next larger value; NaN if it cannot be coarser.
   Parts<double> coarser_yield;
 
   /// @name Zones of a drawing: a number or text for each part, or an empty text if the part is not a zone. All arrays
@@ -175,7 +175,7 @@ struct AllocationResult {
   Parts<std::uint8_t> zone_is_needed;  ///< 0 for a zone of orientation that the drawing does not need, otherwise 1
   /// @}
 
-  AtPoses multiplier;  ///< cost saved per unit of additional limit at this pose alone
+  AtPoses multiplier;  ///< cost saved per unit by which the limit is wider at this pose alone
   AtPoses limit_use;   ///< predicted root mean square, divided by the one that the programme allows
   /// The limit, SI. For a limit that is not on a magnitude: the smallest distance, over the poses, from the response of
   /// the mechanism with perfect parts to the nearer end.

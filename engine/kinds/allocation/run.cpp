@@ -204,8 +204,8 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
     }
     const std::span rooms = std::span(squares.room).subspan(k * poses, poses);
     const double least = *std::ranges::min_element(rooms);
-    const double limit_of_room = stated[k].allowed.is_spread() ? 2.0 : 1.0;  // The room of a limit on a spread is half
-                                                                             // the limit. (RelativeLimits::room)
+    // The room of a limit on a spread is half the limit (RelativeLimits::room).
+    const double limit_of_room = stated[k].allowed.is_spread() ? 2.0 : 1.0;
     found.limit(r) = limit_of_room * least;
     double sum = 0.0;
     for (std::size_t m = 0; m < poses; ++m) {
@@ -223,7 +223,8 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
   }
 }
 
-/// Sets the predicted costs at other yields, which follow from the loads of the design's machines, and at other limits.
+/// Sets the predicted costs at other yields and at other limits. Those at other yields follow from the loads
+/// (MachineLoads) of the machines with which the tolerances were found.
 void add_curves(const SearchProblem& problem, const FoundTolerances& search, AllocationResult& found) {
   const auto& [point, chosen, share] = search.design.candidate;
   if (std::isnan(point.cost)) return;

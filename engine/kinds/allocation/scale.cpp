@@ -69,7 +69,7 @@ Linearised approach_yield(const SearchProblem& problem, Linearised from, StageLo
   return {std::move(linearisation), std::move(candidate)};
 }
 
-/// A tightened design, and whether it meets the yield.
+/// A tightened design, and whether it keeps the yield.
 struct Tightened {
   ToleranceDesign design;
   bool meets_yield;

@@ -14,11 +14,13 @@
 #include "engine/kinds/machine_calibration.h"
 
 /// The search for the tolerances of a study. Its stages are: linearise, settle, scale, improve, scale to other
-/// machines, use the remaining yield (search_stages.h). Each stage computes a new value from that of the stage before.
-/// The search is a sequence of runs, each with its own checkpoint, and its decisions depend only on the study.
+/// machines, use the remaining yield, round down (search_stages.h). Each stage computes new tolerances from those of
+/// the stage before. The search is a sequence of runs, each with its own checkpoint, and its decisions depend only on
+/// the study.
 namespace poesy::allocation {
 
-/// The numbers of rejects that the certificate and the design may have.
+/// The numbers of rejects that the certificate and the design may have. The design is the set of machines with which
+/// the tolerances are found; the certificate is a set of fresh machines that is solved once, after the search.
 struct AllowedRejects {
   std::uint64_t certificate;  ///< largest number of rejects with which the certificate holds
   std::uint64_t design;       ///< largest number of rejects of the design, among as many machines, with which the
@@ -26,17 +28,17 @@ struct AllowedRejects {
 };
 
 /// The allowed numbers of rejects among this many machines. The certificate allows as many rejects as still show, with
-/// this confidence (Clopper and Pearson), that the yield is at least `yield`. The number for the design is smaller:
-/// with this number, fresh machines have with 99 % probability no more rejects than the certificate allows. For this,
-/// the numbers of rejects of both sets of machines are approximated as normal. Precondition: machines >=
-/// trials_without_failure().
+/// this confidence (Clopper and Pearson), that the yield is at least `yield`. The number for the machines of the design
+/// is smaller: if they have no more rejects than this number, fresh machines have with 99 % probability no more rejects
+/// than the certificate allows. For this, the numbers of rejects of both sets of machines are approximated as normal.
+/// Precondition: machines >= trials_without_failure().
 AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t machines);
 
 /// A seed for machines that the study draws for no other purpose. set: 0 for the certificate, 1 for scaling to other
 /// machines.
 std::uint64_t seed_of_others(const Study& study, SampleIndex set);
 
-/// The problem of a search; it does not change between stages.
+/// What a search needs; it does not change between stages.
 struct SearchProblem {
   /// Refers to the run.
   explicit SearchProblem(const StudyRun& study_run);
@@ -47,8 +49,8 @@ struct SearchProblem {
   AllowedRejects allowed;                         ///< allowed rejects of as many machines as the study has samples
   std::optional<MachineCalibration> calibration;  ///< how the study's machines are calibrated; none: they are not
 
-  /// The calibration of the machines of this study, which has other sizes of errors or another seed, and must outlive
-  /// it; null: machines are not calibrated.
+  /// A calibration for the machines of another study, which differs from the study of the search in the sizes of its
+  /// errors or in its seed. The other study must outlive the calibration. Null: machines are not calibrated.
   std::unique_ptr<const MachineCalibration> calibration_of(const Study& study) const;
 };
 

@@ -19,7 +19,8 @@ inline constexpr std::size_t kMaxLinearisations = 6;
 inline constexpr double kCostTolerance = 1e-3;
 
 /// The largest number of trials of machines in one loop. Make it larger where loops end before the deciding load is
-/// near 1. The load of a machine is its largest ratio of a response to its limit (MachineLoads).
+/// near 1. The load of a machine is its largest ratio of a response to its limit (MachineLoads). The deciding load is
+/// the largest load after those of the rejects that the design may have (deciding_load()).
 inline constexpr std::size_t kMaxTrials = 12;
 /// How far the deciding load may be below 1. Tolerances are proportional to this load, so a smaller value only helps if
 /// costs must be compared more finely.
@@ -31,27 +32,27 @@ inline constexpr double kFinalLoadTolerance = 1e-5;
 /// changes of tolerances do not make them decide. Make it smaller if the last scaling finds rejects among these
 /// machines (D66).
 inline constexpr double kScreeningLoad = 0.75;
-/// The number of all machines divided by the number in a pilot. Make it smaller if the deciding load of the pilot is
-/// too noisy to approach the yield.
+/// The number of all machines divided by the number in a pilot, which is a trial of only a part of the machines. Make
+/// it smaller if the deciding load of the pilot is too noisy to approach the yield.
 inline constexpr std::size_t kPilotOf = 8;
 /// The smallest number of machines in a pilot that looks for rejects among machines that were screened out.
 inline constexpr std::size_t kMinPilot = 20'000;
 /// The relative change above which effects are measured again (change of tolerances) or all machines are tried again
 /// (change of load). Make it smaller for mechanisms whose effects change much between such tolerances.
 inline constexpr double kRelinearise = 0.1;
-/// The smallest ratio of the share that the yield needs to the share of the settled tolerances. A share is the part of
-/// each limit that the programme allows as root mean square. If the ratio is smaller, root mean squares do not show
-/// which parts cause rejects, and the search tightens the parts that do. Make it larger if this starts too late.
+/// The share of a limit is the part of it that the programme allows as root mean square. If the share that the yield
+/// needs is smaller than this number times the share of the settled tolerances, root mean squares do not show which
+/// parts cause rejects, and the search tightens the parts that do. Make the number larger if this starts too late.
 inline constexpr double kBlindShare = 0.7;
 
-/// The largest number of machines from which the gradient is estimated. With more machines the gradient is less noisy,
-/// but it is biased, because the machines are farther from the limit.
+/// The largest number of machines from which the gradient of the yield is estimated. With more machines the gradient is
+/// less noisy, but it is biased, because the machines are farther from the limit.
 inline constexpr std::size_t kMaxGradientMachines = 3000;
-/// The number of standard deviations above which a score counts as significant.
+/// The number of standard deviations above which the score of a part (PartScores) counts as significant.
 inline constexpr double kSignificance = 3.0;
 /// The largest number of steps along the gradient. More steps would fit the noise of the machines (D66).
 inline constexpr std::size_t kMaxGradientSteps = 3;
-/// The largest number of programmes that one step solves to meet the yield.
+/// The largest number of programmes that one step solves until the yield is kept.
 inline constexpr std::size_t kMaxFits = 6;
 /// The trust region of a step along the gradient: the factor by which a tolerance may grow.
 inline constexpr double kGradientGrowth = 1.3;

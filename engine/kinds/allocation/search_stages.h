@@ -26,12 +26,13 @@ Value unless_stopped(std::optional<Value> value) {
 /// @name Functions that several stages use
 /// @{
 
-/// Measures mean squares at these tolerances [N], among `draws` draws of the other errors; of calibrated machines with
-/// each error alone. known: [N] the tolerances that a calibration takes for known before it measures; empty: these.
+/// Measures mean squares at these tolerances [parts], among `draws` draws of the other errors. If machines are
+/// calibrated, each error is measured alone instead. known: [parts] the tolerances that a calibration takes for known
+/// before it measures; empty: these.
 Linearisation measure(const SearchProblem& problem, std::span<const double> tolerance, std::size_t draws,
                       std::span<const double> known = {});
-/// The tolerances of a programme that allows root mean squares this share of each limit; none if it is infeasible.
-/// Throws InputError if it is unbounded.
+/// Solves the programme in which root mean squares may use this share of each limit. None if it is infeasible. Throws
+/// InputError if it is unbounded.
 std::optional<Candidate> choose(const SearchProblem& problem, const Linearisation& linearisation, double share,
                                 const TrustRegion& region);
 /// Solves the programme with the least feasible share between `low` and `high`, to a thousandth.
@@ -50,13 +51,13 @@ std::vector<double> loads_of(const SearchProblem& problem, std::uint64_t seed, s
 double deciding_load(std::vector<double> load, std::uint64_t rejects);
 /// The numbers of the machines that may decide: those with at least kScreeningLoad times the deciding load.
 std::vector<std::uint32_t> screen(const SearchProblem& problem, std::span<const double> load);
-/// Solves the design's screened machines at other tolerances.
+/// Solves, at other tolerances, those machines of a design that may decide whether the yield is kept (screen()).
 ScreenedMachines try_screened(const SearchProblem& problem, const ToleranceDesign& design, const TolerancePoint& point);
-/// Solves all machines of a seed at the candidate's tolerances.
+/// Solves all machines with this seed at the tolerances of a candidate, and screens them.
 ToleranceDesign try_all(const SearchProblem& problem, Candidate candidate, std::uint64_t seed);
-/// The design, with the loads of all machines updated by those of the screened machines.
+/// The design, in which the loads of screened machines replace those from the last trial of all machines.
 ToleranceDesign with_screened_loads(ToleranceDesign design);
-/// Solves a pilot of all machines. Returns whether one of its rejects had been screened out.
+/// Solves only a part of all machines (a pilot). Returns whether one of its rejects had been screened out.
 bool misses_rejects(const SearchProblem& problem, const ToleranceDesign& design);
 /// Multiplies all tolerances by one factor, except those that stay [parts], so that the screened machines have as many
 /// rejects as the design allows. If even the lowest tolerances do not keep the yield for these machines, the design is
@@ -77,7 +78,7 @@ PartScores part_scores(const SearchProblem& problem, const ToleranceDesign& desi
                        std::span<const std::uint32_t> machines);
 /// @}
 
-/// A candidate, and the linearisation in its programme.
+/// Tolerances (Candidate) that a programme chose, and the mean squares that it used (Linearisation).
 struct Linearised {
   Linearisation linearisation;  ///< the linearisation that the programme used
   Candidate candidate;          ///< the tolerances that the programme chose
@@ -87,7 +88,7 @@ struct Linearised {
 /// squares cannot be made small enough for that, makes them as small as possible.
 Linearised linearise(const SearchProblem& problem, StageLog& log);
 
-/// Tolerances that no longer change when effects are measured again.
+/// Tolerances that hardly change when effects are measured again.
 struct Settled {
   Linearisation linearisation;  ///< the last linearisation
   Candidate candidate;          ///< the settled tolerances, or the lowest ones if the last programme was infeasible
@@ -97,7 +98,8 @@ struct Settled {
 /// Measures effects at the present tolerances and solves the programme, in turn, until the tolerances settle.
 Settled settle(const SearchProblem& problem, Linearised from, StageLog& log);
 
-/// A design that keeps the yield, and the linearisation in its programme.
+/// Tolerances with which the design's machines keep the yield, and the mean squares (Linearisation) in the programme
+/// that chose them.
 struct Scaled {
   Linearisation linearisation;  ///< the linearisation that the programme used
   ToleranceDesign design;       ///< a design with at most the allowed number of rejects
@@ -115,15 +117,15 @@ ToleranceDesign improve(const SearchProblem& problem, const Linearisation& linea
 /// yield is biased upwards.
 ToleranceDesign scale_to_other_machines(const SearchProblem& problem, const ToleranceDesign& from, StageLog& log);
 
-/// A design, and its predicted yield if one part is made coarser.
+/// Tolerances and the loads of the design's machines with them, and the predicted yield if one part is made coarser.
 struct Probed {
   ToleranceDesign design;             ///< the tolerances, and the loads of machines with them (MachineLoads)
   std::vector<double> coarser_yield;  ///< [parts] predicted yield if the tolerance of this part alone is larger, see
                                       ///< AllocationResult::coarser_yield
 };
 
-/// Predicts the yield with each part coarser alone, and makes those parts coarser that the yield allows. At the least
-/// cost, no part can be made coarser alone.
+/// Predicts the yield with each part coarser alone, and makes those parts coarser that the yield allows. There are none
+/// at the least cost, where every coarser part would break the yield.
 Probed use_remaining_yield(const SearchProblem& problem, ToleranceDesign from, StageLog& log);
 
 /// Rounds tolerances down as their parts ask. If a tolerance changes, tries all machines again.

@@ -78,7 +78,7 @@ class VariationEvaluator : private LoadSolver {
 
  private:
   /// Solves each variation at all poses, because limits over poses need them all, and because a calibration takes more
-  /// than all poses.
+  /// time than the solves at all poses.
   VariedLoads solve_all(std::size_t piece) {
     VariedLoads found{&varied_, {}, varied_.loads_of(piece) * plan_->poses().size()};
     std::vector<double> loads(count_);

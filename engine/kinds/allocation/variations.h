@@ -23,12 +23,13 @@ struct ErrorFactor {
 /// Factors on some errors, which express a changed tolerance or mirrored errors.
 using Variation = std::vector<ErrorFactor>;
 
-/// The loads (MachineLoads) [V x n] of the listed machines with each variation alone. machines: ascending numbers below
-/// plan.samples(). A machine is solved at the poses that decide, where its load is within kDeciding of its largest. If
-/// a variation changes a load there by more than half of that, in any of about forty machines, other poses may decide,
-/// and these machines are solved at all poses. Calibrated machines are calibrated anew with each variation, with the
-/// same noise and what is known before, and solved at all poses. The result has the same bits for any number of threads
-/// and on all ranks. Empty when stopped. calibration: as of machine_loads(). Precondition: Draws::per_machine.
+/// The loads (MachineLoads) [variations x machines] of the listed machines with each variation alone. machines:
+/// ascending numbers below plan.samples(). A machine is solved at the poses that decide, where its load is within
+/// kDeciding of its largest. Machines are solved in groups of about forty. If a variation changes the load of one of
+/// them there by more than half of kDeciding, other poses may decide, and the whole group is solved with this variation
+/// at all poses. Calibrated machines are calibrated anew with each variation, with the same noise and prior knowledge,
+/// and solved at all poses. The result has the same bits for any number of threads and on all ranks. None if the run
+/// was stopped. calibration: as of machine_loads(). Precondition: the study draws errors per machine.
 std::optional<std::vector<double>> try_variations(const Plan& plan, const Model& model,
                                                   std::span<const ResponseLimit> limits,
                                                   std::span<const std::uint32_t> machines,

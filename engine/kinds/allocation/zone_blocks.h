@@ -13,14 +13,15 @@
 namespace poesy {
 
 /// The parts of a block with `zones`, without their cost and choice. Each named zone is a part, but zones of identical
-/// limbs share one. A location whose feature also has an orientation has the errors of the middle only. taken: names of
-/// other parts. Throws InputError. Precondition: the block has `zones`.
+/// limbs share one. The part of a zone of location has all errors of the feature, or only those of its middle if the
+/// feature also has a zone of orientation. taken: names of other parts. Throws InputError. Precondition: the block has
+/// `zones`.
 std::vector<AllocatedPart> read_zones(const StudySection& block, const Study& study,
                                       std::span<const std::string_view> taken);
 
-/// If a location among these parts has a zone of orientation on the drawing that is not among the parts, adds that zone
-/// with the tolerance of the drawing. value: the list of blocks. Throws InputError for an orientation whose location is
-/// in no part, or is shared by other limbs.
+/// If one of these parts is a zone of location, and the drawing gives its feature a zone of orientation that is not a
+/// part, adds that zone as a part with the tolerance of the drawing. value: the list of blocks. Throws InputError for a
+/// zone of orientation whose location is in no part, or is shared by other limbs.
 void complete_zones(const StudyValue& value, const Study& study, std::vector<AllocatedPart>& parts);
 
 /// The keys of a block that reads back as this part. Precondition: the part is a zone.

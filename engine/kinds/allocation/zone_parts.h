@@ -37,9 +37,9 @@ std::string_view shape_of(const AllocatedPart& part, const ModelDescription& mod
 /// vary; the result refers to positions in this list.
 DrawnPart drawn_zone(const AllocatedPart& part, const ModelDescription& model, std::span<const FactorIndex> factors);
 
-/// The pairs of a zone of orientation and the zone of location of the same features, in the order of the locations. An
-/// orientation whose tolerance is chosen may be left out. An orientation whose tolerance is given is left out only
-/// where the location is so fine that the orientation adds no limit.
+/// The pairs of a zone of orientation and the zone of location of the same features, in the order of the locations. The
+/// drawing may leave out an orientation whose tolerance is chosen. It leaves out an orientation whose tolerance is
+/// given only where the location is so fine that the orientation adds no limit.
 std::vector<Within> zone_pairs(std::span<const AllocatedPart> parts, const ModelDescription& model);
 
 }  // namespace poesy

@@ -65,7 +65,7 @@ std::optional<double> stated_sd(const CalibrationTable& table, const std::string
 
 /// The weights of the measured values: their noise, or equal weights if all noise is 0.
 struct Weights {
-  Vector sd;             ///< [m] standard deviation of each value, or 1
+  Vector sd;             ///< [values] standard deviation of each value, or 1
   bool is_noise = true;  ///< whether `sd` is noise
 };
 
@@ -183,7 +183,8 @@ class Calibration {
     return poses;
   }
 
-  /// Throws InputError if fewer values are measured than numbers are fitted.
+  /// Throws InputError if the measured values are too few for the numbers that are fitted. With a prior, they need only
+  /// be more than the numbers of frame and target.
   void check_count() const {
     const std::size_t fitted = table_.fit.size() + places();
     const std::size_t measured = machine_.file.values.size();
@@ -297,7 +298,8 @@ class Calibration {
     result.typed_sd = {{sd.size()}, sd};
   }
 
-  /// Estimates and covariance of all errors, fitted or not. Empty if no estimate of all errors is found.
+  /// Estimates and covariance of all errors, fitted or not. If all noise is 0: only of the fitted errors, with
+  /// covariance 0. Empty if no estimate of all errors is found.
   std::optional<calibration::Knowledge> knowledge_of_all() const {
     if (!weights_.is_noise) {
       const Eigen::Index all = fit_.theta.size() + fit_.phi.size();

@@ -37,14 +37,14 @@ struct MachineToCalibrate {
 
 /// The result of a calibration, and messages about it.
 struct Calibrated {
-  CalibrationResult result;           ///< the result, without the text and the hash of the file
+  CalibrationResult result;           ///< the result, without the text and the hash of the table of measurements
   bool converged = false;             ///< whether the fit converged
   std::uint64_t solves = 0;           ///< how many times the mechanism was solved
   std::vector<std::string> warnings;  ///< warnings, as sentences for people
 };
 
 /// Fits the errors of [analysis.calibration] to the measurements. Throws InputError if they cannot be fitted: the noise
-/// is not stated, there are fewer values than fitted errors, or the drives do not match the commanded coordinates.
+/// is not stated, there are too few measured values, or the drives do not match the commanded coordinates.
 Calibrated calibrate(const MachineToCalibrate& machine);
 
 }  // namespace poesy

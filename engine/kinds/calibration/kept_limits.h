@@ -10,14 +10,16 @@
 
 namespace poesy {
 
-/// The probability that a calibrated machine keeps the limits of its study. It is the share of 1000 machines within all
-/// limits. These are drawn from the estimated distribution of the machine's errors and solved exactly.
+/// The probability that a calibrated machine keeps the limits of its study. It is estimated with 1000 machines, as the
+/// share that is within all limits. The machines are drawn from the estimated distribution of the machine's errors and
+/// solved exactly.
 class KeptLimits {
  public:
   /// Refers to the arguments. known: estimates and covariance of the machine's errors.
   KeptLimits(const Study& study, const Model& model, const calibration::Knowledge& known);
 
-  /// Solves the machines at a pose, where the controller commands the drives of pose `drive_at`.
+  /// Solves the machines at a pose. The controller moves the drives to where those of the perfect mechanism are at
+  /// `drive_at`.
   void add(calibration::ExactMachine& machine, std::span<const double> pose, std::span<const double> drive_at,
            const calibration::Corrected& corrected);
 

@@ -70,7 +70,8 @@ std::vector<Table> calibration_result_tables(const StoredResult& result, const T
 
 SolveTally tally(const StoredResult&) { return {"", {"all errors"}, 1, {SolveCounts()}}; }
 
-/// A text of a terminal as a sentence of print: "to type in: a 1 -> 2 +- 0.1 mm" as "To type in: a 1 → 2 ± 0.1 mm."
+/// Converts a text for the terminal to a sentence for the page: "to type in: 2 +- 0.1 mm" to "To type in: 2 ± 0.1 mm."
+/// An arrow "->" becomes "→".
 std::string sentence(std::string text) {
   const std::pair<std::string_view, std::string_view> signs[] = {{"->", "\u2192"}, {"+-", kPlusMinus}};
   for (const auto& [plain, sign] : signs) {

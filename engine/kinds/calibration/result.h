@@ -44,7 +44,8 @@ struct CalibrationResult {
   double conf_level = 0.95;                        ///< confidence level of the intervals
   std::uint64_t has_prior = 0;                     ///< 1 if tolerances are used as prior knowledge, otherwise 0
   std::uint64_t noise_is_known = 1;                ///< 1 if the values have standard deviations, 0 if all noise is 0
-  std::uint64_t sd_is_estimated = 0;               ///< 1 if the noise is known up to one factor, otherwise 0
+  /// 1 if only the ratios of the noise are known and its level was estimated from the residuals, otherwise 0.
+  std::uint64_t sd_is_estimated = 0;
 
   std::vector<std::string> values;           ///< names of the measured values
   std::vector<std::string> value_units;      ///< SI units of the measured values
@@ -74,7 +75,7 @@ struct CalibrationResult {
   double condition = kNaN;        ///< ratio of the largest to the smallest singular value that is seen
 
   std::vector<std::string> frame_parts;  ///< names of the numbers that place frame and target
-  Array<double, axis::FramePart> frame;  ///< estimates of these numbers, where they are unknown
+  Array<double, axis::FramePart> frame;  ///< estimates of these numbers
 
   Array<double, axis::Pose, axis::Moved> left_mean;    ///< expected displacement of the platform that remains with the
                                                        ///< calibrated controller
@@ -88,8 +89,8 @@ struct CalibrationResult {
                                            ///< 0 if in the base frame
 
   Array<double, axis::Next, axis::Coordinate> next_pose;  ///< poses recommended for the next measurement
-  Array<double, axis::Next> gain;                         ///< information of each pose beyond those before it, bits
-  Array<std::uint64_t, axis::Next> candidate;             ///< positions of these poses among the candidates
+  Array<double, axis::Next> gain;              ///< information that each pose adds to that of the poses before it, bits
+  Array<std::uint64_t, axis::Next> candidate;  ///< positions of these poses among the candidates
 
   std::vector<NamedUnit> typed;              ///< parameters for the controller; `description` is the expression
   Array<double, axis::Typed> typed_nominal;  ///< values of the parameters without errors

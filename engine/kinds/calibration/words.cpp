@@ -17,9 +17,9 @@ namespace poesy {
 namespace {
 
 constexpr double kContradiction = 0.01;  // a smaller p-value is reported as a contradiction
-constexpr double kTogether = 0.95;       // estimates move together if the magnitude of their correlation is at least
-                                         // this
-constexpr std::size_t kAngles = 3;       // components of a displacement that are angles and come before the lengths
+// Estimates are said to move together if the magnitude of their correlation is at least this.
+constexpr double kTogether = 0.95;
+constexpr std::size_t kAngles = 3;  // components of a displacement that are angles and come before the lengths
 
 std::string some(const CalibrationResult& found, const std::vector<std::size_t>& numbers) {
   std::vector<std::string> names;

@@ -16,7 +16,7 @@ std::string residual_text(const CalibrationResult& found);
 std::vector<std::string> estimate_notes(const CalibrationResult& found);
 /// Sentences about the displacement that remains after calibration.
 std::vector<std::string> left_notes(const CalibrationResult& found);
-/// The share of the machines that this one may be which keep the limits; empty without limits.
+/// How probable it is that the machine keeps the limits; empty without limits.
 std::string kept_text(const CalibrationResult& found);
 /// "to type in: delta_radius 95.0000 -> 95.1139 +- 0.1394 mm"; empty without numbers for the controller.
 std::string typed_text(const CalibrationResult& found);

@@ -14,8 +14,8 @@ namespace {
 /// The largest number of samples that are solved together.
 constexpr std::size_t kBlock = 256;
 
-/// The approximate largest number of weighted sums of responses that are tried. The three components of a vector have
-/// 13.
+/// No more responses are added to the weighted sums that are tried once there are more sums than this. The three
+/// components of a vector have 13.
 constexpr std::size_t kMostSums = 13;
 
 Signs opposite(Signs signs) {

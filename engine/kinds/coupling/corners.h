@@ -23,7 +23,7 @@ namespace axis {
 using Block = Axis<"block">;  ///< Blocks of errors that move together.
 }  // namespace axis
 
-/// The sign of each block of a subset, '+' or '-'.
+/// The sign of each block of errors in a subset of sources, '+' or '-'.
 using Signs = std::string;
 
 /// The blocks of each subset of sources, and the errors at each corner.
@@ -40,7 +40,7 @@ struct CornerTable {
   std::vector<double> signs_of_errors(std::size_t subset, const Signs& signs) const;
 };
 
-/// The worst corners of a subset at one size and pose.
+/// The worst corners of a subset of sources at one size and pose. A corner is a choice of the sign of each block.
 struct WorstCorners {
   std::vector<double> value;   ///< [responses] largest |response| over the solved corners; NaN if none was solved
   std::vector<Signs> signs;    ///< [responses] signs at that corner; empty if none was solved
@@ -111,7 +111,7 @@ class CornerSearch {
   const CornerTable* table_;
   const Array<double, axis::Response, axis::Size>* rounding_;
   std::size_t responses_;
-  std::vector<Direction> directions_;  ///< weighted sums whose first-order signs are tried
+  std::vector<Direction> directions_;  ///< weighted sums of responses, see the class comment
   std::unique_ptr<Evaluator> evaluator_;
   std::vector<double> zeros_;          ///< a zero for each error of the model
   std::vector<double> at_size_;        ///< [responses] rounding of each response at the present size
@@ -123,7 +123,7 @@ class CornerSearch {
   std::vector<std::uint32_t> counts_;  ///< iterations of each of these samples
 };
 
-/// The expected number of corners at each size and pose.
+/// The expected number of corners that are solved for one size at one pose.
 double expected_corners(const CornerTable& table, std::size_t responses);
 
 }  // namespace poesy

@@ -63,7 +63,8 @@ void add_errors(const ErrorBlock& more, ErrorBlock& errors) {
   std::ranges::sort(errors);
 }
 
-/// The effects of a subset at one pose. If an effect is NaN, so is every number that depends on it.
+/// The effects of a subset of sources at one pose. If an effect is NaN, so are all numbers that depend on it, except
+/// `largest`.
 struct Combination {
   double effect = 0.0;
   double sum = 0.0;
@@ -246,7 +247,8 @@ class TwoStages {
     };
     return options;
   }
-  /// The options of the second stage. If the first stage reported nothing, it was complete in the checkpoint.
+  /// The options of the search for corners, the second stage. If the first stage reported nothing, it was complete in
+  /// the checkpoint.
   RunOptions of_corners() {
     RunOptions options = run_.options;
     const SolveCounts done = run_.checkpoints().solves();
@@ -379,7 +381,7 @@ CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& m
       for (const ErrorBlock& block : blocks) add_errors(block, rows.errors[k]);
     }
     std::vector<std::size_t>& own = rows.block_rows.emplace_back();
-    if (blocks.size() == 1) own.push_back(s);  // subset s is this source alone: its only block
+    if (blocks.size() == 1) own.push_back(s);  // subset s has only this source, and so only this block
     for (const ErrorBlock& block : blocks) {
       if (blocks.size() == 1) break;
       own.push_back(rows.errors.size());

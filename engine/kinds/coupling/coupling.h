@@ -23,7 +23,7 @@ struct ErrorSource {
   std::vector<FactorIndex> factors;  ///< errors that the study names; the pattern may exclude some
 };
 
-/// Which errors of a source have its size, and which of these have the same sign.
+/// Which errors of a source are not zero, and which of these have the same sign.
 struct ErrorPattern {
   /// Which limbs or components have errors.
   enum class Choice {
@@ -147,7 +147,7 @@ struct CouplingResult {
   Array<std::int64_t, axis::Response, axis::Size, axis::Subset, axis::Factor> worst_case_signs;
   /// First pose with a corner that is not solved; -1 if there is none.
   Array<std::int64_t, axis::Size, axis::Subset> unsolved_pose;
-  /// Sign of each error at such a corner; 0 if there is none.
+  /// Sign of each error at the first corner that is not solved; 0 if there is none.
   Array<std::int64_t, axis::Size, axis::Subset, axis::Factor> unsolved_signs;
   Array<SolveCounts, axis::Size, axis::Pose> solves;  ///< how the solves of all sets of errors and all corners ended
 
@@ -169,7 +169,7 @@ inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_c
 ///     interaction      effect - sum; 0 for a single source
 ///     first_order_sum  sum over the blocks of S of |effect of the block alone| (see error_blocks)
 ///     worst_case       the largest |response| that was found with either sign of each block (coupling/corners.h)
-///     root_sum_square  root of the sum of the squares of these
+///     root_sum_square  root of the sum over the blocks of S of (effect of the block alone)^2
 ///     cancellation     1 - |sum| / (sum over the sources of |effect of each|): 0 where no source opposes another or
 ///                      where no more than rounding is cancelled, 1 where they cancel
 ///

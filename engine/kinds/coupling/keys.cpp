@@ -224,7 +224,7 @@ void require_sizes(const StudySection& analysis, Dimension dimension, const Coup
                    "write sizes, e.g. " + key + " = [\"0.1 " + std::string(display_unit(dimension).name) + "\"]");
 }
 
-/// Refuses sizes of a dimension that no error of the sources has, whatever the pattern.
+/// Refuses sizes of a dimension that no error of the sources has, not even an error that the pattern leaves at zero.
 void refuse_idle_sizes(const StudySection& analysis, Dimension dimension, const CouplingStudy& study,
                        const ModelDescription& model) {
   const auto value = analysis.find(error_kind(dimension));
@@ -245,7 +245,7 @@ void require_equal_numbers(const StudyValue& angular, const CouplingStudy& study
                "a run takes one of each, so write as many");
 }
 
-/// Throws InputError if two runs have the same sizes. value: the linear or the angular sizes.
+/// Throws InputError if two sizes of the study are the same. value: the linear or the angular sizes.
 void require_different_runs(const StudyValue& value, const CouplingStudy& study) {
   const auto same = [](const std::vector<double>& sizes, std::size_t a, std::size_t b) {
     return sizes.empty() || sizes[a] == sizes[b];

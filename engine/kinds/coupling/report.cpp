@@ -268,7 +268,8 @@ class Curves {
   const PoseFigures& figures_;
 };
 
-/// Adds to the section the tables for the last size of the errors, and, folded, those for the other sizes.
+/// Adds to the section the tables for the last size of the errors, and those for the other sizes, which are
+/// closed at first.
 void add_tables(const StoredResult& result, std::span<const Table> tables, Section& section) {
   const std::size_t shown = std::min(tables.size(), result.signed_headline.size());
   section.folded("The tables of the other sizes", tables.first(tables.size() - shown));
@@ -316,7 +317,7 @@ std::vector<std::string> sized_subsets(const CouplingResult& coupling) {
   return list;
 }
 
-/// The answer for the last size, which the page shows, and the first response.
+/// The answer at the top of the report, for the last size (which the page shows) and the first response.
 Answer answer(const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
   if (found.subsets.empty() || found.size_names.empty() || result.signed_headline.empty()) return {};
@@ -352,7 +353,8 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-/// The largest effect of all sources together at the last size. It has no uncertainty, because errors are given.
+/// The figure of merit: the largest effect of all sources together at the last size. It has no uncertainty, because
+/// errors are given.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   const CouplingResult& found = coupling_of(result);
   if (name.empty() || found.effect_max.empty()) return {};

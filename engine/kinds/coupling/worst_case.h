@@ -29,8 +29,8 @@ struct WorstCases {
   Array<Place, axis::Size, axis::Subset> first_unsolved;  ///< the first corner that was not solved
 };
 
-/// Searches the worst corners at every size and pose (CornerSearch). rounding: see coupling_rounding(). Returns nothing
-/// if the run was stopped, and for a shard.
+/// Searches the worst corners (choices of the signs of all errors) at every size and pose (CornerSearch). rounding: see
+/// coupling_rounding(). Returns nothing if the run was stopped, and for a shard.
 std::optional<WorstCases> run_worst_cases(const StudyRun& run, const CornerTable& table,
                                           const Array<double, axis::Response, axis::Size>& rounding,
                                           const RunOptions& options);

@@ -37,8 +37,8 @@ using Row = Axis<"row">;    ///< Rows of a table of errors.
 
 /// The responses to given errors: named cases, or rows of a table. The verdicts on limits are in StoredResult.
 struct Evaluation {
-  /// A number for each response and case, computed over the poses whose solves count (see counts()). Empty if the
-  /// errors are rows of a table.
+  /// A number for each response and case, computed over the poses whose solves count in statistics (see counts()).
+  /// Empty if the errors are rows of a table.
   template <class T>
   using OverPoses = Array<T, axis::Response, axis::Case>;
 
@@ -71,11 +71,11 @@ Evaluation evaluation_of_cases(EvaluationResult solves, std::span<const ErrorCas
 /// The evaluation in a stored result. Precondition: the result is of kind `evaluate`.
 inline const Evaluation& evaluation_of(const StoredResult& result) { return found_of<Evaluation>(result); }
 
-/// The given errors of an evaluation, with the addresses of its solves.
+/// The given errors of an evaluation, for `poesy replay`; see Kind::given_errors.
 GivenErrors evaluated_errors(const StoredResult& result);
 
-/// Names of the rows of errors, for verdicts: "part 17" if the rows have labels, "sample 3" if each pose was solved
-/// with all rows.
+/// Names of the rows of errors, for verdicts: "part 17" if the rows have labels, otherwise "sample 3" if each pose was
+/// solved with all rows. Empty if each row has its own pose and no label.
 std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std::size_t rows);
 
 /// Writes the result of `poesy evaluate`, whose poses and errors come from tables; see write_result(). factors: the
@@ -87,7 +87,8 @@ void write_evaluation(const std::string& path, const Study& study, const Selecte
 /// a note names the worst row.
 Table evaluation_table(const StoredResult& result);
 
-/// A response to one row of errors, over the poses at which it was solved; NaN if there is none.
+/// A response to one row of errors, over the poses at which it was solved. mean and extreme are NaN if no pose was
+/// solved.
 struct RowOutcome {
   std::size_t solved = 0;  ///< number of solved poses
   double mean = kNaN;      ///< mean over the solved poses, SI

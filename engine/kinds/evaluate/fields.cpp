@@ -355,7 +355,7 @@ CsvTable case_sum_table(const StoredResult& result) {
   return table;
 }
 
-/// What a file of `poesy evaluate` contains: the result, and the errors that the table gives. Refers to both.
+/// The result of `poesy evaluate`, and the errors that are columns of its table. Refers to both.
 struct TableOfErrors {
   std::span<const FactorIndex> factors;
   const Evaluation& found;

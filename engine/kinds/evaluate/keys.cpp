@@ -97,7 +97,7 @@ void read_cases(const StudyValue& value, Study& study, const Reading&) {
   }
 }
 
-/// Lines of a template that state every error by name.
+/// The cases as lines of a study file, in which every error is stated by name.
 std::string cases_lines(const Study& study) {
   std::string text;
   for (const ErrorCase& one : asked_of<CaseOptions>(study.analysis).cases) {

@@ -19,7 +19,8 @@
 namespace poesy {
 namespace {
 
-constexpr int kDigits = 6;  ///< these numbers are solved for given errors, not estimated
+/// Significant digits. They are more than those of estimates, because these numbers are solved for given errors.
+constexpr int kDigits = 6;
 
 /// The mean and the extremes of a response over the solved samples; NaN if no sample is solved.
 struct Summary {
@@ -71,8 +72,8 @@ Table parts_table(const StoredResult& result) {
               .caption = "Each " + labels.column + " over its poses: mean, and the value of the largest magnitude",
               .columns = {},
               .notes = {"poses: those that were solved"}};
-  std::vector<std::vector<RowOutcome>> outcomes;  // [headline][rows] outcome of each row for each response of the
-                                                  // headline
+  // For each response that a summary shows (the headline), the outcome of each row of errors.
+  std::vector<std::vector<RowOutcome>> outcomes;
   for (const std::size_t r : result.headline) outcomes.push_back(row_outcomes(evaluation_of(result), r));
   std::vector<FilledColumn> columns{
       {text_column("label", labels.column), [&](std::size_t row) { return text_cell(labels.names[row]); }},
@@ -82,7 +83,8 @@ Table parts_table(const StoredResult& result) {
     const NamedUnit& response = result.responses[result.headline[h]];
     const std::vector<RowOutcome>& of = outcomes[h];
     const std::string_view unit = display(response).name;
-    const int dispensable = 3 * static_cast<int>(h);  // a narrow table omits the columns of the last response first
+    // A narrow table omits columns with larger numbers first, so those of the last response.
+    const int dispensable = 3 * static_cast<int>(h);
     columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable + 2),
                        [&](std::size_t row) { return value_cell(of[row].mean, response, kDigits); }});
     columns.push_back({number_column(response.name + "_extreme", response.name + " extreme", unit, dispensable),
@@ -104,7 +106,8 @@ Table cases_table(const StoredResult& result) {
   std::vector<FilledColumn> columns{
       {text_column("case", "case"), [&](std::size_t c) { return text_cell(found.cases[c]); }},
       {number_column("poses", "poses"), [&](std::size_t c) { return count_cell(found.count.all()[c]); }}};
-  int dispensable = 0;  // 0 for the first response; a narrow table omits the columns of the last response first
+  // A narrow table omits columns with larger numbers first, so those of the last response. 0 is never omitted.
+  int dispensable = 0;
   for (const std::size_t r : result.headline) {
     const NamedUnit& response = result.responses[r];
     const std::string_view unit = display(response).name;
@@ -275,7 +278,7 @@ StudyWords words(const StoredResult& result) {
   return {.samples = counted(found.cases.size(), "case", "cases")};
 }
 
-/// The answer for the response by which errors are ranked.
+/// The answer at the top of the report, for the response by which errors are ranked.
 Answer answer(const StoredResult& result) {
   const Evaluation& found = evaluation_of(result);
   const std::size_t r = response_named(result, default_ranking(result));
@@ -306,7 +309,7 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-/// The largest magnitude of the response. It has no uncertainty, because errors are given.
+/// The figure of merit: the largest magnitude of the response. It has no uncertainty, because errors are given.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   if (name.empty()) return {};
   const std::size_t r = response_named(result, name);

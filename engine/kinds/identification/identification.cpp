@@ -47,7 +47,7 @@ class Identification {
   }
 
  private:
-  /// A set of errors: the members have the size of the group, all other errors are zero.
+  /// A set of errors. Its members have the sizes of the pair of sizes `group`; all other errors are zero.
   struct ErrorSet {
     std::size_t group;
     FrameErrors members;
@@ -116,8 +116,8 @@ class Identification {
     return true;
   }
 
-  /// For each frame, the errors that do not deform alone in this group. Frames with fewer than two such errors are left
-  /// out.
+  /// For each frame, the errors that do not deform alone at this pair of sizes. Frames with fewer than two such errors
+  /// are left out.
   std::vector<FrameErrors> frames(std::size_t group) const {
     std::map<std::pair<std::size_t, std::size_t>, FrameErrors> by_frame;
     for (std::size_t p = 0; p < found_.factors(); ++p) {

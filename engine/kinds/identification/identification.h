@@ -51,21 +51,23 @@ struct IdentificationResult {
   double rounding = 0.0;             ///< deformations up to this magnitude are rounding
   std::uint64_t required_poses = 0;  ///< number of poses at which a verdict must hold
 
-  ByGroup<std::uint64_t> single_below;   ///< number of poses at which the error alone deforms by no more than rounding
-  ByGroup<double> single_max;            ///< largest deformation by the error alone over the solved poses; NaN if none
-                                         ///< is solved
-  ByGroup<std::uint64_t> not_solved;     ///< number of poses without a solution for the error alone
-  ByGroup<std::uint64_t> coupled_below;  ///< number of poses at which all errors of its frame, tried together, deform
-                                         ///< by no more than rounding
-  /// Number of poses at which setting the error to zero removes nine tenths of the deformation.
+  ByGroup<std::uint64_t> single_below;  ///< number of poses at which the error alone deforms by no more than rounding
+  ByGroup<double> single_max;           ///< largest deformation by the error alone over the solved poses; NaN if none
+                                        ///< is solved
+  ByGroup<std::uint64_t> not_solved;    ///< number of poses without a solution for the error alone
+  /// Number of poses at which those errors of its frame that do not deform alone, tried together, deform by no more
+  /// than rounding.
+  ByGroup<std::uint64_t> coupled_below;
+  /// Number of poses at which setting the error to zero removes nine tenths of the deformation by these errors
+  /// together.
   ByGroup<std::uint64_t> coupled_reduced;
-  /// 1 if the single stage finds that the error deforms the mechanism, otherwise 0.
+  /// 1 if the error alone deforms the mechanism, otherwise 0.
   ByGroup<std::uint8_t> single_by_group;
-  /// 1 if either stage finds that the error deforms the mechanism, otherwise 0.
+  /// 1 if the error deforms the mechanism, alone or together with other errors of its frame; otherwise 0.
   ByGroup<std::uint8_t> coupled_by_group;
-  /// 1 if the single stage finds in some group that the error deforms the mechanism, otherwise 0.
+  /// 1 if single_by_group is 1 for some pair of sizes, otherwise 0.
   Array<std::uint8_t, axis::Factor> single;
-  /// 1 if either stage finds in some group that the error deforms the mechanism, otherwise 0.
+  /// 1 if coupled_by_group is 1 for some pair of sizes, otherwise 0.
   Array<std::uint8_t, axis::Factor> coupled;
   std::vector<Coupling> couplings;  ///< pairs that deform only together, ordered by group and position
   SolveCounts solves;               ///< how the solves of both stages ended

@@ -42,17 +42,18 @@ struct PoseSamples {
   std::size_t errors_;
 };
 
-/// Merges units of samples, pose by pose: the sums of a PoseFold (run/pose_fold.h). In memory are the sketches of the
-/// pose that is being merged, and one sketch for each response over all finished poses. So memory does not depend on
-/// the number of samples; only the result grows with the number of poses. For a later study with more samples, packed
-/// sketches of finished poses are kept as well, up to kMostKeptBytes. The result does not depend on the order in which
-/// poses are finished.
+/// Merges units of samples, pose by pose. Objects of this class are the sums of a PoseFold (run/pose_fold.h). In memory
+/// are the sketches of the pose that is being merged, and one sketch for each response over all finished poses. So
+/// memory does not depend on the number of samples; only the result grows with the number of poses. For a later study
+/// with more samples, packed sketches of finished poses are kept as well, up to kMostKeptBytes. The result does not
+/// depend on the order in which poses are finished.
 class MonteCarloCollector {
  public:
   /// Limit on the bytes of packed sketches. A pose that exceeds it is solved again if more samples are wanted.
   static constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20U;
-  static constexpr bool kOfRound = true;  ///< True: in adaptive sampling, the sums are made anew for each round,
-                                          ///< because a finished pose takes no more samples (PoseFold).
+  /// True: PoseFold makes the sums anew for each round of adaptive sampling, because a finished pose takes no more
+  /// samples.
+  static constexpr bool kOfRound = true;
 
   /// keep_checkpoint: whether to keep packed sketches of finished poses.
   MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis, bool keep_checkpoint = true);
@@ -68,8 +69,8 @@ class MonteCarloCollector {
   /// The result. Precondition: every unit was added.
   MonteCarloResult result() &&;
 
-  /// Writes all poses, or reads the poses of a plan with this many samples and adds them. If this plan has more
-  /// samples, all read poses are unfinished and continue from their packed sketches.
+  /// Writes the statistics of all poses, or reads those of a plan with this many samples and adds them. If this plan
+  /// has more samples, all read poses are unfinished and continue from their packed sketches.
   void state(Archive& archive, std::size_t samples);
 
  private:
@@ -84,7 +85,7 @@ class MonteCarloCollector {
   void finish_pose();
   /// Sets the numbers that depend on the moments of a response at a pose.
   void set_moments(std::size_t response, std::size_t pose, const Moments& moments);
-  /// Packs the samples of the open pose, if they are whole units and the limit on bytes allows it.
+  /// Packs the samples of the open pose, which are whole units. Keeps them only if the limit on bytes allows it.
   void keep();
   void set_kept(std::size_t pose, Kept kept);
   void finished_state(Archive& archive, std::size_t pose, std::size_t samples);
@@ -107,7 +108,8 @@ class MonteCarloCollector {
   std::vector<std::optional<MainEffectSums>> effects_;  ///< sums for main effects of each finished pose at which they
                                                         ///< are computed
   std::vector<FailedSamples> failed_;                   ///< failed samples of each finished pose
-  /// Packed statistics of each pose: of finished poses for a longer study, of others from a shorter study.
+  /// Packed statistics of each pose: of a finished pose for a longer study, of an unfinished pose as a shorter study
+  /// left it.
   std::vector<Kept> kept_;
   std::size_t kept_bytes_ = 0;
 };

@@ -29,8 +29,8 @@ class MonteCarloColumns {
   /// do not count (see counts()).
   void set_quantiles(std::size_t response, std::size_t pose, const QuantileSketch& sketch, std::uint64_t tried);
   /// Sets the numbers of a response over all poses. independent: the number of independent samples. This is the number
-  /// of all samples, or with draws per machine the number of machines. In that case, the intervals of quantiles assume
-  /// that a machine's samples are equal at all poses, so they are never too narrow.
+  /// of all samples, or with draws per machine the number of machines. With draws per machine, the intervals of
+  /// quantiles assume that a machine's samples are equal at all poses, so they are never too narrow.
   void set_overall(std::size_t response, const Moments& moments, const QuantileSketch& sketch,
                    std::uint64_t independent);
 

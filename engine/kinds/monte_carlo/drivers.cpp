@@ -58,23 +58,23 @@ Changes changes_of(const StoredResult& result, const YieldResult& yield) {
   return {part(yield.gradient), part(yield.gradient_ci_low), part(yield.gradient_ci_high)};
 }
 
-/// Whether a number of the error is above zero for any limited response whose shares are known; also if it is not
-/// known.
+/// Whether the share of the error is above zero, or not known, for any response with a limit whose shares are known.
+/// Also true if no response has known shares.
 bool has_any_share(const StoredResult& result, const YieldResult& yield, const MainEffects::Indices& shares,
                    std::size_t p) {
   const std::vector<std::size_t> responses = shared_responses(result, yield);
   return responses.empty() || std::ranges::any_of(responses, [&](std::size_t r) { return !(shares(r, p) <= 0.0); });
 }
 
-/// The errors on which the yield depends for certain, and how many others were tested.
+/// The errors on which the yield depends for certain: their effect is distinguished from zero, or "told".
 struct ToldErrors {
-  std::vector<std::size_t> told;  ///< these errors: first those whose share of a mean square is certain, then by the
-                                  ///< loss of yield, largest first
-  std::size_t tested = 0;         ///< number of errors whose change of the yield is known and whose share is not zero
-  std::size_t known = 0;          ///< number of errors whose change of the yield is known
+  /// These errors: first those whose share of a mean square is certain, then by the loss of yield, largest first.
+  std::vector<std::size_t> told;
+  std::size_t tested = 0;  ///< number of errors whose change of the yield is known and whose share is not zero
+  std::size_t known = 0;   ///< number of errors whose change of the yield is known
 };
 
-/// Tests all errors together, because among many tests some would tell an effect by chance.
+/// Tests all errors together, because among many single tests some would show an effect by chance.
 ToldErrors told_errors(const StoredResult& result, const YieldResult& yield, const Changes& changes) {
   ToldErrors found;
   std::vector<Estimate> estimates;
@@ -138,7 +138,7 @@ Table share_table(const StoredResult& result, const YieldResult& yield, const st
   return table;
 }
 
-/// Adds a line for the errors whose effect is not clear: "33 errors whose effect cannot be told from zero".
+/// Adds a line that counts errors: "33 errors whose effects are not certain". Adds nothing if there are none.
 void add_line(Table& table, std::size_t errors, std::string_view one, std::string_view many) {
   if (errors == 0) return;
   std::vector<Cell> row{text_cell(fmt::format("{} {}", counted(errors, "error", "errors"), errors == 1 ? one : many))};
@@ -146,8 +146,8 @@ void add_line(Table& table, std::size_t errors, std::string_view one, std::strin
   table.rows.push_back(std::move(row));
 }
 
-/// Says how small a change of the yield these machines tell from zero, if it is the only one, and how many machines a
-/// smaller one takes; empty if all changes are told.
+/// A note on how small a change of the yield these machines can distinguish from zero, if it is the only one that is
+/// tested, and how many machines a change of a tenth of that size takes. Empty if all changes are distinguished.
 std::string needed_machines_note(const Changes& changes, const ToldErrors& found, const YieldResult& yield) {
   constexpr std::uint64_t kFiner = 10;
   std::vector<double> half_widths;

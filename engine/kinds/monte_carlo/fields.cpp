@@ -89,7 +89,7 @@ struct ShownNumbers {
   const Numbers& quantile_error;
 };
 
-/// Appends columns of numbers and quantiles. at: positions on the axes before that of the lines.
+/// Appends columns of numbers and quantiles. at: positions on the axes that come before the axis of the table's lines.
 template <class Numbers, class Quantiles, class Counts, class... Positions>
 void append_number_columns(CsvTable& table, const std::string& unit, const std::vector<double>& levels,
                            const ShownNumbers<Numbers, Quantiles, Counts>& shown, Positions... at) {

@@ -15,9 +15,9 @@
 
 namespace poesy {
 
-/// Merges units of machines in their order: the sums of a UnitFold (run/unit_fold.h). In memory is a sketch of each
-/// response at each pose. Memory hardly grows with the number of machines: by one set of sums for each octal digit of
-/// this number (MergeTree).
+/// Merges units of machines in their order. Objects of this class are the sums of a UnitFold (run/unit_fold.h). In
+/// memory is a sketch of each response at each pose. Memory hardly grows with the number of machines: by one set of
+/// sums for each octal digit of this number (MergeTree).
 class MachineCollector {
  public:
   /// Refers to both arguments.
@@ -27,7 +27,7 @@ class MachineCollector {
   /// [responses] The mean of each response over the samples of all poses, with its interval. Only machines that are
   /// solved at every pose count. The interval assumes that machines are independent.
   std::vector<Estimate> overall_means() const;
-  /// The result of all machines that were added. Precondition: no units will be added.
+  /// The result of all machines that were added. Precondition: no units are added afterwards.
   MonteCarloResult result() &&;
 
   /// Reads or writes the sums of these units. Sums that are read are added.
@@ -52,15 +52,15 @@ class MachineCollector {
     void add(const MachineUnit& unit);
     /// Adds the counts of later machines. Precondition: the machines of `later` come after those of this object.
     void merge(const Counts& later);
-    /// Reads or writes the counts of these machines. A writer ignores `range`. Throws BytesError.
+    /// Reads or writes the counts of the machines in this range. Throws BytesError.
     void state(Archive& archive, const MachineTable& table, const NumberRange& range);
   };
 
   std::size_t poses() const { return table_->plan().poses().size(); }
   /// Sets the numbers that follow from the moments and sketches of the samples.
   void set_columns(const MachineSums& sums, MonteCarloResult& found, class MonteCarloColumns& columns) const;
-  /// [responses] The values by which machines are judged: their largest magnitudes, or for a limit that is not plain
-  /// the deciding values.
+  /// [responses] The values by which machines are judged: the largest magnitude of each machine, or the value of
+  /// ValueLimit::deciding() for a limit that is not on the magnitude at each pose.
   std::vector<QuantileSketch> judged_values() const;
   MachineResult machines(const MachineSums& sums, std::span<const BinSpread> spreads) const;
   EffectResult effects(const MachineSums& sums, std::span<const BinSpread> spreads) const;

@@ -13,7 +13,8 @@ namespace {
 
 const Axes kByEffectPose{"effect_pose"};
 
-/// The end of descriptions of values that only machines solved at every pose have.
+/// These words end the description of each number over machines, because machines that are not solved at every pose do
+/// not count in it.
 const std::string kOfSolved = " over the machines that are solved at every pose";
 
 /// The fields of a number of each machine. what: the number, such as "largest magnitude over the poses".
@@ -215,7 +216,7 @@ void append_error_columns(CsvTable& table, const std::string& name, const std::s
   table.columns.push_back(list_column(name + "_ci_high_" + response, high));
 }
 
-/// A table of each error's share in the mean square of each limited response.
+/// A table of each error's share in the mean square of each response with a limit.
 CsvTable share_table(const StoredResult& result, const YieldResult& found) {
   CsvTable table = lines_of_factors(result, "mean_square_share");
   for (std::size_t r = 0; r < result.responses.size(); ++r) {

@@ -133,15 +133,16 @@ bool has_curve(const StoredResult& result, std::size_t p) {
   return result.factor_draws.empty() || result.factor_draws[p] != name(Draws::per_pose);
 }
 
-/// Charts of main-effect curves, a panel for each response of the headline. The errors with the largest indices come
-/// first.
+/// Charts of main-effect curves, a panel for each response that a summary shows. The errors with the largest indices
+/// come first.
 Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
   constexpr std::size_t kMost = 12;
   const MainEffects& effects = effects_of(result).effects;
   const std::size_t factors = result.factors.size();
   std::vector<double> below;
   for (std::size_t k = 0; k < kEffectBins; ++k) below.push_back((static_cast<double>(k) + 0.5) / kEffectBins);
-  constexpr std::size_t kAtFirst = 5;  // more bands would hide each other
+  // Number of curves that are shown at first. More bands would hide each other.
+  constexpr std::size_t kAtFirst = 5;
   Lines lines{.x = {"share of the error's values below", "%", pool.add("effect_bin", below, 0.01)},
               .panels = {},
               .most = kAtFirst};

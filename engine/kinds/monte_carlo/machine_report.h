@@ -28,8 +28,8 @@ Table effect_table(const StoredResult& result);
 /// Adds to the page the section on the first-order indices and main effects of the errors.
 void add_effects_section(const StoredResult& result, std::span<const Table> tables, Page& page);
 
-/// Colours of the workspace: for each limit, the share of machines that are rejected at each pose. Empty without
-/// limits.
+/// Fields for maps of the workspace: for each limit, the share of machines that are rejected at each pose. Empty
+/// without limits.
 std::vector<Field> reject_fields(const StoredResult& result, const PoseFigures& figures);
 
 }  // namespace poesy

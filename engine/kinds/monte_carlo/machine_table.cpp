@@ -24,7 +24,7 @@ ErrorScore score_of(const Distribution& distribution) {
       return PolynomialScore(points.points, points.weights);
     }
     case given:
-      return {};  // values of a given list have no size
+      return {};  // the values of a given list have no sigma that could change
   }
   throw std::logic_error("unknown shape of distribution");
 }
@@ -104,7 +104,7 @@ MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis&
 }
 
 std::size_t MachineTable::unit_machines(std::size_t poses, UnitSize size_wanted) {
-  // With rows of 500 numbers, which are nearly a page apart, the solver is a third slower.
+  // With rows of 500 numbers, which are nearly one page of memory apart, the solver is a third slower.
   constexpr std::array<std::size_t, 4> kSizes{1000, 200, 100, 40};
   static_assert(std::ranges::all_of(kSizes, [](std::size_t size) { return Plan::kUnitSamples % size == 0; }));
   constexpr std::size_t kMostSamples = 160'000;

@@ -16,7 +16,7 @@
 
 namespace poesy {
 
-/// How many machines a unit has.
+/// How many machines a unit of work has.
 enum class UnitSize {
   usual,      ///< as many as memory allows
   calibrated  ///< few, because calibrated machines take much longer to solve
@@ -28,7 +28,7 @@ enum class UnitSize {
 class MachineTable {
  public:
   /// Refers to the plan, the model and the calibration (null: machines are not calibrated). keep_all: whether to record
-  /// for every machine whether it is rejected. Precondition: Draws::per_machine.
+  /// for every machine whether it is rejected. Precondition: the study draws errors per machine.
   MachineTable(const Plan& plan, const Model& model, const Analysis& analysis,
                const MachineCalibration* calibration = nullptr, bool keep_all = false);
 
@@ -71,8 +71,8 @@ class MachineTable {
   /// which each machine is judged is recorded.
   std::span<const std::size_t> judged() const { return judged_; }
   std::size_t errors() const { return scores_.each.size(); }  ///< The number of errors.
-  /// The scores of the errors, from which the gradient of the yield with respect to their sizes is estimated. A
-  /// correlated error has a score only if all errors of its block are normal.
+  /// The scores of the errors: derivatives of the logarithm of their density, from which the gradient of the yield with
+  /// respect to their sizes is estimated. A correlated error has a score only if all errors of its block are normal.
   const ErrorScores& scores() const { return scores_; }
   /// The scores of errors that stay fixed in a machine, and the scores of errors that a machine draws anew at each pose
   /// (Plan::per_pose). Each list has empty scores for the errors of the other list.
@@ -83,11 +83,11 @@ class MachineTable {
   /// Whether machines draw some errors anew at each pose.
   bool has_per_pose() const { return !plan_->per_pose().empty(); }
 
-  /// The vectors of the limited responses, to which a linear map is fitted.
+  /// The vectors of the responses with limits (LimitedVector), to which a linear map of the errors is fitted.
   const LimitedVectors& vectors() const { return vectors_; }
   /// [responses] The largest spread of a response that may come from rounding in solves (Model::rounding).
   std::span<const double> rounding() const { return rounding_; }
-  /// Whether the linear map is fitted to the machines of unit n. It is fitted to the first machines, as many as it
+  /// Whether unit n is used to fit the linear map of the errors. It is fitted to the first machines, as many as it
   /// needs.
   bool is_fitted(std::size_t n) const;
   /// The number of machines, from machine 0 on, with which the gradient of the yield by a linear map is estimated. It

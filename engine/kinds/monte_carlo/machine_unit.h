@@ -24,7 +24,7 @@
 /// Units of work of machines, and the sums over machines.
 namespace poesy {
 
-/// Sums over machines whose rounding depends on the order of addition, which MergeTree therefore adds in a fixed order.
+/// Sums over machines. Their rounding depends on the order of addition, so MergeTree adds them in a fixed order.
 struct MachineSums {
   Array<Moments, axis::Pose, axis::Response> at_pose;  ///< moments of the samples that count
   std::vector<Moments> mean;                           ///< [responses] moments of the machines' means over the poses
@@ -56,7 +56,7 @@ struct MachineSums {
   const MachineTable* table_;
 };
 
-/// How many of the same machines would be rejected without calibration, or with another correction.
+/// How many of the calibrated machines would be rejected without calibration, or with another correction.
 struct CalibrationCounts {
   std::uint64_t not_fitted = 0;    ///< machines that were not calibrated: they were not solved, or their fit did not
                                    ///< converge
@@ -115,14 +115,15 @@ class MachineUnitEvaluator : private UnitSolver {
   /// Calibrates the unit's machines, so that the next solves use their controllers. Before that, counts the rejects
   /// without calibration and with the best correction.
   void calibrate(const WorkUnit& unit, MachineUnit& found);
-  /// The rejects among the unit's machines as the present evaluator solves them; 0 without limits.
+  /// The number of the unit's machines that are rejected if the present evaluator solves them; 0 without limits.
   std::uint64_t count_rejects(const WorkUnit& unit);
   /// Draws the errors that machines draw anew at each pose. If main effects are summed at this pose, also updates the
   /// bins.
   void draw_at(const WorkUnit& unit, std::size_t pose, EffectBins& bins);
   void solve_pose(const WorkUnit& unit, std::size_t pose, const EffectBins& bins, MachineBlock& block,
                   MachineUnit& found);
-  /// Counts the poses at which each machine breaks a limit, and records the errors at the first such pose.
+  /// Counts the poses at which each machine breaks a limit or is not solved. At the first such pose, records the errors
+  /// that machines draw anew at each pose.
   void note_rejects(const UnitOutcomes& outcomes, std::span<const std::uint8_t> ok);
   void add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found);
   /// [errors x machines] The present errors minus their means, divided by their standard deviations.
@@ -151,7 +152,8 @@ class MachineUnitEvaluator : private UnitSolver {
   Array<double, axis::Pose, axis::VectorRow, axis::Sample> rows_;
   std::vector<std::uint8_t> poses_beyond_;  ///< [machines] number of poses at which the machine breaks a limit: 0,
                                             ///< 1, or 2 for more
-  /// [errors x machines] Errors at the first pose at which the machine breaks a limit.
+  /// [errors x machines] Errors that machines draw anew at each pose, at the first pose at which the machine breaks a
+  /// limit.
   Array<double, axis::Factor, axis::Sample> deciding_;
 };
 

@@ -120,8 +120,8 @@ Range range_of(const SmoothedValues& parts, std::size_t i) {
   return {parts.values()[i] - parts.half_widths()[i], parts.values()[i] + parts.half_widths()[i]};
 }
 
-/// Adds to `influence` [parts] that of each part's weight on the logarithm of the density f at x: g_i / f - 1, where
-/// g_i is the density of the smoothed value of part i.
+/// Adds to `influence` [parts] the influence of each part's weight on the logarithm of the density f at x: g_i / f - 1,
+/// where g_i is the density of the smoothed value of part i.
 void add_density(const SmoothedValues& parts, double x, std::span<double> influence) {
   const std::size_t n = influence.size();
   bool single = false;  // whether x equals a value that is not smoothed, whose density outweighs all others
@@ -137,8 +137,8 @@ void add_density(const SmoothedValues& parts, double x, std::span<double> influe
   for (std::size_t i = 0; i < n; ++i) influence[i] += static_cast<double>(n) * own(i) / sum - 1.0;
 }
 
-/// Adds to `influence` [parts] what each part's weight does through the normal scores of correlated errors. These
-/// scores depend on the share of the parts below x.
+/// Adds to `influence` [parts] the influence of each part's weight through the normal scores of correlated errors.
+/// These scores depend on the share of the parts below x.
 void add_scores(const PartGroup& group, std::span<const double> x, std::span<double> influence) {
   const std::size_t size = group.errors.size();
   const std::size_t n = group.size();

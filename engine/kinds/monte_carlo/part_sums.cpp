@@ -65,8 +65,9 @@ Interval PartSums::interval(double conf_level) const {
   const auto machines = static_cast<double>(machines_);
   const double yield = 1.0 - static_cast<double>(rejects_) / machines;
   double of_parts = 0.0;
-  double squares = 0.0;  // sum over groups of the squared variance divided by its degrees of freedom, for Welch and
-                         // Satterthwaite's formula
+  // Sum over the groups of the squared variance divided by its degrees of freedom, for the formula of Welch and
+  // Satterthwaite.
+  double squares = 0.0;
   for (std::size_t g = 0; g < sums_.size(); ++g) {
     const auto n = static_cast<double>(sums_[g].size());
     // Subtracting squares_ removes the bias of squared sums over few machines.

@@ -383,8 +383,8 @@ void add_solved_page(const ReportedResult& reported, Page& page) {
               "yield", page);
 }
 
-/// Advice like "Make delta_1 (12 %), ... smaller first", with the errors that alone make most of a response's variance.
-/// Empty if their indices are unknown or small, as they are for norms.
+/// Advice such as "Make smaller first what makes most of the variance of gap alone: delta_1 (12 %), ...". Empty if the
+/// errors' indices are unknown or small, as they are for norms.
 std::string drivers_text(const StoredResult& result, std::size_t r) {
   constexpr std::size_t kMost = 3;
   constexpr double kLittle = 0.1;
@@ -408,8 +408,8 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
                      text);
 }
 
-/// Advice like "Make flange_x (36 %), ... smaller first", with the errors that add most to the mean square of a limited
-/// response. Empty if their shares are not known.
+/// Advice such as "Make smaller first what adds most to the mean square of gap: flange_x (36 %), ...", for a response
+/// with a limit. Empty if the errors' shares are not known.
 std::string limit_drivers_text(const StoredResult& result) {
   constexpr std::size_t kMost = 3;
   const auto shares = response_shares(result);
@@ -446,7 +446,7 @@ std::string advice(const StoredResult& result, std::size_t r) {
   return std::string(first) + which;
 }
 
-/// The answer: the expected values of a response, and its worst pose.
+/// The answer at the top of the report: the expected values of a response, and its worst pose.
 Answer answer(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.poses() == 0 || found.levels.empty()) return {};
@@ -504,8 +504,8 @@ std::vector<double> rms_at_poses(const StoredResult& result, std::size_t respons
   return {values.begin(), values.end()};
 }
 
-/// The shares of errors in the mean square of a limited response, or first-order indices if there are none; and the
-/// root mean square at each pose.
+/// The shares of errors in the mean square of a response with a limit, or first-order indices if there are none; and
+/// the root mean square at each pose.
 ErrorShares error_shares(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.poses() == 0) return {};

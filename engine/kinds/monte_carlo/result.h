@@ -94,7 +94,7 @@ struct YieldResult {
   Array<double, axis::Factor> change = {};
   Array<double, axis::Factor> change_ci_low = {};   ///< lower ends of the intervals of change
   Array<double, axis::Factor> change_ci_high = {};  ///< upper ends of the intervals of change
-  /// Share of each error in the mean square of each limited response; NaN if not known.
+  /// Share of each error in the mean square of each response with a limit; NaN if not known.
   Array<double, axis::Response, axis::Factor> mean_square_share = {};
   /// Lower ends of the intervals of mean_square_share.
   Array<double, axis::Response, axis::Factor> mean_square_share_ci_low = {};
@@ -127,8 +127,8 @@ struct MainEffects {
   Curves ci_high;      ///< upper ends of the intervals of mean
 };
 
-/// Yields of the same machines without calibration and with the best correction. YieldResult has the yield with
-/// calibration.
+/// Yields of the calibrated machines as they would be without calibration, and with the best correction. YieldResult
+/// has the yield with calibration.
 struct CalibrationYields {
   double uncalibrated = 0.0;          ///< yield without calibration
   double uncalibrated_ci_low = 0.0;   ///< lower end of the interval of uncalibrated

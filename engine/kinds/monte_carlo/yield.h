@@ -24,8 +24,8 @@ void set_estimate(const Estimate& estimate, Values& value, Values& low, Values& 
   high(at...) = estimate.interval.high;
 }
 
-/// The statistics of a number of each machine. moments, sketches: [responses] of that number over the machines that are
-/// solved at every pose.
+/// Statistics over machines of one number of each machine, such as its largest magnitude. moments, sketches:
+/// [responses] of that number, over the machines that are solved at every pose.
 MachineValues machine_values(std::span<const Moments> moments, std::span<const QuantileSketch> sketches,
                              const Analysis& analysis);
 
@@ -33,7 +33,8 @@ MachineValues machine_values(std::span<const Moments> moments, std::span<const Q
 YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::span<const ResponseLimit> limits,
                      double conf_level);
 
-/// The yields of the same machines without calibration and with the best correction. found: the yield with calibration.
+/// The yields of the calibrated machines as they would be without calibration, and with the best correction. found: the
+/// yield with calibration.
 CalibrationYields calibration_yields(const CalibrationCounts& counts, const MachineCalibration& calibration,
                                      const YieldResult& found);
 

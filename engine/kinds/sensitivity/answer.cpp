@@ -124,9 +124,8 @@ std::string worst_place_text(const StoredResult& result) {
     if (effects[m] > effects[worst]) worst = m;
   }
   const double ratio = effects.empty() ? 0.0 : effects[worst] * static_cast<double>(effects.size()) / sum;
-  if (!(ratio >= kHardlyDiffers))
-    return {};  // this also covers an unknown effect, because a comparison with NaN is
-                // false
+  // This also covers an unknown effect, because a comparison with NaN is false.
+  if (!(ratio >= kHardlyDiffers)) return {};
   return fmt::format("The effect of {} on {} is largest at {}, {:.1f} times its mean over the poses.",
                      result.factors[error].name, result.responses[ranked.response].name, place_text(result, worst),
                      ratio);

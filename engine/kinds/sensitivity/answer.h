@@ -7,8 +7,8 @@
 
 namespace poesy {
 
-/// Two sentences that name the errors which make most of the mean square, and those which together make hardly any of
-/// it. Empty if an effect is not known, or if no error has an effect.
+/// Two sentences: which errors make most of the mean square, and how many errors together make hardly any of it. Empty
+/// if an effect is not known, or if no error has an effect.
 std::string few_matter_text(const StoredResult& result);
 
 /// A sentence on the pose at which the most important error has its largest effect; empty if the effect hardly differs

@@ -25,10 +25,10 @@ struct CellStats {
 
   std::size_t size() const { return solves.size(); }  ///< The number of cells.
   UnitStats at(std::size_t cell) const;               ///< The statistics of one cell.
-  /// Reads or writes one cell, whose samples begin at `first`.
+  /// Reads or writes the statistics of one cell. first: number of the cell's first sample.
   void state(Archive& archive, std::size_t cell, std::uint64_t first);
   CellStats part(const NumberRange& cells) const;  ///< The statistics of a range of cells.
-  /// Adds a unit to a cell. Precondition: see UnitStats::merge().
+  /// Adds the statistics of a unit of work to those of its cell. Precondition: see UnitStats::merge().
   void merge(std::size_t cell, const UnitStats& unit);
   /// Adds later samples of the same cells. Frees the memory of `later` step by step. Precondition: the samples of
   /// `later` come after those of this object.

@@ -16,29 +16,31 @@
 
 namespace poesy {
 
-/// Computes the global indices of a sensitivity study after fewer samples, at its history points
-/// (engine/run/evaluate_unit.h), while units are merged. When all poses of a slot have reached a point, the indices
-/// there are computed and the data of the poses are dropped. Because cells are solved slot by slot, only the data of
-/// one slot are in memory: 16 bytes for each response, pose and point. A continued run or a shard may also hold the
-/// data of slots that it has only in part.
+/// Computes the course of the global indices of a sensitivity study over the number of samples, while units are merged.
+/// The course has indices at the history points, which are fixed numbers of samples such as 100, 200 and 500
+/// (history_points() in engine/run/evaluate_unit.h). When all poses of an error have reached a point, the global
+/// indices there are computed and the local indices are dropped. Errors are solved one after the other, so only the
+/// data of one error are in memory: 16 bytes for each response, pose and point. A continued run or a shard may also
+/// hold the data of errors that it has only in part.
 class HistoryCollector {
  public:
   /// Refers to the plan.
   HistoryCollector(const Plan& plan, std::size_t responses, double conf_level);
 
-  /// Adds the next unit of its cell. within: [points x responses] indices at the history points inside the unit. cell:
-  /// statistics of all samples of the cell up to this unit; only used if the unit ends at a history point. A smaller
-  /// last unit ends at a history point only if it is also the first unit of its cell.
+  /// Adds the next unit of a cell (one error at one pose). within: [points x responses] local indices at the history
+  /// points inside the unit. cell: statistics of all samples of the cell up to this unit; only used if the unit ends at
+  /// a history point. A smaller last unit ends at a history point only if it is also the first unit of its cell.
   void add(const WorkUnit& unit, std::span<const LocalIndex> within, const UnitStats& cell);
-  /// The course of the indices over all points. Precondition: all units of all cells were added. end: the final result.
+  /// The course of the indices over all history points. Precondition: all units of all cells were added. end: the final
+  /// result.
   EstimateCourse history(const SensitivityResult& end) const;
 
-  /// Writes the indices at all points, or reads and adds those of other cells, from a plan with this many samples (at
-  /// most those of this plan). units_done: [cells] number of units of each cell.
+  /// Writes the indices at all history points, or reads them and adds them to those of this object. samples: number of
+  /// samples of the study that wrote them, at most that of this plan. units_done: [cells] number of units of each cell.
   void state(Archive& archive, std::span<const std::size_t> units_done, std::size_t samples);
 
  private:
-  /// The indices of one slot at one history point.
+  /// The indices of one error at one history point.
   struct Look {
     std::size_t reached = 0;  ///< number of poses that have reached the point
     /// Local indices, until all poses have reached the point.
@@ -51,9 +53,10 @@ class HistoryCollector {
   };
 
   std::size_t poses() const { return plan_->poses().size(); }
-  /// Adds the local indices [responses] of a cell at a point.
+  /// Adds the local indices [responses] of a cell at a history point.
   void add(std::size_t cell, std::size_t point, std::span<const LocalIndex> indices);
-  /// The poses of the slot that have reached this point. units_done: [cells] number of units of each cell.
+  /// The poses at which an error has reached this history point. slot: position of the error in the plan's factors().
+  /// units_done: [cells] number of units of each cell.
   std::vector<std::size_t> poses_at(std::size_t slot, std::size_t point, std::span<const std::size_t> units_done) const;
 
   const Plan* plan_;
@@ -63,8 +66,8 @@ class HistoryCollector {
   Array<Look, axis::Factor, Point> looks_;
 };
 
-/// Merges the units of a sensitivity study, cell by cell: the sums of a PoseFold (run/pose_fold.h). The result of a
-/// cell depends only on the order of its own units.
+/// Merges the units of a sensitivity study, cell by cell; a cell is one error at one pose. Objects of this class are
+/// the sums of a PoseFold (run/pose_fold.h). The result of a cell depends only on the order of its own units.
 class SensitivityCollector : public CellSums<CellStats> {
  public:
   /// Collects the cells of this shard of the plan. Refers to the plan.
@@ -75,7 +78,7 @@ class SensitivityCollector : public CellSums<CellStats> {
   /// The course of the indices over the history points, which ends with the indices of `end`. Precondition: all units
   /// of all cells were added, and the study has a fixed number of samples.
   EstimateCourse history(const SensitivityResult& end) const { return history_.history(end); }
-  /// Writes all cells, or reads and adds the cells of a plan with this many samples.
+  /// Writes the statistics of all cells, or reads those of a plan with this many samples and adds them.
   void state(Archive& archive, std::size_t samples);
 
  private:

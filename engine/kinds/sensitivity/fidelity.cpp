@@ -15,7 +15,7 @@
 namespace poesy {
 namespace {
 
-/// The largest spread, SI, that may be the rounding of a solver: kIndexRounding with errors of 1e-3.
+/// The largest spread, SI, that may be the rounding of a solver: kIndexRounding times an error of 1e-3.
 constexpr double kSpreadRounding = 1e-13;
 
 /// The results at two fidelities, with the dimensions and sigmas of both.

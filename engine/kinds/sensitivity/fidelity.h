@@ -17,7 +17,7 @@ namespace poesy {
 /// responses of the same dimension. Therefore an error is not called nonlinear because of a component on which it
 /// hardly acts.
 ///
-///     discrepancy           global of the second - global of the first
+///     discrepancy           global index at the second fidelity - global index at the first
 ///     relative_discrepancy  discrepancy / effect
 ///     nonlinearity          root mean square over the poses of hypot(m1 - m2, s1 - s2) / sigma, over effect
 ///
@@ -26,11 +26,11 @@ namespace poesy {
 /// but hardly changes the spread. It is at most the root mean square difference of the samples themselves.
 ///
 /// An error is linear if its nonlinearity and the magnitude of its relative discrepancy are at most `linearity` for all
-/// responses. An effect below 1e-10 in SI, or with a spread below 1e-13 in SI, is rounding. If the effect at the first
-/// fidelity is rounding, the ratios are NaN if the effect at the second is rounding too, otherwise infinite. An error
-/// is not called linear if an index is unknown, or if the two fidelities solved different numbers of samples, because
-/// linearity was not shown. A verdict holds for errors of the study's size; larger errors may be nonlinear. The names
-/// of the fidelities are left empty.
+/// responses. An effect is rounding if it is below 1e-10 in SI, or if the spread that it causes (effect x sigma) is
+/// below 1e-13 in SI. If the effect at the first fidelity is rounding, the ratios are NaN if the effect at the second
+/// is rounding too, otherwise infinite. An error is not called linear if an index is unknown, or if the two fidelities
+/// solved different numbers of samples, because linearity was not shown. A verdict holds for errors of the study's
+/// size; larger errors may be nonlinear. The names of the fidelities are left empty.
 FidelityResult compare_fidelities(const SensitivityResult& first, const SensitivityResult& second,
                                   std::span<const Dimension> dimensions, std::span<const double> sigma,
                                   double linearity);

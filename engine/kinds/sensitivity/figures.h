@@ -16,11 +16,11 @@ namespace poesy {
 /// How the solves ended, for each error and pose.
 SolveTally sensitivity_tally(const StoredResult& result);
 
-/// Which responses the figures show at each pose. Curves along a trajectory show the same numbers as the map.
+/// Which responses the figures show at each pose. Curves along a trajectory show the same numbers as the heat map.
 ShownCells sensitivity_cells(const StoredResult& result);
 
-/// Indices in display units, as effects (index x sigma) or as indices, responses in the order of response_order().
-/// Row-major: [responses x errors].
+/// Indices in display units, either as effects (index x sigma) or as they are. Row-major: [responses x errors], with
+/// the responses in the order of response_order().
 std::vector<double> in_shown_units(const StoredResult& result, const SensitivityResult::Indices& indices,
                                    bool as_effect);
 

@@ -30,13 +30,14 @@ SensitivityResult sensitivity_result(const Plan& plan, CellStats cells,
 /// An index below this magnitude is rounding, for an error with this standard deviation (stats/indices.h).
 double index_rounding(const SensitivityResult& result, std::size_t response, double sigma);
 
-/// The data of one response from which tolerances are set, with the published index. sigma: [errors] standard
-/// deviations of the study's errors. error_mean: [errors] their means; empty if all are zero. Refers to its arguments.
+/// The data of one response from which tolerances are set. Its indices are those of the published estimator. sigma:
+/// [errors] standard deviations of the study's errors. error_mean: [errors] their means; empty if all are zero. Refers
+/// to its arguments.
 ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma,
                              std::span<const double> error_mean, std::size_t response);
 
-/// The tolerances for one response, relative to this reference. Without a reference, tolerances of equal effect are
-/// NaN.
+/// The tolerances for one response, relative to this reference error. Without a reference, tolerances of equal effect
+/// are NaN.
 Tolerances response_tolerances(const SensitivityResult& result, std::span<const double> sigma,
                                std::span<const double> error_mean, std::size_t response,
                                const std::optional<ReferenceError>& reference);

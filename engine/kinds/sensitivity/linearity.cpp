@@ -30,11 +30,11 @@ constexpr std::size_t kSizes = 2;
 constexpr std::size_t kSigns = 2;
 constexpr std::array kScales{1.0, -1.0, kSmallerSize, -kSmallerSize};
 
-/// The number of poses at which draws are solved at both sizes.
+/// The number of poses at which draws are solved at the study's size and at a tenth of it.
 std::size_t chosen_poses(const Plan& plan) { return some_poses(plan.poses().size()); }
 
-/// The first draws of a cell at a chosen pose. chosen_cell: number of the cell among those at chosen poses, slot by
-/// slot.
+/// The draws that are solved again, of one cell (one error at one of chosen_poses()). chosen_cell: number of this cell;
+/// all poses of one error come before those of the next.
 WorkUnit first_draws(const Plan& plan, std::size_t chosen_cell) {
   const std::size_t poses = chosen_poses(plan);
   return {chosen_cell / poses, some_pose(chosen_cell % poses, plan.poses().size()), SampleIndex(0),
@@ -85,7 +85,8 @@ class CellEvaluator {
   UnitEvaluator solve_;
 };
 
-/// Collects the indices of cells, slot by slot, and computes the changes of an error when all its poses are there.
+/// Collects the local indices of one error after the other, and computes the changes of an error's indices when all its
+/// poses are there.
 struct ChangeSums {
   const Plan* plan;
   std::vector<double> rounding;  ///< [responses] rounding of each response

@@ -17,11 +17,12 @@
 /// result contains it.
 namespace poesy {
 
-/// The number of draws of a cell that are solved at both sizes: the first draws of the study, or all if there are
-/// fewer. Their mirror images, with opposite signs, are solved as well.
+/// To check linearity, this number of draws of each error is solved at the study's size and at a tenth of it, at each
+/// of some poses: the first draws of the study, or all if there are fewer. Their mirror images, with opposite signs,
+/// are solved as well.
 inline constexpr std::size_t kLinearityDraws = 16;
 
-/// The second size, as a multiple of the study's sizes.
+/// The smaller size at which draws are solved again, as a multiple of the study's size.
 inline constexpr double kSmallerSize = 0.1;
 
 /// The relative change of each global index if the errors are a tenth as large: the index at a tenth of the size,
@@ -60,7 +61,8 @@ inline constexpr double kNegligible = 1e-3;
 
 /// The errors whose index on the response changes with size, but whose effect is negligible. Such an error adds at the
 /// studied size at most kNegligible / P of `added` to the response's mean square, where P is the number of all errors.
-/// Its tolerance can be the studied size, so its index at other sizes is not needed.
+/// added: what all errors together may add to it. The tolerance of a negligible error can be the studied size, so its
+/// index at other sizes is not needed.
 std::vector<std::size_t> negligible_errors(const StoredResult& result, std::size_t response,
                                            const MeanSquare& mean_square, double added);
 

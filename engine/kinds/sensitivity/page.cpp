@@ -24,7 +24,7 @@
 namespace poesy {
 namespace {
 
-/// An interval is called wide if an end is farther from the index than this share of it.
+/// An interval is called wide if the distance of an end from the index is more than this share of the index.
 constexpr double kWideInterval = 0.10;
 
 constexpr std::string_view kCorrected =

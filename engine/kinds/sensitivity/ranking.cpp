@@ -132,7 +132,7 @@ Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder or
 /// last one, then the rank.
 enum Dispensable : int { kIndexChange = 1, kNotConverged = 2, kRank = 3, kFirstOther = 4 };
 
-/// The responses of the headline that have a dimension, except the one that ranks.
+/// The responses that a summary shows (the headline) and that have a dimension, except the one that ranks.
 std::vector<std::size_t> other_responses(const StoredResult& result, std::size_t ranking) {
   std::vector<std::size_t> others;
   for (const std::size_t r : varying_first(result, result.headline)) {

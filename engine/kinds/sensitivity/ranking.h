@@ -63,8 +63,8 @@ FilledColumn rank_column(const StoredResult& result, const RankedErrors& ranked,
 
 /// Tables with the errors in the chosen order:
 /// - ranked: for each error, its effect on the response by which errors are ranked (global index x sigma), the index
-/// and its interval, the indices for the other responses of the headline, the share of samples that did not converge,
-/// and the published index where it differs from the shown one; in mm and deg;
+///   and its interval, the indices for the other responses that a summary shows, the share of samples that did not
+///   converge, and the published index where it differs from the shown one; in mm and deg;
 /// - separation and fidelity, if the result has them.
 std::vector<Table> sensitivity_tables(const StoredResult& result, const TableOptions& options);
 

@@ -32,12 +32,12 @@ struct SensitivityOptions {
 extern const StudyKind kSensitivityStudy;
 
 namespace axis {
-using RadiusMultiple = Axis<"radius_multiple">;  ///< Multiples of the distance of the metric's points from their
-                                                 ///< middle.
+/// Multiples of the distance of the platform's points from their middle. The points are those that define the metric.
+using RadiusMultiple = Axis<"radius_multiple">;
 }  // namespace axis
 
-/// How much of each error's effect the actuators can remove, to first order. Effects are those of model/model.h, in m
-/// per SI unit of the error. NaN if an error has no effect.
+/// How much of each error's effect the actuators can remove, to first order. Effects are those of Separation
+/// (model/model.h), in m per SI unit of the error. NaN if an error has no effect.
 struct SeparationResult {
   /// A number for each error and pose.
   using Cells = Array<double, axis::Factor, axis::Pose>;
@@ -51,7 +51,7 @@ struct SeparationResult {
   /// D / (D + C), with the root mean squares D of `drive` and C of `constraint` over the poses.
   Array<double, axis::Factor> drive_share;
   Array<double, axis::Factor> removable;  ///< 1 - residual / effect, each as a root mean square over the poses
-  /// 1 - residual / effect for all errors together, which are independent and have their standard deviations.
+  /// 1 - residual / effect for all errors together, if they are independent and have the study's standard deviations.
   double removable_together = 0.0;
   Array<std::string, axis::Factor> published;  ///< class of each error in the literature; empty if it gives none
 };
@@ -89,7 +89,7 @@ struct SensitivityResult {
   Cells<double> local;                     ///< local index: Du et al. 2022, Eqs. 51-52
   Cells<double> local_ci_low;              ///< lower ends of the intervals of `local`
   Cells<double> local_ci_high;             ///< upper ends of the intervals of `local`
-  Cells<std::uint64_t> count;              ///< number of samples
+  Cells<std::uint64_t> count;              ///< number of samples that count in statistics
   Cells<double> mean;                      ///< mean of the response over the samples
   Cells<double> std;                       ///< standard deviation of the response over the samples
   Indices global;                          ///< global index as published: Du et al. 2022, Eqs. 53-54
@@ -119,7 +119,7 @@ struct SensitivityResult {
   /// (engine/run/evaluate_unit.h). The last entry is the result itself.
   std::optional<EstimateCourse> history;
 
-  // Set by a run only. For a result from a file, StoredResult has these.
+  // The following members are set by a run only. A result that was read from a file has them in StoredResult.
   std::vector<Failure> failures;                 ///< first failed samples, ordered by error, pose and sample
   std::optional<ConvergenceResult> convergence;  ///< course of adaptive samples; set if the study has adaptive samples
 

@@ -75,7 +75,8 @@ std::size_t position(const std::vector<NamedUnit>& things, const std::string& na
                    suggestion(name, names(things)));
 }
 
-/// A positive quantity in SI, with the dimension of the owner's unit.
+/// The positive quantity (SI) that an option states. owner: the response or error to which it belongs, whose unit has
+/// its dimension.
 double positive(const std::string& text, std::string_view option, const NamedUnit& owner) {
   const Dimension dimension = dimension_of(owner.unit);
   const std::string example = fmt::format("{} is measured in {}", owner.name, display_unit(dimension).name);

@@ -59,15 +59,14 @@ ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t res
 ///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit, studied_as (its distribution in the
 ///     study) | index, index_ci_low, index_ci_high, mean_square_share, index_change (as
 ///     /sensitivity/index_change), with a limit limit_equal_effect and limit_equal_tolerance, and equal_effect, which
-///     keeps no limit, in `unit`; then the tolerances once more in `display_unit`: equal_effect_display ...
+///     does not depend on a limit, in `unit`; then the tolerances once more in `display_unit`: equal_effect_display ...
 ///
-/// This is the only table in which columns after the first also contain text. A tolerance is the standard deviation of
-/// a normal error, whatever distribution was studied; "inf" means that the error alone has no effect. Returns the path.
-/// Throws FileError.
+/// A tolerance is the standard deviation of a normal error, whatever distribution was studied; "inf" means that the
+/// error alone has no effect. Returns the path. Throws FileError.
 std::string write_tolerances(const std::string& folder, const StoredResult& result,
                              const ResponseTolerances& tolerances);
 
-/// Claims the files that write_tolerances() will write, and with a limit those of write_confirmation(). Throws
+/// Claims tolerances.csv, and with a limit the studies of write_confirmation() and their table of poses. Throws
 /// InputError if a file would be replaced that poesy did not write.
 void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, const ResponseTolerances& tolerances,
                            const Catalog& catalog);

@@ -12,7 +12,8 @@
 
 namespace poesy {
 
-/// A unit of work: consecutive samples of a panel, which are solved at all poses.
+/// A unit of work: consecutive samples of a panel (IndexPanel), which are solved at all poses. A sample of a panel is a
+/// draw A, a draw B, and mixtures of the two.
 struct PanelUnit {
   std::size_t replicate;  ///< replicate of the design; 0 for random draws
   std::size_t first;      ///< position of the first sample within the replicate
@@ -30,7 +31,8 @@ using PanelPoints = std::variant<std::monostate, LatinHypercube, ScrambledSobol>
 /// the same for any number of threads and ranks.
 class PanelDesign {
  public:
-  /// The largest number of samples in a unit. Milestones of adaptive sampling are at the ends of units.
+  /// The largest number of samples in a unit. The numbers of samples after which adaptive sampling decides are whole
+  /// numbers of units.
   static constexpr std::size_t kUnitSamples = 125;
 
   /// Refers to the plan.
@@ -44,7 +46,7 @@ class PanelDesign {
   std::size_t units() const { return replicates_ * units_per_replicate(); }
   PanelUnit unit(std::size_t n) const;  ///< Unit n, counted replicate by replicate.
 
-  /// The number of units that contain this many first samples. Precondition: samples are independent.
+  /// The number of units that contain the first `samples` samples. Precondition: samples are independent.
   std::size_t units_for(std::size_t samples) const { return (samples + kUnitSamples - 1) / kUnitSamples; }
 
   /// [samples] The uniforms of one error in the unit's samples. slot: position among the plan's factors. With random

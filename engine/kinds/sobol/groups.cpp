@@ -85,8 +85,8 @@ std::vector<std::string> split(const std::string& text) {
 /// The name of a component without its axis: "omega" of "omega_x".
 std::string stem_of(const std::string& component) { return component.substr(0, component.find_last_of('_')); }
 
-/// Adds to `vectors` one vector for each sequence of components of this additional output with the same unit. first:
-/// position of its first component.
+/// Divides the components of an additional output into sequences with the same unit, and adds a vector for each
+/// sequence to `vectors`. first: position of the output's first component, as in SignedVector::components.
 void append_parts(const Detail& detail, std::size_t first, std::vector<SignedVector>& vectors) {
   const std::vector<std::string> units = component_units(detail);
   const bool alone = units == std::vector(units.size(), detail.unit);

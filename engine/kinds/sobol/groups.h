@@ -14,7 +14,7 @@
 
 namespace poesy {
 
-/// Errors that vary together in a pair of samples: either all or none are exchanged.
+/// Errors that vary together: a mixture of two samples takes either all of them or none of them from the second sample.
 struct ErrorGroup {
   std::string name;                  ///< name of the group; a single error has its own name
   std::vector<std::size_t> members;  ///< positions among the study's errors, ascending

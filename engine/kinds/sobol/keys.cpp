@@ -232,8 +232,8 @@ void check_zone_groups(const Study& study, const StudySection& analysis) {
   }
 }
 
-/// Throws InputError if a machine draws an error anew at each pose. A pair of samples shares or exchanges an error as a
-/// whole, at all poses.
+/// Throws InputError if a machine draws an error anew at each pose. A mixture of two samples takes each error from one
+/// of them at all poses.
 void check_draws(const Study& study, const StudySection& analysis) {
   for (const FactorIndex factor : study.analysis.factors) {
     if (!study.errors.is_per_pose(factor)) continue;

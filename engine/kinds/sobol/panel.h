@@ -33,7 +33,7 @@ using BlockError = Axis<"block_error">;  ///< Errors of a block of correlated er
 /// independent samples A and B of all errors, and mixtures, which have the errors of some groups from B and all others
 /// from A.
 struct IndexPanel {
-  /// The panel of a study. Precondition: the study is of Sobol' indices.
+  /// Describes the panel of samples of this study. Precondition: the study is of Sobol' indices.
   IndexPanel(const Study& study, std::size_t pose_count);
 
   std::vector<ErrorGroup> groups;     ///< groups of errors
@@ -43,8 +43,10 @@ struct IndexPanel {
   std::size_t responses;              ///< number of responses
   std::size_t details;  ///< number of components of the model's additional outputs; 0 if no vector needs them
   std::size_t poses;    ///< number of poses
-  std::vector<std::uint8_t> split;  ///< [groups] see split_groups(); a group with 1 has neither S1 nor ST
-  bool shapley;                     ///< whether Shapley effects are wanted
+  /// [groups] 1 if an error of the group is correlated with an error of another group, otherwise 0. A group with 1 has
+  /// neither S1 nor ST.
+  std::vector<std::uint8_t> split;
+  bool shapley;  ///< whether Shapley effects are wanted
 
   std::size_t quantities() const { return responses + vectors.size(); }  ///< The length of axis::PanelQuantity.
   std::size_t rows() const { return responses + details; }               ///< The length of axis::PanelRow.
@@ -68,7 +70,7 @@ struct IndexSums {
   void state(Archive& archive);        ///< Reads or writes the sums, bit for bit.
 };
 
-/// Sums over some samples of a panel.
+/// Sums over some samples of a panel (IndexPanel), from which the indices are computed.
 struct PanelSums {
   PanelSums() = default;
   explicit PanelSums(const IndexPanel& panel);  ///< Empty sums.
@@ -82,12 +84,13 @@ struct PanelSums {
   std::vector<SolveCounts> solves;      ///< [poses] how the solves at each pose ended
   std::vector<FailedSamples> failed;    ///< [poses] first samples of A that were not solved
   std::vector<std::uint64_t> failures;  ///< [poses] number of samples of A that were not solved
-  std::uint64_t end = 0;                ///< one more than the largest number of a sample, or larger
+  std::uint64_t end = 0;                ///< upper bound of the numbers of samples: each is smaller than this
 
   /// Adds later samples of the same panel. Precondition: the samples of `later` come after those of this object.
   void merge(const PanelSums& later);
-  /// The sums of a single sample whose values are the means over all samples of these sums. Used for a replicate of a
-  /// design: its samples depend on each other, so only their mean counts as an independent sample.
+  /// The sums of a single sample whose values are the means over all samples of these sums; moments and counts stay as
+  /// they are. Used for a replicate of a design: its samples depend on each other, so only their mean counts as an
+  /// independent sample.
   PanelSums as_one() const;
 
   void state(Archive& archive);  ///< Reads or writes the sums, bit for bit.
@@ -95,14 +98,14 @@ struct PanelSums {
 
 /// A block of correlated errors that belong to several groups.
 struct SplitBlock {
-  std::vector<std::size_t> slots;   ///< [block] slot of each error
+  std::vector<std::size_t> slots;   ///< [block] position of each error in Plan::factors()
   std::vector<std::size_t> groups;  ///< [block] group of each error
   const NormalCopula* copula;       ///< joint distribution of the errors
 };
 
-/// The draws of a split block for Shapley effects. A mixture takes the errors of some groups from A and draws the
-/// others. Its number has bit g set if group g is drawn. The mixture determines which errors of the block are drawn
-/// conditional on which others.
+/// The draws of a block of correlated errors for Shapley effects, if the block belongs to several groups. A mixture
+/// takes the errors of some groups from A and draws the others; bit g of the mixture's number is set if group g is
+/// drawn. The mixture determines which errors of the block are drawn conditional on which others.
 struct SplitDraws {
   /// The errors of a block in one mixture.
   struct Mixture {
@@ -147,13 +150,13 @@ class PanelEvaluator {
     OfSamples<axis::PanelRow> values;
     Flags counts;  ///< whether each sample counts
   };
-  /// Numbers for each quantity, group and sample. A and B are the two independent samples; the mixture C is A with the
-  /// errors of the group from B.
+  /// Numbers from which the indices of each group are computed, for each quantity and sample. A and B are the two
+  /// independent samples; the mixture C is A with the errors of the group from B.
   struct GroupRows {
     OfSamples<axis::PanelQuantity, axis::ErrorGroup> total;  ///< squared difference of the outcomes of A and C
     /// The part of the variance that B and C share: the squared difference of A and B minus that of B and C.
     OfSamples<axis::PanelQuantity, axis::ErrorGroup> first;
-    /// Squared difference of the outcomes of A and B; 0 unless A, B and C all count.
+    /// Squared difference of the outcomes of A and B. In over_poses_, poses at which A, B or C does not count add 0.
     OfSamples<axis::PanelQuantity, axis::ErrorGroup> between;
   };
 
@@ -175,8 +178,8 @@ class PanelEvaluator {
   void keep_differences(std::size_t subset);
   void add_shapley(PoseIndex pose);
   void take(std::size_t group, const OfSamples<axis::Factor>& from);
-  /// Sets responses of the mixture to those of A if they differ only by rounding, so that rounding does not count as an
-  /// effect.
+  /// Sets the outcomes of a mixture to those of A, for each sample in which all responses differ only by rounding, so
+  /// that rounding does not count as an effect.
   void absorb();
   /// Adds to `sum` [samples] the squared difference of a quantity between two outcomes, summed over its components.
   void add_squared_differences(std::size_t quantity, const Outcomes& one, const Outcomes& other,
@@ -198,7 +201,8 @@ class PanelEvaluator {
   OfSamples<axis::PanelQuantity> between_;
   GroupRows at_pose_;     ///< numbers at the present pose
   GroupRows over_poses_;  ///< numbers summed over the poses
-  /// GroupRows::first for each pair of groups, summed over the poses.
+  /// For each pair of groups: GroupRows::first of both groups exchanged together, minus that of each group alone,
+  /// summed over the poses.
   OfSamples<axis::Response, axis::GroupPair> pair_first_;
   /// Squared difference of the outcomes of samples A and B for each pair of groups, summed over the poses.
   OfSamples<axis::Response, axis::GroupPair> pair_between_;

@@ -251,7 +251,8 @@ void add_shares(const StoredResult& result, std::span<const Table> tables, Page&
       percent_text(found.aggregated.conf_level)));
   add_index_bars(result, page, section);
   add_shapley_bars(result, page, section);
-  std::vector<Table> others;  // than that of the response which the figure shows first
+  // Tables of the responses that the figure does not show first.
+  std::vector<Table> others;
   for (bool first = true; const Table& table : tables) {
     if (!table.name.starts_with("sobol_")) continue;
     if (first) {
@@ -360,8 +361,8 @@ std::string largest_shares(const SobolResult& found, std::span<const double> sha
   return text;
 }
 
-/// The answer for the response by which errors are ranked, by Shapley effects if there are any, otherwise by total
-/// indices.
+/// The answer at the top of the report, for the response by which errors are ranked. It states Shapley effects if there
+/// are any, otherwise total indices.
 Answer answer(const StoredResult& result) {
   constexpr double kWide = 0.2;
   const SobolResult& found = sobol_of(result);

@@ -128,7 +128,7 @@ struct SobolResult {
   Shares<axis::Response, axis::ErrorGroup> Sh;  ///< Shapley effects over all poses, which add up to 1
   std::vector<SolveCounts> solves;              ///< [poses] how the solves at each pose ended
   std::vector<Failure> failures;                ///< first failed samples, ordered by pose and sample
-  std::uint64_t failed_samples = 0;             ///< number of failed samples, among the samples with an address
+  std::uint64_t failed_samples = 0;  ///< number of failed samples A, if `poesy replay` can repeat them; otherwise 0
   /// Course of adaptive samples; set if the study has adaptive samples.
   std::optional<ConvergenceResult> convergence = std::nullopt;
 
@@ -146,8 +146,8 @@ std::size_t sobol_bytes(const AxisLengths& lengths);
 /// The Sobol' indices in a stored result. Precondition: the result is of kind `sobol`.
 inline const SobolResult& sobol_of(const StoredResult& result) { return found_of<SobolResult>(result); }
 
-/// Tables of first-order and total indices over all poses for each response of the headline, then tables of the signed
-/// vectors and of the pairs of groups.
+/// Tables of first-order and total indices over all poses for each response that a summary shows, then tables of the
+/// signed vectors and of the pairs of groups.
 std::vector<Table> sobol_tables(const StoredResult& result, const TableOptions& options = {});
 
 }  // namespace poesy

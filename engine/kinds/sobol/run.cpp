@@ -22,15 +22,15 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The index by which sampling is judged: ST of the group, or its Shapley effect if it has no ST.
+/// The index of a group by which adaptive sampling decides: ST, or the Shapley effect of a group without ST.
 Estimate headline_index(const IndexPanel& panel, const PanelSums& sums, std::size_t r, std::size_t g,
                         double conf_level) {
   return (panel.split[g] != 0 ? sums.shapley(r, g) : sums.aggregated(r, g).total).estimate(conf_level);
 }
 
-/// For each response: the largest ST, with the largest half-width of an interval over all groups. It shows how certain
-/// the indices of a panel are. Zero for a response that does not vary, so that it causes no more samples. rounding:
-/// [rows] see row_rounding().
+/// For each response: the largest ST of a group (or Shapley effect of a group without ST), with the largest half-width
+/// of an interval over all groups. It shows how certain the indices of a panel are. Zero for a response that does not
+/// vary, so that it causes no more samples. rounding: [rows] see row_rounding().
 std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelSums& sums,
                                            std::span<const double> rounding, double conf_level) {
   const std::vector<std::uint8_t> varies = varying_quantities(panel, sums, rounding);

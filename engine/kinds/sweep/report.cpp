@@ -76,7 +76,7 @@ std::string names_of_keys(const SweepResult& found) {
   return text;
 }
 
-/// A sentence on the best design: "The yield is largest at R = 375 mm: 78.9 %, at R = 150 mm it is 14.1 % (+64.8
+/// A sentence on the best design: "The yield is largest at R = 375 mm: 78.9 %; at R = 150 mm it is 14.1 % (+64.8
 /// percentage points, interval +63.5 to +66.1)."
 std::string best_text(const SweepResult& found, std::size_t q) {
   const std::optional<std::size_t> best = best_design(found, q);
@@ -255,8 +255,8 @@ class Curves {
 
  private:
   std::vector<double> curve(std::span<const double> values, std::size_t c) const {
-    const std::span<const double> whole = values.first(grid_.points * grid_.curves);  // a damaged file may have more
-                                                                                      // designs than the grid
+    // The part of the values that fills the grid. A damaged file may have more designs.
+    const std::span<const double> whole = values.first(grid_.points * grid_.curves);
     const ArrayView<const double, Axis<"point">, Axis<"curve">> grid(whole, {grid_.points, grid_.curves});
     std::vector<double> of_curve;
     for (std::size_t n = 0; n < grid_.points; ++n) of_curve.push_back(grid(n, c));

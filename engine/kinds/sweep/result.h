@@ -38,9 +38,9 @@ struct SweepResult {
   std::vector<std::string> quantities;               ///< names of the figures of merit: "yield", ...
   Array<std::string, axis::Quantity> quantity_unit;  ///< unit of each: "%", "mm", ...; empty for pure numbers
   Array<std::uint8_t, axis::Quantity> most_is_best;  ///< 1 if a larger value is better, otherwise 0
-  Array<std::uint8_t, axis::Quantity> is_paired;     ///< 1 if the change is judged by the same machines
-                                                     ///< in both designs, otherwise 0
-  Numbers merit;                                     ///< figures of merit
+  /// 1 if both designs judge the same machines, so that the interval of the change is computed from pairs; otherwise 0.
+  Array<std::uint8_t, axis::Quantity> is_paired;
+  Numbers merit;        ///< figures of merit
   Numbers low;          ///< lower ends of the intervals of the figures of merit; NaN if there are none
   Numbers high;         ///< upper ends of the intervals of the figures of merit
   Numbers change;       ///< figure of merit minus that of the first design

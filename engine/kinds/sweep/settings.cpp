@@ -54,7 +54,7 @@ std::string with_unit_of(const SweptNumber& value) {
 
 /// The values FROM, FROM + STEP, ... up to TO.
 std::vector<std::string> range(const std::string& text, const std::vector<std::string>& ends) {
-  constexpr double kSlack = 1e-9;  // share of a step, because TO is rounded
+  constexpr double kSlack = 1e-9;  // allowance for the rounding of TO, as a share of a step
   if (ends.size() != 3) refuse(text, "is neither a list nor a range of three numbers");
   const SweptNumber step = number_of(ends[2]);
   std::vector<double> numbers;
@@ -89,7 +89,8 @@ std::vector<std::string> list(const std::string& text, std::vector<std::string> 
     const SweptNumber number = number_of(value);
     if (std::isnan(number.number) || unit.empty()) continue;
     if (number.unit.empty()) value += " " + unit;
-    const std::size_t end = value.find(number.unit);  // "30um" is shown beside "10 um"
+    // Inserts a blank before the unit, so that "30um" is shown like "10 um".
+    const std::size_t end = value.find(number.unit);
     if (!number.unit.empty() && end > 0 && value[end - 1] != ' ') value.insert(end, " ");
   }
   return values;
@@ -102,7 +103,8 @@ std::string full_name(const std::string& key) { return key.starts_with("geometry
 SweptNumber number_of(const std::string& value) {
   const std::string_view text = trimmed(value);
   const std::size_t end = std::min(text.find_first_not_of("0123456789+-.eE"), text.size());
-  for (std::size_t length = end; length > 0; --length) {  // the letter of "1 e" or "2e" begins a unit, not an exponent
+  // Removes letters from the end until a number is left: the letter of "1 e" or "2e" begins a unit, not an exponent.
+  for (std::size_t length = end; length > 0; --length) {
     const std::optional<double> number = parse_number(trimmed(text.substr(0, length)));
     const std::string_view unit = trimmed(text.substr(length));
     if (number && (unit.empty() || unit == "%" || find_unit(unit) != nullptr)) return {*number, std::string(unit)};

@@ -25,8 +25,8 @@ void check_sweep(std::span<const SweptDesign> designs, const std::string& path);
 
 /// Runs the study of each design with the same draws, and compares each design with the first one. Returns nothing if
 /// the run was stopped. response: the response that figures of merit are about; empty: the one that ranks errors in the
-/// first design. options: must have checkpoints; their stages are those of all designs, in the order of the designs.
-/// The result of each design has the same bits as a run of this design alone. Precondition: check_sweep(). Throws
+/// first design. options: must have checkpoints, which hold the states of all designs, in the order of the designs. The
+/// result of each design has the same bits as a run of this design alone. Precondition: check_sweep(). Throws
 /// InputError if the designs have no response or no figure of merit in common.
 std::optional<SweepResult> run_sweep(std::span<const SweptKey> keys, std::span<const SweptDesign> designs,
                                      const std::string& response, const RunOptions& options);

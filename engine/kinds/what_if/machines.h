@@ -12,10 +12,10 @@
 namespace poesy {
 
 /// The first machines of a study, drawn again, whose errors can be scaled. Owns the scratch of one thread. Refers to
-/// the plan, the model and the vectors. Precondition: Draws::per_machine.
+/// the plan, the model and the vectors. Precondition: the study draws errors per machine.
 class WhatIfMachines : private UnitSolver {
  public:
-  /// The components of all limited vectors at a pose, for each machine; NaN if it is not solved.
+  /// The components of all limited vectors (LimitedVector) at a pose, for each machine; NaN if it is not solved.
   using Rows = Array<double, axis::VectorRow, axis::Sample>;
   /// The derivatives of these components with respect to each error.
   using Slopes = Array<double, axis::VectorRow, axis::Factor>;
@@ -26,14 +26,15 @@ class WhatIfMachines : private UnitSolver {
   std::size_t machines() const { return machines_; }  ///< The number of machines.
   /// [errors x machines] The deviation of each error from its mean, SI.
   const Array<double, axis::Factor, axis::Sample>& deviations() const { return deviations_; }
-  /// Solves the machines at a pose. The deviation of each error is multiplied by its size. sizes: [errors] factors.
+  /// Solves the machines at a pose. The deviation of each error from its mean is multiplied by a factor; errors that
+  /// machines draw anew at each pose keep their size. sizes: [errors] factors.
   Rows solve(PoseIndex pose, std::span<const double> sizes);
   /// The derivatives at the mean errors, as central differences over half a standard deviation on either side; NaN if a
   /// solve failed.
   Slopes slopes(PoseIndex pose);
 
  private:
-  /// Solves the machines in the first `count` columns of values_.
+  /// Solves the sets of errors in the first `count` columns of values_.
   Rows rows_of(PoseIndex pose, std::size_t count);
 
   const LimitedVectors* vectors_;

@@ -9,7 +9,7 @@
 namespace poesy {
 namespace {
 
-/// The size of an error, in the term that its study uses.
+/// The size of an error, by the parameter of its distribution that the study states.
 WhatIfSize size_of(const Distribution& error, Dimension dimension) {
   const Unit& unit = display_unit(dimension);
   using enum Distribution::Shape;
@@ -27,7 +27,7 @@ WhatIfSize size_of(const Distribution& error, Dimension dimension) {
   return {"standard deviation", error.standard_deviation() / unit.si, std::string(unit.name)};
 }
 
-/// The zones of a feature, mm.
+/// The sizes of the tolerance zones of a feature, mm.
 std::vector<WhatIfSize> sizes_of(const Feature& feature) {
   std::vector<WhatIfSize> sizes;
   for (const auto& zone : {feature.location, feature.orientation}) {

@@ -24,7 +24,7 @@ double largest_magnitude(const TriedMachines& tried, const LimitedVector& vector
 }
 
 /// The limit on a vector as a ScaledLimit. The scale is half the distance between the two ends of the limit, or the
-/// magnitude of its only end.
+/// magnitude of its only end. If that is 0, it is the largest magnitude of a component, or 1.
 ScaledLimit scaled_limit(const TriedMachines& tried, const LimitedVector& vector) {
   const double from = vector.limit.from();
   const double to = vector.limit.to();
@@ -34,7 +34,7 @@ ScaledLimit scaled_limit(const TriedMachines& tried, const LimitedVector& vector
   return {vector.first_row, vector.rows, scale, from / scale, to / scale};
 }
 
-/// The rows of the vector that is limited, from an array of all rows, as a matrix.
+/// The rows of one limited vector, as a matrix. rows: the rows of all limited vectors.
 template <class Rows>
 Eigen::Map<const RowMajor> part_of(const Rows& rows, const ScaledLimit& limit) {
   const auto columns = static_cast<Eigen::Index>(rows.row(limit.first).size());
@@ -60,8 +60,8 @@ Directions directions(const WhatIfMachines::Slopes& slopes, const ScaledLimit& l
   return {std::move(axes), static_cast<std::size_t>(count)};
 }
 
-/// The limited vectors with fewer components and the same norms. Of these, `count` components are along the directions
-/// in which errors change the vector. One more is the length of the remaining part, which errors do not change to first
+/// Reduces limited vectors to fewer components, with the same norms. `count` new components are along the directions in
+/// which errors change the vector. One more is the length of the remaining part, which errors do not change to first
 /// order.
 struct FewerRows {
   std::vector<std::vector<Directions>> at;  ///< [limits][poses] directions at each pose

@@ -7,7 +7,7 @@
 #include "engine/kinds/limited_vectors.h"
 #include "engine/kinds/what_if/machines.h"
 
-/// Machines at the poses at which a prediction is made.
+/// Machines of a study, solved at the poses from which the yield at other sizes of the errors is predicted.
 namespace poesy {
 
 /// A limit on a limited vector, whose components are consecutive rows of WhatIfMachines::Rows. The limit is on the norm
@@ -40,7 +40,8 @@ TriedMachines tried_machines(std::vector<std::size_t> poses, const Plan& plan, c
 /// if it is within all limits. Infinite if it is not solved.
 std::vector<double> badness(const WhatIfMachines::Rows& rows, std::span<const ScaledLimit> limits);
 
-/// The vectors at pose k if errors have other sizes, to first order. sizes: [errors] factors.
+/// The limited vectors of each machine at pose k of `tried` if errors have other sizes, to first order. sizes: [errors]
+/// factors.
 WhatIfMachines::Rows changed(const TriedMachines& tried, const WhatIfMachines& machines, std::size_t k,
                              std::span<const double> sizes);
 

@@ -20,12 +20,13 @@ namespace poesy {
 namespace {
 
 constexpr std::size_t kMostMachines = Plan::kUnitSamples;
-/// The largest number of components of limited vectors that a report contains; each takes 4 bytes.
+/// The largest number of values of limited vectors in a report: components times machines times poses. Each takes 4
+/// bytes.
 constexpr std::size_t kMostNumbers = 60'000;
 constexpr std::size_t kMostPoses = 150;  // largest number of poses that are solved, so that a report takes seconds
 constexpr std::size_t kMostSliders = 10;
-constexpr double kMostLinearError = 0.5;  // largest error of the linear prediction, as a share of a limit; beyond this
-                                          // there is no prediction
+// Largest error of the linear prediction, as a share of a limit. If the error is larger, there is no prediction.
+constexpr double kMostLinearError = 0.5;
 
 /// The poses with the largest weights, at most kMostPoses, in ascending order.
 std::vector<std::size_t> heaviest_poses(std::span<const double> weights) {
@@ -93,7 +94,7 @@ struct Agreement {
                               ///< ones
 };
 
-/// [machines] The largest badness of each machine over these poses.
+/// [machines] The largest badness() of each machine over these poses.
 std::vector<double> worst_of(std::span<const std::vector<double>> at_poses) {
   std::vector<double> worst = at_poses.front();
   for (const auto& one : at_poses) {
@@ -143,8 +144,8 @@ bool may_be_predicted(const JudgedMachines& judged, const LimitedVectors& vector
          judged.machines > 1;
 }
 
-/// Whether the model reaches these poses and the poses before them, from which solves may start. A file may contain
-/// other poses.
+/// Whether the model reaches these poses and the poses before them, from which solves may start. A result file may
+/// contain poses that it does not reach.
 bool are_reached(const JudgedMachines& judged, std::span<const std::size_t> poses) {
   return std::ranges::all_of(poses, [&](std::size_t m) {
     return !judged.model.unreachable(judged.poses[PoseIndex(m)]) &&
@@ -152,7 +153,7 @@ bool are_reached(const JudgedMachines& judged, std::span<const std::size_t> pose
   });
 }
 
-/// The numbers that the page needs. Errors are numbered in the order of their sliders.
+/// The numbers that the page needs for its sliders. Errors are numbered in the order of their sliders.
 WhatIf packed(const TriedMachines& tried, const WhatIfMachines& machines, std::span<const SizedErrors> sliders,
               const DecidingPoses& deciding, ArrayPool& pool) {
   WhatIf made;

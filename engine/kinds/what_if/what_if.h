@@ -39,8 +39,8 @@ struct JudgedMachines {
 /// The factors that a slider can take, ascending: 0.25, 0.3, ..., 2.
 std::span<const double> what_if_factors();
 
-/// The errors of a study, one by one; those of a feature of the drawing are together. Errors without a size, and errors
-/// that machines draw anew at each pose, are left out.
+/// The errors that a reader of the report may change: each error of the study alone, but those of a feature of the
+/// drawing together. Errors without a size, and errors that machines draw anew at each pose, are left out.
 std::vector<SizedErrors> sized_errors(const Study& study, const PoseSet& poses);
 
 /// Predicts yields from the first machines of the study, which are solved again, and from derivatives at the mean
@@ -50,7 +50,7 @@ std::vector<SizedErrors> sized_errors(const Study& study, const PoseSet& poses);
 std::optional<WhatIf> what_if(const JudgedMachines& judged, ArrayPool& pool);
 
 /// Adds to the page the section with the predicted yields, if there is a prediction. after: id of the section behind
-/// which it is put.
+/// which the new one is put.
 void add_what_if(const JudgedMachines& judged, std::string_view after, Page& page);
 
 }  // namespace poesy
