@@ -25,7 +25,7 @@ struct SingularValueDecomposition {
 /// column.
 /// @{
 Vector singular_values(const ConstMatrix& A);
-SingularValueDecomposition right_singular_vectors(const ConstMatrix& A);  ///< The decomposition without U.
+SingularValueDecomposition right_singular_vectors(const ConstMatrix& A);  ///< values and V; U stays empty
 SingularValueDecomposition singular_value_decomposition(const ConstMatrix& A);
 /// @}
 
@@ -45,7 +45,8 @@ Matrix pseudo_inverse(const ConstMatrix& A);
 /// times the largest count as 0.
 Matrix orthogonal_complement(const ConstMatrix& A, double threshold);
 
-/// The orthonormal basis [rows x (rows - columns)] for a matrix with independent columns, without pivoting.
+/// An orthonormal basis [rows x (rows - columns)] of the space orthogonal to all columns of A, computed without
+/// pivoting. Precondition: the columns of A are independent.
 Matrix orthogonal_complement(const ConstMatrix& A);
 
 /// Orthonormal bases of the range of A and of its orthogonal complement.
@@ -54,7 +55,8 @@ struct RangeAndComplement {
   Matrix complement;  ///< [rows x (rows - rank)]
 };
 
-/// The bases for a matrix of known rank. Pivots beyond the rank count as 0.
+/// Orthonormal bases of the range of A and of its complement, for a matrix whose rank is known. Pivots beyond the rank
+/// count as 0.
 RangeAndComplement range_and_complement(const ConstMatrix& A, std::size_t rank);
 
 /// The upper triangular R [columns x columns] with |R y| = |A y| for every y. If A has fewer rows than columns, the

@@ -6,13 +6,14 @@ namespace poesy::linalg {
 
 /// Minimises a sum of squares by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). No step increases the sum.
 /// So the iteration stays in the valley where it began, even if the squares cannot all vanish and undamped steps would
-/// jump. Returns whether it converged: whether a step was shorter than `shortest`. The type Problem has these members:
+/// jump. Returns true as soon as a step is shorter than `shortest`, and false after 200 steps. The type Problem has
+/// these members:
 ///
 ///     double sum_of_squares()               the sum at the present point
-///     double try_step(double damping)       computes a step whose normal matrix has its diagonal times
-///                                           1 + damping; returns its length
-///     double tried_sum_of_squares()         the sum after that step
-///     void take_step()                      makes that step
+///     double try_step(double damping)       computes a Gauss-Newton step, with the diagonal of the normal
+///                                           matrix multiplied by 1 + damping; returns the length of the step
+///     double tried_sum_of_squares()         the sum after the step of try_step()
+///     void take_step()                      moves the point by the step of try_step()
 template <class Problem>
 bool comes_to_rest(Problem& problem, double shortest) {
   constexpr int kMostSteps = 200;

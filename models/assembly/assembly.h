@@ -36,7 +36,9 @@ struct Body {
 
 /// The compliance of a joint's bearing and drive, in the joint's frame before the joint moves.
 struct Bearing {
-  std::size_t joint;   ///< position in the limb of the joint's first elementary joint
+  /// Position of the joint in the limb. A joint with several freedoms is a series of joints with one freedom each; the
+  /// position is that of the first of them.
+  std::size_t joint;
   Matrix6 compliance;  ///< [6 x 6] twist from wrench (SI); 0 in rigid directions and along passive freedoms
 };
 
@@ -45,7 +47,7 @@ struct LinkEnd {
   /// The body at which the limb begins, a joint of the limb, or the body at which it ends.
   enum class At { from, joint, to };
   At at;                  ///< kind of end
-  std::size_t joint = 0;  ///< position in the limb of the elementary joint, if the end is at a joint
+  std::size_t joint = 0;  ///< position in the limb of the joint (of one freedom), if the end is at one
 };
 
 /// The cross-section of a straight beam along x.
@@ -62,11 +64,11 @@ struct BeamSection {
 struct Link {
   LinkEnd from;  ///< end at which the x axis begins
   LinkEnd to;    ///< end to which the x axis points
-  /// The y axis of the link, in the frame before motion of the joint at `to`, or in the frame of the body at `to`. Its
-  /// component along the x axis is removed. Without a value, any direction is taken.
+  /// The y axis of the link. It is given in the frame of the body at `to`, or in that of the joint at `to` before the
+  /// joint moves. A component along the x axis is removed. Without a value, any direction is taken.
   std::optional<Vector3> y;
-  /// Stiffness of the link as a beam; or the compliance matrix of the link in a frame at the end `to`, whose x axis is
-  /// along the link and whose y axis is the one above.
+  /// Stiffness of the link as a beam; or the compliance matrix of the link in a frame at the end `to`; the x axis of
+  /// this frame is along the link, and `y` gives its y axis.
   std::variant<BeamSection, Matrix6> stiffness;
 };
 
@@ -86,7 +88,7 @@ struct Limb {
   bool is_elastic() const { return !bearings.empty() || !links.empty() || end; }
 };
 
-/// Dead loads. They act at the nominal places of their points.
+/// Loads with constant magnitudes and directions. They act at the nominal places of their points.
 struct Load {
   Vector3 gravity = Vector3::Zero();  ///< gravity, m/s^2, which acts on every mass
   std::size_t body = kPlatform;       ///< body on which force and moment act
@@ -124,7 +126,7 @@ struct Assembly {
   std::size_t first_joint(std::size_t limb) const;
 };
 
-/// [bodies - 1] The limbs by which bodies can be placed one after the other: for each body except the base, a limb that
+/// The positions of limbs by which bodies can be placed one after the other: for each body except the base, a limb that
 /// ends there and begins at a body placed before. The list is shorter if no limbs lead from the base to some bodies.
 /// AnyLimb is a type with the members `from` and `to`.
 template <class AnyLimb>

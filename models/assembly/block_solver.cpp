@@ -26,8 +26,8 @@ double chebyshev(std::size_t n, std::size_t node) {
                   (static_cast<double>(node) + 0.5));
 }
 
-/// [rows x kTerms] The Chebyshev series through the states [rows x kTerms] at the nodes; empty if the states are not
-/// smooth.
+/// The coefficients of the Chebyshev series through the states at the nodes; empty if the states do not vary smoothly.
+/// Both have a row of kTerms numbers for each number of a state.
 std::vector<double> series_of(std::span<const double> states) {
   std::array<double, kTerms * kTerms> weights;
   for (std::size_t n = 0; n < kTerms; ++n) {
@@ -62,8 +62,8 @@ void put_details(std::span<const double> values, std::size_t sample, const Outco
   for (std::size_t d = 0; d < values.size(); ++d) outcomes.details[d * count + sample] = values[d];
 }
 
-/// Computes, with a kernel, responses, how each sample ended and iterations; also the mismatch of limbs if the caller
-/// wants additional outputs.
+/// Calls a kernel for these samples. It computes responses, iterations and how each sample ended, and the mismatch of
+/// limbs if the caller wants additional outputs.
 void BlockSolver::run(KernelWork work, PoseProblem& problem, const SampleBlock& samples, const OutcomeBlock& outcomes) {
   const KernelProblem& solved = problem.with(samples, values_);
   const std::size_t stride = padded(samples.count);
@@ -121,13 +121,13 @@ void BlockSolver::solve(PoseProblem& problem, const SampleBlock& samples, const 
   }
 }
 
-/// Whether the kernel solved a sample, and no other solver has to look at it.
+/// Returns true if the kernel solved a sample and no other solver has to check it.
 bool BlockSolver::is_sure(std::size_t sample) const {
   if (ends_[sample] == KernelEnd::left || Closure::may_open(nearing_[sample])) return false;
   return ends_[sample] == KernelEnd::converged || model_->over_constrained;
 }
 
-/// A sample of which the kernel is not sure.
+/// Solves a sample for which is_sure() is false, or finds that it is not_assembled.
 void BlockSolver::solve_one(PoseProblem& problem, std::span<const double> errors, std::size_t sample,
                             const OutcomeBlock& outcomes) {
   if (!model_->over_constrained && problem.closure().is_regular()) {
@@ -135,7 +135,7 @@ void BlockSolver::solve_one(PoseProblem& problem, std::span<const double> errors
     return put(problem, found, sample, outcomes);
   }
   const std::vector<std::vector<Transform>>& frames = frames_.with(errors, problem.pose().displacements);
-  // Solver takes hundreds of steps where no loop closes, so the way down comes first.
+  // Solver takes hundreds of steps where no loop closes, so Closure decides before it.
   if (problem.closure().opens(nearing_[sample], frames)) {
     outcomes.status[sample] = SolveStatus::not_assembled;
   } else if (ends_[sample] == KernelEnd::left) {

@@ -13,11 +13,12 @@
 
 namespace poesy::assembly {
 
-/// Solves blocks of samples with the fastest kernel that this machine has. If limbs do not deform each other,
-/// Continuation solves the samples of which the kernel is not sure, and says which are not_assembled. If they do,
-/// Closure decides first which samples are not_assembled among those whose errors may open a loop. Solver solves the
-/// other samples that the kernel does not solve: the same equations, with the matrix of each state. Closure is also
-/// asked about the samples that Solver does not solve. Owns the scratch of one thread.
+/// Solves blocks of samples with the fastest kernel that this machine supports. Other solvers follow for samples that
+/// the kernel does not solve, or whose solution may be a wrong one. If limbs do not deform each other, Continuation
+/// solves such a sample or finds that it is not_assembled. If limbs deform each other, Closure first decides which
+/// samples are not_assembled among those with errors that may open a loop. Solver then solves the other samples that
+/// the kernel left: the same equations, with a new matrix in each step. Closure also judges the samples that Solver
+/// does not solve. Owns the scratch memory of one thread.
 class BlockSolver {
  public:
   BlockSolver(const AssemblyModel& model, const SolverOptions& options);  ///< The model must outlive this object.
@@ -25,9 +26,9 @@ class BlockSolver {
   /// Computes responses, status and iterations of samples at the problem's pose, and additional outputs if the caller
   /// wants them (OutcomeBlock::details).
   /// @{
-  /// Solves the equations exactly.
+  /// Exact solution of the equations.
   void solve(PoseProblem& problem, const SampleBlock& samples, const OutcomeBlock& outcomes);
-  /// Solves the equations to first order.
+  /// First-order solution, in closed form.
   void map(PoseProblem& problem, const SampleBlock& samples, const OutcomeBlock& outcomes);
   /// @}
 
@@ -45,10 +46,10 @@ class BlockSolver {
   Solver solver_;
   Continuation continuation_;
   ErrorFrames frames_;
-  std::vector<double> values_;     ///< scratch memory for the values of those components of frames' errors that vary
-  std::vector<double> responses_;  ///< [responses x stride] responses of each sample
-  std::vector<KernelEnd> ends_;    ///< [stride] how the kernel ended each sample
-  std::vector<double> nearing_;    ///< [count] Closure::find_nearing() of each sample
+  std::vector<double> values_;             ///< scratch: values of varied components, see PoseProblem::with()
+  std::vector<double> responses_;          ///< [responses x stride] responses of each sample
+  std::vector<KernelEnd> ends_;            ///< [stride] how the kernel ended each sample
+  std::vector<double> nearing_;            ///< [count] from Closure::find_nearing(): how near a loop is to opening
   std::vector<std::uint32_t> iterations_;  ///< [stride] iterations of each sample
   std::vector<double> states_;             ///< [rows of a state x KernelStart::kTerms] states at the Chebyshev nodes
   std::vector<double> mismatch_;           ///< [6 limbs x stride] mismatch, see KernelBlock

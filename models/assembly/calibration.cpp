@@ -17,7 +17,8 @@ constexpr double kNothing = 1e-9;
 
 Index index(std::size_t value) { return static_cast<Index>(value); }
 
-/// [6 limbs x drives] The twists of limbs' ends by a unit of each drive. A drive moves all of its joints.
+/// [6 limbs x drives] The twists of limbs' ends by a unit displacement of each drive, which moves all joints of the
+/// drive.
 Matrix driven_twists(const AssemblyModel& model, const Nominal& at) {
   const Index rows = 6 * index(at.limbs.size());
   Matrix twists(rows, 0);
@@ -39,7 +40,8 @@ Matrix driven_twists(const AssemblyModel& model, const Nominal& at) {
   return twists;
 }
 
-/// [6 bodies x 6] The matrix from the platform's twist to the twists by which the best correction moves the bodies.
+/// [6 bodies x 6] The matrix from the uncorrected twist of the platform to the twists of all bodies that the best
+/// correction takes away.
 Matrix taken_by_drives(const AssemblyModel& model, const Nominal& at) {
   const FirstOrder first_order(model.assembly, at, model.ranks);
   Matrix moved = first_order.effect(driven_twists(model, at)).twists;

@@ -9,7 +9,7 @@
 
 namespace poesy::assembly {
 
-/// Whether this mismatch [limbs] by the metric of the platform's points is more than rounding.
+/// Returns true if this mismatch [limbs], measured by the metric of the platform's points, is more than rounding.
 bool is_open(const AssemblyModel& model, const Nominal& pose, std::span<const Screw> mismatch);
 
 /// Decides whether the loops of an assembly with errors can be closed at all, if limbs deform each other. Otherwise
@@ -20,36 +20,37 @@ bool is_open(const AssemblyModel& model, const Nominal& pose, std::span<const Sc
 /// This is the rule of chain::Assembly; stiffness has no influence on it.
 ///
 /// Uses plain double arithmetic. It is meant for two sorts of samples: those that a solver did not solve, and those
-/// whose errors may open a loop.
+/// with errors that may open a loop.
 class Closure {
  public:
   /// Decides for machines at this pose. Both arguments must outlive this object.
   Closure(const AssemblyModel& model, const Nominal& pose) : model_(&model), pose_(&pose) {}
 
-  /// [B] Computes the first-order change of ln det N by the errors of each of B samples. If the change is less than
-  /// chain::kNearing, the machine may be impossible to assemble. The result is 0 if the perfect loops are singular. It
-  /// is also 0 if limbs cannot hold a loop open, because they have no stiffness and do not deform each other.
+  /// Computes the first-order change of ln det N by the errors of each sample. If the change is below the negative
+  /// number chain::kNearing, a loop may open, so that the machine may be impossible to assemble. nearing: receives a
+  /// number for each sample. The result is 0 if the perfect loops are singular. It is also 0 if limbs cannot hold a
+  /// loop open, because they have no stiffness and do not deform each other.
   void find_nearing(const SampleBlock& samples, std::span<double> nearing);
 
   /// Returns true if errors may open a loop. nearing: from find_nearing().
   static bool may_open(double nearing);
 
   /// Returns true if the errors of a machine may open a loop and the machine cannot be assembled. nearing: from
-  /// find_nearing(). frames: [limbs][n + 1] fixed frames with errors.
+  /// find_nearing(). frames: fixed frames of each limb, with errors.
   bool opens(double nearing, std::span<const std::vector<Transform>> frames) {
     return may_open(nearing) && is_impossible(frames);
   }
 
-  /// The status of a sample that Solver has tried. It becomes not_assembled if the sample is not solved and
-  /// is_impossible(). It also becomes not_assembled if limbs cannot hold a loop open, but Solver came to rest with a
-  /// mismatch. frames: as for opens().
+  /// The status of a sample for which Solver returned `found`. It is not_assembled instead of found.status in two
+  /// cases: if Solver did not solve the sample and is_impossible() is true, and if a mismatch remains in the solution
+  /// although limbs cannot hold a loop open. frames: as for opens().
   SolveStatus judged(const Solution& found, std::span<const std::vector<Transform>> frames);
 
-  /// Returns true if a machine cannot be assembled. frames: [limbs][n + 1] fixed frames with errors. Returns false if
-  /// the descent does not come to rest, or if the perfect loops are singular.
+  /// Returns true if a machine cannot be assembled. frames: as for opens(). Returns false if the descent does not come
+  /// to rest, or if the perfect loops are singular.
   bool is_impossible(std::span<const std::vector<Transform>> frames);
 
-  /// Whether the perfect loops are regular. The first call computes the loops and their slopes.
+  /// Returns true if the perfect loops are regular. The first call computes the loops, and the slopes of ln det N.
   bool is_regular();
 
  private:
@@ -58,7 +59,7 @@ class Closure {
   const AssemblyModel* model_;
   const Nominal* pose_;
   std::optional<Loops> loops_;   ///< perfect loops, computed when they are first needed
-  std::vector<double> nearing_;  ///< [F] first-order change of ln det N per unit of each error
+  std::vector<double> nearing_;  ///< [errors] first-order change of ln det N per unit of each error
 };
 
 }  // namespace poesy::assembly

@@ -7,7 +7,8 @@
 namespace poesy::assembly {
 namespace {
 
-/// [k x 6] A matrix. The norm of its product with the mismatch of one pair of limbs is what the response measures.
+/// What a response measures of a pair of limbs is the norm of M x (mismatch of the pair). This function returns the
+/// matrix M, which has six columns.
 Eigen::MatrixXd judged_of_pair(const Nominal& pose, std::size_t response) {
   if (response == 0) return linalg::cholesky_root(pose.W);  // response `gap`
   if (response == 1) return Eigen::MatrixXd::Identity(3, 6);

@@ -11,14 +11,14 @@
 namespace poesy::assembly {
 
 /// The mismatch delta_mu = [omega; v] of each pair (rad, m), one pair after the other: log(g_k g_i^-1), or to first
-/// order the difference of xi_k and xi_i. mismatch: [limbs] xi = log(g T^-1) of each limb with end pose g on a platform
-/// with pose T.
+/// order the difference of xi_k and xi_i. mismatch: xi = log(g T^-1) of each limb, where g is the pose of its end and T
+/// that of the platform.
 std::vector<double> pair_mismatch(const AssemblyModel& model, std::span<const Screw> mismatch,
                                   chain::Fidelity fidelity);
 
-/// [K x 6 pairs] Model::norm_of_details for a response, with K rows. Empty for responses that do not state mismatch,
-/// and if there are no pairs. To first order sum xi = 0, so the sum of |xi|^2 over n limbs is the sum of |delta_mu|^2
-/// over all pairs divided by n.
+/// Model::norm_of_details for a response: a matrix with six columns for each pair, row by row. Empty for responses that
+/// do not state mismatch, and if there are no pairs. To first order sum xi = 0, so the sum of |xi|^2 over n limbs is
+/// the sum of |delta_mu|^2 over all pairs divided by n.
 std::vector<double> norm_of_details(const AssemblyModel& model, std::size_t response, std::span<const double> pose);
 
 }  // namespace poesy::assembly

@@ -45,21 +45,21 @@ class Equilibrium {
   /// The result is NaN or infinite if the equations have no unique solution.
   Balance solve(const Eigen::MatrixXd& xi, const Eigen::MatrixXd& load) const;
 
-  /// The displacements dq of the limb's passive joints, of least norm, that bring the twist of its end as close to
-  /// `wanted` as possible.
+  /// The displacements dq of the limb's passive joints that bring the twist of the limb's end as close to `wanted` as
+  /// possible. If several dq do so, the one with the least norm is returned.
   Eigen::VectorXd displacements(std::size_t limb, const Screw& wanted) const;
 
-  /// Approximately the largest distance by which a twist of a body moves its points, divided by the reach.
+  /// Approximately the largest distance by which a twist moves a point of a body, divided by the reach.
   double size(const Screw& twist) const { return (to_unit_ * twist).norm(); }
 
-  /// [(wrenches + 6 bodies) squared] The scaled matrix of the equations. A null vector is a set of wrenches by which
-  /// rigid limbs load each other, or a motion of loose bodies.
+  /// The scaled matrix of the equations. Its rows and columns are all lambda, then six for each body except the base. A
+  /// null vector is a set of wrenches by which rigid limbs load each other, or a motion of loose bodies.
   const Eigen::MatrixXd& matrix() const { return matrix_; }
   /// [limbs + 1] The position of each limb's first lambda among all lambda, then the number of all lambda.
   std::span<const Eigen::Index> first_wrenches() const { return first_; }
   /// [6 x (6 - rank)] The matrix N of a limb, scaled. Its columns are the wrenches that the limb can carry.
   const Eigen::MatrixXd& carry(std::size_t limb) const { return carry_[limb]; }
-  /// [n x 6] The matrix from a twist to dq, scaled.
+  /// The scaled matrix of displacements(), from a twist of the limb's end to dq. It has a row for each passive joint.
   const Eigen::MatrixXd& give(std::size_t limb) const { return give_[limb]; }
   const Matrix6& compliance(std::size_t limb) const {
     return compliance_[limb];
@@ -79,8 +79,8 @@ class Equilibrium {
   Matrix6 from_unit_;                   ///< inverse of to_unit_
   double unit_;                         ///< unit of C, 1/(N m)
   std::vector<Matrix6> compliance_;     ///< [limbs] scaled compliance C
-  std::vector<Eigen::MatrixXd> carry_;  ///< [limbs] matrix N [6 x (6 - rank)]
-  std::vector<Eigen::MatrixXd> give_;   ///< [limbs] from a twist to dq of the passive joints [n x 6]
+  std::vector<Eigen::MatrixXd> carry_;  ///< [limbs] matrix N, see carry()
+  std::vector<Eigen::MatrixXd> give_;   ///< [limbs] matrix from a twist to dq, see give()
   std::vector<Eigen::Index> first_;     ///< [limbs + 1] position of each limb's first lambda, see first_wrenches()
   Eigen::MatrixXd matrix_;
 };

@@ -7,13 +7,13 @@
 
 namespace poesy::assembly {
 
-/// The fixed frames of all limbs with errors.
+/// Computes the fixed frames of all limbs with errors.
 class ErrorFrames {
  public:
-  explicit ErrorFrames(const AssemblyModel& model);  ///< The model must outlive it.
+  explicit ErrorFrames(const AssemblyModel& model);  ///< The model must outlive this object.
 
-  /// The frames [limbs][n + 1] with these errors [F], at these nominal displacements of the joints. The reference shows
-  /// the new frames after the next call.
+  /// The fixed frames of each limb with these errors (one for each error of the model), at these nominal displacements
+  /// of the joints. The next call overwrites the frames.
   const std::vector<std::vector<Transform>>& with(std::span<const double> errors,
                                                   std::span<const double> displacements);
 

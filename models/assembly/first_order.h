@@ -17,9 +17,11 @@ class FirstOrder {
   /// Returns true if the equations have a unique solution.
   bool is_regular() const { return is_regular_; }
 
-  /// The twists of bodies and the wrenches of limbs if the limbs' ends are displaced by the twists xi [6 limbs x k].
+  /// The twists of bodies and the wrenches of limbs if errors displace the limbs' ends by the twists xi. xi: six rows
+  /// for each limb, a column for each case.
   Balance effect(const Eigen::MatrixXd& xi) const;
-  /// The twists and wrenches without errors, by the load and by the mismatch that rounded numbers cause; one column.
+  /// The twists and wrenches of the machine without errors: those by the load and by the mismatch that rounded numbers
+  /// cause, in one column.
   const Balance& by_load() const { return by_load_; }
 
  private:

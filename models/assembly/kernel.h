@@ -8,10 +8,11 @@
 
 namespace poesy::assembly {
 
-/// Solves batches of samples of an assembly: the equations of Solver, which start at the first-order solution. The
-/// wrenches p are unknowns of their own. If they were replaced by C^-1 xi, rounding would appear as force, and only
-/// samples with small errors would converge. Step is ConstantStep, MeetStep or OwnStep. A lane depends only on its own
-/// sample; a lane that has settled no longer moves.
+/// Solves the equations of Solver for batches of samples of an assembly. A sample starts at the first-order solution,
+/// or at the series of KernelStart. The wrenches p are unknowns of their own. If they were replaced by C^-1 xi,
+/// rounding would appear as force, and only samples with small errors would converge. Step is ConstantStep, MeetStep or
+/// OwnStep. A lane depends only on its own sample. A lane has settled when the next round (iteration) would change
+/// nothing; after that it no longer moves.
 template <class T, class Step>
 class AssemblyKernel {
  public:
@@ -54,7 +55,7 @@ class AssemblyKernel {
     end(at, left, doubtful, iterations);
   }
 
-  /// Whether this round moved bodies or joints, and not much less than the one before.
+  /// The lanes in which this round moved bodies or joints by more than three quarters of the round before.
   Mask is_slow(const LaneChange<T>& change) const {
     return (change.places > T(kMoves)) & (change.places > T(kSlow) * before_.places);
   }
@@ -76,7 +77,7 @@ class AssemblyKernel {
   }
 
   void end(std::size_t at, Mask left, Mask doubtful, T iterations) const {
-    // The series through solved nodes is smooth, so it leads to no other solution.
+    // Samples that start from the series are not doubtful: it is smooth and so leads to no other solution.
     put_ends(bits(left), problem_.start.is_used ? 0 : bits(doubtful), T::kLanes, block_.ends + at);
     double counted[T::kLanes];
     iterations.store(counted);
@@ -85,17 +86,18 @@ class AssemblyKernel {
     }
   }
 
-  /// Change of the wrenches that counts as rounding, as a share of all wrenches; squared.
+  /// The square of the relative change of all wrenches that counts as rounding.
   static constexpr double kWrenches = 1e-24;
-  /// Change of the wrenches below which the next change is predicted, as a share of all wrenches; squared.
+  /// The square of the relative change of all wrenches below which the change of the next round is predicted.
   static constexpr double kShortWrenches = 1e-14;
-  /// Predicted change at which a lane settles, as a share of the tolerance; squared.
+  /// A lane settles if the predicted change of the next round is below this share of the tolerance; squared.
   static constexpr double kNext = 1e-2;
-  static constexpr double kShort = 1e12;  ///< change over the tolerance below which the next one is predicted; squared
-  static constexpr double kFarStart = 0.25;   ///< move to the start from which on a lane is doubtful; squared
-  static constexpr double kMoves = 1e-20;     ///< change below which a round is near its end; squared
-  static constexpr double kSlow = 0.5625;     ///< share of the change before from which on a round is slow; squared
-  static constexpr double kFarthest = 100.0;  ///< a larger move means that a lane has diverged; squared
+  /// The change of the next round is predicted if that of this round, divided by the tolerance, is below this; squared.
+  static constexpr double kShort = 1e12;
+  static constexpr double kFarStart = 0.25;   ///< a lane is doubtful if its start is farther from nominal; squared
+  static constexpr double kMoves = 1e-20;     ///< a smaller change is close to rounding and never slow; squared
+  static constexpr double kSlow = 0.5625;     ///< a change above this share of the one before is slow; squared
+  static constexpr double kFarthest = 100.0;  ///< a larger change means that a lane has diverged; squared
 
   const KernelProblem& problem_;
   const KernelBlock& block_;

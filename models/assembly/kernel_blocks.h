@@ -30,14 +30,15 @@ void with_passive(std::size_t passive, Work work) {
   }
 }
 
-/// The matrix of the bodies' equations, in blocks [6 x 6] for two bodies each. Only the blocks that limbs or the
-/// elimination fill are stored. The platform is eliminated last, because most limbs connect other bodies with it.
+/// The matrix of the bodies' equations. It has a block [6 x 6] for each pair of bodies. Blocks that neither limbs nor
+/// the elimination fill stay zero and are skipped. The platform is eliminated last, because most limbs connect other
+/// bodies with it.
 template <class T>
 class BodyMatrix {
  public:
   using Mask = typename T::MaskType;  ///< a truth value for each lane
 
-  /// Sets the pattern of nonzero blocks. safe: a pivot below this share of its diagonal entry is not safe.
+  /// Finds which blocks may be nonzero. safe: a pivot below this share of its diagonal entry is not safe.
   BodyMatrix(const KernelProblem& problem, double safe)
       : count_(problem.bodies.size() - 1),
         safe_(safe),
@@ -95,7 +96,8 @@ class BodyMatrix {
     return safe;
   }
 
-  /// Solves the equations. twists: [6 bodies], including the base; the right side on entry, the solution on return.
+  /// Solves the equations after factor(). twists: [6 x bodies], including the base; the right side on entry, the
+  /// solution on return.
   void solve(std::vector<T>& twists) const {
     for (std::size_t k = 0; k < count_; ++k) {
       T* x = &twists[6 * body(k)];
@@ -172,7 +174,7 @@ class BodyMatrix {
 
   std::size_t count_;            ///< number of bodies without the base
   double safe_;                  ///< smallest safe pivot as a share of the diagonal
-  std::vector<bool> is_filled_;  ///< [count x count] whether each block is kept
+  std::vector<bool> is_filled_;  ///< [count x count] true for each block that may be nonzero
   std::vector<T> blocks_;        ///< [count x count] blocks, row by row
   std::vector<T> pivots_;        ///< reciprocal pivots
 };

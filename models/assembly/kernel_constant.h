@@ -26,7 +26,7 @@ class ConstantStep {
         found_(problem.size),
         twists_(6 * problem.bodies.size(), T(0.0)) {}
 
-  /// Makes one round: moves the active lanes.
+  /// Makes one iteration (round), which changes the state in the active lanes. Returns the changes.
   LaneChange<T> round(LaneAssembly<T>& state, Mask active, int /*number*/) {
     for (T& row : right_) row = T(0.0);
     for (std::size_t b = 1; b < problem_.bodies.size(); ++b) {
@@ -44,7 +44,7 @@ class ConstantStep {
  private:
   using Motion = LaneMotion<T>;
 
-  /// Computes the mismatch of limb e, and what the limb contributes to the right side of the equations.
+  /// Computes the mismatch of limb e, and adds the limb's contribution to the right side of the equations.
   void visit(const LaneAssembly<T>& state, std::size_t e) {
     const KernelLimb& limb = problem_.limbs[e];
     const T* p = &state.wrenches[6 * e];
@@ -83,8 +83,8 @@ class ConstantStep {
     for (int k = 0; k < 6; ++k) rest[k] = nmadd(T(give[k]), felt, rest[k]);
   }
 
-  /// Sets what the limb contributes to the right side: the components of the twist `left` along the wrenches that the
-  /// limb can carry.
+  /// Sets the limb's rows of the right side: the products of the twist `left` with the wrenches that the limb can
+  /// carry.
   void set_right(const KernelLimb& limb, const T* left) {
     for (std::size_t m = 0; m < limb.carried; ++m) {
       T sum = T(limb.carry[m]) * left[0];
@@ -101,7 +101,8 @@ class ConstantStep {
 
   std::size_t first_body_row() const { return problem_.size - 6 * (problem_.bodies.size() - 1); }
 
-  /// Solves the equations. Without wrenches the bodies' rows of the right side are 0, and lambda is not needed.
+  /// Solves the equations. If limbs have no wrenches, the bodies' rows of the right side are 0, and lambda is not
+  /// computed.
   void solve_linear() {
     const std::size_t columns = problem_.carries ? problem_.size : first_body_row();
     for (std::size_t row = problem_.carries ? 0 : first_body_row(); row < problem_.size; ++row) {

@@ -42,22 +42,23 @@ class KernelMapper {
     }
   }
 
-  /// Position of the first stress among the coordinates of KernelMap.
+  /// Position of the first stress (coordinate of the wrenches by which limbs load each other) among the coordinates of
+  /// KernelMap.
   std::size_t first_stress() const { return 6 * (problem_.bodies.size() - 1); }
-  /// Position of the first joint among these coordinates.
+  /// Position of the first joint displacement among the coordinates of KernelMap.
   std::size_t first_joint() const { return first_stress() + map_.stresses; }
 
  private:
   static constexpr std::size_t kRows = KernelMap::kRows;
 
-  /// Computes the rows from `row` on: kRows rows, or the remaining ones if there are fewer.
+  /// Computes kRows coordinates from position `row` on, or the remaining ones if there are fewer.
   template <std::size_t... n>
   void multiply_some(std::size_t row, std::size_t at, std::index_sequence<n...>) {
     const std::size_t count = std::min(kRows, coordinates_.size() - row);
     ((count == n + 1 ? multiply<n + 1>(row, at) : void()), ...);
   }
 
-  /// Computes several rows together, so that each value is read only once.
+  /// Computes several coordinates together, so that each varied value is read only once for all of them.
   template <std::size_t rows>
   void multiply(std::size_t row, std::size_t at) {
     T sum[rows];

@@ -7,18 +7,20 @@
 
 namespace poesy::assembly {
 
-/// Makes steps if no limb has a wrench, because the joints can bring the end of every limb to its body. Let xi = log(g
-/// T^-1) be the mismatch between a limb's end, with the pose g, and its body, with the pose T. The columns of S are the
-/// twists of the limb's passive joints. The twists V of the bodies and the displacements dq of the passive joints
-/// minimise
+/// Makes the steps of problems in which no limb has a wrench, because the joints can bring the end of every limb to its
+/// body. Let xi = log(g T^-1) be the mismatch between a limb's end, with the pose g, and its body, with the pose T. The
+/// columns of S are the twists of the limb's passive joints. The twists V of the bodies and the displacements dq of the
+/// passive joints minimise
 ///
 ///     sum over limbs from a to b of |xi + V_a - V_b + S dq|^2
 ///
 /// Each limb has a projection P = 1 - S (S^T S)^-1 S^T: P xi is the part of xi that its passive joints cannot remove.
-/// Each body has six equations, with the sums of P and of P xi over its limbs. Twists are measured by the motion of the
-/// platform's points. At the solution the minimum is zero, so steps with new projections converge quadratically. New
-/// projections are made in the first, the fifth, the ninth round and so on. Idle freedoms move nothing and make S^T S
-/// singular, so constant terms of rank one are added for them. A lane is refused if a pivot is not safely positive.
+/// The six equations of a body contain the sums of P and of P xi over the limbs that begin or end at this body. The
+/// norm | | of a twist is proportional to the root mean square displacement of the platform's points by this twist. At
+/// the solution the minimum is zero, so steps with new projections converge quadratically. New projections are made in
+/// the first, the fifth, the ninth round (iteration) and so on. Idle freedoms, motions of passive joints that move no
+/// body, make S^T S singular; constant terms of rank one are added for them. A lane is refused if a pivot is not safely
+/// positive.
 template <class T>
 class MeetStep {
  public:
@@ -31,7 +33,8 @@ class MeetStep {
         matrix_(problem, kSafe),
         twists_(6 * problem.bodies.size(), T(0.0)) {}
 
-  /// Makes one round: moves the active lanes.
+  /// Makes one iteration (round), which changes the state in the active lanes. Returns the changes. number: that of the
+  /// round, from 0.
   LaneChange<T> round(LaneAssembly<T>& state, Mask active, int number) {
     const bool is_new = number % kMatrixRounds == 0;
     if (is_new) {
@@ -59,7 +62,7 @@ class MeetStep {
   static constexpr int kMatrixRounds = 4;
   static constexpr double kSafe = 1e-9;  ///< a pivot below this share of its diagonal entry is not safe
 
-  /// The mismatch of a limb, and its projection with the data on which it depends.
+  /// The mismatch of a limb, and the data of its projection P = 1 - Y^T Y.
   struct Limb {
     T open[6];                                  ///< mismatch xi in measured coordinates (KernelProblem::measured)
     T rows[6 * kMostOwnJoints];                 ///< Y = L^-1 S^T with the Cholesky factor L: S^T S = L L^T
@@ -71,8 +74,8 @@ class MeetStep {
     for (int k = 0; k < 6; ++k) made[k] = T(problem_.measured[k]) * twist[k];
   }
 
-  /// Splits a twist x into rest = P x and along = Y x [n], with the limb's projection P = 1 - Y^T Y. n: number of its
-  /// passive joints.
+  /// Splits a twist x into rest = P x and along = Y x [n], with the limb's projection P = 1 - Y^T Y. n: number of the
+  /// limb's passive joints.
   template <std::size_t n>
   static void project(const Limb& of, const T* x, T* along, T* rest) {
     for (int k = 0; k < 6; ++k) rest[k] = x[k];
@@ -82,8 +85,8 @@ class MeetStep {
     }
   }
 
-  /// Computes the mismatch of limb e and what the limb contributes to the right side; in a round with new matrices,
-  /// also its projection.
+  /// Computes the mismatch of limb e, and adds the limb's contribution to the right side of the bodies' equations. In a
+  /// round with new projections, also computes that of the limb.
   template <std::size_t n>
   void visit(const LaneAssembly<T>& state, std::size_t e, bool is_new) {
     const KernelLimb& limb = problem_.limbs[e];
@@ -186,9 +189,10 @@ class MeetStep {
   const KernelProblem& problem_;
   std::vector<Limb> limbs_;  ///< [limbs] mismatch and projection of each limb
   BodyMatrix<T> matrix_;
-  /// [6 x bodies] The right side, then the twists of the bodies, in measured coordinates; 0 for the base.
+  /// [6 x bodies] First the right side, after the solution the twists of the bodies, in the coordinates of
+  /// KernelProblem::measured; 0 for the base.
   std::vector<T> twists_;
-  Mask safe_;  ///< lanes in which the last projections are safe
+  Mask safe_;  ///< lanes in which all pivots were safely positive when projections were last made
 };
 
 }  // namespace poesy::assembly

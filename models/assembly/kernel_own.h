@@ -10,19 +10,20 @@ namespace poesy::assembly {
 /// A pivot below this share of its diagonal entry is not safe.
 inline constexpr double kSafePivot = 1e-5;
 
-/// Makes steps of Newton's method with a matrix for each sample, which is new in the first, the fifth, the ninth round
-/// and so on. The compliances C of the limbs are regular. A limb has the wrench p. Its mismatch xi = log(g T^-1) is
-/// that between its end, with the pose g, and body b, with the pose T. The columns of S are the twists of its passive
-/// joints. Let ad xi be the bracket with the mismatch, E(x) = 1 + x/2 + x^2/12 the differential of the logarithm, and D
-/// = E(-ad xi) S. V_a and V_b are the twists of the bodies a and b, and dq are the displacements of the passive joints.
-/// The equations of one limb from body a to body b,
+/// Makes steps of Newton's method with a matrix for each sample. The matrix is computed anew in the first, the fifth,
+/// the ninth round (iteration) and so on. The compliances C of the limbs must be regular. Consider a limb from body a
+/// to body b. Its wrench is p, and xi = log(g T^-1) is the mismatch between its end, with the pose g, and body b, with
+/// the pose T. The columns of S are the twists of the limb's passive joints. Let ad xi be the bracket with the
+/// mismatch, E(x) = 1 + x/2 + x^2/12 the differential of the logarithm, and D = E(-ad xi) S. V_a and V_b are the twists
+/// of the bodies a and b, and dq are the displacements of the passive joints. The equations of the limb,
 ///
 ///     p + dp = C^-1 (xi + D dq + E(-ad xi) V_a - E(ad xi) V_b)
 ///     S_j^T (p + dp) + sum over k < j of [S_k, S_j]^T p dq_k + [V_a, S_j]^T p = 0,
 ///
 /// are solved for dq, with a matrix that has a row for each passive joint of the limb. Six equations for each body
-/// remain. Idle freedoms move nothing and make the limb's matrix singular, so constant terms of rank one are added for
-/// them. A lane is refused if a pivot is not safely positive, because then no stable equilibrium is near.
+/// remain. Idle freedoms, motions of passive joints that move no body, make the limb's matrix singular; constant terms
+/// of rank one are added for them. A lane is refused if a pivot is not safely positive, because then no stable
+/// equilibrium is near.
 template <class T>
 class OwnStep {
  public:
@@ -36,7 +37,8 @@ class OwnStep {
         matrix_(problem, kSafePivot),
         twists_(6 * problem.bodies.size(), T(0.0)) {}
 
-  /// Makes one round: moves the active lanes.
+  /// Makes one iteration (round), which changes the state in the active lanes. Returns the changes. number: that of the
+  /// round, from 0.
   LaneChange<T> round(LaneAssembly<T>& state, Mask active, int number) {
     const bool is_new = number % kMatrixRounds == 0;
     if (is_new) {
@@ -117,8 +119,8 @@ class OwnStep {
     simd::cross(p + 3, a, h + 3);
   }
 
-  /// Computes the mismatch of limb e and what the limb contributes to the right side; in a round with new matrices,
-  /// also what it contributes to the matrix.
+  /// Computes the mismatch of limb e, and adds the limb's contribution to the right side of the bodies' equations. In a
+  /// round with new matrices, also adds its contribution to the bodies' matrix.
   template <std::size_t n>
   void visit(const LaneAssembly<T>& state, std::size_t e, bool is_new) {
     const KernelLimb& limb = problem_.limbs[e];
@@ -185,7 +187,7 @@ class OwnStep {
   }
 
   /// Computes dq per unit twist of a body, and adds the effect of the limb's wrench to the matrix of the bodies. felt:
-  /// [n x 6] moments and forces on the joints per unit twist of the body.
+  /// moment or force on each of the n passive joints per unit twist of the body, [n x 6].
   template <std::size_t n>
   void add_body(const KernelLimb& limb, std::size_t body, const Limb& of, const T* felt, T* dq) {
     multiply<n>(of.inverse, felt, dq);
@@ -218,9 +220,9 @@ class OwnStep {
     return safe;
   }
 
-  /// Computes the moments and forces on the joints per unit twist of the limb's bodies, [n x 6] each. xi: mismatch.
-  /// stiff: C^-1 S, the wrench per unit displacement of each joint. turning: the vector h (see bracket_transposed()) of
-  /// each joint's twist.
+  /// Computes the moment or force on each of the n passive joints per unit twist of the bodies b (`to`) and a (`from`),
+  /// [n x 6] each. xi: mismatch. stiff: C^-1 S, the wrench per unit displacement of each joint. turning: the vector h
+  /// (see bracket_transposed()) of each joint's twist.
   template <std::size_t n>
   static void felt_by_bodies(const T* xi, const T* stiff, const T* turning, T* to, T* from) {
     for (std::size_t j = 0; j < 6 * n; j += 6) {
@@ -283,8 +285,8 @@ class OwnStep {
     block[13] = nmadd(half, w[0], block[13]);
   }
 
-  /// Computes the limb's wrench per unit twist of one of its bodies, [6 x 6]: C^-1 (D by_body + E), with E as in the
-  /// class's equations.
+  /// Computes the limb's wrench per unit twist of one of its bodies, [6 x 6]: C^-1 (D by_body + bent_unit()). by_body:
+  /// dq per unit twist of the body. sign: -1 for body b, 1 for body a.
   template <std::size_t n>
   static void pull_by(const KernelLimb& limb, const Limb& of, const T* by_body, double sign, T* block) {
     T moved[36];
@@ -348,7 +350,7 @@ class OwnStep {
   std::vector<Limb> limbs_;       ///< [limbs] matrix of each limb
   BodyMatrix<T> matrix_;
   std::vector<T> twists_;  ///< [6 x bodies] right side, then the twists of the bodies; 0 for the base
-  Mask safe_;              ///< lanes in which the last matrix is safe
+  Mask safe_;              ///< lanes in which all pivots of the last matrix were safely positive
 };
 
 }  // namespace poesy::assembly

@@ -7,7 +7,7 @@
 /// The problem that the kernels of assemblies solve. It consists of plain numbers and uses no types of other folders,
 /// because the kernels are compiled for each instruction set. Lengths are in units of the reach. The origin is the
 /// centroid of the platform's points, and the axes are those in which their metric is diagonal. The unit of compliances
-/// is the largest compliance.
+/// is the largest entry of the limbs' compliances.
 namespace poesy::assembly {
 
 /// A rigid motion.
@@ -51,38 +51,40 @@ struct KernelJoint {
   bool slides;          ///< true: it slides along z; false: it rotates about z
   double advance;       ///< displacement along z per rad of a rotating joint
   int passive;          ///< position among the limb's passive joints; -1 if it does not move
-  int mark;             ///< position among the reported frames; -1 if its frame is not reported
+  int mark;             ///< position among the reported joint frames; -1 if this frame is not reported
   double displacement;  ///< nominal displacement
 };
 
 /// The largest number of passive joints of a limb in problems whose samples have matrices of their own.
 inline constexpr std::size_t kMostOwnJoints = 6;
 
-/// A limb from one body to another, with the data of its linear equations; see Equilibrium.
+/// A limb from one body to another, with the data of its linear equations; see Equilibrium for carry, give and lambda.
 struct KernelLimb {
   std::size_t from;                 ///< position of the body at which the limb begins
   std::size_t to;                   ///< position of the body at which the limb ends
-  std::vector<KernelJoint> joints;  ///< [n] joints that move or are reported
-  /// [n + 1] Motions between joints. The first one includes the place of the base if the limb begins at the base.
+  std::vector<KernelJoint> joints;  ///< joints that move or are reported
+  /// Motions before, between and behind these joints. The first one includes the place of the base if the limb begins
+  /// at the base.
   std::vector<KernelSegment> segments;
   std::size_t passive;       ///< number of passive joints
   std::size_t first_joint;   ///< position of the limb's first passive joint among those of all limbs
-  std::size_t first_wrench;  ///< position of the limb's first lambda (coordinate of its wrench) among all lambda
-  std::size_t carried;       ///< number of the limb's lambda
+  std::size_t first_wrench;  ///< position of the limb's first lambda (wrench coordinate) among all
+  std::size_t carried;       ///< number of wrenches that the limb can carry (its lambda)
   /// [6 x carried] Basis of the wrenches that the limb can carry (N of Equilibrium), row by row.
   std::vector<double> carry;
   std::vector<double> give;  ///< [passive x 6] matrix from a twist to displacements of the passive joints of least norm
   double compliance[36];     ///< compliance of the limb, row by row
   double stiffness[36];      ///< inverse of the compliance, row by row, if samples have matrices of their own
   bool is_diagonal;          ///< true if the inverse of the compliance is diagonal
-  /// [passive squared] Terms that make the limb's matrix regular in spite of idle freedoms.
+  /// [passive x passive] Terms that make the limb's matrix regular although some passive joints can move without moving
+  /// a body (idle freedoms).
   std::vector<double> idle;
 };
 
 /// A joint whose frame is reported.
 struct KernelMark {
   std::size_t limb;   ///< position of the limb whose wrench acts on the joint
-  std::size_t mark;   ///< position among the reported frames
+  std::size_t mark;   ///< position among the reported joint frames
   KernelJoint joint;  ///< the joint itself
 };
 
@@ -102,9 +104,9 @@ struct KernelReport {
   double moment;                            ///< unit of moments (N m) and of energy (J)
   std::size_t marks;                        ///< number of joint frames that are reported
   std::vector<KernelMotion> nominal_marks;  ///< [marks] nominal joint frames
-  std::vector<std::size_t> moments;         ///< [limbs] mark at whose point the limb's moment is taken
-  std::vector<KernelMark> drives;           ///< driven joints, in order
-  std::vector<KernelMark> reactions;        ///< joints whose reactions are reported, in order
+  std::vector<std::size_t> moments;         ///< [limbs] position of the frame at whose origin a limb's moment is taken
+  std::vector<KernelMark> drives;           ///< driven joints, in the order of the responses
+  std::vector<KernelMark> reactions;        ///< joints whose reactions are reported
 
   /// The number of responses (rows of KernelBlock::responses) of an assembly with this number of bodies (including the
   /// base) and limbs.
@@ -127,7 +129,7 @@ struct KernelMap {
   /// [coordinates / kRows, padded][entries][kRows] coordinates per unit of each varied value.
   std::vector<double> matrix;
   std::vector<double> wrenches;  ///< [6 limbs x stresses] wrenches per unit of each stress, row by row
-  std::vector<double> by_load;   ///< [6 limbs] wrenches caused by the load
+  std::vector<double> by_load;   ///< [6 limbs] wrenches of the machine without errors, as by the load
 };
 
 /// Starting points of solves with one varied error: Chebyshev series of the state in t = scale (value - centre), for
@@ -141,7 +143,7 @@ struct KernelStart {
   std::vector<double> coefficients;          ///< [numbers of a state x kTerms] coefficients of the series
 };
 
-/// The kind of matrix with which a round makes its steps.
+/// The kind of matrix with which an iteration (round) makes its step.
 enum class KernelStep : std::uint8_t {
   constant,  ///< the inverse matrix of the nominal pose: ConstantStep
   meet,      ///< projections of each sample, if limbs have no wrenches: MeetStep
@@ -153,15 +155,16 @@ struct KernelProblem {
   std::vector<KernelMotion> bodies;  ///< nominal places of all bodies, including the base
   std::vector<KernelLimb> limbs;     ///< limbs, in the order of the file
   std::size_t joints;                ///< number of passive joints of all limbs
-  std::size_t size;                  ///< number of linear equations: all lambda, then 6 for each body except the base
+  std::size_t size;                  ///< number of equations: one for each lambda, 6 for each body but the base
   std::vector<double> inverse;       ///< [size x size] inverse of the nominal matrix, row by row
   std::vector<double> load;          ///< [6 x bodies] wrench of the load on each body
   bool carries;                      ///< true if limbs have wrenches, because they deform each other or a load acts
-  KernelStep step;                   ///< the matrix with which rounds make their steps
-  /// Factors, at most 1, from a twist to measured coordinates, whose sum of squares is that of the metric.
+  KernelStep step;                   ///< the matrix with which rounds (iterations) make their steps
+  /// Factors, at most 1, from the components of a twist to measured coordinates. The sum of squares of these
+  /// coordinates is proportional to the square of the twist in the metric.
   double measured[6];
   double unmeasured[6];  ///< inverses of the factors
-  bool wants_wrenches;   ///< true if wrenches must settle too
+  bool wants_wrenches;   ///< true if a sample converges only when its wrenches do
   double tolerance;      ///< tolerance of the changes of bodies and joints, in units of the reach
   int most_rounds;       ///< number of rounds after which a sample is left to another solver
   KernelReport report;   ///< what is reported of each sample
@@ -172,8 +175,8 @@ struct KernelProblem {
   std::size_t rows_of_state() const { return 6 * (bodies.size() - 1 + limbs.size()) + joints; }
 };
 
-/// How the kernel ended a sample: converged; converged, but at one time so slowly that it may have gone to another
-/// solution than the one that grows from the nominal pose; or left to another solver.
+/// How the kernel ended a sample. doubtful: it converged, but may have gone to another solution than the one that grows
+/// from the nominal pose, because it started far away or was slow at one time. left: another solver must solve it.
 enum class KernelEnd : std::uint8_t { converged, doubtful, left };
 
 /// A block of samples. The stride is at least count, and a multiple of the number of lanes of every instruction set.
@@ -183,10 +186,10 @@ struct KernelBlock {
   const double* values;  ///< [entries x stride] values of the varied errors
   /// [responses x stride] Responses, SI; arbitrary for samples with KernelEnd::left, which another solver must solve.
   double* responses;
-  /// [stride] End of each sample; to first order, `left` means that errors are not finite.
+  /// [stride] How each sample ended. To first order, `left` means that the result is not finite.
   KernelEnd* ends;
   std::uint32_t* iterations;  ///< [stride] iterations of each sample; not written to first order
-  double* states = nullptr;   ///< [rows of a state x stride] states at the end of solves; null if not wanted
+  double* states = nullptr;   ///< [rows_of_state() x stride] states after the solves; null if not wanted
   /// [6 limbs x stride] Mismatch xi of each limb, in the kernel's units and axes; null if not wanted.
   double* mismatch = nullptr;
 };

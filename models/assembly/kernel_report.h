@@ -20,7 +20,7 @@ struct LaneOutcome {
   explicit LaneOutcome(const KernelProblem& problem)
       : bodies(problem.bodies.size()), wrenches(6 * problem.limbs.size()), marks(problem.report.marks) {}
 
-  std::vector<LaneDisplacement<T>> bodies;  ///< [bodies] displacements; the base's is not read
+  std::vector<LaneDisplacement<T>> bodies;  ///< [bodies] displacements; that of the base is not read
   T tool[3];                                ///< displacement of the tool point, if there is a tool
   std::vector<T> wrenches;                  ///< [6 x limbs] wrench of each limb on the body at its end
   std::vector<LaneMotion<T>> marks;         ///< [marks] frames of joints before the joints move

@@ -49,8 +49,8 @@ class LaneAssembly {
   /// The square of the largest move of a body from the nominal pose to the start by first order.
   const T& start_move() const { return start_move_; }
 
-  /// Writes the places of bodies, the wrenches and the displacements of joints, from the lanes' first row on; see
-  /// KernelStart.
+  /// Writes the state of the lanes (see KernelStart). row: where its first number is written; the others follow, one
+  /// stride apart.
   void store(double* row) const {
     const auto put = [&](T value) {
       value.store(row);
@@ -65,8 +65,8 @@ class LaneAssembly {
     for_each_joint([&](const KernelJoint& one, std::size_t joint) { put(displacements[joint] - T(one.displacement)); });
   }
 
-  /// The pose of the end of limb e if no forces act. The function calls at_joint(joint, frame) for each joint before
-  /// that joint moves.
+  /// The pose of the end of limb e with the present displacements of its joints, without elastic deformation. Calls
+  /// at_joint(joint, frame) for each joint, with the frame before the joint moves.
   template <class AtJoint>
   Motion walk(std::size_t e, AtJoint at_joint) const {
     const KernelLimb& limb = problem_.limbs[e];
@@ -83,7 +83,7 @@ class LaneAssembly {
     return g;
   }
 
-  /// Moves the bodies by twists [6 x bodies] in the active lanes. Returns the largest square of a twist.
+  /// Moves the bodies by twists [6 x bodies] in the active lanes. Returns the square of the longest twist.
   T move_bodies(const std::vector<T>& twists, Mask active) {
     T largest(0.0);
     for (std::size_t b = 1; b < bodies.size(); ++b) {
@@ -107,7 +107,7 @@ class LaneAssembly {
     return sum < T(1e300);
   }
 
-  /// Sets the outcome that is reported.
+  /// Sets the numbers from which the responses are computed.
   void report(LaneOutcome<T>& outcome) const {
     if (problem_.report.has_motions) {
       for (std::size_t b = 1; b < bodies.size(); ++b) displaced(b, outcome.bodies[b]);
@@ -215,12 +215,12 @@ class LaneAssembly {
   T start_move_{0.0};                       ///< see start_move()
 };
 
-/// The changes of a round, and the lanes in which it must not be trusted.
+/// How much a round (iteration) changed the state of each lane, and the lanes in which these changes must not be used.
 template <class T>
 struct LaneChange {
   T places{0.0};    ///< square of the largest change of a body or joint
   T wrenches{0.0};  ///< sum of the squared changes of the wrenches
-  /// Lanes in which the equations are not those of a stable equilibrium.
+  /// Lanes in which a pivot was not safely positive. Another solver must solve them.
   typename T::MaskType refused = T(1.0) < T(0.0);
 };
 

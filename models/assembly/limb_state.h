@@ -20,13 +20,13 @@ struct LimbState {
   Screw twist(const chain::Joint& joint, std::size_t j) const { return chain::spatial_column(joint, before[j]); }
 };
 
-/// The state of a limb that begins at the body frame `from` (base_T_a). frames: [n + 1], with or without errors.
-/// displacements: [n] of its joints (rad, m).
+/// The state of a limb that begins at a body with the pose `from` (base_T_body). frames: the limb's fixed frames, with
+/// or without errors. displacements: those of the limb's joints (rad, m).
 LimbState limb_state(const Limb& limb, const Transform& from, std::span<const Transform> frames,
                      std::span<const double> displacements);
 
-/// The states of all limbs. bodies: [bodies] base_T_body. frames: [limbs][n + 1], with or without errors.
-/// displacements: [joints of all limbs] (rad, m).
+/// The states of all limbs. bodies: [bodies] base_T_body. frames: the fixed frames of each limb, with or without
+/// errors. displacements: [joints of all limbs] (rad, m).
 std::vector<LimbState> limb_states(const Assembly& assembly, std::span<const Transform> bodies,
                                    std::span<const std::vector<Transform>> frames,
                                    std::span<const double> displacements);
@@ -35,9 +35,9 @@ std::vector<LimbState> limb_states(const Assembly& assembly, std::span<const Tra
 /// Equilibrium). Bodies do not include the base. The six rows of each limb are multiplied by the matrix `root`.
 Eigen::MatrixXd motion_columns(const Assembly& assembly, std::span<const LimbState> limbs, const Matrix6& root);
 
-/// The first-order twist of the limb's end per unit of a component of a frame's error. It is a column of the matrix G
-/// of error_twists(). It is a column of Ad(F) for the frame F before the error; in the last frame, where the inverse
-/// multiplies from the right, of -Ad(F). component: position in [omega; v].
+/// The first-order twist of the limb's end per unit of a component of a frame's error. Let F be the frame before the
+/// error. The twist is a column of Ad(F), or of -Ad(F) in the limb's last frame, to which the inverse of the error is
+/// applied. component: position in [omega; v].
 Screw error_twist(const Limb& limb, const Transform& from, const LimbState& state, std::size_t frame,
                   std::size_t component);
 

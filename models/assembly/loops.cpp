@@ -117,7 +117,8 @@ Matrix bend(const Assembly& assembly, std::span<const LimbState> limbs, std::spa
     for (std::size_t n = 0; n < of_limb.size(); ++n) {
       const Mover& l = of_limb[n];
       const bool ends = l.what == Mover::What::to;
-      // -(d xi + B) along the motion l, by the inverse Jacobians of the logarithm
+      // The motion l changes the mismatch xi by -(column of B) - beyond, where `beyond` (here multiplied by W) comes
+      // from the inverse Jacobians of the logarithm.
       const Screw once = lie::bracket(r[e], l.twist);
       const Screw beyond = W * Screw(0.5 * once + (ends ? 1.0 : -1.0) / 12.0 * lie::bracket(r[e], once));
       for (std::size_t m = 0; m < of_limb.size(); ++m) {

@@ -8,9 +8,9 @@
 namespace poesy::assembly {
 
 /// The loops of a perfect assembly at a pose, weighed by the metric W of the platform's points. A vector x has the
-/// twists V of the bodies and the displacements dq of the passive joints. B x = V_b - V_a - J dq is the change of the
-/// mismatch of each limb from body a to body b, with the columns J of its passive joints (motion_columns()). N is B^T W
-/// B, without the idle motions of passive joints.
+/// twists V of the bodies and the displacements dq of the passive joints. To first order, x takes B x = V_b - V_a - J
+/// dq away from the mismatch of each limb from body a to body b, with the columns J of the limb's passive joints
+/// (motion_columns()). N is B^T W B, without the idle motions of passive joints.
 class Loops {
  public:
   /// The assembly and the pose must outlive this object. idle: number of freedoms of passive joints that move no body.
@@ -19,15 +19,16 @@ class Loops {
   /// Returns true if N is regular. All functions below require that it is.
   bool is_regular() const { return is_regular_; }
 
-  /// [entries of x, motions] The motions x that are not idle. B x has length 1 in the metric W for each of them.
+  /// The motions x that are not idle, one in each column. For each of them, B x has length 1 in the metric W.
   const Eigen::MatrixXd& motions() const { return motions_; }
 
-  /// The part of a mismatch that motions of bodies and joints could remove. The mismatch xi of each limb is multiplied
-  /// by W^(1/2): [6 limbs].
+  /// The part of a mismatch [6 x limbs] that motions of bodies and joints could remove. In argument and result, the
+  /// mismatch xi of each limb is multiplied by W^(1/2).
   Eigen::VectorXd taken_away(const Eigen::VectorXd& mismatch) const;
 
-  /// [limbs][n + 1] The slopes of ln det N by the errors of each limb's frames. The product of a slope with
-  /// error_twist() is the first-order change per unit of an error, if bodies and joints follow the error.
+  /// The slopes of ln det N by the errors of each limb's frames: a vector for each limb, with a slope for each frame.
+  /// The product of a slope with error_twist() is the first-order change per unit of an error, if bodies and joints
+  /// follow the error.
   std::vector<std::vector<Screw>> determinant_slopes() const;
 
  private:
@@ -39,8 +40,8 @@ class Loops {
   bool is_regular_;
 };
 
-/// The symmetric matrix C(r) for limbs in these states, with mismatches r [limbs]. The derivative of B^T W xi (see
-/// Loops; xi: mismatch) is N + C(r).
+/// The symmetric matrix C(r) for limbs in these states, with mismatches r [limbs]. N + C(r) is minus the derivative of
+/// B^T W xi, where xi is the mismatch (see Loops for B, W and N).
 Eigen::MatrixXd bend(const Assembly& assembly, std::span<const LimbState> limbs, std::span<const Screw> r,
                      const Matrix6& W);
 

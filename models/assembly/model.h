@@ -15,12 +15,12 @@ namespace poesy::assembly {
 struct AssemblyModel {
   Assembly assembly;                     ///< perfect limbs that connect bodies
   Report report;                         ///< which responses the model has in addition to those of every assembly
-  std::vector<chain::ErrorTerms> terms;  ///< [F] terms of each error
+  std::vector<chain::ErrorTerms> terms;  ///< [errors] terms of each error
   std::vector<std::size_t> ranks;        ///< [limbs] rank of the passive joints' columns
-  std::size_t idle = 0;                  ///< number of freedoms of passive joints that move no body
+  std::size_t idle = 0;                  ///< number of motions of passive joints that move no body
   bool deforms = true;                   ///< true if errors may cause mismatch between limbs and bodies, or loads act
   bool over_constrained = true;          ///< true if limbs deform each other
-  /// True if the file's numbers are rounded, so that perfect limbs fit their bodies only almost.
+  /// True if the file's numbers are rounded, so that perfect limbs fit their bodies only approximately.
   bool rounded = false;
   /// Pairs of limbs whose mismatch is an additional output (Detail in engine/model/model.h). All these limbs lead from
   /// the base to the platform. Empty if there are no additional outputs.
@@ -33,27 +33,27 @@ struct AssemblyModel {
   Nominal at(std::span<const double> pose) const;
 };
 
-/// The twist of the limb's end per unit of an error, as far as this term of the error causes it.
+/// The twist of a limb's end that one term of an error causes, per unit of the error.
 Screw term_twist(const AssemblyModel& model, const Nominal& pose, const chain::ErrorTerm& term);
 
-/// [6 limbs x F] The matrix G: twists of limbs' ends per unit of each error.
+/// The matrix G [6 limbs x errors] of the twists of limbs' ends per unit of each error, with all joints held.
 Eigen::MatrixXd error_twists(const AssemblyModel& model, const Nominal& pose);
 
 /// All responses of the model.
 std::vector<Response> responses_of(const AssemblyModel& model);
 
-/// An evaluator that solves blocks of samples, or maps them to first order. The model must outlive the evaluator.
+/// An evaluator that solves blocks of samples exactly or to first order. The model must outlive the evaluator.
 std::unique_ptr<Evaluator> assembly_evaluator(const AssemblyModel& model, const SolverOptions& options,
                                               chain::Fidelity fidelity);
 
-/// The trace of one solve, step by step. pose: reachable, SI. errors: [F], SI.
+/// The trace of one solve, step by step. pose: reachable, SI. errors: one for each error of the model, SI.
 SolveTrace assembly_trace(const AssemblyModel& model, std::span<const double> pose, std::span<const double> errors,
                           const SolverOptions& options, chain::Fidelity fidelity);
 
-/// The condition number (2-norm) of the passive joints, without idle freedoms. It is that of a matrix with their
-/// columns of B (motion_columns()). The columns are weighed by the platform's metric, the part that motions of bodies
-/// can produce is subtracted, and each is scaled to length 1. The number is infinite if the matrix is rank-deficient to
-/// rounding.
+/// The condition number (2-norm) of the passive joints, without idle freedoms. It is computed from the columns of B
+/// (motion_columns()) that belong to passive joints. They are weighed by the platform's metric, the part that motions
+/// of bodies can produce is subtracted, and each column is scaled to length 1. The number is infinite if the matrix of
+/// these columns is rank-deficient to rounding.
 double condition(const AssemblyModel& model, std::span<const double> pose);
 
 /// The largest force in any limb (N/m) per unit motion of a limb's end at this pose.

@@ -38,7 +38,7 @@ std::vector<std::size_t> limbs_in_a_row(const Assembly& assembly) {
     ++touching[limb.from];
     ++touching[limb.to];
   }
-  // Chain of limbs (limbs_in_a_row()) to which each limb belongs.
+  // For each limb, the number of the row of limbs (limbs_in_a_row()) to which it belongs.
   std::vector<std::size_t> row(assembly.limbs.size());
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t b = kPlatform + 1; b < assembly.bodies.size(); ++b) {
@@ -62,7 +62,7 @@ Matrix6 twists_in_units(const Transform& frame, double length) {
 
 Transform frame_of_metric(const Matrix6& W) {
   Transform frame;
-  frame.p = -Vector3(W(5, 1), W(3, 2), W(4, 0));  // -hat(centroid) is the block of [v, omega]
+  frame.p = -Vector3(W(5, 1), W(3, 2), W(4, 0));  // in W, the rows of v and columns of omega are -hat(centroid)
   const Matrix6 back = lie::adjoint(frame);
   frame.R = linalg::eigen_decomposition((back.transpose() * W * back).topLeftCorner<3, 3>()).vectors;
   if (frame.R.determinant() < 0.0) frame.R.col(2) *= -1.0;

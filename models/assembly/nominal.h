@@ -13,7 +13,7 @@ struct Nominal {
   std::vector<Transform> bodies;      ///< [bodies] base_T_body
   std::vector<LimbState> limbs;       ///< [limbs] states of the limbs
   std::vector<Matrix6> compliance;    ///< [limbs] compliance C of each limb
-  std::vector<Screw> load;            ///< [bodies] wrench of the load; the base's is 0
+  std::vector<Screw> load;            ///< [bodies] wrench of the load; 0 for the base
   std::vector<Screw> mismatch;  ///< [limbs] mismatch between the end of each limb and its body; 0 unless the file's
                                 ///< numbers are rounded
   Matrix6 W;                    ///< metric of the platform's points

@@ -101,7 +101,8 @@ PoseProblem::PoseProblem(const AssemblyModel& model, Nominal pose, const SolverO
   problem_.most_rounds = std::min(kMostRounds, options.max_iterations);
 }
 
-/// Finds the components of frames' errors (entries) that errors change. Several errors may add to the same component.
+/// Finds the components of frames' errors (entries_) that errors of the model change. Several errors may add to the
+/// same component.
 void PoseProblem::find_entries() {
   first_.push_back(0);
   for (const Limb& limb : model_->assembly.limbs) first_.push_back(first_.back() + limb.chain.frames());
@@ -166,8 +167,8 @@ void PoseProblem::set_limb(const Equilibrium& equations, std::size_t e) {
   problem_.limbs.push_back(std::move(made));
 }
 
-/// Sets what samples need if each has matrices of its own. They have such matrices if limbs have no wrenches, or if
-/// limbs have wrenches and no limb is rigid in any direction.
+/// Chooses the matrix of the steps (KernelStep). Each sample has matrices of its own, for which the data are set here,
+/// unless a limb has too many passive joints, or limbs have wrenches and one of them is rigid in some direction.
 void PoseProblem::set_own_matrices(const Equilibrium& equations) {
   problem_.step = KernelStep::constant;
   for (const KernelLimb& limb : problem_.limbs) {
@@ -204,8 +205,9 @@ bool PoseProblem::is_soft(const Equilibrium& equations) const {
   return true;
 }
 
-/// Sets the terms for a limb's idle freedoms. They are about as large as the other numbers in the matrix S^T weight S,
-/// where the columns of S are the twists of the limb's passive joints.
+/// Sets the terms for a limb's idle freedoms, the motions of its passive joints that do not move its end. The terms are
+/// about as large as the numbers in the matrix S^T weight S, where the columns of S are the twists of the limb's
+/// passive joints.
 void PoseProblem::set_idle(const Equilibrium& equations, std::size_t e, const Matrix& weight) {
   const Matrix& give = equations.give(e);
   const Matrix columns = equations.twists_in_units() * pose_.limbs[e].passive;
@@ -262,7 +264,7 @@ Matrix PoseProblem::twists_of_entries(const Equilibrium& equations) const {
   return twists;
 }
 
-/// Computes the first-order coordinates, and the inverse of the equations' matrix.
+/// Computes the first-order coordinates (KernelMap), and the inverse of the equations' matrix.
 void PoseProblem::solve_first_order(const Equilibrium& equations) {
   const std::size_t limbs = problem_.limbs.size();
   const Index size = equations.matrix().rows();
@@ -311,7 +313,7 @@ void PoseProblem::solve_first_order(const Equilibrium& equations) {
   }
 }
 
-/// The address of the first value of a component that varies.
+/// A pointer to the first value of a component that varies.
 double* PoseProblem::row_of(const Entry& entry, std::size_t stride, std::vector<double>& values) {
   return values.data() + static_cast<std::size_t>(entry.row) * stride;
 }
@@ -331,9 +333,9 @@ void PoseProblem::set_constants(const SampleBlock& samples) {
   }
 }
 
-/// Makes the changed components read the values of the samples without a copy. Returns false if that is not possible:
-/// it requires that the samples fill whole batches, and that each varied error changes one component, which nothing
-/// else changes.
+/// Makes the kernel read the values of the varied errors from the samples, without a copy. Returns false if that is not
+/// possible. It is possible if the samples fill whole batches, and each varied error changes a single component that no
+/// other error changes.
 bool PoseProblem::take_values(const SampleBlock& samples) {
   if (samples.count != padded(samples.count)) return false;
   int rows = 0;

@@ -11,7 +11,7 @@
 
 namespace poesy::assembly {
 
-/// The position of an elementary joint.
+/// The position of a joint of one freedom.
 struct JointPlace {
   std::size_t limb;   ///< position of the limb
   std::size_t joint;  ///< position of the joint in the limb
@@ -34,8 +34,8 @@ class PoseProblem {
   /// Returns true if the linear equations of the nominal pose have a unique solution.
   bool is_regular() const { return coordinates_.allFinite(); }
 
-  /// The problem with the errors of these samples, valid until the next call. scratch: receives the values if the
-  /// kernel cannot read them from the samples.
+  /// The problem with the errors of these samples, valid until the next call. scratch: receives the values of varied
+  /// components if the kernel cannot read them from the samples; it must exist as long as the problem is used.
   const KernelProblem& with(const SampleBlock& samples, std::vector<double>& scratch);
 
   /// [varied components x padded(samples)] The varied values of the last call of with().
@@ -48,8 +48,8 @@ class PoseProblem {
   /// errors.
   bool has_starts(const SampleBlock& samples) const;
 
-  /// Sets the series from which samples like these start; see KernelStart. If it is empty, they start
-  /// from the first-order solution.
+  /// Sets the series from which samples like these start; see KernelStart. If the series is empty, samples start from
+  /// the first-order solution.
   void set_starts(const SampleBlock& samples, std::vector<double> coefficients);
 
  private:
@@ -105,10 +105,11 @@ class PoseProblem {
   std::vector<JointPlace> marks_;    ///< joints whose frames are reported
   std::vector<Entry> entries_;       ///< components of frames' errors that errors of the model change
   std::vector<Addition> additions_;  ///< additions of all errors, error by error
-  std::vector<std::size_t> added_;   ///< [F + 1] position of each error's first addition
+  std::vector<std::size_t> added_;   ///< [errors + 1] position of each error's first addition in additions_
   std::vector<std::size_t> first_;   ///< [limbs + 1] position of each limb's first frame among all frames
   std::vector<KernelError> errors_;  ///< [frames of all limbs] error of each frame
-  /// [coordinates x (entries + 1)] First-order coordinates per unit of each of entries_, then by the load.
+  /// First-order coordinates (KernelMap), a row for each. Columns: change per unit of each of entries_, then the
+  /// coordinates without errors.
   Eigen::MatrixXd coordinates_;
   const double* values_ = nullptr;  ///< see values()
   std::optional<Started> started_;  ///< samples of the last call of set_starts()

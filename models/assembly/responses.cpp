@@ -33,8 +33,8 @@ class Rows {
     }
   }
 
-  /// Adds to the list a response that is the norm of three others. back: how many places before the end of the list the
-  /// first of these is.
+  /// Adds to the list a response that is the norm of three consecutive others. back: distance of the first of them from
+  /// the end of the list.
   void add_norm(std::string name, Dimension dimension, std::string description, std::size_t back) {
     const std::size_t first = list.size() - back;
     add(std::move(name), dimension, std::move(description));

@@ -12,12 +12,14 @@ namespace poesy::assembly {
 
 /// A joint whose reaction, or whose drive force, is a response.
 struct ReportedJoint {
-  std::size_t limb;   ///< position of the limb
-  std::size_t joint;  ///< position in the limb of an elementary joint: the first of the joint, or the driven one
-  std::string name;   ///< name of the joint in the file
+  std::size_t limb;  ///< position of the limb
+  /// Position of the joint in the limb. A joint with several freedoms is a series of joints with one freedom each: for
+  /// a reaction the position is that of the first of them, for a drive that of the driven one.
+  std::size_t joint;
+  std::string name;  ///< name of the joint in the file
 };
 
-/// The number of responses that state mismatch. They come first in the list of an assembly that deforms.
+/// The number of responses that state mismatch. They are the first responses of an assembly that deforms.
 inline constexpr std::size_t kDeformations = 3;
 
 /// What is reported of an assembly, in addition to the responses that every assembly has.
@@ -41,11 +43,11 @@ struct Outcome {
   std::span<const LimbState> limbs = {};  ///< [limbs] states at which forces are evaluated
 };
 
-/// The position of the limb's last joint that moves, or of its last joint if none moves. The limb's moment is taken
-/// about its point.
+/// The position of the limb's last joint that is not fixed, or of the last joint if all are fixed. The moment of the
+/// limb is taken about the point of this joint.
 std::size_t last_moving(const Limb& limb);
 
-/// The outcome of an exact solution. The solution must outlive it.
+/// The outcome of an exact solution. The solution must outlive the outcome.
 Outcome outcome_of(const Assembly& assembly, const Nominal& pose, const Solution& solution);
 
 /// The outcome of one column of a first-order result.

@@ -6,11 +6,11 @@
 namespace poesy::assembly {
 namespace {
 
-/// A step up to this share of the reach counts as rounding if the next step is not smaller.
+/// A step up to this share of the reach counts as rounding if it is not smaller than half of the step before.
 constexpr double kRounding = 1e-11;
 constexpr double kDamped = 0.25;
-constexpr double kLong = 0.5;   ///< first step, over the reach, that is long
-constexpr double kSlow = 0.25;  ///< share of the step before from which on a step is not much shorter
+constexpr double kLong = 0.5;   ///< a first step above this share of the reach is long
+constexpr double kSlow = 0.25;  ///< a step above this share of the step before is not much shorter
 
 Eigen::VectorXd stacked(std::span<const Screw> screws) {
   return Eigen::Map<const Eigen::VectorXd>(screws.front().data(), 6 * static_cast<Eigen::Index>(screws.size()));
@@ -56,7 +56,7 @@ Solution Solver::attempt(std::span<const std::vector<Transform>> frames, const S
     equations.set(at.limbs, ranks_);
     const Balance step = equations.solve(stacked(at.mismatch), load);
     double moved = 0.0;
-    const auto note = [&moved](double length) {  // a length that is not a number stays
+    const auto note = [&moved](double length) {  // once the length is not a number, it stays so
       if (!std::isnan(moved) && !(length <= moved)) moved = length;
     };
     for (std::size_t b = kPlatform; b < at.bodies.size(); ++b) {
@@ -70,7 +70,7 @@ Solution Solver::attempt(std::span<const std::vector<Transform>> frames, const S
       at.wrenches[e] = part(step.wrenches, e);
       const Screw given = part(step.twists, limb.to) - part(step.twists, limb.from) - at.mismatch[e] +
                           pose_->compliance[e] * at.wrenches[e];
-      note(damping * equations.size(given));  // counts too: an error across a rod rotates the rod and moves no body
+      note(damping * equations.size(given));  // joints count too: an error may rotate a rod and move no body
       const Eigen::VectorXd dq = damping * equations.displacements(e, given);
       Eigen::Index k = 0;
       for (const chain::Joint& one : limb.chain.joints) {

@@ -42,8 +42,8 @@ class Solver {
   /// Sets the nominal pose, which must outlive the solves.
   void prepare(const Nominal& pose);
 
-  /// Solves for frames with errors [limbs][n + 1]. The solve has converged if no body and no joint moves a point by
-  /// more than the tolerance times the reach. If full steps do not converge, quarter steps are tried once.
+  /// Solves for these fixed frames of each limb, with errors. The solve has converged if no body and no joint moves a
+  /// point by more than the tolerance times the reach. If full steps do not converge, quarter steps are tried once.
   Solution solve(std::span<const std::vector<Transform>> frames) const;
 
   /// Solves for frames with errors like the function above, but begins at `start` instead of the nominal pose.
@@ -59,7 +59,7 @@ class Solver {
   struct Manner {
     double damping = 1.0;      ///< factor of each step
     bool is_loaded = true;     ///< whether the load acts
-    bool must_shrink = false;  ///< whether each step must be much shorter than the one before, as in approach()
+    bool must_shrink = false;  ///< whether to give up where approach() does, at long steps
   };
 
   Solution attempt(std::span<const std::vector<Transform>> frames, const SolverStart& start,

@@ -14,8 +14,9 @@
 
 namespace poesy::chain {
 
-/// If the errors of a machine change ln det(J^T W J) by less than this, to first order, its loops may open. It is half
-/// of the change at which they open. J: columns of the passive joints; W: metric; see Assembly::nearing().
+/// A bound on the change of ln det(J^T W J) by the errors of a machine, to first order. If the change is below this
+/// negative number, the loops of the machine may open; they open at a change of about -1. J: columns of the passive
+/// joints; W: metric; see Assembly::nearing().
 inline constexpr double kNearing = -0.5;
 
 /// Decides whether the loops of a machine with errors can be closed at all. If limbs over-constrain the platform, the
@@ -29,14 +30,14 @@ inline constexpr double kNearing = -0.5;
 /// In a machine that can be assembled, r is small: of the order of the mismatch times the errors. In a machine that
 /// cannot be assembled, the loops are closed as far as possible and then bend away from each other: there is a motion x
 /// of the joints that changes the mismatch in J0 but no longer in J. Then N x nearly vanishes, where N = J^T W J, while
-/// r does not vanish. Newton's matrix is M = N + C(r) (BlockKernel); C(r) is the part of the derivative of J^T W
+/// r does not vanish. Newton's matrix is M = N + C(r) (BlockKernel); C(r) is the part of minus the derivative of J^T W
 /// delta_mu that a residual r causes. A machine cannot be assembled if
 ///     N - 2 C(r)
 /// is not positive definite. This criterion does not depend on units or on size. Its boundary is where the loops just
 /// close (theory.md, "Machines that cannot be assembled").
 ///
 /// Uses plain double arithmetic. It is meant for two sorts of samples: those that a solver did not solve, and those
-/// whose errors bring the loops near to opening. Owns the scratch memory of one thread.
+/// with errors for which the loops may open (nearing()). Owns the scratch memory of one thread.
 class Assembly {
  public:
   /// The chain must outlive this object.
@@ -49,9 +50,9 @@ class Assembly {
   /// which the limbs are joined to the platform, even if the solver uses another one, because it depends on no unit.
   void prepare(std::span<const double> displacements, const Metric* metric);
 
-  /// The first-order change of ln det(J^T W J) per unit of a component of a frame's error (1/rad, 1/m). If the changes
-  /// by all errors of a machine sum to less than kNearing, the machine may be impossible to assemble: where one
-  /// direction is weak, the loops open at a sum of -1. The result is 0 if the perfect mechanism is singular.
+  /// The first-order change of ln det(J^T W J) per unit of a component of a frame's error (1/rad, 1/m). If the sum of
+  /// the changes by all errors of a machine is below kNearing, the machine may be impossible to assemble. Close to a
+  /// singular pose, the loops open at a sum of -1. The result is 0 if the perfect mechanism is singular.
   double nearing(const FrameEntry& entry);
 
   /// Returns true if limbs with these fixed frames [chain.frames()] cannot be assembled. The passive joints descend
@@ -67,7 +68,7 @@ class Assembly {
   Eigen::MatrixXd bend(std::span<const double> delta_mu);
 
   const ParallelChain* chain_;
-  std::vector<double> nominal_;  ///< [all joints]
+  std::vector<double> nominal_;  ///< [all joints] nominal displacements
   lie::Matrix6<double> W_ = lie::Matrix6<double>::Zero();
   double reach_ = 1.0;        ///< reach of the metric (m); 1 without a metric, which weighs 1 m like 1 rad
   bool is_asked_ = false;     ///< true if is_regular() has been called since prepare()

@@ -5,7 +5,7 @@
 
 namespace poesy::chain {
 
-/// Calls work with the KernelClass of the most specialised kernel that fits the chain.
+/// Calls work(KernelClass<Kernel>()), where Kernel is the most specialised kernel that fits the chain.
 template <class T, class Work>
 void with_kernel(const KernelChain& chain, Work work) {
   ThreeLimbs<3>::fits(chain) ? work(KernelClass<BlockKernel<T, ThreeLimbs<3>>>())
@@ -21,7 +21,7 @@ void solve_block(const KernelChain& chain, const KernelSamples& samples, const K
   });
 }
 
-/// Maps a block of samples to first order; see KernelMapBlock.
+/// Computes residuals and responses of a block of samples to first order, by a linear map; see KernelMapBlock.
 template <class T>
 void map_block(const KernelChain& chain, const KernelSamples& samples, const KernelMap& map,
                const KernelOutcome& outcome, double* scratch) {

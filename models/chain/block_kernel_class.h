@@ -9,12 +9,13 @@
 
 namespace poesy::chain {
 
-/// The passes of a sample's solve; see BlockKernel.
+/// A pass is an attempt to solve samples by one method. A sample that a pass does not solve goes to the next one; see
+/// BlockKernel.
 enum class KernelPass {
   published,  ///< Gauss-Newton with the published stopping rule
   direct,     ///< Newton's method, which stops at the first unsafe step
   follow,     ///< Gauss-Newton, then Newton once its steps are small and safe
-  rescue      ///< Newton where its matrix is positive definite, else half a Gauss-Newton step
+  rescue      ///< Newton where its pivots are positive, else half a Gauss-Newton step
 };
 
 /// The shape of a chain of three limbs, compared in all pairs, with equal numbers of passive joints. The numbers are
@@ -25,7 +26,7 @@ struct ThreeLimbs {
   /// True if every two limbs form exactly one pair. Then each off-diagonal block of the Gauss-Newton matrix J^T J comes
   /// from one pair.
   static constexpr bool kEveryPairOnce = true;
-  /// The numbers for which the kernel is compiled.
+  /// The numbers of limbs, of passive joints of each limb, and of pairs.
   /// @{
   static constexpr std::size_t kLimbs = 3;
   static constexpr std::size_t kJoints = joints_per_limb;
@@ -73,12 +74,14 @@ struct AnyShape {
 /// 1e-5 of the diagonal of N, and 2 N - M is positive definite too. Then Gauss-Newton contracts to the same root to
 /// which the Newton step leads. A sample goes through up to three passes:
 ///     direct   Newton from the start; refused at a step that is not safe or larger than the options allow;
-///     follow   Gauss-Newton from nominal displacements, up to 8 max_iterations, and Newton as soon as its step is
-///              safe and below 1e-3, and Gauss-Newton's below 2e-3: finds the root of Gauss-Newton, if there is one.
-///              Given up where the displacements return to those of an earlier iteration;
-///     rescue   Newton from nominal displacements with positive pivots, else half a Gauss-Newton step, up to
-///              max_iterations: finds a root with positive derivative where Gauss-Newton finds none. Roots more than
-///              0.5 (rad, m) away from nominal displacements are other assembly modes of the chain and are refused.
+///     follow   Gauss-Newton from nominal displacements, up to 8 max_iterations. A Newton step replaces the
+///              Gauss-Newton step if it is safe and below 1e-3 and the Gauss-Newton step is below 2e-3. This pass finds
+///              the root of Gauss-Newton, if there is one. It gives up a sample whose displacements return to those of
+///              an earlier iteration;
+///     rescue   from nominal displacements, a Newton step if the pivots of M are positive, else half a Gauss-Newton
+///              step, up to max_iterations. This pass finds a root at which M is positive where Gauss-Newton finds
+///              none. Roots more than 0.5 (rad, m) away from nominal displacements are other assembly modes of the
+///              chain and are refused.
 /// Newton converges quadratically. So a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
 /// is updated to first order instead of being evaluated again.
 template <class T, class Shape>
@@ -90,7 +93,7 @@ class BlockKernel {
 
   /// Solves all samples of the block.
   void solve();
-  /// Maps all samples to first order.
+  /// Computes residuals and responses of all samples to first order.
   void map(const KernelMap& map);
   /// Finds the motion of the platform for all samples.
   void move_platform(const KernelPlatform& platform);
@@ -120,7 +123,8 @@ class BlockKernel {
     if constexpr (Shape::kFixed) return Shape::kLimbs * Shape::kJoints;
     if constexpr (!Shape::kFixed) return chain_.joints;
   }
-  /// The position of the first passive joint of limb i, or one past the last joint.
+  /// The position of the first passive joint of limb i among the passive joints of all limbs; for i = limbs(), the
+  /// number of all passive joints.
   std::size_t first_joint(std::size_t i) const {
     if constexpr (Shape::kFixed) return i * Shape::kJoints;
     if constexpr (!Shape::kFixed) return i == chain_.limbs ? chain_.joints : chain_.limb[i].first_joint;
@@ -134,7 +138,7 @@ class BlockKernel {
     T w[3];
     T v[3];
   };
-  /// The outcome of a round, one bit for each lane.
+  /// What a round (one iteration of a batch of samples) decided about each sample: bit n is that of lane n.
   struct Verdict {
     unsigned converged = 0;
     unsigned stagnated = 0;
@@ -220,12 +224,13 @@ class BlockKernel {
   const std::size_t capacity_;
 
   // Rows of length capacity_, with a value for each sample.
-  double* value_;  ///< [varied] values of varied errors, except those of the first in_place_ samples
+  double* value_;  ///< values of varied errors, a row for each error, except for the first in_place_ samples
   double* q_;
-  /// published: residual of the last round; follow: displacements of an earlier round; first-order map: coordinates y.
+  /// The content depends on the pass. published: residual of the last round; follow: displacements of an earlier round;
+  /// computation to first order: coordinates y (KernelMap).
   double* memory_;
-  double* smallest_;      ///< published: smallest change of all rounds so far
-  double* flat_;          ///< published: rounds since the smallest change; direct: -1 if the start comes from a fit
+  double* smallest_;      ///< in the pass published: smallest change of the residual in all rounds so far
+  double* flat_;          ///< published: rounds since that smallest change; direct: -1 if a fit gave the start
   std::uint32_t* index_;  ///< position of each sample in the block
   std::uint32_t* left_;   ///< samples to solve; after a pass, the samples that it did not solve
 

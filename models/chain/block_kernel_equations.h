@@ -28,7 +28,8 @@ void BlockKernel<T, Shape>::gradient() {
   }
 }
 
-/// Computes all entries of the Gauss-Newton matrix N = J^T J, [joints x joints], plus a term for each idle freedom.
+/// Computes all entries of the Gauss-Newton matrix N = J^T J, [joints x joints], plus a term for each idle freedom (a
+/// motion of passive joints that does not move the platform), without which N would be singular.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::gauss_newton_matrix() {
   const std::size_t size = joints();
@@ -117,9 +118,9 @@ void BlockKernel<T, Shape>::newton_matrix() {
   }
 }
 
-/// Factorises a symmetric matrix as L D L^T. entry(a, b), b <= a, gives its entries. Stores L D below the diagonal of
-/// work_, L^T above it and 1 / D behind the matrix. Returns the smallest difference between a pivot and ratio x its
-/// diagonal entry.
+/// Factorises as L D L^T the symmetric matrix with the entries entry(a, b), b <= a. Stores L D below the diagonal of
+/// work_, L^T above it and 1 / D behind the matrix. Returns the smallest difference pivot - ratio x diagonal entry, or
+/// 1 if all are larger.
 template <class T, class Shape>
 template <class Entry>
 T BlockKernel<T, Shape>::factor(Entry entry, double ratio) {
@@ -218,8 +219,9 @@ typename T::MaskType BlockKernel<T, Shape>::newton_step(T* __restrict x) {
   return margin > T(0.0);
 }
 
-/// Updates the residual of these lanes to first order for the step x, by V_k - V_i - ad/2 (V_k + V_i) + ad^2/12 (V_k -
-/// V_i), where V are the motions of the limbs.
+/// Updates the residual delta_mu of these lanes for the step x, to first order in x: the residual of pair (k, i)
+/// changes by V_k - V_i - ad/2 (V_k + V_i) + ad^2/12 (V_k - V_i). V_i is the motion of the platform's end of limb i by
+/// the step, and ad = ad(delta_mu).
 template <class T, class Shape>
 void BlockKernel<T, Shape>::carry_residual(const T* x, typename T::MaskType lanes) {
   for (std::size_t i = 0; i < limbs(); ++i) {

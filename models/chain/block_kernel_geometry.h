@@ -76,7 +76,7 @@ inline Motion divide(const Motion& a, const Motion& b) {
 
 }  // namespace kernel
 
-/// A component of a frame's error [omega; v] in these lanes.
+/// Component number `entry` of a frame's error [omega; v], in the lanes from sample `at` on.
 template <class T, class Shape>
 T BlockKernel<T, Shape>::varied(const KernelPiece& piece, int entry, std::size_t at) const {
   const int row = piece.varied_row[entry];
@@ -107,8 +107,8 @@ auto BlockKernel<T, Shape>::constant_motion(const KernelPiece& piece) -> Motion 
   return g;
 }
 
-/// Computes the motion of a segment, which is the product of its pieces. An error without a rotation only shifts the
-/// pieces before and after it.
+/// Computes the motion of a segment, which is the product of its pieces. An error without a rotation needs no matrix
+/// product: its translation is added to the position.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::vary_segment(const KernelSegment& segment, std::size_t at, Motion& product) const {
   T shift[3] = {T(0.0), T(0.0), T(0.0)};
@@ -175,10 +175,10 @@ void BlockKernel<T, Shape>::set_column(const KernelJoint& joint, const T* axis, 
 }
 
 /// Computes the platform pose of a limb by Eq. 28 of Du et al. 2022, and its spatial Jacobian columns. A revolute joint
-/// changes two columns of R, a prismatic joint p.
+/// changes two columns of the rotation matrix, a prismatic joint the position.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::limb_pose(std::size_t i, Motion& pose) {
-  // Each limb has one more segment than it has joints.
+  // Each limb has one more segment than joints, so the segments of limb i begin at first_joint(i) + i.
   const Motion* segment = segment_ + i;
   Motion g = segment[first_joint(i)];
   for (std::size_t j = first_joint(i); j < first_joint(i + 1); ++j) {

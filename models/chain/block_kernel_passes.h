@@ -58,8 +58,8 @@ void BlockKernel<T, Shape>::solve() {
   for (std::size_t at = 0; at < samples_.count; at += kLanes) judge(at);
 }
 
-/// Computes the coordinates y of a first-order map for all samples and stores them in memory_, one row for each
-/// coordinate.
+/// Computes the coordinates y of a first-order map (KernelMap) for all samples and stores them in memory_, one row for
+/// each coordinate.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::map_rows(const KernelMap& map) {
   load_all();
@@ -108,8 +108,8 @@ void BlockKernel<T, Shape>::add_mapped(const KernelMap& map, std::size_t first, 
   if (at < samples_.count) add(value_ + v * capacity_ + at, capacity_, at);
 }
 
-/// Computes residuals, responses and status of one batch of samples from its coordinates y. known_rows: number of
-/// coordinates if it is known at compile time, else 0.
+/// Computes residuals, responses and status of one batch of samples from their coordinates y (KernelMap). known_rows:
+/// number of coordinates if it is known at compile time, else 0.
 template <class T, class Shape>
 template <std::size_t known_rows>
 void BlockKernel<T, Shape>::finish_mapped(const KernelMap& map, std::size_t at) {
@@ -192,8 +192,8 @@ std::size_t BlockKernel<T, Shape>::run(std::size_t count, std::uint32_t rounds) 
   return left;
 }
 
-/// Loads all samples in their order. Whole batches are read in place; the remaining lanes are copies of the last
-/// sample.
+/// Makes the values of all samples available in their order. Whole batches are read where they are. The samples of an
+/// incomplete last batch are copied to value_, and its unused lanes are filled with copies of the last sample.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::load_all() {
   const std::size_t count = samples_.count;
@@ -260,7 +260,7 @@ void BlockKernel<T, Shape>::predict(std::size_t at) {
   for (std::size_t j = 0; j < joints(); ++j) joint_[j].store(q_ + j * capacity_ + at);
 }
 
-/// Fills the lanes behind the last sample with copies of this sample, whose results are not used.
+/// Fills the unused lanes of the last batch with copies of the last sample. The results of these lanes are not used.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::pad(std::size_t count) {
   const std::size_t rows = samples_.varied + joints() + kernel_memory(chain_) + 2;
@@ -344,7 +344,7 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
     verdict.stagnated = bits(size < T(kRestingStep));
     near = size < T(kNearStep);
     if (!any(near)) {
-      // Far from a root, Newton's equations would not be used.
+      // Far from a root a Newton step would not be used, so it is not computed.
       take_step(at, gauss_newton_);
       return verdict;
     }
@@ -352,7 +352,8 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
   newton_matrix();
   auto safe = near & finite;
   if constexpr (pass == KernelPass::direct) {
-    // The first step from a fit is small. It stays on the branch of the fit's nodes, all of which were safe.
+    // If a fit gave the start, the first step is small. It stays on the branch of solutions of the fit's nodes, where
+    // all steps were safe.
     const auto fitted = T::load(flat_ + at) * T(round == 0 ? 1.0 : 0.0) < T(0.0);
     if (any(!fitted)) safe = safe & (fitted | contracts());
   } else if constexpr (pass == KernelPass::follow) {
@@ -384,8 +385,8 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
   return verdict;
 }
 
-/// The lanes in which the displacements are again those of an earlier round: the last round whose number is a power of
-/// two. There, Gauss-Newton cycles.
+/// The lanes in which Gauss-Newton cycles: the displacements are again those of the last round whose number was a power
+/// of two.
 template <class T, class Shape>
 typename T::MaskType BlockKernel<T, Shape>::cycles(std::size_t at, std::uint32_t round) {
   const bool remember = (round & (round - 1)) == 0;
@@ -415,7 +416,7 @@ void BlockKernel<T, Shape>::finish(std::size_t at, std::size_t lane, SolveStatus
   outcome_.iterations[sample] = iterations;
 }
 
-/// Moves a sample that is not done from one position to another, so that these samples lie together.
+/// Moves an unfinished sample to another position, so that all unfinished samples are contiguous.
 template <class T, class Shape>
 template <KernelPass pass>
 void BlockKernel<T, Shape>::move(std::size_t from, std::size_t to) {

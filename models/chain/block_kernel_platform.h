@@ -17,8 +17,8 @@ void BlockKernel<T, Shape>::move_platform(const KernelPlatform& platform) {
   }
 }
 
-/// The motion xi of the platform for one batch of samples. To first order it is computed from the coordinates of the
-/// samples, otherwise from the poses of the limbs at their solved displacements.
+/// The motion xi of the platform for one batch of samples. To first order it is what map_rows() stored in memory_,
+/// otherwise the mean motion of the limbs at their solved displacements.
 template <class T, class Shape>
 auto BlockKernel<T, Shape>::platform_motion(const KernelPlatform& platform, std::size_t at) -> Screw {
   Screw sum;
@@ -51,8 +51,9 @@ auto BlockKernel<T, Shape>::platform_motion(const KernelPlatform& platform, std:
   return sum;
 }
 
-/// Computes the displacement D p - p = V (w x p + v) of a point, and its length. V = 1 + b hat(w) + c hat(w)^2 is the
-/// left Jacobian, or 1 to first order. rows: address of x for this batch; y and z follow, one stride apart.
+/// Computes the displacement D p - p = V (w x p + v) of a point p by the motion D = exp([w; v]), and its length. V = 1
+/// + b hat(w) + c hat(w)^2 is the left Jacobian; to first order V = 1. rows: where the x components of this batch are
+/// stored; those of y and z follow, one stride apart.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::displace(const Screw& motion, const double* point, bool is_linear, double* rows,
                                      double* length) const {

@@ -8,7 +8,7 @@ namespace poesy::chain {
 /// The kernels of one instruction set.
 struct Kernels {
   KernelSolve solve;                 ///< solves a block of samples
-  KernelMapBlock map;                ///< maps a block of samples to first order
+  KernelMapBlock map;                ///< computes a block of samples to first order
   KernelMovePlatform move_platform;  ///< finds the motion of the platform for a block of samples
 };
 

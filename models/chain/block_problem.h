@@ -7,12 +7,13 @@
 #include "models/simd/isa.h"
 
 // The plain data that a block kernel reads and writes: only pointers and numbers. Translation units compiled for one
-// instruction set also include this header. They must not share inline functions.
+// instruction set also include this header. Its functions are static, so that code for one instruction set cannot be
+// linked into another.
 
 namespace poesy::chain {
 
-/// A passive joint. Joints are ordered limb by limb, from base to platform. A displacement of zero is the joint's
-/// position without errors, to which the preceding segment leads.
+/// A passive joint. Joints are ordered limb by limb, from base to platform. The displacement is counted from the
+/// joint's position in the perfect mechanism; the segment before the joint contains the motion to this position.
 struct KernelJoint {
   bool revolute;   ///< revolute or helical if true, else prismatic
   double advance;  ///< advance along the axis of a helical joint (which has revolute = true), m per rad; else 0
@@ -34,7 +35,7 @@ struct KernelPiece {
 /// The motion from one passive joint to the next, before the first joint of a limb, or behind its last joint. It is a
 /// product of consecutive pieces.
 struct KernelSegment {
-  std::size_t first_piece;  ///< position of its first piece among the chain's pieces
+  std::size_t first_piece;  ///< position of the segment's first piece among all pieces
   std::size_t pieces;       ///< number of pieces
 };
 
@@ -63,7 +64,7 @@ struct KernelChain {
   std::size_t segments;          ///< number of segments
   const KernelPiece* piece;      ///< pieces of all segments, in order
   const double* idle;            ///< [idle_freedoms x joints] directions; see NormalEquations::idle()
-  std::size_t idle_freedoms;     ///< number of idle freedoms
+  std::size_t idle_freedoms;     ///< number of idle freedoms (ParallelChain::idle)
 };
 
 /// The values of a block of samples, one row for each varied error: the value of error v in sample b is at v * stride +
@@ -94,8 +95,8 @@ struct KernelStart {
 /// The number of coordinates of a KernelMap is a multiple of this; those that are added to reach it are zero.
 inline constexpr std::size_t kMapRows = 3;
 
-/// Residuals to first order. They are computed from a few coordinates y (see ResidualSpace): y = constant + sum over
-/// the varied errors v of effects[v] x (value of v).
+/// A linear map from errors to residuals (first order). It computes a few coordinates y of the residuals (see
+/// ResidualSpace): y = constant + sum over the varied errors v of effects[v] x (value of v).
 struct KernelMap {
   std::size_t rows;        ///< number of components of y
   const double* constant;  ///< [rows] coordinates y that the constant errors cause
@@ -123,7 +124,7 @@ static constexpr std::size_t platform_rows(bool has_tool) { return has_tool ? 12
 enum class KernelMethod {
   gauss_newton,  ///< Gauss-Newton iteration, as published
   newton,
-  newton_direct  ///< only the first pass of newton
+  newton_direct  ///< only the first pass of newton, KernelPass::direct
 };
 
 /// How a kernel iterates; see SolverOptions.
@@ -132,7 +133,7 @@ struct KernelOptions {
   double tolerance;              ///< tolerance on the change of the residual in an iteration (rad, m)
   double rounding_level;         ///< a change below this may be rounding
   double last_step;              ///< a safe Newton step shorter than this is the last one
-  double largest_step;           ///< longest Newton step of the first pass (rad, m)
+  double largest_step;           ///< longest Newton step of the passes direct and rescue (rad, m)
   std::uint32_t max_iterations;  ///< number of iterations after which a sample is given up
 };
 
@@ -152,7 +153,8 @@ using simd::kMostLanes;
 /// The length of a row of scratch memory for `count` samples. It leaves room for the unused lanes of the last batch.
 static constexpr std::size_t kernel_capacity(std::size_t count) { return (count / kMostLanes + 2) * kMostLanes; }
 
-/// The number of rows of memory_: residuals or displacements of earlier rounds, or the coordinates of a map.
+/// The number of rows of BlockKernel::memory_: residuals or displacements of earlier rounds, or the coordinates of a
+/// map.
 static constexpr std::size_t kernel_memory(const KernelChain& chain) {
   return 6 * chain.pairs > chain.joints ? 6 * chain.pairs : chain.joints;
 }
@@ -166,7 +168,7 @@ static constexpr std::size_t kernel_scratch(const KernelChain& chain, const Kern
   return rows * kernel_capacity(samples.count) + (motions + screws + equations) * kMostLanes;
 }
 
-/// Maps a block of samples to first order. scratch: as for KernelSolve.
+/// Computes residuals and responses of a block of samples to first order. scratch: as for KernelSolve.
 using KernelMapBlock = void (*)(const KernelChain&, const KernelSamples&, const KernelMap&, const KernelOutcome&,
                                 double* scratch);
 

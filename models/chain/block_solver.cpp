@@ -15,8 +15,7 @@
 namespace poesy::chain {
 namespace {
 
-/// The largest Newton step (rad, m) that is taken from a start. A larger step may lead to another root than the one
-/// that Gauss-Newton finds.
+/// The largest Newton step (rad, m). A larger step may lead to another root than the one that Gauss-Newton finds.
 constexpr double kLargestStep = 0.15;
 /// The largest Newton step (rad, m) of the solves at the nodes of a fit. It may be larger than kLargestStep, because a
 /// fit is used only if its roots lie on one smooth branch.
@@ -143,7 +142,7 @@ void BlockSolver::find_segments(std::span<const double> displacements, std::span
   }
 }
 
-/// Adds a constant motion. If the preceding piece is constant too, the motion is multiplied to it.
+/// Adds a constant motion. If the preceding piece of the segment is constant too, the product of the two replaces it.
 void BlockSolver::add_piece(const lie::Transform<double>& motion) {
   lie::Transform<double> product = motion;
   if (pieces_.size() > first_piece_ && !pieces_.back().is_error) {
@@ -199,8 +198,8 @@ void for_each_constant(std::span<const FrameError<double>> errors, std::span<con
   }
 }
 
-/// Computes the first-order effects of errors in coordinates of the residual space, padded to a multiple of kMapRows.
-/// If rounded numbers leave a mismatch between perfect limbs, it is included.
+/// Computes the first-order effects of errors in coordinates of the residual space, whose number is padded to a
+/// multiple of kMapRows. The constant part includes the mismatch between perfect limbs that rounded numbers leave.
 void BlockSolver::find_map(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                            std::span<const FrameEntry> varied) {
   residual_space_.prepare(first_order_);
@@ -232,8 +231,8 @@ void BlockSolver::find_map(std::span<const double> displacements, std::span<cons
   copy(residual_space_.delta_mu(), map_delta_mu_, 0);
 }
 
-/// Adds to xi [6] the first-order motion of the platform by an error of this size (rad, m). It is the mean of the
-/// motions of its limbs.
+/// Adds to xi [6] the first-order motion of the platform by an error of this size (rad, m): the mean of the motions of
+/// the limbs' ends.
 void BlockSolver::add_platform_motion(const FrameEntry& entry, double error, std::span<double> xi) {
   first_order_.effect(entry, effect_, slope_);
   lie::Screw<double> sum = first_order_.motion(entry);
@@ -312,8 +311,9 @@ void BlockSolver::solve(std::span<const double> values, std::size_t count) {
   move_platform(chain, samples, nullptr, make_room(chain, samples));
 }
 
-/// Computes nearing_ and nearing_constant_. They are also needed for samples that the kernel solved: where 1 rad weighs
-/// as much as 1 m, a solve may find a root although the loops cannot be closed.
+/// Computes nearing_ and nearing_constant_, which show how close errors bring the loops to opening. They are also
+/// needed for samples that the kernel solved: where 1 rad weighs as much as 1 m, a solve may find a root although the
+/// loops cannot be closed.
 void BlockSolver::find_nearing(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied) {
   nearing_.clear();
   nearing_constant_ = 0.0;
@@ -331,8 +331,8 @@ void BlockSolver::add_up_nearing(std::span<const double> values) {
   }
 }
 
-/// Finds the samples that cannot be assembled. It looks only at samples that are not solved, or whose errors bring
-/// loops near to opening.
+/// Finds the samples that cannot be assembled. Only samples are examined that are not solved, or with errors for which
+/// the loops may open.
 void BlockSolver::review(std::span<const double> values) {
   add_up_nearing(values);
   for (std::size_t b = 0; b < count_; ++b) {

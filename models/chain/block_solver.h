@@ -22,8 +22,8 @@ enum class Fidelity : std::size_t {
 
 /// Solves blocks of samples with the fastest kernel that this machine supports. BlockKernel states the methods and
 /// their guarantees; gauss_newton is Scheme I as in DeformationSolver. Of the samples that the kernel does not solve,
-/// or whose errors bring loops near to opening, Assembly decides which are not_assembled. Owns the scratch memory of
-/// one thread.
+/// or with errors for which loops may open, Assembly decides which are not_assembled. Owns the scratch memory of one
+/// thread.
 class BlockSolver {
  public:
   /// The chain must outlive the solver.
@@ -32,8 +32,8 @@ class BlockSolver {
   /// Sets what the samples of the next calls share. displacements: nominal displacements of all joints (rad, m).
   /// errors: [frames] constant errors. varied: the components of frames' errors that vary. range: if only one component
   /// varies, its range, over which starting points of Newton's method are predicted. platform: reported points of the
-  /// platform (null: none). held: the metric by which machines that cannot be assembled are found (null: the published
-  /// weight). All pointers must outlive the solves.
+  /// platform (null: none). held: the metric by which machines that cannot be assembled are found (null: 1 rad weighs
+  /// as much as 1 m, as published). All pointers must outlive the solves.
   void prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                std::span<const FrameEntry> varied, double range, const PlatformPoints* platform = nullptr,
                const Metric* held = nullptr);
@@ -42,7 +42,7 @@ class BlockSolver {
   /// singular at a singular pose.
   void solve(std::span<const double> values, std::size_t count);
 
-  /// [count] A component of the residuals of the last block. row: position in [6 x pairs].
+  /// [count] A component of the residuals of the last block. row: 6 n + k for component k of the n-th pair of limbs.
   std::span<const double> delta_mu(std::size_t row) const { return row_of(delta_mu_, row); }
   /// [count] A response of the last block. row: 0 angular, 1 linear, 2 largest deformation.
   std::span<const double> response(std::size_t row) const { return row_of(responses_, row); }
@@ -92,21 +92,21 @@ class BlockSolver {
   std::vector<FrameEntry> entries_;             ///< components of frames' errors that vary
   std::vector<lie::Transform<double>> frames_;  ///< [frames] fixed frames of one sample, with its errors
   std::vector<double> nearing_;                 ///< [varied] Assembly::nearing() of each varied component
-  double nearing_constant_ = 0.0;               ///< sum over the constant errors of nearing x error
-  std::vector<double> nearing_of_;              ///< [count] sum of nearing x error for each sample
-  bool is_singular_ = false;                    ///< true if the pose is singular, so that there is no first order
-  std::vector<double> effect_;                  ///< [6 pairs] effect of one error
-  std::vector<double> slope_;                   ///< [joints] displacements of the passive joints by one error
+  double nearing_constant_ = 0.0;               ///< sum of Assembly::nearing() x error over the constant errors
+  std::vector<double> nearing_of_;  ///< [count] sum of Assembly::nearing() x error over all errors of each sample
+  bool is_singular_ = false;        ///< true if the passive joints are singular: no first order exists
+  std::vector<double> effect_;      ///< [6 x pairs] delta_mu by a unit of one error
+  std::vector<double> slope_;       ///< [joints] displacements of the passive joints by a unit of one error
   const PlatformPoints* platform_ = nullptr;
   /// [varied x 6] First-order motion of the platform per unit of each varied component.
   std::vector<double> platform_effects_;
   std::vector<double> platform_constant_;       ///< [6] first-order motion of the platform by the constant errors
   std::vector<double> platform_displacements_;  ///< [joints x stride] solved displacements of the passive joints
   std::vector<double> platform_responses_;      ///< [platform rows x stride] platform motion of each sample
-  // First-order effects in coordinates of the residual space; see KernelMap.
-  std::vector<double> map_effects_;   ///< [varied x rows] effect per unit of each varied error, in these coordinates
-  std::vector<double> map_constant_;  ///< [rows] effect of all constant errors, in these coordinates
-  std::vector<double> map_delta_mu_;  ///< [6 pairs x rows] delta_mu per unit of each coordinate
+  // First-order effects, as the coordinates y of KernelMap.
+  std::vector<double> map_effects_;   ///< [varied x rows] change of y per unit of each varied error
+  std::vector<double> map_constant_;  ///< [rows] y of all constant errors
+  std::vector<double> map_delta_mu_;  ///< [6 pairs x rows] delta_mu per unit of each coordinate of y
   std::vector<KernelLimb> limbs_;
   std::vector<KernelPair> pairs_;
   std::vector<KernelJoint> joints_;

@@ -19,7 +19,7 @@ constexpr std::size_t kResponses = 3;
 /// The model at a nominal pose, without errors.
 struct Nominal {
   std::vector<double> displacements;       ///< [all joints] nominal displacements (rad, m)
-  std::optional<Metric> held;              ///< metric at these displacements
+  std::optional<Metric> held;              ///< metric by which machines that cannot be assembled are found
   std::optional<PlatformPoints> platform;  ///< reported points at these displacements
 };
 
@@ -37,7 +37,7 @@ struct Prepared {
 struct Addition {
   std::size_t value;  ///< position of the error among the varied errors
   std::size_t row;    ///< position of the component among the varied components
-  double scale;
+  double scale;       ///< change of the component per unit of the error
 };
 
 class DeformationEvaluator final : public Evaluator {
@@ -114,9 +114,9 @@ class DeformationEvaluator final : public Evaluator {
     return is_plain;
   }
 
-  /// Prepares the solver. Returns the values [varied components x B] of the varied components for B samples. They are
-  /// the values of the samples' errors, unless several errors add to a component, or an error is scaled or adds to
-  /// several components.
+  /// Prepares the solver. Returns the values [varied components x samples] of the varied components. These are the
+  /// values of the samples' errors, unless several errors add to a component, or an error is scaled or adds to several
+  /// components.
   std::span<const double> prepare(const Nominal& nominal, const SampleBlock& samples) {
     set_constant(nominal, samples);
     const auto values = find_varied(nominal, samples) ? samples.values : combined(samples);
@@ -129,7 +129,7 @@ class DeformationEvaluator final : public Evaluator {
     return values;
   }
 
-  /// [varied components x B] The values of the varied components: the constant part of each component plus all
+  /// [varied components x samples] The values of the varied components: the constant part of each component plus all
   /// additions.
   std::span<const double> combined(const SampleBlock& samples) {
     values_.resize(varied_.size() * samples.count);
@@ -148,15 +148,15 @@ class DeformationEvaluator final : public Evaluator {
   BlockSolver solver_;
   Prepared prepared_;
   std::map<std::vector<double>, Nominal> nominal_;  ///< nominal models, by pose
-  std::vector<bool> varies_;                        ///< [F] true for each error that varies
+  std::vector<bool> varies_;                        ///< [errors] true for each error that varies
   std::vector<FrameError<double>> errors_;
   std::vector<FrameEntry> varied_;
   std::vector<Addition> additions_;
-  std::vector<double> values_;  ///< [varied components x B] values of the varied components
+  std::vector<double> values_;  ///< [varied components x samples] values of the varied components
 };
 
-/// [k x 6] A matrix. The norm of its product with the mismatch [omega; v] of one pair is the number that the response
-/// takes from this pair.
+/// The number that a response takes from a pair of limbs is the norm of M x (mismatch [omega; v] of the pair). This
+/// function returns the matrix M, which has six columns.
 Eigen::MatrixXd judged_of_pair(std::size_t response) {
   const Eigen::MatrixXd all = lie::Matrix6<double>::Identity();
   if (response == 0) return all.topRows(3);  // angular deformation

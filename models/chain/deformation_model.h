@@ -27,13 +27,13 @@ struct PlatformReport {
 /// its platform, or both.
 struct DeformationModel {
   ParallelChain chain;            ///< limbs without errors, and the pairs in which they are compared
-  std::vector<ErrorTerms> terms;  ///< [F] terms of each error
+  std::vector<ErrorTerms> terms;  ///< [errors] terms of each error
   /// Nominal displacements of all joints at a reachable pose, limb by limb (rad, m).
   std::function<std::vector<double>(std::span<const double> pose)> joint_displacements;
   /// Reported displacement of the platform; none if the deformation is the only response.
   std::optional<PlatformReport> platform = {};
   /// Points of the platform, in its frame (m). Their metric decides which machines cannot be assembled. Without points,
-  /// the published weight decides.
+  /// 1 rad weighs as much as 1 m in this decision, as published.
   std::vector<lie::Vector3<double>> held_at = {};
 
   /// The component of a frame's error to which a term adds.
@@ -45,8 +45,9 @@ struct DeformationModel {
 };
 
 /// The published responses, in the order in which they are evaluated: angular_deformation (Du et al. 2022, Eq. 49;
-/// rad), linear_deformation (Eq. 50; m), deformation_max (Eq. 45). Their bounds hold for three limbs paired in a cycle:
-/// to first order delta_mu_21 + delta_mu_32 + delta_mu_13 = 0, so their norms are the sides of a triangle.
+/// rad), linear_deformation (Eq. 50; m), deformation_max (Eq. 45). The bounds Response::mean_square_bound hold for
+/// three limbs paired in a cycle: to first order delta_mu_21 + delta_mu_32 + delta_mu_13 = 0, so the norms of these
+/// vectors are the sides of a triangle.
 std::vector<Response> deformation_responses();
 
 /// The responses for the displacement D of the platform under errors, in the base frame and in the order of
@@ -57,7 +58,8 @@ std::vector<Response> platform_responses(const PlatformReport& report, std::size
 /// All responses of a model: first those of the deformation, then those of the platform.
 std::vector<Response> responses_of(const DeformationModel& model);
 
-/// The response deformation_max, and the rounding error of its solves; see rounding_level().
+/// The position of the response deformation_max, and the largest value that rounding alone may give it
+/// (rounding_level()).
 DeformationMeasure deformation_measure(const DeformationModel& model);
 
 /// The largest standard deviation of a response (rad, m) that may be rounding instead of an effect: 4 eps x max(1,
@@ -68,18 +70,18 @@ double effect_rounding(const DeformationModel& model);
 /// 30, 46), named with limbs counted from 1.
 std::vector<Detail> deformation_details(std::span<const LimbPair> pairs);
 
-/// [k pairs x 6 pairs], row by row: a block-diagonal matrix with one block for each pair, share x of_pair. of_pair: [k
-/// x 6] matrix that is applied to the mismatch of one pair.
+/// A block-diagonal matrix, row by row, with the block share x of_pair for each pair of limbs. of_pair: a matrix with 6
+/// columns, which is applied to the mismatch of one pair.
 std::vector<double> repeated(const Eigen::MatrixXd& of_pair, std::size_t pairs, double share);
 
-/// [K x 6 pairs] Model::norm_of_details for a response of the deformation, with K rows; empty for a response of the
-/// platform.
+/// Model::norm_of_details for a response of the deformation: a matrix with six columns for each pair of limbs, row by
+/// row. Empty for a response of the platform.
 std::vector<double> norm_of_details(const DeformationModel& model, std::size_t response);
 
 /// The names of the displacements q_i_j of all joints, limb by limb. Limbs i and joints j are counted from 1.
 std::vector<JointDisplacement> joint_displacement_names(const ParallelChain& chain);
 
-/// An evaluator that solves blocks of samples, or maps them to first order. The model must outlive the evaluator.
+/// An evaluator that solves blocks of samples exactly or to first order. The model must outlive the evaluator.
 std::unique_ptr<Evaluator> deformation_evaluator(const DeformationModel& model, const SolverOptions& options,
                                                  Fidelity fidelity = Fidelity::exact);
 

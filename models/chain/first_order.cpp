@@ -29,7 +29,8 @@ bool FirstOrder::prepare(std::span<const double> displacements, const lie::Matri
       if (!limb.joints[j].actuated) columns_[column++] = spatial_column(limb.joints[j], g);
       move_joint(limb.joints[j], displacements[joint], g);
     }
-    // The error of the last frame is inverted, and multiplies from the right: most of that frame precedes it.
+    // In the last frame the inverse of the error multiplies from the right, so before_error() of this frame precedes
+    // it.
     from_error_[frame++] = -lie::adjoint(g * limb.before_error(limb.joints.size()));
   }
   W_ = W == nullptr ? lie::Matrix6<double>(lie::Matrix6<double>::Identity()) : *W;
@@ -78,9 +79,9 @@ void FirstOrder::pull_of(std::span<const double> displacements) {
   }
 }
 
-/// d ln det N = trace(N^-1 dN) = 2 sum over a of D_a . dc_a. Here c_a is the column of joint a. D_a is the sum of W
-/// delta_mu on the limb of joint a, for column a of N^-1. A motion m of the part before a joint changes the joint's
-/// column c by [m, c].
+/// With N = J^T W J, d ln det N = trace(N^-1 dN) = 2 sum over a of D_a . dc_a. Here c_a is the column of the passive
+/// joint a. D_a is pull_ of the limb of joint a if column a of N^-1 is the displacement of the passive joints. A motion
+/// m of the part before a joint changes the joint's column c by [m, c].
 void FirstOrder::determinant_slopes(std::span<lie::Screw<double>> slopes) {
   using Screw = lie::Screw<double>;
   POESY_EXPECTS(slopes.size() == limb_of_frame_.size());

@@ -61,15 +61,15 @@ std::vector<LimbPair> pairs_of(std::size_t limbs);
 
 /// Limbs that carry one platform, and the pairs in which their platform poses are compared.
 struct ParallelChain {
-  std::vector<Limb> limbs;      ///< limbs, in the order of displacements
-  std::vector<LimbPair> pairs;  ///< pairs, in the order of residuals
+  std::vector<Limb> limbs;      ///< limbs; lists of joints and of frames have the same order
+  std::vector<LimbPair> pairs;  ///< pairs of limbs; lists of residuals have the same order
   /// The number of idle freedoms: motions of passive joints that do not move the platform, such as the spin of a leg
   /// between two spherical joints.
   std::size_t idle = 0;
   /// True if perfect limbs have a mismatch because the numbers of their file are rounded; see models/chain/nominal.h.
   bool rounded = false;
 
-  /// Sums over all limbs.
+  /// The numbers of joints, passive joints and fixed frames of all limbs together.
   /// @{
   std::size_t joints() const;
   std::size_t passive_joints() const;
@@ -124,7 +124,7 @@ lie::Transform<T> frame_with_error(const Limb& limb, std::size_t j, const FrameE
 }
 
 /// Multiplies g by exp(zeta q) for a joint about or along z with displacement q (rad, m; Eq. 14). This changes two
-/// columns of R, or p.
+/// columns of g.R, or g.p.
 template <class T>
 void move_joint(const Joint& joint, T displacement, lie::Transform<T>& g) {
   using std::cos;
@@ -155,9 +155,9 @@ lie::Screw<T> spatial_column(const Joint& joint, const lie::Transform<T>& g) {
   return column;
 }
 
-/// The pose base_T_platform of the limb (Du et al. 2022, Eq. 28). frames: [n + 1], with or without errors.
-/// displacements: [n] (rad, m). on_passive(k, column) receives the spatial Jacobian column of the limb's k-th passive
-/// joint.
+/// The pose base_T_platform of the limb (Du et al. 2022, Eq. 28). frames: the limb's fixed frames, with or without
+/// errors. displacements: those of the limb's joints (rad, m). on_passive(k, column) receives the spatial Jacobian
+/// column of the limb's k-th passive joint.
 template <class T, class OnPassive>
 lie::Transform<T> forward_kinematics(const Limb& limb, std::span<const lie::Transform<T>> frames,
                                      std::span<const T> displacements, OnPassive&& on_passive) {

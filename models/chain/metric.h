@@ -7,8 +7,8 @@
 
 namespace poesy::chain {
 
-/// The default tolerance of solves that use a metric, as a share of the reach. It is about fifty times their rounding
-/// error.
+/// The default tolerance of solves that use a metric, as a share of the reach. It is about fifty times the rounding
+/// error of such solves.
 inline constexpr double kToleranceByMetric = 1e-14;
 
 /// The metric that weighs the mismatch of two limbs, at one pose and in the base frame. For a twist xi = [omega; v]
@@ -19,14 +19,15 @@ struct Metric {
 };
 
 /// The metric W = 1/n sum P_a^T P_a with P_a = [-[c_a]x, I]: |xi|_W is the root mean square displacement of the n
-/// points c_a by the twist xi. It depends on no unit, frame or origin. points: [n], in the frame of the twist (m).
+/// points c_a by the twist xi. This length does not depend on the unit, the frame or the origin. points: [n], in the
+/// frame of the twist (m).
 lie::Matrix6<double> metric_of_points(std::span<const lie::Vector3<double>> points);
 
 /// The root mean square distance of the points from their centroid (m).
 double radius_of(std::span<const lie::Vector3<double>> points);
 
 /// Returns true if all points are on a line, up to a millionth of their largest distance from the centroid. A rotation
-/// about the line then moves no point, so their metric is not positive definite.
+/// about the line then moves no point, so the metric of the points is not positive definite.
 bool are_on_a_line(std::span<const lie::Vector3<double>> points);
 
 /// Explains, as a clause of a sentence, why points of the platform give no metric for a chain of this reach (m); empty

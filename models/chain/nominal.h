@@ -13,8 +13,7 @@ namespace poesy::chain {
 /// without errors.
 std::vector<double> settled(const ParallelChain& chain, std::vector<double> displacements);
 
-/// The mean pose base_T_platform g of the limbs' platform poses g_i. It is defined by sum log(g_i g^-1) = 0, so the
-/// mean motion from it is zero.
+/// The mean pose base_T_platform g of the limbs' platform poses g_i. It is defined by sum log(g_i g^-1) = 0.
 lie::Transform<double> mean_platform(const ParallelChain& chain, std::span<const double> displacements);
 
 /// [limbs] The motions log(g_i g^-1) of all limbs from mean_platform() g.

@@ -83,7 +83,8 @@ void NormalEquations::assemble_matrix(std::span<const lie::Screw<double>> column
 void NormalEquations::hold_idle(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W) {
   idle_.clear();
   if (idle_freedoms_ == 0) return;
-  // The Jacobian of the loops: each limb minus the first one, with lengths in units of the reach.
+  // The Jacobian of the motions of each limb's end relative to that of the first limb, with lengths in units of the
+  // reach.
   const auto size = static_cast<Eigen::Index>(size_);
   Eigen::MatrixXd loops = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(limbs_ - 1), size);
   for (Eigen::Index column = 0; column < size; ++column) {

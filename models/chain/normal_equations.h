@@ -27,10 +27,12 @@ class NormalEquations {
   /// as for solve().
   Eigen::MatrixXd matrix(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W);
 
-  /// Holds the idle freedoms from now on, so that J^T W J is regular. Adds to this matrix as many directions as the
-  /// chain has idle freedoms: the combinations of these columns [passive joints] that move no platform.
+  /// Makes J^T W J regular from now on, although idle freedoms (ParallelChain::idle) make it singular. Each idle
+  /// freedom is a combination of these columns [passive joints] that does not move the platform; for each, r^T r is
+  /// added to the matrix, where r is the direction of this combination.
   void hold_idle(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W);
-  /// [idle x passive joints] The directions r that hold_idle() adds: J^T W J gains the sum of r^T r.
+  /// [idle freedoms x passive joints] The directions r of the idle freedoms: hold_idle() adds the sum of r^T r to J^T W
+  /// J.
   std::span<const double> idle() const { return idle_; }
 
   /// Solves for another delta_mu with the same matrix, after a solve that returned true.
@@ -51,7 +53,7 @@ class NormalEquations {
 
   std::vector<LimbPair> pairs_;
   std::vector<std::size_t> limb_of_;  ///< limb of each passive joint
-  std::vector<double> coupling_;      ///< [limbs x limbs] number of pairs that two limbs form, with a sign
+  std::vector<double> coupling_;      ///< [limbs x limbs] pairs of each limb (diagonal); minus the pairs of two limbs
   std::size_t limbs_;
   std::size_t size_;
   std::size_t idle_freedoms_;

@@ -20,8 +20,8 @@ struct PlatformPoints {
   std::size_t rows() const { return platform_rows(tool.has_value()); }
 };
 
-/// The mean over the limbs of their motions xi_i = log(g_i g_nominal^-1), in the base frame. frames: [chain.frames()],
-/// with errors. displacements: [chain.joints()] (rad, m).
+/// The mean, over all limbs i, of the motions xi_i = log(g_i g_nominal^-1) in the base frame, where g_i is the platform
+/// pose of limb i. frames: [chain.frames()], with errors. displacements: [chain.joints()] (rad, m).
 lie::Screw<double> mean_motion(const ParallelChain& chain, std::span<const lie::Transform<double>> frames,
                                std::span<const double> displacements, const lie::Transform<double>& nominal);
 

@@ -24,24 +24,25 @@ class ResidualSpace {
 
   /// The degree of over-constraint D.
   std::size_t dimensions() const { return dimensions_; }
-  /// Adds to y [D] the effect of a component of a frame's error of this size (rad, m).
+  /// Adds to y [dimensions()] the effect of an error of this size (rad, m) of a component of a frame.
   void add(const FirstOrder& first_order, const FrameEntry& entry, double error, std::span<double> y) const;
-  /// Adds to y [D] the effect of a small motion of a limb's platform, after the reaction of the passive joints.
+  /// Adds to y [dimensions()] the effect of a small motion of a limb's end, after the reaction of the passive joints.
   void add(std::size_t limb, const lie::Screw<double>& motion, std::span<double> y) const;
-  /// The matrix [6 x pairs, D] from y to delta_mu.
+  /// The matrix from the coordinates y to the residuals delta_mu: 6 rows for each pair of limbs, dimensions() columns.
   const Eigen::MatrixXd& delta_mu() const { return delta_mu_; }
 
  private:
   void find_basis(const FirstOrder& first_order);
 
   const ParallelChain* chain_;
-  /// [L - 1, L] Matrix N with N^T N = incidence^T incidence, for L limbs (independent_rows()).
+  /// For L limbs, the matrix N [L - 1, L] with N^T N = incidence^T incidence. The incidence matrix has a row for each
+  /// pair of limbs, with 1 for limb k and -1 for limb i.
   Eigen::MatrixXd independent_;
-  Eigen::MatrixXd of_pairs_;              ///< [pairs, L - 1] matrix with incidence = of_pairs N
+  Eigen::MatrixXd of_pairs_;              ///< [pairs, L - 1] matrix with incidence matrix = of_pairs N
   std::size_t dimensions_ = 0;            ///< number D of dimensions of the residual space
-  Eigen::MatrixXd columns_;               ///< [6 (L - 1), F] columns of the passive joints
-  Eigen::MatrixXd basis_;                 ///< [6 (L - 1), D] orthonormal basis of the complement of the columns
-  std::vector<Eigen::MatrixXd> of_limb_;  ///< [D, 6] for each limb, the matrix from a motion of its platform to y
+  Eigen::MatrixXd columns_;               ///< [6 (L - 1), passive joints] columns of the joints
+  Eigen::MatrixXd basis_;                 ///< orthonormal basis of the complement of columns_
+  std::vector<Eigen::MatrixXd> of_limb_;  ///< for each limb, the matrix from a motion of its end to y
   Eigen::MatrixXd delta_mu_;
 };
 

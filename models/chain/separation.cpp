@@ -24,7 +24,8 @@ using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 /// A part of a vector that is smaller than this share of the whole is rounding.
 constexpr double kRounding = 1e-12;
 
-/// A unit column depends on others if less than this remains after it is projected onto their complement.
+/// A column of length 1 counts as dependent on other columns if its projection onto their complement is shorter than
+/// this.
 constexpr double kDependent = 1e-9;
 
 /// Appends a column and returns a reference to it.
@@ -108,9 +109,9 @@ class LimbSeparation {
 
   /// The drive (Joint::drive) of each column of motions().
   const std::vector<std::size_t>& drives() const { return drives_; }
-  /// The columns of B_i A_i, each divided by its |A_i|_i.
+  /// The columns of B_i A_i (see separation()), each divided by the length |A_i|_i of the same column of A_i.
   const Columns& motions() const { return motions_; }
-  /// The length |A_i|_i of a column.
+  /// The length |A_i|_i of a column of A_i (see separation()).
   double driven_length(Eigen::Index column) const { return driven_lengths_[column]; }
 
   /// The parts of an error that moves the limb's end by the twist xi.
@@ -156,8 +157,8 @@ std::vector<LimbSeparation> separations(const std::vector<LimbMotions>& limbs, c
 /// The motions of drives that several limbs share, as columns like those of LimbSeparation::motions().
 class SharedDrives {
  public:
-  /// Adds to the sums of a drive its motion of the platform through one limb. column: position of the drive in this
-  /// limb. Returns whether the drive is new.
+  /// Adds the motion of the platform by a shared drive through one limb. column: position of the drive among the drives
+  /// of this limb. Returns true if the drive was not known before.
   bool add(const LimbSeparation& limb, Eigen::Index column) {
     const auto [place, is_new] = sums_.try_emplace(limb.drives()[static_cast<std::size_t>(column)]);
     const double length = limb.driven_length(column);

@@ -42,7 +42,8 @@ std::size_t joint_of(const std::vector<SketchedJoint>& joints, std::size_t frame
       std::ranges::count_if(joints, [frame](const SketchedJoint& joint) { return joint.first <= frame; }));
 }
 
-/// The motion of the platform by each limb, or one motion if all are equal. displacements: [all joints].
+/// The motion of each limb's end by the error with these terms, or one motion if all are equal. displacements: [all
+/// joints].
 std::vector<SketchTwist> motions(const DeformationModel& model, FirstOrder& first_order, const ErrorTerms& terms,
                                  std::span<const double> displacements) {
   const ParallelChain& chain = model.chain;

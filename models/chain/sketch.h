@@ -17,8 +17,8 @@ void place(Sketch& sketch, const DeformationModel& model, std::span<const double
 
 /// The frames of a limb (base_T_frame) before and after each joint has moved.
 struct LimbFrames {
-  std::vector<lie::Transform<double>> before;  ///< [n] joint frames before the joints move
-  /// [n + 2] Frames of the first body, of the joints after they have moved, and of the last body.
+  std::vector<lie::Transform<double>> before;  ///< frame of each joint before it moves
+  /// Frames of the first body, of each joint after it has moved, and of the last body.
   std::vector<lie::Transform<double>> after;
 };
 

@@ -10,8 +10,8 @@
 
 namespace poesy::file {
 
-/// The mechanism in the form that solvers of limbs between bodies need. home: its mobility at the home pose. Throws
-/// InputError if rigid limbs over-constrain each other and the metric is "stiffness".
+/// The mechanism in the form that solvers of limbs between bodies need. home: the mechanism's mobility at the home
+/// pose. Throws InputError if rigid limbs over-constrain each other and the metric is "stiffness".
 assembly::AssemblyModel assembly_model(const Mechanism& mechanism, std::shared_ptr<const PoseTracker> tracker,
                                        const Mobility& home, assembly::Metric metric);
 

@@ -18,7 +18,7 @@ constexpr double kSame = 1e-6;
 /// rounded numbers limbs share a mismatch, and the shares depend on which joints are given.
 constexpr double kSameOfRounded = 100.0;
 
-/// The mechanism whose platform has another frame.
+/// The mechanism with another frame of its platform.
 Mechanism with_platform_at(Mechanism mechanism, const Transform& platform_T_new) {
   mechanism.platform = mechanism.platform * platform_T_new;
   mechanism.bodies[kPlatform].home = mechanism.platform;

@@ -12,17 +12,17 @@ namespace poesy::file {
 /// Coordinates that determine the pose as the mechanism's own coordinates do, and the path from home to a pose.
 class Chart {
  public:
-  /// tracked: the mechanism, perhaps with another frame of its platform. tracked_T_platform: pose of the mechanism's
-  /// platform in that frame.
+  /// tracked: the mechanism whose path is followed; its platform may have another frame than that of `mechanism`.
+  /// tracked_T_platform: pose of the platform of `mechanism` in that frame.
   Chart(PoseChart description, const Mechanism& mechanism, const Mechanism& tracked, Given given,
         const Transform& tracked_T_platform);
 
   /// The names, dimensions and descriptions of the coordinates.
   const PoseChart& description() const { return description_; }
 
-  /// Tracks the straight path from home in these coordinates, which are those of the description, SI. All other
-  /// computations follow the straight path in the mechanism's own coordinates. So a pose is also unreachable if that
-  /// other path leads to another working mode.
+  /// Follows the path from home that is straight in the coordinates of this chart, to these values of them (SI). All
+  /// other computations follow the path that is straight in the mechanism's own coordinates. If the two paths lead to
+  /// different working modes, the pose counts as unreachable.
   Tracked track(std::span<const double> coordinates) const;
 
  private:

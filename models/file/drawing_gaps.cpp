@@ -21,7 +21,7 @@ namespace {
 using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 
-/// Orthonormal vectors count as dependent if a singular value is below this.
+/// Vectors of length 1 count as dependent if a singular value of the matrix with these columns is below this.
 constexpr double kDependent = 1e-6;
 
 /// An orthonormal basis of all x with A x = 0. Singular values up to `nothing` count as 0.
@@ -36,7 +36,7 @@ Matrix complement(const Matrix& A) { return null_space(A.transpose()); }
 
 /// The geometry of a limb at a pose, with lengths in units of the reach.
 struct PlacedLimb {
-  std::vector<Transform> parts;  ///< [joints + 1] base_T_part of the part of each frame
+  std::vector<Transform> parts;  ///< [joints + 1] base_T_part, for each frame of the limb the pose of its part
   Matrix passive;                ///< [6 x passive joints] twists of the passive joints at the base's origin
 };
 
@@ -61,7 +61,7 @@ PlacedLimb placed(const Limb& limb, std::span<const double> displacements, const
   return made;
 }
 
-/// All limbs for displacements [moving].
+/// All limbs, for these displacements of the joints that move.
 std::vector<PlacedLimb> placed(const Mechanism& unit, std::span<const double> displacements) {
   std::vector<std::span<const double>> of_limb;
   for (const Limb& limb : unit.limbs) {
@@ -81,8 +81,8 @@ std::vector<PlacedLimb> placed(const Mechanism& unit, std::span<const double> di
   return list;
 }
 
-/// [limbs] The first-order effects [rows x 6] of a twist of each limb's end while the drives are held. The effects are
-/// motions of bodies, and the gap that remains in the loops.
+/// For each limb, the matrix from a twist of the limb's end to its first-order effects while the drives are held. The
+/// effects are motions of bodies and the gap that remains in the loops.
 std::vector<Matrix> effects_of_ends(const Mechanism& unit, const std::vector<PlacedLimb>& limbs) {
   const auto rows = 6 * static_cast<Index>(limbs.size());
   Index passive = 0;
@@ -114,8 +114,8 @@ std::vector<Matrix> effects_of_ends(const Mechanism& unit, const std::vector<Pla
   return effects;
 }
 
-/// [limbs][joints + 1] The effects of each part's errors. Each matrix is an upper triangle R, for which |R e| is the
-/// length of all effects over the poses of an error e = [omega; v] of the part.
+/// For each limb and each of its parts (one for each frame), an upper triangular matrix R. |R e| is the size of all
+/// effects of an error e = [omega; v] of the part, at all poses together.
 using PartEffects = std::vector<std::vector<Matrix>>;
 
 void add_pose(const Mechanism& unit, std::span<const double> displacements, PartEffects& effects) {
@@ -142,7 +142,7 @@ PartEffects part_effects(const Mechanism& mechanism) {
   return effects;
 }
 
-/// [F] True for each error that a zone or the file states.
+/// For each error, true if a zone limits it or the file states it.
 std::vector<bool> stated_errors(const Mechanism& mechanism) {
   std::vector<bool> is_stated(mechanism.factors.size(), true);
   const auto remove = [&](const std::vector<FactorIndex>& errors) {
@@ -175,11 +175,12 @@ Matrix stated_columns(const Mechanism& mechanism, const std::vector<bool>& is_st
 
 /// Directions in the axes of a part, as orthonormal columns.
 struct Directions {
-  Matrix displacements;  ///< [3 x d] directions of displacement
-  Matrix turns;          ///< [3 x t] axes of rotation, whatever displacement accompanies it
+  Matrix displacements;  ///< directions of displacement
+  Matrix turns;          ///< axes of rotation, whatever displacement accompanies the rotation
 };
 
-/// The directions that the twists [6 x k] of a part do not span, whatever the point about which they rotate.
+/// The directions of displacement and rotation that these twists of a part (columns) do not span. They do not depend on
+/// the point about which the twists rotate.
 Directions not_spanned(const Matrix& columns) {
   const Matrix spanned = complement(complement(columns));
   const Matrix turns = spanned.topRows(3);

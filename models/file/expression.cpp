@@ -32,10 +32,11 @@ bool is_unit_of_geometry(std::string_view name) {
   return unit != nullptr && (unit->dimension == Dimension::length || unit->dimension == Dimension::angle);
 }
 
-/// A recursive descent parser. Each function reads from the front of the text what its name says.
+/// A recursive descent parser. Each function reads the construct that it is named after, from position at_ of the text
+/// on.
 class Parser {
  public:
-  /// due: the powers of the wanted value, as far as they are known, for messages.
+  /// due: the dimension (powers of units) that the value must have, if it is known, for messages.
   Parser(const Expression& expression, std::span<const GeometryParameter> parameters, std::span<const double> values,
          const Powers& due)
       : expression_(expression), text_(expression.text), parameters_(parameters), values_(values), due_(due) {}
@@ -84,7 +85,7 @@ class Parser {
     return text_.substr(begin, at_ - begin);
   }
 
-  /// Throws an error at the operator if the two values cannot be added.
+  /// Throws InputError with the place of the operator if the two values cannot be added.
   void need_like(const Value& one, const Value& other, std::size_t at, std::string_view done) const {
     if (one.like(other)) return;
     fail(at, std::string(done) + " " + dimension_text(one) + " and " + dimension_text(other),
@@ -189,7 +190,7 @@ class Parser {
     return {value * found.si, found.powers};
   }
 
-  /// Reads a unit after a number. A power there belongs to the unit.
+  /// Reads a unit after a number. A power directly behind the unit is part of the unit.
   WrittenUnit unit() {
     const std::size_t at = at_;
     const auto found = unit_at_begin(text_.substr(at));

@@ -49,8 +49,8 @@ std::string dimension_text(const Value& value);  ///< The dimension of a value a
 /// or it is not a name at all. Empty if the name is allowed.
 std::string why_no_parameter(std::string_view name);
 
-/// The value of an expression. values: of the parameters, in their order, SI. Throws InputError with line and column if
-/// the text is not an expression, adds unlike values, or is not finite.
+/// The value of an expression. values: those of the parameters, in their order, SI. Throws InputError with line and
+/// column if the text is not an expression, adds unlike values, or is not finite.
 Value evaluate(const Expression& expression, std::span<const GeometryParameter> parameters,
                std::span<const double> values);
 

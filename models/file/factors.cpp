@@ -343,7 +343,8 @@ bool are_alike(const Limb& a, const Limb& b) {
   return std::ranges::equal(a.joints, b.joints, {}, &Joint::motion, &Joint::motion);
 }
 
-/// The text that names the limbs of an error with limb = "each", and the two parts that its frame connects in them.
+/// The text that names the limbs of an error with limb = "each", and the two parts that its frame connects in each of
+/// them.
 EachLimb each_limb(const ErrorLines& error, const Mechanism& mechanism) {
   const SlotLines& slot = error.slot;
   EachLimb each{"error " + error.name.name + " with limb = \"each\" is", true};

@@ -11,7 +11,7 @@ namespace poesy::file {
 /// error, or if two errors have the same name.
 void add_factors(const Numbers& numbers, Mechanism& mechanism);
 
-/// Adds an error to the mechanism. name: of the error's table in the file. Throws InputError if another error has the
+/// Adds an error to the mechanism. name: name in the file, for messages. Throws InputError if another error has the
 /// factor's name.
 void add_error(Factor factor, chain::ErrorTerms terms, const Reference& name, Mechanism& mechanism);
 

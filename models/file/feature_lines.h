@@ -16,12 +16,12 @@ namespace poesy::file {
 enum class FeatureWord { axis, plane, point, distance };
 std::string_view name(FeatureWord kind);  ///< "axis", "plane", "point" or "distance".
 
-/// On which side of a joint is the part that bears a feature.
+/// The side of a joint on which the part with a feature is.
 enum class PartSide { before, after };
 std::string_view name(PartSide side);  ///< "before" or "after".
 
-/// The shape of a zone that has no diameter sign on the drawing: the usual shape for its feature, or the space between
-/// two planes.
+/// The shape of the zones of a feature: the usual one, which is around an axis or a point, or the space between two
+/// planes.
 enum class ZoneShape { usual, planes };
 std::string_view name(ZoneShape shape);  ///< "usual" or "planes".
 
@@ -42,9 +42,9 @@ struct FeatureLines {
   Place place;                           ///< place of its table
   FeatureWord kind = FeatureWord::axis;  ///< kind of the feature
   std::optional<Reference> joint;        ///< joint to which the feature belongs
-  /// The elementary joint of `joint` that the feature belongs to, counted from 1; none: the first or the last one.
+  /// If `joint` has several axes, the number of the feature's axis, counted from 1; none: the first or the last axis.
   std::optional<std::size_t> axis;
-  PartSide part = PartSide::before;    ///< side of the joint on which the part is
+  PartSide part = PartSide::before;    ///< side of the joint on which the feature's part is
   std::optional<Triple> at;            ///< middle of the feature
   std::optional<Reference> at_point;   ///< middle of the feature, as a named point
   std::optional<Expression> length;    ///< length of an axis
@@ -55,9 +55,9 @@ struct FeatureLines {
   std::optional<Expression> nominal_size;
   std::optional<Triple> z;             ///< z axis of the feature; none: the joint's axis
   std::optional<Triple> x;             ///< x axis of the feature; none: the x axis of the joint's frame
-  ZoneShape shape = ZoneShape::usual;  ///< shape of its zones
-  std::string along;                   ///< "x" or "y": normal of the planes between which its zones are
-  std::vector<ZoneLines> zones;        ///< its zones, in the order of zone_traits()
+  ZoneShape shape = ZoneShape::usual;  ///< shape of the feature's zones
+  std::string along;                   ///< "x" or "y": normal of the planes between which the zones are
+  std::vector<ZoneLines> zones;        ///< zones of the feature, in the order of zone_traits()
 };
 
 /// The position of the pin in the bore of a joint with clearance: always at the boundary of the clearance, or uniformly

@@ -33,11 +33,11 @@ struct FeatureFrame {
   Vector3 middle;  ///< middle of the feature, m
 };
 
-/// The frame of a limb whose error is caused by the errors of a feature.
+/// The frame of a limb that the errors of a feature displace.
 struct FeaturePart {
   std::size_t frame;  ///< position of the frame in the limb
   Transform datum;    ///< base_T_part of the feature's part at home
-  bool inverse;       ///< true if the feature moves its part with respect to what is behind it
+  bool inverse;       ///< true if the error of the frame is the inverse of the feature's displacement
 };
 
 /// An error of a feature: how the feature's middle moves and how the feature rotates, per metre of the error and in the
@@ -95,8 +95,8 @@ std::vector<FeatureError> all_errors(FeatureKind kind, const std::array<double, 
   return {shift("", 0, "is too long")};
 }
 
-/// The text ", where y is (0, 0, -1) at home" for an axis of a feature in the base frame. Empty if it is the base's
-/// axis of the same name.
+/// The text ", where y is (0, 0, -1) at home", which states an axis of a feature in the base frame. Empty if this axis
+/// is the base's axis of the same name.
 std::string axis_text(const FeatureError& error, const Matrix3& axes) {
   const Vector3 way = axes.col(error.axis);
   if (error.name.empty() || (way - Vector3::Unit(error.axis)).norm() < kSameAxis) return {};
@@ -105,7 +105,8 @@ std::string axis_text(const FeatureError& error, const Matrix3& axes) {
                      triple_text(shown));
 }
 
-/// The errors of a feature that its zones allow.
+/// The errors of a feature: with a zone between two planes, only those across these planes; with a tolerance of
+/// orientation but none of location, only tilts.
 std::vector<FeatureError> errors_of(const FeatureLines& lines, const Feature& feature) {
   std::vector<FeatureError> all = all_errors(feature.kind, feature.size);
   const bool only_turns = feature.orientation && !feature.location;

@@ -13,10 +13,10 @@
 /// values.
 namespace poesy::file {
 
-/// The scope for tables whose keys can be read from their value alone.
+/// The empty context of tables whose values can be read without other data (the parameter Scope of Key).
 struct Nothing {};
 
-/// A key of a table with the scope Nothing.
+/// A key of a table whose value can be read without other data.
 template <class Object>
 using Row = Key<Object, Nothing>;
 
@@ -35,7 +35,8 @@ KeyValue<Object> read_by(std::string type, void (*read)(const StudyValue&, Objec
   return {.type = std::move(type), .read = read};
 }
 
-/// A key that must be given. only_for: the choices of the table's type for which the key exists; empty: all.
+/// A key that must be given. only_for: the kinds of the table (values of its key `type` or `kind`) that have the key;
+/// empty: all.
 template <class Object>
 Row<Object> needed(std::string_view name, KeyValue<Object> value, std::string example, std::string_view meaning,
                    std::vector<std::string_view> only_for = {}) {
@@ -45,7 +46,7 @@ Row<Object> needed(std::string_view name, KeyValue<Object> value, std::string ex
   return row;
 }
 
-/// A key that may be left out. usual: its value then. only_for: as for needed().
+/// A key that may be left out. usual: text that states the value if the key is left out. only_for: as for needed().
 template <class Object>
 Row<Object> optional(std::string_view name, KeyValue<Object> value, std::string usual, std::string_view meaning,
                      std::vector<std::string_view> only_for = {}) {

@@ -22,8 +22,8 @@ GeneralLines read_drawing(const StudyValue& value);
 /// The keys of `[drawing]`, for the reference.
 StudyTable drawing_keys_table();
 
-/// The size (m) of a zone that is written "general". feature: its kind and size. Throws InputError if the file names no
-/// standard for the zone, or if the standard has no value for it.
+/// The size (m) of a zone that is written "general". feature: the feature that has the zone. Throws InputError if the
+/// file names no standard for the zone, or if the standard has no value for it.
 double general_size(const ZoneLines& zone, const Feature& feature, const GeneralLines& general);
 
 }  // namespace poesy::file

@@ -7,8 +7,8 @@
 /// The equations that close a mechanism's loops. Lengths are in units of the mechanism's reach.
 namespace poesy::file {
 
-/// The configuration of a mechanism: displacements [moving] of the joints, limb by limb, then the poses [6] of the
-/// platform and of all other bodies except the base (rad, and lengths in units of the reach).
+/// The configuration of a mechanism as a vector: the displacements of all joints that move, limb by limb, then six
+/// numbers for the pose of each body except the base, the platform first (rad, and lengths in units of the reach).
 using State = Eigen::VectorXd;
 
 /// The configuration at home. unit: a mechanism from in_reaches().
@@ -18,8 +18,8 @@ State home_state(const Mechanism& unit);
 /// dpose_a + J dq - C_b dpose_b = log(T_b (T_a g)^-1). T are the poses of the bodies and g is the motion of the limb. C
 /// and J map changes of poses and of joint displacements to twists [omega; v] at the base's origin.
 struct LoopEquations {
-  Eigen::MatrixXd columns;   ///< [6 limbs x (moving + 6 bodies)] left side
-  Eigen::VectorXd residual;  ///< [6 limbs] right side
+  Eigen::MatrixXd columns;   ///< matrix of the left side: six rows for each limb, a column for each entry of a State
+  Eigen::VectorXd residual;  ///< right side: six rows for each limb
 };
 
 /// The loop equations at a state. unit: a mechanism from in_reaches().
@@ -35,7 +35,7 @@ Transform transform_of(const Mechanism& unit, const State& state, std::size_t bo
 /// metric's points by the twist xi.
 lie::Matrix6<double> metric_root(const Mechanism& unit, const PlatformPose& pose);
 
-/// [6 limbs x columns] The product of `root` and the six rows of every limb.
+/// The matrix `rows`, in which the six rows of each limb are multiplied by `root` from the left.
 Eigen::MatrixXd weighed(const lie::Matrix6<double>& root, const Eigen::MatrixXd& rows);
 
 /// The mismatch of the limbs for this residual as a share of the reach, defined like the response `gap`. With the parts

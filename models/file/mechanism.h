@@ -26,9 +26,10 @@ using Transform = lie::Transform<double>;
 /// The motion of an elementary joint, about or along its z axis.
 enum class Motion { fixed, revolute, prismatic, helical };
 
-/// An elementary joint, or a fixed frame.
+/// An elementary joint (a joint with one freedom), or a fixed frame. A joint of the file that has several freedoms
+/// becomes several elementary joints.
 struct Joint {
-  std::string name;        ///< name of the joint to which it belongs
+  std::string name;        ///< name of the file's joint to which it belongs
   Place place;             ///< place of that joint in the file
   JointKind kind;          ///< type of that joint
   Motion motion;           ///< motion; fixed: a frame with errors but without a displacement
@@ -52,8 +53,8 @@ using assembly::kPlatform;
 
 /// A limb from one body to another, in local product-of-exponentials form as in chain::Limb.
 struct Limb {
-  std::vector<Joint> joints;    ///< [n] joints, from the first body to the last
-  std::vector<Transform> home;  ///< [n + 1] frames at home: body to first joint, joint to joint, last joint to body
+  std::vector<Joint> joints;    ///< joints, from the first body to the last
+  std::vector<Transform> home;  ///< frames at home: body to first joint, joint to joint, last joint to body
   std::size_t from = kBase;     ///< position of the first body
   std::size_t to = kPlatform;   ///< position of the last body
   /// Label: the number of the limb, counted from 1, or its name and the number of the copy.
@@ -100,9 +101,9 @@ inline constexpr double kClosed = 1e-12;
 /// The precision of a mechanism's numbers, which rounding.h finds.
 struct Precision {
   double rank_threshold = kRankThreshold;  ///< a singular value below this share of the largest counts as zero
-  /// The largest opening at which a loop counts as closed: rad, and shares of the reach. With rounded numbers it is the
-  /// largest gap. A pose is then the one with the smallest mismatch of the limbs in the metric of the mechanism's
-  /// points, and this mismatch remains.
+  /// The largest opening at which a loop counts as closed: rad, and shares of the reach. If numbers are rounded, it is
+  /// a bound on the gap; a pose is then where the mismatch of the limbs, in the metric of the mechanism's points, is
+  /// least, and this mismatch remains.
   double closed = kClosed;
 
   /// Returns true if loops that stay open by more than kClosed count as closed.
@@ -112,7 +113,7 @@ struct Precision {
 /// An error that the file states with limb = "each".
 struct EachLimb {
   std::string text;  ///< name of the error, and the two parts that its frame connects in each limb
-  bool alike;        ///< true if these parts are the same in all limbs
+  bool alike;        ///< true if these limbs have the same kinds of joints in the same order
 };
 
 /// A mechanism in numbers. It contains everything that a model needs except solvers.
@@ -128,18 +129,19 @@ struct Mechanism {
   std::optional<Vector3> tool = {};          ///< tool point in the platform's frame (m)
   /// Points of the platform that define the metric, in its frame (m); not all on a line.
   std::vector<Vector3> points = {};
-  std::vector<Factor> factors = {};           ///< [F] errors
-  std::vector<chain::ErrorTerms> terms = {};  ///< [F] contributions of each error to components of frames' errors
+  std::vector<Factor> factors = {};           ///< errors
+  std::vector<chain::ErrorTerms> terms = {};  ///< contributions of each error to components of frames' errors
   std::vector<FactorSet> sets = {};           ///< sets of errors, "all" first
   std::vector<EachLimb> each = {};            ///< errors with limb = "each"
   ErrorsAbout about = ErrorsAbout::joint;     ///< points about which angular errors of frames rotate
-  /// True if angular errors rotate about joints, see chain::Limb; false if there are features, whose errors rotate
-  /// about frames.
+  /// True if the angular errors of a limb's first and last frame rotate about the joint next to the frame, see
+  /// chain::Limb. False if they rotate about the origin of base or platform: always so if there are features.
   bool errors_at_joints = true;
   std::vector<Feature> features = {};  ///< features of all limbs
   /// [features] part_T_feature at home: the middle (m) and the axes of each feature in the frame of its part.
   std::vector<Transform> feature_places = {};
-  /// Largest distance between two of these points: the joints' points, before copies are made, and P; m.
+  /// The largest distance (m) between two points of joints, or of a joint and the platform's origin P. Copies of limbs
+  /// do not count.
   double reach;
   Precision precision = {};  ///< precision of the numbers
   assembly::Load load = {};  ///< load, used only if there is stiffness
@@ -164,7 +166,7 @@ std::vector<double> default_geometry(const MechanismFile& file);
 /// line.
 Mechanism mechanism(const MechanismFile& file, std::span<const double> geometry);
 
-/// The mechanism with lengths in units of its reach. Its reach is then 1.
+/// The mechanism with lengths in units of its reach. The reach of the result is 1.
 Mechanism in_reaches(Mechanism mechanism);
 
 /// The names q_i_j of the displacements of all moving joints, limb by limb. The limb i is counted from 1. j is the
@@ -193,8 +195,8 @@ lie::Matrix6<double> body_columns(const Mechanism& mechanism, std::size_t body, 
 /// The pose of a body at home: its origin, and no rotation.
 PlatformPose home_pose(const Mechanism& mechanism, std::size_t body);
 
-/// [bodies - 1] For each body except the base, a limb that ends there. In this order the bodies can be placed one after
-/// the other.
+/// For each body except the base, the position of a limb that ends there. In the order of this list the bodies can be
+/// placed one after the other.
 std::vector<std::size_t> placing_limbs(const Mechanism& mechanism);
 
 /// The pose of the platform at home: P, and no rotation.
@@ -203,9 +205,9 @@ PlatformPose home_pose(const Mechanism& mechanism);
 /// [6 x 6] The twists [omega; v] of the platform, at the base's origin, per unit of each component of its pose.
 lie::Matrix6<double> platform_columns(const Mechanism& mechanism, const PlatformPose& pose);
 
-/// The pose base_T_body of the body at the end of the limb. displacements: [moving] of its moving joints (rad, m).
-/// from: pose of the body at which the limb begins. columns: null, or [6 x moving], set to the twists [omega; v] of the
-/// limb's end per unit of each displacement, at the base's origin.
+/// The pose base_T_body of the body at the end of the limb. displacements: those of the limb's joints that move (rad,
+/// m). from: pose of the body at which the limb begins. columns: null, or a matrix with a column for each of these
+/// joints; receives the twists [omega; v] of the limb's end per unit of each displacement, at the base's origin.
 Transform limb_transform(const Limb& limb, std::span<const double> displacements,
                          Eigen::Matrix<double, 6, Eigen::Dynamic>* columns = nullptr, const Transform& from = {});
 

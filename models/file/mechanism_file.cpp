@@ -476,7 +476,8 @@ struct NamedLimb {
     return lines->name.empty() || lines->copies.count == 1 ? lines->name : lines->name + "_" + std::to_string(copy);
   }
 
-  /// The limb as text for messages: "limb 4", or with a name "limb 4 (left_1)". position: of the limb, counted from 0.
+  /// The limb as text for messages: "limb 4", or with a name "limb 4 (left_1)". position: that of the limb, counted
+  /// from 0.
   std::string text(std::size_t position) const {
     const std::string number = "limb " + std::to_string(position + 1);
     return lines->name.empty() ? number : number + " (" + label() + ")";
@@ -504,7 +505,7 @@ std::string limbs_text(const std::vector<std::size_t>& limbs) {
   return text;
 }
 
-/// Adds to the slot all limbs with this number or name.
+/// Adds to `slot` (limbs and frames of an error) all limbs with this number or name.
 void add_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, SlotLines& slot) {
   const auto add = [&](std::size_t limb) {
     if (std::ranges::find(slot.limbs, limb) != slot.limbs.end()) {
@@ -541,7 +542,7 @@ void read_limbs(const StudyValue& value, const std::vector<NamedLimb>& known, Sl
   for (const std::size_t i : slot.limbs) slot.numbers.push_back(alone ? 0 : by_copy ? known[i].copy : i + 1);
 }
 
-/// Reads the name of a joint. The frame of the error is the one behind this joint, in each limb of the slot.
+/// Reads the name of a joint. In each limb of `slot`, the frame of the error is the one behind the joint of this name.
 void read_frame_by_name(const StudyValue& frame, const std::vector<NamedLimb>& known, SlotLines& slot) {
   for (const std::size_t i : slot.limbs) {
     const std::optional<std::size_t> behind = known[i].frame_behind(frame.text());

@@ -26,7 +26,8 @@ enum class JointKind { fixed, revolute, prismatic, helical, cylindrical, univers
 /// The name of a type of joint in files: "fixed", "R", "P", "H", "C", "U", "S".
 std::string_view name(JointKind kind);
 char letter(JointKind kind);  ///< The letter in sketches (SketchedJoint::type): 'F', 'R', ...
-/// The number of elementary joints or fixed frames of this type of joint.
+/// The number of elementary joints (joints with one freedom) of which a joint of this type consists; 1 for a fixed
+/// frame.
 std::size_t elements(JointKind kind);
 
 /// A joint as written.
@@ -43,7 +44,7 @@ struct JointLines {
   std::optional<Triple> axis2;              ///< second axis of a joint U
   std::optional<Triple> x;                  ///< x axis of the joint's first frame
   std::optional<Expression> pitch;          ///< pitch of a joint H, length per turn
-  std::array<bool, 2> actuated{};           ///< [elementary joints] true if the joint is actuated
+  std::array<bool, 2> actuated{};           ///< true for each axis that a drive holds
   std::optional<Reference> drive;           ///< name of the drive; the number of the limb's copy replaces "*"
   std::optional<StiffnessLines> stiffness;  ///< stiffness of bearing and drive; none if they are rigid
   bool reaction = false;                    ///< true if the joint's reaction is a response
@@ -107,7 +108,7 @@ enum class ErrorsAbout {
 /// The name in files: "joint" or "frame".
 std::string_view name(ErrorsAbout about);
 
-/// One frame in each of one or more limbs, as the keys `limb` and `frame` of an error state it.
+/// Where an error acts: one or more limbs, and one frame in each of them, as the keys `limb` and `frame` state them.
 struct SlotLines {
   std::vector<std::size_t> limbs;  ///< positions of the limbs, counted from 0
   bool each = false;               ///< true if the limbs are written as "each"
@@ -124,14 +125,14 @@ struct ComponentLines {
 
 /// One of several places in which an error acts.
 struct PlaceLines {
-  SlotLines slot;                          ///< frame in which it acts
-  std::vector<ComponentLines> components;  ///< components that it changes there
+  SlotLines slot;                          ///< limbs and frames in which the error acts
+  std::vector<ComponentLines> components;  ///< components that the error changes there
 };
 
 /// A named error, `[[error]]`, as written.
 struct ErrorLines {
   Reference name;  ///< name, without the number of a limb
-  /// The frame in which the error acts. Each limb of the slot has an error of its own. Without limbs if `places` are
+  /// Limbs and frames in which the error acts. Each of these limbs has an error of its own. Empty if `places` are
   /// given.
   SlotLines slot;
   /// Positions in [epsilon; delta] of components, each of which is an error of its own; none if `combination` is given.
@@ -139,7 +140,8 @@ struct ErrorLines {
   Expression scale{"1", "scale", {}, true};  ///< factor from the error to the component of the frame's error
   std::vector<ComponentLines> combination;   ///< components that form one error together
   std::vector<PlaceLines> places;            ///< places of an error that acts in several
-  /// Joint of the limb to whose displacement the error is proportional; none if it does not grow.
+  /// Joint of the limb. What the error changes is proportional to the displacement of this joint; none if it is
+  /// constant.
   std::optional<Reference> grows_with;
   std::optional<Expression> from;  ///< displacement from home at which the error is zero; none: 0
   std::string description;         ///< description; empty: the description of the frame
@@ -180,8 +182,8 @@ struct MechanismFile {
 /// The tables of a mechanism file with all keys, for the reference.
 const StudyTables& mechanism_file_tables();
 
-/// Reads the own responses that a file defines, for a model with this description; none if it defines none. Throws
-/// InputError.
+/// Reads the responses that a file defines itself ([[response]]), for a model with this description; none if it defines
+/// none. Throws InputError.
 std::vector<OwnResponse> read_own_responses(const std::string& text, const std::string& path,
                                             const ModelDescription& model);
 

@@ -40,7 +40,7 @@ std::size_t size(Index count) { return static_cast<std::size_t>(count); }
 /// The loop Jacobian and the twists of the bodies, with lengths in units of the reach.
 struct Jacobians {
   Matrix loops;
-  /// [bodies][6 x joints] twists of each body by the limbs that place it; 0 for the base.
+  /// For each body, its twists by the joints, one in each column; 0 for the base.
   std::vector<Columns> bodies;
   std::vector<const Joint*> joints;  ///< joint of each column
   std::vector<std::string> limbs;    ///< limb of each column, for messages
@@ -48,8 +48,8 @@ struct Jacobians {
   const Columns& platform() const { return bodies[kPlatform]; }
 };
 
-/// Each body has the twist of the first limb that ends there. Each other limb that ends there gives equations: its
-/// twist minus that of the first.
+/// The twist of a body is that of the limb that places it (placing_limbs()). Each other limb that ends at the body
+/// gives six equations: the twist of this limb minus that of the body.
 Jacobians jacobians(const Mechanism& unit, std::span<const double> q) {
   const auto joints = static_cast<Index>(unit.moving());
   const std::size_t bodies = unit.bodies.size();
@@ -157,7 +157,7 @@ void describe_loose(const Jacobians& all, const Eigen::VectorXd& motion, const l
                      (turns ? "turns about " + vector_text(direction) : "slides along " + vector_text(direction));
 }
 
-/// Finds motions of the platform or of another body while all drives are held. bodies: those of the mechanism.
+/// Finds whether the platform or another body can move while all drives are held. bodies: those of the mechanism.
 void find_loose(const Jacobians& all, const std::vector<assembly::Body>& bodies, double threshold, Mobility& found) {
   const Matrix loops = passive(all.loops, all);
   const double largest = found.singular_values.empty() ? 0.0 : found.singular_values[0];
@@ -199,8 +199,9 @@ void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Mat
   if (found.coordinates_rank < unit.coordinates.size()) found.dependent = dependent_of(unit, chosen, rank);
 }
 
-/// The reference for singular values of the loops if a drive moves several joints, because their motions may cancel.
-/// Without such drives the reference is 0, which means that the largest singular value itself is used.
+/// The value with which decomposed() compares the singular values of the loops. If a drive moves several joints, whose
+/// motions may cancel, it is the largest singular value of the matrix with a column for each joint. Otherwise it is 0,
+/// which stands for the largest of the singular values themselves.
 double largest_of(const Matrix& loops_by_joint, const std::vector<Drive>& drives) {
   if (std::ranges::none_of(drives, &Drive::is_shared)) return 0.0;
   return linalg::singular_values(loops_by_joint)[0];
@@ -266,8 +267,8 @@ Mobility home_mobility(const Mechanism& mechanism) {
 
 namespace {
 
-/// Sets the parasitic motion of the platform. It leads to `pose` from the pose that has the same coordinates, but in
-/// all other components is that of home.
+/// Sets the parasitic motion of the platform at `pose`: its motion relative to the pose that has the same coordinates
+/// and, in all other components, the values of home.
 void find_parasitic(const Mechanism& mechanism, const PlatformPose& pose, PoseMobility& found) {
   PlatformPose without = home_pose(mechanism);
   for (const Coordinate& coordinate : mechanism.coordinates) without[coordinate.component] = pose[coordinate.component];

@@ -29,9 +29,10 @@ struct Mobility {
   /// Rank of the passive joints' columns; if it is below loop_equations, limbs deform each other.
   std::size_t passive_rank = 0;
   std::size_t left_when_locked = 0;  ///< number of freedoms of the passive joints while all drives are held
-  std::size_t loose = 0;             ///< number of those freedoms that move the platform or another body
-  std::string loose_body = {};       ///< body that moves: "the platform", "body 'carriage_1'"
-  /// Motion of this body in words: "the platform turns about (0, 0, 1)"; empty if no body moves.
+  std::size_t loose = 0;             ///< number of those freedoms that move the body loose_body; 0 if none moves a body
+  std::string loose_body = {};       ///< first body that moves: "the platform", "body 'carriage_1'"
+  /// The motion of loose_body in words: "joint 'A' of limb 2 is loose, and the platform turns about (0, 0, 1)"; empty
+  /// if no body moves.
   std::string loose_text = {};
   Place loose_place = {};                    ///< place of the joint that moves most in this motion
   std::size_t coordinates_rank = 0;          ///< rank of the pose coordinates as functions of the joints
@@ -45,7 +46,7 @@ struct Mobility {
   std::optional<double> below_gap() const;
 };
 
-/// The mobility for these displacements [moving] (rad, m) and this pose of the platform.
+/// The mobility for these displacements of all joints that move (rad, m) and this pose of the platform.
 Mobility mobility(const Mechanism& mechanism, std::span<const double> displacements, const PlatformPose& pose);
 
 /// The mobility at home.

@@ -26,8 +26,8 @@ struct Read {
   }
 };
 
-/// The choice of the limbs' mechanics: forces by stiffness, mismatch in the platform's metric, or mismatch with the
-/// published weight.
+/// How a model measures what limbs do to each other: by forces from stiffness, by mismatch in the platform's metric, or
+/// by mismatch as published (1 rad weighs as much as 1 m).
 enum class By { stiffness, platform, published };
 
 /// Throws if a named point of the platform gives a response the name of another one.
@@ -115,7 +115,8 @@ std::string key_reference() {
 
 namespace {
 
-/// The file's own responses for a model with another metric, without the responses that this model cannot form.
+/// The responses that the file itself defines (`own`, for the model `from`), for the model `to` with another metric.
+/// Responses that this model cannot form are left out.
 std::vector<OwnResponse> by_names(const std::vector<OwnResponse>& own, const ModelDescription& from,
                                   const ModelDescription& to) {
   const ModelDescription named = described(from, own);
@@ -135,8 +136,8 @@ std::vector<OwnResponse> by_names(const std::vector<OwnResponse>& own, const Mod
   return list;
 }
 
-/// The catalog entry with these own responses for all its metrics. Positions of responses in `own` are positions in
-/// the model `from`.
+/// The catalog entry, extended for each of its metrics by the responses `own` that the file defines. `own` refers to
+/// other responses by their positions in the model `from`.
 CatalogEntry with_own(CatalogEntry entry, const std::vector<OwnResponse>& own, const ModelDescription& from) {
   if (entry.other_metric != nullptr) {
     entry.other_metric = std::make_shared<const CatalogEntry>(with_own(*entry.other_metric, own, from));

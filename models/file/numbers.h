@@ -11,12 +11,12 @@ namespace poesy::file {
 /// in the file if an expression has no value, or a dimension that is not the wanted one.
 class Numbers {
  public:
-  /// values: of file.geometry, SI. Both arguments must outlive this object.
+  /// values: those of file.geometry, SI. Both arguments must outlive this object.
   Numbers(const MechanismFile& file, std::span<const double> values) : file_(&file), values_(values) {}
 
   const MechanismFile& file() const { return *file_; }  ///< The file of the expressions.
 
-  /// The reach of the mechanism (m). It is the scale at which two points count as equal.
+  /// The reach of the mechanism (m). Two points count as equal if their distance is a very small share of it.
   /// @{
   void set_reach(double reach) { reach_ = reach; }
   double reach() const { return reach_; }

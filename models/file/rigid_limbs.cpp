@@ -15,7 +15,8 @@ using Matrix = Eigen::MatrixXd;
 
 /// A limb counts as strained by a wrench only if the strain is at least this share of the limb's largest compliance.
 constexpr double kRigid = 1e-12;
-/// Two limbs load each other if the products of their rows of the wrenches' basis exceed this.
+/// Two limbs load each other if |A B^T| exceeds this, where A and B are the rows of the two limbs in a basis of the
+/// wrenches.
 constexpr double kNothing = 1e-6;
 
 /// An orthonormal basis of a matrix's null space.
@@ -25,8 +26,8 @@ Matrix null_space(const Matrix& matrix, double threshold) {
   return svd.V.rightCols(matrix.cols() - rank);
 }
 
-/// [wrenches x k] The wrenches of all limbs, in the order of the equations, that balance at every body and strain no
-/// limb: null vectors of the matrix that are not motions.
+/// A basis of the wrenches of all limbs that balance at every body and strain no limb: null vectors of the equations
+/// that are not motions. Each column has a row for each lambda of the equations (Equilibrium).
 Matrix unstrained(const assembly::Equilibrium& equations, double rank_threshold) {
   const Matrix& matrix = equations.matrix();
   const Index wrenches = equations.first_wrenches().back();

@@ -15,8 +15,8 @@ namespace {
 constexpr double kLargestZero = 1e-2;
 /// The largest number of gaps between singular values that are tried.
 constexpr std::size_t kMostGaps = 4;
-/// The singular values that would be zero without rounding may be this many times as large at other poses. The second
-/// factor is tried if the rank with the first one leaves no motion.
+/// Singular values that would be zero without rounding may be larger at other poses, by at most this factor. The second
+/// factor is tried if the mechanism does not pass with the first one.
 constexpr std::array kMargins{5.0, 1.5};
 
 /// The error that a check throws; none if the check passes.
@@ -38,8 +38,8 @@ struct Gap {
   double margin;  ///< one of kMargins
 
   double ratio() const { return above / std::max(below, kRankThreshold); }
-  /// Narrows the gap by the singular values of another configuration. Returns true if the mechanism can have this rank
-  /// there: a gap remains.
+  /// Narrows the gap by the singular values of another configuration. Returns true if a gap remains, so that the
+  /// mechanism can have this rank in both.
   bool narrow(const std::vector<double>& values) {
     above = std::min(above, values[rank - 1] / values[0]);
     below = std::max(below, values[rank] / values[0]);
@@ -71,13 +71,14 @@ double largest_mismatch(const std::vector<PoseMobility>& poses) {
   return largest;
 }
 
-/// The result of treating numbers as rounded; empty if the mechanism then does not move as its coordinates say.
+/// The result of treating numbers as rounded. Both members are empty if the mechanism does not move as its coordinates
+/// say.
 struct Attempt {
   std::optional<Checked> checked = {};
   std::optional<InputError> misfit = {};  ///< set if the loops close only approximately
 };
 
-/// Treats the numbers as rounded, with the rank that this gap separates.
+/// Treats the numbers as rounded. Singular values below the gap count as zero.
 Attempt rounded(Mechanism mechanism, Gap gap) {
   const auto passes = [&](const Mobility& home, std::span<const PoseMobility> poses) {
     return !problem_of([&] {

@@ -29,8 +29,10 @@ enum class Workspace { as_it_is, in_reach };
 /// workspace_mobility() ends because loops stay open. Otherwise the check is repeated with a lower precision; if the
 /// mechanism passes then, its numbers count as rounded. The rank of such a mechanism is taken at a gap between singular
 /// values that are between 1e-6 and 1e-2 of the largest: at the widest gap with which the mechanism moves as its
-/// coordinates say. Its loops must close to kRoundedGap of the reach. If both checks fail, throws the error of the
-/// exact check. But if the loops close to kNamedGap, the InputError names the joint whose numbers would close them.
+/// coordinates say. Its loops must close to kRoundedGap of the reach. If the mechanism does not pass as rounded either,
+/// the function throws the error of check_mobility(); but if the loops close to kNamedGap, the InputError names the
+/// joint whose numbers would close them. If check_mobility() found no error, the numbers count as exact although some
+/// loops stay open.
 Checked checked(Mechanism mechanism, Workspace workspace);
 
 }  // namespace poesy::file

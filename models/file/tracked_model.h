@@ -28,8 +28,8 @@ class TrackedModel : public Model {
   std::vector<std::string> unusual_geometry() const override;
   /// The rotation base_R_platform of perfect limbs at a reachable pose (SI), or at home if the pose is empty.
   virtual lie::Matrix3<double> orientation(std::span<const double> pose) const = 0;
-  /// The bound of an error: for a length, the shortest link of its limb, or the mechanism's reach if the limb has no
-  /// link; for an angle, half a turn.
+  /// The bound of an error: for a length, the shortest link of the error's limb, or the mechanism's reach if the limb
+  /// has no link; for an angle, half a turn; for a number, 1.
   ErrorBound error_bound(FactorIndex factor) const override;
 
  protected:
@@ -56,14 +56,16 @@ class TrackedModel : public Model {
   ModelDescription description_;
 };
 
-/// A limb in the form that solvers need. drives: Joint::drive of each moving joint, from this limb's first one on. The
-/// function removes the numbers of this limb from the front.
+/// A limb in the form that solvers need. drives: drive numbers (chain::Joint::drive) of the joints that move, beginning
+/// with those of this limb. The function removes those of this limb from the front.
 chain::Limb chain_limb(const Limb& limb, bool errors_at_joints, std::span<const std::size_t>& drives);
 
-/// [moving] For each joint that moves, the number of its drive, or 0 if the drive moves no other joint.
+/// For each joint that moves, the number of its drive (chain::Joint::drive); 0 if it has no drive, or if the drive
+/// moves no other joint.
 std::vector<std::size_t> shared_drives(const Mechanism& mechanism);
 
-/// The displacements of all joints and fixed frames. moving: [moving] those of the joints that move (rad, m).
+/// The displacements of all joints and fixed frames; 0 for fixed frames. moving: those of the joints that move (rad,
+/// m).
 std::vector<double> with_fixed(const Mechanism& mechanism, std::span<const double> moving);
 
 }  // namespace poesy::file

@@ -100,8 +100,8 @@ Matrix Tracker::matrix_of(const LoopEquations& equations) const {
   return all(Eigen::all, free_);
 }
 
-/// A Newton step. For rounded numbers it minimises the residual in the metric, among the steps that the mechanism's
-/// rank allows.
+/// A Newton step. For rounded numbers it minimises the residual in the metric, among the steps that leave the idle
+/// freedoms at rest.
 Vector Tracker::step(const LoopEquations& equations, const State& state) const {
   const Matrix matrix = matrix_of(equations);
   if (!unit_.precision.rounded()) return linalg::least_squares(matrix, equations.residual, kRankThreshold);
@@ -155,8 +155,8 @@ namespace {
 
 /// Minimises the sum of squares of the displacements q of those joints of a limb that can move while its end is fixed.
 /// This is Newton's method on min |q|^2 / 2 with fixed g(q). To second order the constraint log(g(q) g^-1) is sum xi_j
-/// dq_j + sum_{i<j} [xi_i, xi_j] dq_i dq_j / 2. free: positions of the joints that may move. rank: of their columns.
-/// end: pose of the limb's end in the body at which the limb begins.
+/// dq_j + sum_{i<j} [xi_i, xi_j] dq_i dq_j / 2. free: positions of the joints that may move. rank: rank of the columns
+/// of these joints. end: pose of the limb's end in the body at which the limb begins.
 bool settle_limb(const Limb& limb, const std::vector<std::size_t>& free, Index rank, const Transform& end,
                  Eigen::Ref<Vector> q) {
   const Index joints = index(free.size());

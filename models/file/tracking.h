@@ -9,13 +9,13 @@
 
 namespace poesy::file {
 
-/// The displacements [moving of the mechanism]; those of prismatic joints are multiplied by a factor.
+/// These displacements of all joints that move, in which those of prismatic joints are multiplied by `factor`.
 std::vector<double> scaled_displacements(const Mechanism& mechanism, std::span<const double> displacements,
                                          double factor);
 
 /// The result of tracking: the pose, or the end of the path towards it.
 struct Tracked {
-  /// [moving] Joint displacements from home (rad, m) at the end of the path, limb by limb.
+  /// Displacements from home (rad, m) of all joints that move at the end of the path, limb by limb.
   std::vector<double> displacements;
   PlatformPose pose;        ///< pose of the platform at the end of the path
   Transform platform;       ///< frame base_T_platform at the end of the path
@@ -33,8 +33,8 @@ enum class Given { coordinates, drives };
 
 /// Computes nominal joint displacements at a pose. The tracker follows the straight line in the given numbers from
 /// home, and solves for all other joint displacements and body poses by Newton's method. It halves the steps along the
-/// line until Newton converges at once, so the limbs stay in the working mode of home. Newton steps have the least norm
-/// for the rank that the mechanism has at home, so redundant loop equations do no harm. The joints of one drive are one
+/// line until Newton converges at once, so the limbs stay in the working mode of home. Each Newton step is the
+/// least-squares solution with the least norm, so redundant loop equations do no harm. The joints of one drive are one
 /// unknown. If several displacements give the pose, the tracker chooses among those nearby the ones with the least sum
 /// of squares (rad, and lengths in units of the reach), so that idle freedoms do not depend on the path. With rounded
 /// numbers (Precision) a pose is the least-squares one in the metric. A result depends only on the mechanism and the
@@ -66,11 +66,11 @@ class Tracker {
   std::vector<double> units_;       ///< [given] unit of each number, SI
   std::vector<std::size_t> free_;   ///< positions of all other numbers in a state, ascending
   std::vector<Drive> shared_;       ///< drives of several joints, each of which is one unknown at its first joint
-  /// For each limb, positions among its moving joints: those of the joints that are not given and share no drive with
-  /// others.
+  /// For each limb, the joints that are not given and share no drive with others, by their positions among the limb's
+  /// joints that move.
   std::vector<std::vector<std::size_t>> limb_joints_;
   std::vector<std::size_t> limb_ranks_;  ///< [limbs] rank of the columns of these joints at home
-  std::size_t idle_ = 0;                 ///< number of these joints in excess of the ranks: the idle freedoms
+  std::size_t idle_ = 0;                 ///< number of idle freedoms: number of these joints minus the ranks
 };
 
 }  // namespace poesy::file

@@ -4,8 +4,10 @@
 
 namespace poesy::lie {
 
-// These functions let one formula work on a number and on a batch of numbers (lanes). A comparison gives a mask,
-// `select` chooses in each lane, and `any` tells whether a lane exists that needs a rare branch.
+// With these functions the same formula works for a single number and for a batch of numbers. Each number of a batch is
+// a lane. A comparison of batches gives a mask, which has a truth value for each lane. `select` chooses between two
+// batches lane by lane, and `any` returns whether the mask is true in some lane. The functions here are those for
+// single numbers.
 
 template <class T>
 requires std::is_floating_point_v<T>

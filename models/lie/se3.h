@@ -4,7 +4,7 @@
 
 namespace poesy::lie {
 
-/// A screw [omega; v] in ray order (Du et al. 2022, Eq. A1).
+/// A screw [omega; v], angular part first (Du et al. 2022, Eq. A1).
 template <class T>
 using Screw = Eigen::Matrix<T, 6, 1>;
 template <class T>

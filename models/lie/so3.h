@@ -148,8 +148,8 @@ Vector3<T> axis_from_symmetric_part(const Matrix3<T>& rotation, T cosine, const 
 
 }  // namespace detail
 
-/// The rotation vector w with exp(w) = rotation and |w| <= pi, accurate from 0 to pi. At pi its sign is arbitrary. It
-/// equals Eq. A6 of Du et al. 2022, except at the identity and at pi, where the printed equation is 0/0.
+/// The rotation vector w with exp(w) = rotation and |w| <= pi, accurate from 0 to pi. At pi the sign of w is arbitrary.
+/// The result equals Eq. A6 of Du et al. 2022, except at the identity and at pi, where the printed equation is 0/0.
 template <class T>
 Vector3<T> log(const Matrix3<T>& rotation) {
   using std::atan2;

@@ -2,7 +2,8 @@
 
 #include <cstddef>
 
-/// The most lanes that a kernel's source may be compiled for: 1 where it computes number by number, as on a GPU.
+/// The largest number of lanes (numbers in one vector register) for which kernels are compiled. It is 1 where kernels
+/// compute one number at a time, as on a GPU.
 #ifndef POESY_MOST_LANES
 #define POESY_MOST_LANES 8
 #endif

@@ -32,9 +32,9 @@ inline SinCos<T> sin_cos_near_zero(T x) {
   return {madd(x * z, polynomial(z, kSin), x), madd(z * z, polynomial(z, kCos), nmadd(T(0.5), z, T(1.0)))};
 }
 
-/// Sine and cosine for |x| < 100, within 2 ulp (units in the last place). Near the zeros at multiples of pi/2, the
-/// error is at most 1e-26 per quarter turn. The reduction by multiples of pi/2 uses pi/2 in two parts (Cody and Waite).
-/// It is skipped if no lane needs it, which changes no bit of any lane.
+/// Sine and cosine for |x| < 100, within 2 ulp (units in the last place). Near a zero at n pi/2, the absolute error is
+/// at most 1e-26 |n|. The reduction by multiples of pi/2 uses pi/2 in two parts (Cody and Waite). This reduction is
+/// skipped if no lane needs it; the results are the same to the last bit.
 template <class T>
 inline SinCos<T> sin_cos(T x) {
   constexpr double kTwoOverPi = 0.63661977236758134308;

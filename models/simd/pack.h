@@ -15,7 +15,7 @@ using Tag = hn::ScalableTag<double>;
 
 /// A truth value for each lane.
 struct Mask {
-  hn::Mask<Tag> m;  ///< one bit for each lane
+  hn::Mask<Tag> m;  ///< the truth values of all lanes
 
   /// Logical operations lane by lane; `any` tells whether some lane is true.
   /// @{
@@ -24,7 +24,7 @@ struct Mask {
   friend Mask operator!(Mask a) { return {hn::Not(a.m)}; }
   friend bool any(Mask a) { return !hn::AllFalse(Tag(), a.m); }
   /// @}
-  /// The mask as an integer; bit n is lane n.
+  /// The mask as an integer: bit n is the truth value of lane n.
   friend unsigned bits(Mask a) {
     unsigned char bytes[8] = {};
     hn::StoreMaskBits(Tag(), a.m, bytes);

@@ -2,7 +2,7 @@
 
 #include "models/simd/math.h"
 
-// Vectors are [3]; rotation matrices are [9], row by row.
+// Vectors have 3 numbers. Rotation matrices have 9 numbers, row by row.
 
 namespace poesy::simd {
 
@@ -64,7 +64,7 @@ struct ExpCoefficients {
   T b;  ///< (1 - cos(theta)) / theta^2
 };
 
-/// The coefficients at this theta^2, for theta < 100.
+/// The coefficients of exp as functions of theta^2, for theta < 100.
 template <class T>
 inline ExpCoefficients<T> exp_coefficients(T theta_squared) {
   const T x = theta_squared;
@@ -87,7 +87,7 @@ struct LeftJacobianCoefficients {
   T c;  ///< (theta - sin(theta)) / theta^3
 };
 
-/// The coefficients at this theta^2, for theta < 100.
+/// The coefficients of the left Jacobian as functions of theta^2, for theta < 100.
 template <class T>
 inline LeftJacobianCoefficients<T> left_jacobian_coefficients(T theta_squared) {
   const T x = theta_squared;
@@ -103,7 +103,8 @@ inline LeftJacobianCoefficients<T> left_jacobian_coefficients(T theta_squared) {
   return coefficients;
 }
 
-/// Sets r to the rotation matrix exp(w), with theta_squared = |w|^2. With the opposite sign of `c.a` it is the inverse.
+/// Sets r to the rotation matrix exp(w), with theta_squared = |w|^2. If `c.a` has the opposite sign, r becomes the
+/// inverse matrix.
 template <class T>
 inline void rotation_matrix(const T* w, T theta_squared, const ExpCoefficients<T>& c, T* r) {
   // R = (1 - b theta^2) I + a hat(w) + b w w^T
@@ -121,7 +122,7 @@ inline void rotation_matrix(const T* w, T theta_squared, const ExpCoefficients<T
   r[7] = madd(c.a, w[0], r[7]);
 }
 
-/// A rotation vector for each lane.
+/// The rotation vector w of a rotation by the angle theta = |w|, and a coefficient of the inverse left Jacobian.
 template <class T>
 struct RotationLog {
   T w[3];  ///< components x, y, z

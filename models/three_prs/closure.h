@@ -14,7 +14,7 @@
 
 namespace poesy::three_prs {
 
-/// One limb with its errors, in the base frame (m). Its carriage keeps its nominal position.
+/// One limb with its errors, in the base frame (m). The drive holds the carriage at its nominal displacement.
 struct LimbWithErrors {
   lie::Vector3<double> carriage;         ///< centre of the revolute joint
   lie::Matrix3<double> base_R_revolute;  ///< second column: axis of the revolute joint
@@ -29,7 +29,7 @@ LimbWithErrors limb_with_errors(const Geometry& geometry, const Configuration& n
 
 /// The finite motion of the platform from its nominal pose, in the base frame.
 struct PlatformMotion {
-  lie::Matrix3<double> E;   ///< rotation: the displaced platform has the orientation E R
+  lie::Matrix3<double> E;   ///< rotation: it takes the nominal orientation R of the platform to E R
   lie::Vector3<double> dr;  ///< displacement of P, m
 };
 
@@ -114,8 +114,8 @@ bool is_impossible(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::V
 /// The swing th_i + dphi_i (rad) of a limb's rod at this motion, measured from th = 0 in the revolute joint's frame.
 double swing(const LimbWithErrors& limb, const lie::Vector3<double>& r, const PlatformMotion& motion);
 
-/// Closes the limbs for blocks of samples with the fastest kernel that this machine supports. close_limbs() solves the
-/// samples that the kernel gives up. Owns the scratch memory of one thread.
+/// Solves the closure of all limbs for blocks of samples with the fastest kernel that this machine supports.
+/// close_limbs() solves the samples that the kernel gives up. Owns the scratch memory of one thread.
 class ClosureSolver {
  public:
   /// Allocates the scratch memory of one thread.

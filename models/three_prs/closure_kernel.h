@@ -9,9 +9,9 @@
 
 namespace poesy::three_prs {
 
-/// Solves the closure of all limbs for a tile of samples, T::kLanes at a time. T is simd::Number or a SIMD batch.
-/// Equations, Newton steps, stopping rule and iteration counts are those of close_limbs(). A lane whose solve has ended
-/// keeps its motion, and no operation mixes lanes.
+/// Solves the closure of all limbs for a tile (at most kTile samples), T::kLanes samples at a time. T is simd::Number
+/// or a SIMD batch. Equations, Newton steps, stopping rule and iteration counts are those of close_limbs(). A lane
+/// whose solve has ended keeps its motion, and no operation mixes lanes.
 ///
 /// The rows of the Jacobian are eliminated in the same order for all samples of a pose. The kernel gives up a sample if
 /// its pivots differ by a factor of more than 1e6, a step is large or not finite, an attitude error exceeds 100 rad, or
@@ -31,7 +31,7 @@ class ClosureKernel {
   static constexpr std::size_t kLanes = T::kLanes;
   static constexpr unsigned kAllLanes = (1u << kLanes) - 1u;
   static constexpr double kPivotRatio = 1e-6;
-  /// Largest sum of the magnitudes of a step's components (rad, m) that is not given up.
+  /// A sample is given up if the magnitudes of a step's components (rad, m) have a larger sum than this.
   static constexpr double kLargestStep = 50.0;
   static constexpr double kLargestAngle2 = 1e4;
 

@@ -64,7 +64,7 @@ void set_swing_row(LimbRow row, const LimbConfiguration& limb, double l, const R
 }
 
 /// [9 x 6] The matrix from a twist [theta; dr] to the displacements of the three spherical joints divided by sqrt(3).
-/// The norm of its result is the norm of the twist.
+/// The length of the product with a twist is the norm of the twist in separation().
 Matrix joint_displacements(const Configuration& nominal) {
   Matrix map(3 * kLimbs, 6);
   for (std::size_t i = 0; i < kLimbs; ++i) {

@@ -17,7 +17,7 @@ using ErrorMapping = Eigen::Matrix<double, 6, static_cast<int>(kFactors), Eigen:
 /// printed -1 is correct only for the projection w^T dc, and the printed sign in Eq. 17 is wrong.
 ErrorMapping error_mapping(const Geometry& geometry, const Configuration& nominal);
 
-/// First rows of the effects in the matrix Effects.
+/// The rows of the matrix Effects at which these effects begin; three rows each.
 inline constexpr int kTheta = 0;  ///< rotation of the platform
 inline constexpr int kDr = 3;     ///< displacement of P
 inline constexpr int kTip = 6;    ///< displacement of the tool tip

@@ -34,10 +34,10 @@ enum class Fidelity : std::size_t {
 /// An evaluator for poses (alpha, beta, z) and the 60 errors of the head, the 3-PRS mechanism.
 std::unique_ptr<Evaluator> head_evaluator(const Geometry& geometry, Fidelity fidelity, const SolverOptions& options);
 
-/// An evaluator like head_evaluator(), after the best correction of the carriages (Model::calibrated_evaluator,
-/// Corrections). It subtracts the motion by the correction from [theta; dr], and the swings by the correction from the
-/// swings. The displacement of the tool tip and the norms follow from the corrected [theta; dr], with finite rotations
-/// if the fidelity is exact. At a singular pose every sample is singular.
+/// An evaluator like head_evaluator(), but with the displacements after the best correction of the carriages
+/// (Model::calibrated_evaluator, Corrections). It subtracts the motion by the correction from [theta; dr], and the
+/// swings by the correction from the swings. The displacement of the tool tip and the norms follow from the corrected
+/// [theta; dr], with finite rotations if the fidelity is exact. At a singular pose every sample is singular.
 std::unique_ptr<Evaluator> calibrated_head_evaluator(const Geometry& geometry, Fidelity fidelity,
                                                      const SolverOptions& options);
 

@@ -5,8 +5,8 @@
 
 namespace poesy::three_prs {
 
-/// Computes the first `rows` rows of the map (components of vectors, then swings) for the samples of a tile from
-/// position `at` on.
+/// Computes the first `rows` results of the map (components of vectors, then swings) for a batch of samples of a tile,
+/// from sample `at` on.
 template <class T, std::size_t rows>
 inline void map_lanes(const FirstOrderMap& map, const Tile& tile, std::size_t at, T* sum) {
   for (std::size_t r = 0; r < rows; ++r) sum[r] = T(map.constant[r]);

@@ -8,7 +8,8 @@
 #include "models/three_prs/sources.h"
 
 // The kernels, and the plain data that they read and write: only pointers and numbers. Translation units compiled for
-// one instruction set also include this header. They must not share inline functions.
+// one instruction set also include this header. Translation units of different instruction sets must not share inline
+// functions.
 
 namespace poesy::three_prs {
 
@@ -16,11 +17,11 @@ using simd::kMostLanes;
 /// Number of samples in a tile, so small that their data stays in the first-level cache.
 inline constexpr std::size_t kTile = 64;
 
-/// Components of the platform's rotation, of the displacement of P, and of the displacement of the tool tip.
+/// The number of components of three vectors: the platform's rotation, and the displacements of P and of the tool tip.
 inline constexpr std::size_t kVectorRows = 9;
-/// The components of kVectorRows, followed by the norms of these three vectors.
+/// The number of responses: the nine components of kVectorRows, then the norms of the three vectors.
 inline constexpr std::size_t kResponseRows = 12;
-inline constexpr std::size_t kDetailRows = 3;  ///< swings of the three rods
+inline constexpr std::size_t kDetailRows = 3;  ///< number of additional outputs: swings of the three rods
 
 /// At most kTile samples. Each error or response has a row of numbers, one for each sample: number v of sample b is at
 /// v * stride + b. Rows can be read and written up to the next multiple of kMostLanes; the numbers behind the last

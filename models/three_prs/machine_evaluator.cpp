@@ -131,7 +131,7 @@ class MachineEvaluator final : public Evaluator {
     }
   }
 
-  /// Transforms the nine components of the head's responses, [9 x B], by the displaced slides.
+  /// Transforms the nine components of the head's responses, [9 x samples], by the displaced slides.
   void carry_by_slides(const SampleBlock& samples, std::span<double> responses) const {
     const Points at = points(samples);
     std::array<double, kSlideFactors> errors = slide_errors(samples);

@@ -148,8 +148,8 @@ class ThreePrs final : public Model {
     return head_trace(geometry_, fidelity_, pose, errors, options);
   }
 
-  /// The standard deviation of exact solves by rounding is up to a tenth of the level at which they stop. First-order
-  /// solves do not iterate, so they have no such rounding.
+  /// The level at which exact solves stop. Rounding gives their responses a standard deviation of up to a tenth of this
+  /// level. First-order solves do not iterate, so they have no such rounding.
   double rounding(std::size_t /*response*/) const override {
     if (fidelity_ == Fidelity::first_order) return 0.0;
     return rounding_level({geometry_.a, 0.0, geometry_.rail + geometry_.l + geometry_.h});

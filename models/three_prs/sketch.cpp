@@ -11,7 +11,7 @@ namespace {
 using Vector3 = lie::Vector3<double>;
 using Matrix3 = lie::Matrix3<double>;
 
-/// The place of an error source, in the terms of SketchedError.
+/// Where an error source acts in a limb. The members are those of SketchedError.
 struct Site {
   std::size_t frame;
   std::size_t after;
@@ -26,7 +26,7 @@ Site site_of(Source source) {
   return {4, 3, 4};
 }
 
-/// The axis (0 to 2) that an error's axis name x, y or z means. A scalar error acts along z.
+/// The number (0 to 2) of an error's axis x, y or z. A scalar error acts along z.
 std::size_t axis_of(const Factor& factor) {
   return factor.axis.empty() ? 2 : static_cast<std::size_t>(factor.axis.front() - 'x');
 }

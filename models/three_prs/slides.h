@@ -17,8 +17,8 @@ struct Travel {
   double y = 0.6;  ///< travel of the Y slide, m: slide_y is from -y/2 to y/2
 };
 
-/// Positions of the slides' errors: three for each vector (components x, y, z), one for the scalar. Each error is that
-/// at the commanded position of its slide. EXX and so on are the symbols of ISO 230-1.
+/// Positions of the slides' errors: three for each vector (components x, y, z), one for the scalar. An error is its
+/// value at the commanded position of its slide. EXX and so on are the symbols of ISO 230-1.
 enum class SlideSource : std::size_t {
   x_translation = 0,  ///< translation errors of the X slide along x, y and z: EXX, EYX, EZX
   x_rotation = 3,     ///< rotation errors of the X slide about x, y and z: EAX, EBX, ECX

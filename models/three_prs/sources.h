@@ -2,7 +2,8 @@
 
 #include <cstddef>
 
-// Translation units compiled for one instruction set also include this file, so it contains only numbers.
+// Translation units compiled for one instruction set also include this file, so it contains nothing that is computed at
+// run time.
 
 namespace poesy::three_prs {
 

@@ -41,7 +41,8 @@ class Tiles {
             outcomes.iterations.data() + first};
   }
 
-  /// Copies a tile to padded rows. The lanes behind the last sample repeat it, so that they end at the same iteration.
+  /// Copies a tile to padded rows. The unused lanes behind the last sample are copies of this sample, so that they need
+  /// no more iterations than it does.
   void stage(const SampleBlock& samples, Tile& tile) {
     POESY_EXPECTS(samples.varied.size() <= kFactors);
     for (std::size_t v = 0; v < samples.varied.size(); ++v) {

@@ -49,8 +49,8 @@ std::array<double, 12> home_variables(const Geometry& geometry) {
 lie::Transform<double> rot(Axis axis, double angle) { return lie::rotation<double>(axis, angle); }
 lie::Transform<double> trans(Axis axis, double distance) { return lie::translation<double>(axis, distance); }
 
-/// A UPR limb (Du et al. 2022, Eqs. 15 and 16). side: +1 for the first limb, -1 for the second. angle, length: of the
-/// leg at the home pose (rad, m).
+/// A UPR limb (Du et al. 2022, Eqs. 15 and 16). side: +1 for the first limb, -1 for the second. angle, length: those of
+/// the leg at the home pose (rad, m).
 chain::Limb upr_limb(const Geometry& g, double side, double angle, double length) {
   return {{{chain::JointType::revolute, false},
            {chain::JointType::revolute, false},
@@ -62,7 +62,7 @@ chain::Limb upr_limb(const Geometry& g, double side, double angle, double length
            trans(Axis::y, side * g.l_A) * rot(Axis::y, -kQuarter) * rot(Axis::z, -kQuarter)}};
 }
 
-/// The RPU limb (Du et al. 2022, Eq. 17). angle, length: of the leg at the home pose (rad, m).
+/// The RPU limb (Du et al. 2022, Eq. 17). angle, length: those of the leg at the home pose (rad, m).
 chain::Limb rpu_limb(const Geometry& g, double angle, double length) {
   return {{{chain::JointType::revolute, false},
            {chain::JointType::prismatic, true},

@@ -48,7 +48,8 @@ chain::DeformationModel deformation_model(const Geometry& geometry) {
           .held_at = platform_joints(geometry)};
 }
 
-/// The mechanism as limbs between base and platform. points: (m, platform frame) define the metric.
+/// The mechanism as limbs between base and platform. points: points of the platform that define the metric (m, platform
+/// frame).
 assembly::AssemblyModel assembly_model(const Geometry& geometry, std::vector<Vector3> points) {
   const chain::ParallelChain chain = parallel_chain(geometry);
   assembly::AssemblyModel model;
@@ -136,8 +137,8 @@ class TwoUprRpu : public Model {
     return {q.begin(), q.end()};
   }
 
-  /// Lengths are bounded by the smaller of the platform's and the base's size, because every limb joins both. The
-  /// offsets c and d are not links and may be 0.
+  /// The bound of an error that is a length is the size of the platform or of the base, whichever is smaller, because
+  /// every limb joins both. The offsets c and d are not links and may be 0.
   ErrorBound error_bound(FactorIndex factor) const override {
     if (description_.factors[factor.value].dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
     if (geometry_.l_A < geometry_.l_B) return {geometry_.l_A, "the platform's size l_A"};
@@ -233,7 +234,7 @@ class AsPublished final : public TwoUprRpu {
 
 class ByPlatform final : public TwoUprRpu {
  public:
-  /// points: of the platform (m, platform frame), which define the metric.
+  /// points: points of the platform that define the metric (m, platform frame).
   ByPlatform(const Geometry& geometry, std::vector<Vector3> points, chain::Fidelity fidelity)
       : TwoUprRpu(geometry), model_(assembly_model(geometry, std::move(points))), fidelity_(fidelity) {
     ModelDescription& description = described();
@@ -312,7 +313,8 @@ std::unique_ptr<Model> build_with_points(std::span<const double> values, std::si
   return std::make_unique<ByPlatform>(geometry, own, static_cast<chain::Fidelity>(fidelity));
 }
 
-/// The catalog entry with the published geometry of a model that `build` makes.
+/// The catalog entry of the models that `build` makes. Its description is that of the model with the published
+/// geometry.
 CatalogEntry entry_of(decltype(CatalogEntry::build) build) {
   std::vector<double> values;
   for (const GeometryParameter& parameter : describe(parallel_chain({})).geometry)

@@ -66,7 +66,7 @@ ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t res
 std::string write_tolerances(const std::string& folder, const StoredResult& result,
                              const ResponseTolerances& tolerances);
 
-/// Claims tolerances.csv, and with a limit the studies of write_confirmation() and their table of poses. Throws
+/// Claims tolerances.csv, and with a limit the studies of write_confirmation() and the files that they read. Throws
 /// InputError if a file would be replaced that poesy did not write.
 void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, const ResponseTolerances& tolerances,
                            const Catalog& catalog);
