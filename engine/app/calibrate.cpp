@@ -47,7 +47,7 @@ struct CalibrateOptions {
   std::string result;
 };
 
-/// Reads the file of poses that a selection names. A study that is read for a calibration has not opened it.
+/// Reads the file of poses that a selection names, because reading the study for a calibration did not open it.
 void open_poses(PoseSelection& selection, const std::string& study_path, const ModelDescription& model) {
   if (selection.select != PoseSelection::Select::file || selection.file.empty()) return;
   const std::string path = (std::filesystem::path(study_path).parent_path() / selection.file).string();
@@ -55,7 +55,7 @@ void open_poses(PoseSelection& selection, const std::string& study_path, const M
   selection.place = {path, 2, 1};
 }
 
-/// The poses that a selection selects; none if there is no selection to make.
+/// The poses that a selection gives; none if the study states no selection.
 std::optional<SelectedPoses> selected(PoseSelection selection, const std::string& study_path, const Model& model) {
   using Select = PoseSelection::Select;
   if (selection.select == Select::file && selection.file.empty()) return std::nullopt;
@@ -68,7 +68,7 @@ std::optional<SelectedPoses> selected(PoseSelection selection, const std::string
   return select_poses(selection, model);
 }
 
-/// The poses at which the rows of a table of measurements were taken.
+/// The poses of the rows of a table of measurements.
 SelectedPoses measured_poses(const std::string& path, const MachineFile& file, const Model& model) {
   PoseSelection selection;
   selection.select = PoseSelection::Select::file;
@@ -81,7 +81,7 @@ SelectedPoses measured_poses(const std::string& path, const MachineFile& file, c
   return poses;
 }
 
-/// The given poses without repetitions.
+/// The given poses, each once.
 SelectedPoses without_repetition(const SelectedPoses& poses) {
   std::vector<double> values;
   SelectedPoses once;
@@ -99,7 +99,7 @@ SelectedPoses without_repetition(const SelectedPoses& poses) {
   return once;
 }
 
-/// The names that expressions for the controller may use: geometry parameters, then fitted errors.
+/// The names that expressions for the controller may use: geometry parameters, followed by fitted errors.
 std::vector<GeometryParameter> names_in_expressions(const Study& study) {
   std::vector<GeometryParameter> list = study.model().geometry;
   for (const FittedErrors& fitted : study.analysis.calibration->fit) {

@@ -23,7 +23,8 @@
 namespace poesy::app {
 namespace {
 
-/// A line on the speeds that a trajectory requires of the mechanism; empty if the poses are not a trajectory.
+/// A line on the speeds that a trajectory requires of the mechanism's coordinates; empty if the poses are no
+/// trajectory.
 std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& model) {
   if (poses.time.empty()) return {};
   std::string text = fmt::format("# trajectory: {} poses from {:.6g} s to {:.6g} s", poses.poses.size(),
@@ -40,15 +41,16 @@ std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& 
 
 using Clock = std::chrono::steady_clock;
 
-/// The time that one thread needs for this work, s. It is estimated from 1 to 64 pieces of the work, which take about
-/// `longest` seconds at most.
+/// The time that one thread needs for this work, s. It is estimated from 1 to 64 pieces of the work. After about
+/// `longest` seconds no further piece is begun.
 double measured_seconds(const WorkOutlook& work, double longest) {
   constexpr std::size_t kPieces = 64;
   if (work.prepare) work.prepare();
   const Clock::time_point start = Clock::now();
   double done = 0.0;
   for (std::size_t n = 0; n < kPieces && (n == 0 || seconds_since(start) < longest); ++n) {
-    // The first piece is in the middle of the work. Steps by the golden ratio spread any number of pieces evenly.
+    // The first piece is in the middle of the work. Each step is the golden ratio, so any number of pieces is spread
+    // evenly.
     const double at = 0.5 + static_cast<double>(n) * 0.6180339887498949;
     done += work.do_piece(at - std::floor(at));
   }
@@ -77,7 +79,7 @@ std::string time_text(const ExpectedTime& time) {
   return time.least == time.most ? most : "at least about " + readable_duration(time.least) + ", at most " + most;
 }
 
-/// The peak memory of this process, bytes. As in a run, it includes the model, the poses and a solver.
+/// The peak memory of this process, bytes. It includes the model, the poses and a solver, as the peak of a run does.
 double own_peak() {
   constexpr double kUnit = 1024.0;  // unit of ru_maxrss, bytes
   struct rusage usage {};
@@ -87,7 +89,7 @@ double own_peak() {
 
 std::string cost_text(const Outlook& expected) {
   const std::size_t threads = resolved_threads(0);
-  // Measured before own_peak(), so that the peak includes the memory of a solver.
+  // The time is measured before own_peak() is called, so that the peak includes the memory of a solver.
   const ExpectedTime time = expected_time(expected, threads, 0.25);
   return fmt::format(
       "# memory: about {:.3g} MB at the peak, when the result file of about {:.3g} MB is written\n"

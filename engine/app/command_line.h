@@ -12,20 +12,19 @@
 
 namespace poesy::app {
 
-/// Reads a text that has only digits; none for anything else.
+/// Reads a text that has only digits; none for any other text.
 std::optional<std::uint64_t> whole_number(std::string_view text);
-/// Reads a whole number from least to most. Throws InputError, which names the option and the bounds, for any other
-/// text.
+/// Reads a whole number from `least` to `most`. For any other text, throws InputError with the option and the bounds.
 std::uint64_t parse_whole_number(const std::string& text, const std::string& option, std::uint64_t least,
                                  std::uint64_t most);
 
-/// An example of a command line in help, and what it shows.
+/// An example of a command line in help, with what it shows.
 struct Example {
   std::string about;
   std::string line;
 };
 
-/// The program or one of its commands: a CLI11 app, together with the notes and examples of its help.
+/// The program or one of its commands: a CLI11 app with the notes and the examples of its help.
 class Command : public CLI::App {
  public:
   /// program: the program to which the command belongs; null for the program itself.
@@ -34,10 +33,10 @@ class Command : public CLI::App {
 
   std::vector<std::string> notes;  ///< paragraphs at the end of the help
   std::vector<Example> examples;
-  std::function<int()> action;  ///< runs the command after the command line was read; returns the exit code
+  std::function<int()> action;  ///< runs the command and returns the exit code; called after reading the command line
 
-  /// Adds a command to this program. run: called with the options that the command line set. Returns the command and
-  /// its options, to which the caller binds the command line.
+  /// Adds a command to this program. run: is called with the options that the user set. Returns the command and its
+  /// options; the caller adds the options to the command line.
   template <class Options>
   std::pair<Command&, Options&> add_command(const std::string& name, const std::string& about,
                                             int (*run)(const Options&)) {
@@ -51,15 +50,15 @@ class Command : public CLI::App {
   /// The commands of this program, in the order in which they were added.
   std::vector<const Command*> commands() const;
 
-  /// Adds an option ("-o,--output") or a positional argument ("study") that has a value. value: the name of the value
-  /// in help.
+  /// Adds an option ("-o,--output") or a positional argument ("study") that has a value. value: what help calls the
+  /// value.
   template <class Variable>
   CLI::Option* add_value(const std::string& name, Variable& variable, const std::string& value,
                          const std::string& about) {
     return add_option(name, variable, about)->type_name(value);
   }
-  /// Adds an option or a positional argument that is a whole number from `least` to `most`. value: the name of the
-  /// number in help.
+  /// Adds an option or a positional argument that is a whole number from `least` to `most`. value: what help calls the
+  /// number.
   template <class Number>
   CLI::Option* add_whole_number(const std::string& name, Number& number, const std::string& value,
                                 const std::string& about, std::uint64_t least, std::uint64_t most) {
@@ -89,13 +88,13 @@ Command& add_completion(Command& program);
 Command& add_help(Command& program);
 Command& add_version(Command& program);
 
-/// The names of an option: "-o", "--output". Empty for a positional argument.
+/// The names of an option: "-o", "--output". A positional argument has none.
 std::vector<std::string> names_of(const CLI::Option& option);
 
 /// The names of all options of a command.
 std::vector<std::string> option_names(const CLI::App& command);
 
-/// The name of an option's value in help: "RESULT.h5". Empty for a flag.
+/// What help calls an option's value: "RESULT.h5". Empty for a flag.
 std::string value_of(const CLI::Option& option);
 
 /// Returns true if an option takes several values.
@@ -113,16 +112,16 @@ std::string synopsis(const CLI::App& command);
 /// Makes the help of the program and of its commands, in as many columns as stdout has.
 std::shared_ptr<CLI::FormatterBase> help_formatter();
 
-/// The message about a command line that CLI11 refused: what is wrong, and what to do, "problem; remedy". It suggests
-/// the most similar command or option.
+/// The message about a command line that CLI11 refused: "PROBLEM; REMEDY". It suggests the most similar command or
+/// option.
 std::string command_line_problem(const Command& program, const CLI::ParseError& error);
 
-/// The message for a word that is not a command: "no command 'rn'; did you mean 'run'? see poesy --help".
+/// The message for a word that is not the name of a command: "no command 'rn'; did you mean 'run'? see poesy --help".
 std::string unknown_command(const std::string& word, const Command& program);
 
-/// The message that a value of a command line is impossible; none if all values are possible. A value is impossible if
-/// it is empty, as in a script whose variable is not set, or if an option has another option as its value.
-/// Precondition: CLI11 accepted the command line.
+/// The message that a value in the command line is impossible; none if all values are possible. A value is impossible
+/// if it is empty, as in a script with a variable that is not set, or if it is the name of an option. Precondition:
+/// CLI11 accepted the command line.
 std::optional<std::string> impossible_value(const Command& program);
 
 /// Returns true if the command line begins with a command that does not exist.

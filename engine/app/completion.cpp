@@ -25,7 +25,7 @@ struct Offer {
   std::string zsh = " ";
 };
 
-/// The names of the responses of all mechanisms under all metrics. Each name appears once.
+/// The names of the responses of all mechanisms with all their metrics, each once.
 std::vector<std::string_view> known_responses() {
   std::vector<std::string_view> names;
   const auto add = [&](const CatalogEntry& entry) {
@@ -53,7 +53,7 @@ std::vector<std::string_view> words_for(const std::string& value, const Command&
   return words;
 }
 
-/// How to complete the value of an option. The name of the value in help tells what it is.
+/// How a script completes the value of an option. What help calls the value tells what the value is.
 Offer offer_for(const CLI::Option& option, const Command& program) {
   const std::string value = value_of(option);
   if (value == "DIR") return {"folders", "_files -/"};
@@ -115,7 +115,7 @@ _poesy() {
 complete -F _poesy poesy
 )";
 
-/// Lines of the function _poesy_value in bash, which complete the value of each option and each positional argument.
+/// Lines of the function _poesy_value in bash. They complete the value of each option and each positional argument.
 std::string bash_values(const Command& command, const Command& program) {
   std::string text;
   std::size_t place = 0;
@@ -136,7 +136,7 @@ std::string bash_options(const CLI::App& command, const std::string& name) {
   return fmt::format("    '{}') value='words {}' ;;\n", name, fmt::join(option_names(command), " "));
 }
 
-/// The completion script for bash 4 or newer, which needs nothing else.
+/// The completion script for bash 4 or newer. It needs no other files or packages.
 std::string bash_completion(const Command& program) {
   std::string names;
   std::string values;
@@ -169,7 +169,7 @@ std::string escaped(const std::string& text, std::string_view special) {
   return safe;
 }
 
-/// The end of an option's description for zsh, which states the option's value: ":RESULT.h5:_files ...". Empty for a
+/// The end of an option's description for zsh, which describes the option's value: ":RESULT.h5:_files ...". Empty for a
 /// flag.
 std::string zsh_value(const CLI::Option& option, const Command& program) {
   const std::string value = value_of(option);
@@ -200,7 +200,7 @@ std::string zsh_arguments(const Command& command, const Command& program, std::s
   return text;
 }
 
-/// The completion script for zsh, a function for $fpath that may also be sourced after compinit.
+/// The completion script for zsh. It is a function for $fpath, and may also be sourced after compinit.
 std::string zsh_completion(const Command& program) {
   std::string commands;
   std::string cases;

@@ -40,9 +40,9 @@ constexpr std::array<std::string_view, 3> kForms{"text", "json", "csv"};
 
 struct EvaluateOptions {
   std::string study;
-  std::string poses;  ///< empty: those of the study
+  std::string poses;  ///< file of poses; empty: the study selects the poses
   std::string errors;
-  /// Form in which the frames of the mechanism are printed as a table, one of kForms; empty: the command solves errors
+  /// Form of the table of the mechanism's frames that is printed, one of kForms; empty: the command solves errors
   /// instead.
   std::string frames;
   std::string result;
@@ -51,7 +51,7 @@ struct EvaluateOptions {
   bool quiet = false;
 };
 
-/// Warns of poses that are nearly singular. This command does not refuse them, because the status of each sample tells
+/// Warns of poses that are nearly singular. Such poses are not refused here, because the status of each sample tells
 /// how its solve ended.
 void warn_of_singular_poses(const std::string& path, const SelectedPoses& poses, double max_condition) {
   for (std::size_t m = 0; m < poses.condition.size(); ++m) {
@@ -66,7 +66,7 @@ void warn_of(const std::string& doubt) {
   if (!doubt.empty()) say(Message::warning, doubt);
 }
 
-/// The poses of a table.
+/// Reads the poses of a file and warns of nearly singular ones.
 SelectedPoses read_reachable_poses(const std::string& path, const Model& model) {
   PoseSelection selection;
   const double max_condition = std::exchange(selection.max_condition, std::numeric_limits<double>::infinity());
@@ -80,7 +80,8 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
   return poses;
 }
 
-/// The poses of the file that the user gave, or those that the study selects; none if the search for them was stopped.
+/// The poses of the file that the user names, or those that the study selects; none if the user stopped the search for
+/// them.
 std::optional<SelectedPoses> poses_of(const EvaluateOptions& options, const Study& study, const Model& model) {
   if (!options.poses.empty()) return read_reachable_poses(options.poses, model);
   auto poses = find_poses(study, model, {.quiet = options.quiet, .stop = &catch_interrupts()});
@@ -95,7 +96,7 @@ int interrupted() {
   return kInterrupted;
 }
 
-/// Prints the poses of joints and frames without errors, and solves nothing.
+/// Prints the frames of the mechanism at these poses, without errors, and solves nothing.
 int print_frames(const EvaluateOptions& options, const Model& model, const PoseSet& poses) {
   if (std::ranges::find(kForms, options.frames) == kForms.end()) {
     throw InputError({}, "--frames: '" + printable(options.frames) + "' is not a form of a table",
@@ -111,7 +112,7 @@ int print_frames(const EvaluateOptions& options, const Model& model, const PoseS
   return kDone;
 }
 
-/// Throws InputError if there are more outcomes than a result may have (study_kind.h).
+/// Throws InputError if there are more outcomes than a result may have (kMostCells).
 void check_size(const EvaluateOptions& options, const PoseSet& poses, const ErrorTable& errors) {
   if (options.paired) return;  // each row is solved at one pose, so there are no more solves than rows
   const double solves = static_cast<double>(poses.size()) * static_cast<double>(errors.rows);
@@ -122,7 +123,7 @@ void check_size(const EvaluateOptions& options, const PoseSet& poses, const Erro
                    "give fewer rows or poses, or --paired for row by row");
 }
 
-/// The input of an evaluation. Refers to its parts, which must outlive it.
+/// The input of an evaluation. The object refers to study, model, poses and errors, which must outlive it.
 struct Evaluated {
   const Study& study;
   const Model& model;
@@ -131,14 +132,14 @@ struct Evaluated {
   Pairing pairing;
 };
 
-/// The memory for the outcomes and the errors, bytes.
+/// The memory for the outcomes and the errors of an evaluation, bytes.
 std::size_t memory_of(const Evaluated& all) {
   const std::size_t rows = all.pairing == Pairing::row_by_row ? 1 : all.errors.rows;
   const std::size_t outcomes = outcome_bytes(all.model.description(), Outcomes::with_details);
   return all.poses.poses.size() * rows * outcomes + all.errors.values.size() * sizeof(double);
 }
 
-/// Solves the errors, and prints or writes the outcomes. path: path of the result; empty: none is written.
+/// Solves the errors, and prints or writes the outcomes. path: path of the result; empty: no result is written.
 int solve(const EvaluateOptions& options, const Evaluated& all, const std::string& path) {
   const auto& [study, model, poses, errors, pairing] = all;
   const auto start = std::chrono::steady_clock::now();
@@ -176,8 +177,7 @@ int solve(const EvaluateOptions& options, const Evaluated& all, const std::strin
                {"the result is kept; see /limits in " + path, "the result is kept: see /evaluate/status in " + path});
 }
 
-/// Throws InputError if a response is relative to the previous pose, because the previous pose is solved with other
-/// errors.
+/// Throws InputError if a response is relative to the previous pose, because with --paired each pose has other errors.
 void refuse_pose_before(const Study& study) {
   for (const OwnResponse& own : study.mechanism.responses) {
     if (!own.relative_to || !own.relative_to->is_previous()) continue;

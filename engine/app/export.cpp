@@ -22,7 +22,8 @@ struct ExportOptions {
   bool latex = false;
 };
 
-/// The tables that `poesy show` prints, with all columns, and the tables that explain names.
+/// The tables that `poesy show` prints, with all columns, and the tables of the names of coordinates, errors and
+/// responses with their meanings.
 std::vector<Table> printed_tables(const StoredResult& result) {
   std::vector<Table> tables = result_tables(kind_of(result).report, result, {default_ranking(result)});
   for (Table& table : name_tables(result)) {

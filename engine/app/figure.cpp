@@ -21,8 +21,8 @@ struct FigureOptions {
   std::string size = "85mm";
 };
 
-/// The Python program that draws. It calls the command `figure` of the package poesy, if Python has this package and
-/// matplotlib.
+/// The Python program that draws the figure. It calls the command `figure` of the Python package poesy, and reports an
+/// error if Python lacks this package or matplotlib.
 constexpr const char* kDraw = R"py(
 import sys
 sys.path = [folder for folder in sys.path if folder]  # no modules of the present folder
@@ -36,18 +36,18 @@ except ImportError as missing:
 sys.exit(main(["figure", *sys.argv[1:]]))
 )py";
 
-/// Returns true if the file may be replaced: matplotlib wrote it, as its content says, or it is empty.
+/// Returns true if the file may be replaced: it is empty, or its content says that matplotlib wrote it.
 bool may_be_replaced(const std::string& path) {
   const std::optional<std::string> content = content_of(path);
   return content && (content->empty() || content->find("atplotlib") != std::string::npos);
 }
 
-/// Replaces this process by Python, so that the exit code is Python's.
+/// Replaces this process by Python, so the exit code is that of Python.
 int figure(const FigureOptions& options) {
   const std::string path = check_output_path(options.figure, {"figure", may_be_replaced}, {{options.result}});
   read_result_with_warning(options.result);
   std::fflush(stdout);
-  // A path that begins with a dash must not be taken for an option.
+  // A path that begins with a dash must not be read as an option.
   const auto plain = [](const std::string& name) { return name.starts_with('-') ? "./" + name : name; };
   std::vector<std::string> words{"python3",  "-c",        kDraw,    plain(options.result),
                                  "--output", plain(path), "--size", options.size};

@@ -14,7 +14,7 @@
 namespace poesy::app {
 namespace {
 
-/// A name in a list of help, and its meaning.
+/// An entry of a list in help: a name and its meaning.
 struct Entry {
   std::string_view name;
   std::string_view meaning;
@@ -49,13 +49,13 @@ std::size_t help_width() {
   return width == kUnlimitedWidth ? kUsualWidth : std::clamp(width, kNarrowest, kWidest);
 }
 
-/// A paragraph of help. begin: precedes its first line. indent: column at which further lines start.
+/// A paragraph of help. begin: text in front of the first line. indent: column at which further lines start.
 std::string paragraph(const std::string& words, std::size_t indent = 0, const std::string& begin = {}) {
   const auto lines = wrapped(words, help_width() - indent, help_width() - begin.size());
   return fmt::format("{}{}\n", begin, fmt::join(lines, "\n" + std::string(indent, ' ')));
 }
 
-/// A name in help, with its meaning beside it or below.
+/// A name in help, with the meaning beside it or below it.
 std::string entry(std::string_view name, std::string_view meaning) {
   std::string begin = fmt::format("  {}", name);
   std::string above;
@@ -74,8 +74,8 @@ std::string entries(const std::string& title, std::span<const Entry> list) {
   return text;
 }
 
-/// Formats help with the groups of CLI11, wrapped to the width of the terminal. help2man makes the manual page from the
-/// help of all commands.
+/// Formats help in the groups of CLI11, wrapped to the width of the terminal. The manual page is made from the help of
+/// all commands by help2man.
 class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter() { label("Positionals", "Arguments"); }
@@ -103,7 +103,7 @@ class HelpFormatter : public CLI::Formatter {
   }
 
  private:
-  /// The options, notes and examples of a command, indented for the help of all commands.
+  /// The description, options, notes and examples of a command, indented as a part of the help of all commands.
   std::string expanded(const Command& command) const {
     std::string text = "\n" + paragraph(command.get_description()) + make_positionals(&command);
     text += make_groups(&command, CLI::AppFormatMode::Sub) + notes(command) + examples(command);

@@ -47,7 +47,8 @@ void add_commands(Command& program) {
   program.set_help_all_flag("--help-all", "print the help of all commands");
 }
 
-/// Throws if there is too little memory to start, because some versions of HDF5 (1.10) then crash.
+/// Throws FileError if there is not enough memory to start; without this check, some versions of HDF5 (1.10) would
+/// crash.
 void expect_memory() {
   constexpr std::size_t kLeast = std::size_t{24} << 20U;
   constexpr std::uintmax_t kMega = 1'000'000;
@@ -57,12 +58,12 @@ void expect_memory() {
                             " MB of memory at least, and this process may have " +
                             std::to_string(most_address_space() / kMega) + " MB",
                         "raise the limit (ulimit -v)");
-  // The ranks are not connected yet, so this rank's error cannot be reported by the first process.
+  // The ranks are not connected yet, so the first process cannot report this rank's error.
   if (!is_first_process()) say(Message::error, "rank " + std::to_string(find_launch()->rank) + ": " + error.what());
   throw error;
 }
 
-/// Throws if the limit on open files is too low, because libraries do not report this.
+/// Throws FileError if the limit on open files is too low, because libraries do not report this problem.
 void expect_open_files() {
   constexpr std::size_t kLeast = 16;
   std::vector<int> files;
@@ -107,7 +108,7 @@ int parse_and_run(int argc, char** argv) {
   return called.action();
 }
 
-/// Returns the exit code of the command, or an error if standard output could not be written.
+/// Returns the exit code of the command, or that of an error if standard output could not be written.
 int flushed(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   say(Message::error, "what was to be printed cannot be written; see whether there is room where it goes");
@@ -120,6 +121,6 @@ int flushed(int code) {
 int main(int argc, char** argv) {
   poesy::save_address_space();
   poesy::return_large_lists();
-  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit on file sizes then fails as on a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // makes a write beyond the limit on file sizes fail, as on a full disk
   return poesy::app::flushed(poesy::app::exit_code_of([=] { return poesy::app::parse_and_run(argc, argv); }));
 }

@@ -24,7 +24,7 @@ struct MergeOptions {
   std::string result;
 };
 
-/// The times of all shards, added up.
+/// The sum of the times of all shards.
 RunTime time_of(const std::vector<StoredShard>& shards) {
   RunTime sum;
   for (const StoredShard& shard : shards) {
@@ -34,21 +34,21 @@ RunTime time_of(const std::vector<StoredShard>& shards) {
   return sum;
 }
 
-/// The largest value of a fact among all shards.
+/// The largest value of one of the facts about runs among all shards.
 std::size_t most(const std::vector<StoredShard>& shards, std::size_t RunFacts::*fact) {
   std::size_t largest = 0;
   for (const StoredShard& shard : shards) largest = std::max(largest, shard.facts.*fact);
   return largest;
 }
 
-/// The number of bytes of the states of all stages.
+/// The number of bytes of all states. A state is the content of the sums after one part (stage) of a study.
 std::size_t state_bytes(std::span<const Bytes> states) {
   std::size_t sum = 0;
   for (const Bytes& state : states) sum += state.size();
   return sum;
 }
 
-/// The least memory that reading the shards takes, bytes. A missing file counts as zero.
+/// The least memory that is needed to read the shards, bytes. A missing file counts as zero.
 std::size_t file_bytes(std::span<const std::string> paths) {
   std::size_t sum = 0;
   for (const std::string& path : paths) {
@@ -59,13 +59,13 @@ std::size_t file_bytes(std::span<const std::string> paths) {
   return sum;
 }
 
-/// The peak memory of merging, bytes. The states stay in memory until all are restored.
+/// The peak memory of merging, bytes. All states stay in memory until the last of them is restored.
 std::size_t peak_of(std::span<const Bytes> states, const MemoryOutlook& run) {
   return state_bytes(states) + run.accumulators + run.result;
 }
 
-/// Merges the shards and writes the result. needed: set to the memory that merging needs, as text, as soon as this is
-/// known.
+/// Merges the shards and writes the result. needed: receives, as text, the memory that merging needs, as soon as this
+/// is known; if memory runs out, the caller reports it.
 int merge(const MergeOptions& options, const std::string& path, std::string& needed) {
   std::vector<StoredShard> shards;
   for (const std::string& shard : options.shards) shards.push_back(read_shard(shard));
@@ -75,7 +75,7 @@ int merge(const MergeOptions& options, const std::string& path, std::string& nee
   const Study& study = whole.study;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   needed = memory_text(peak_of(merged, outlook(study, *model, whole.poses.poses).memory));
-  // From here on, the merge is a resumed run of the whole study of which all stages are done.
+  // From here on, the merge is treated as a run of the whole study that was resumed after all stages were done.
   Checkpoints done({}, {}, std::move(merged));
   const Job job{.study = study,
                 .model = *model,

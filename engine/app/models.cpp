@@ -24,8 +24,8 @@ namespace {
 /// The largest size of a mechanism file, bytes.
 constexpr std::size_t kMostBytes = 1 << 20;
 
-/// The mechanism of this name, in upper or lower case, or of the file at this path. Throws InputError, which lists the
-/// known names.
+/// The mechanism of this name (upper and lower case do not matter), or of the file at this path. Throws InputError with
+/// the known names if there is none.
 CatalogEntry find_model(const std::string& name) {
   if (const CatalogEntry* entry = find(registry(), name)) return *entry;
   if (name.find_first_of("./") != std::string::npos) {
@@ -81,8 +81,8 @@ void write_picture(const CatalogEntry& entry, const std::string& path) {
   write_text(output, mechanism_picture(*sketch, entry.description.title));
 }
 
-/// The folder of the installed mechanism files. Empty if there is none, as for a program in its build folder, or on a
-/// system without /proc.
+/// The folder of the installed mechanism files. Empty if there is no such folder, as for a program in its build folder
+/// or on a system without /proc.
 std::filesystem::path installed_mechanisms() {
   std::error_code none;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", none);
@@ -90,7 +90,7 @@ std::filesystem::path installed_mechanisms() {
   return std::filesystem::is_directory(folder, none) ? folder : std::filesystem::path();
 }
 
-/// The mechanism files in a folder, NAME/NAME.toml for each folder NAME, each on a line. Empty for an empty path.
+/// The files FOLDER/NAME/NAME.toml of all folders NAME in a folder, each on a line. Empty for an empty path.
 std::string files_text(const std::filesystem::path& folder) {
   if (folder.empty()) return "";
   std::vector<std::string> files;

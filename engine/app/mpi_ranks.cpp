@@ -51,9 +51,9 @@ bool is_first_process() { return find_launch().value_or(Launch()).rank == 0; }
 
 namespace {
 
-/// A long message is sent in pieces. A rank without memory for the whole message can then still receive it and drop it;
-/// otherwise the sender would wait forever. The tag of a piece is the number of pieces that follow, limited to the tags
-/// that every MPI supports.
+/// A long message is sent in pieces of this size. Because of this, a rank without memory for the whole message can
+/// still receive the pieces and drop them; otherwise the sender would wait forever. The tag of a piece is the number of
+/// pieces that follow, but at most kMostTag, which every MPI supports as a tag.
 constexpr std::size_t kPieceBytes = std::size_t{4} << 20U;
 constexpr std::size_t kMostTag = 32767;
 
@@ -74,11 +74,12 @@ std::size_t count_on_this_machine() {
   return static_cast<std::size_t>(size);
 }
 
-/// Ranks that are connected by MPI. MPI ends the program if one of its calls fails, which is MPI's default.
+/// Ranks that are connected by MPI. If an MPI call fails, MPI ends the program, which is its default behaviour.
 class MpiRanks : public LaunchedRanks {
  public:
   MpiRanks() {
-    // Only one thread makes MPI calls at a time: the one that leads or follows a stage.
+    // Only one thread at a time makes MPI calls: the one that gives work to the other ranks (on rank 0) or takes work
+    // from rank 0.
     int provided = MPI_THREAD_SINGLE;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
     int number = 0;
@@ -104,7 +105,7 @@ class MpiRanks : public LaunchedRanks {
 
   void send(std::size_t to, std::shared_ptr<const Bytes> bytes) override {
     under_way_.reserve(under_way_.size() + bytes->size() / kPieceBytes +
-                       1);  // either all pieces of the message are sent, or none
+                       1);  // there is room for all pieces, so either all are sent or none
     std::size_t sent = 0;
     do {
       const std::size_t count = std::min(kPieceBytes, bytes->size() - sent);
@@ -152,10 +153,10 @@ class MpiRanks : public LaunchedRanks {
 
   struct Receiving {
     Bytes bytes;
-    bool lost = false;  ///< true if there was no memory for the message
+    bool lost = false;  ///< true if there was not enough memory for the message
   };
 
-  /// The memory for the next piece of a message. Pieces of a lost message go into a buffer that is not read.
+  /// The memory for the next piece of a message. Pieces of a message that is lost go into a buffer that is never read.
   std::byte* room_in(Receiving& receiving, std::size_t count, std::size_t following) {
     const std::size_t before = receiving.bytes.size();
     try {
@@ -182,7 +183,7 @@ class MpiRanks : public LaunchedRanks {
   std::size_t size_ = 1;
   bool threads_allowed_ = false;
   std::vector<Sending> under_way_;
-  std::vector<Receiving> partial_;  ///< [size] messages of which pieces are still missing
+  std::vector<Receiving> partial_;  ///< for each rank, the message from it that is not yet complete
   std::unique_ptr<std::byte[]> nowhere_ = std::make_unique_for_overwrite<std::byte[]>(kPieceBytes);
 };
 

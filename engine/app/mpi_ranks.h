@@ -8,21 +8,21 @@
 
 namespace poesy::app {
 
-/// The rank of this process among the processes that an MPI launcher started, and their number.
+/// The rank of this process, and the number of processes that an MPI launcher started.
 struct Launch {
   std::size_t rank = 0;
   std::size_t size = 1;
 };
 
-/// Finds the launcher from environment variables. mpirun of Open MPI sets OMPI_COMM_WORLD_*. srun --mpi=pmix sets
-/// PMIX_RANK, in addition to the SLURM_* of every process of a job. Launchers of other MPIs set PMI_*. None if there is
-/// no launcher.
+/// Finds out from environment variables how this process was launched. mpirun of Open MPI sets OMPI_COMM_WORLD_*. srun
+/// --mpi=pmix sets PMIX_RANK, in addition to the SLURM_* of every process of a job. Launchers of other MPIs set PMI_*.
+/// None if there is no launcher.
 std::optional<Launch> find_launch();
 
 /// Returns true if this process is the first one that a launcher started, or the only one.
 bool is_first_process();
 
-/// The connected ranks that a launcher started.
+/// The ranks that a launcher started, connected to each other.
 class LaunchedRanks : public Ranks {
  public:
   /// The number of ranks on this machine, including this process.
@@ -31,8 +31,8 @@ class LaunchedRanks : public Ranks {
   [[noreturn]] virtual void abort(int exit_code) = 0;
 };
 
-/// Connects to the other ranks. The destructor finalises MPI, for which it waits for all ranks. Throws InputError if
-/// this program was built without MPI, or for another MPI than the launcher's.
+/// Connects this process to the other ranks. The destructor finalises MPI, for which it waits for all ranks. Throws
+/// InputError if this program was built without MPI, or for another MPI than that of the launcher.
 std::unique_ptr<LaunchedRanks> connect_ranks(const Launch& launch);
 
 }  // namespace poesy::app

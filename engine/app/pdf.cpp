@@ -17,9 +17,10 @@
 namespace poesy::app {
 namespace {
 
-constexpr std::string_view kPdfMark = "% poesy report\n";  ///< a comment that is appended to the PDF
+constexpr std::string_view kPdfMark =
+    "% poesy report\n";  ///< comment at the end of the PDF by which poesy recognises it
 constexpr const char* kOtherWay = "write the report as REPORT.html, open it in a browser and print it to a PDF there";
-/// A shell script that prints the page in a folder. Its exit code is 127 if PATH has no browser.
+/// A shell script that prints the page report.html in a folder. Its exit code is 127 if PATH has no browser.
 constexpr const char* kPrint = R"sh(
   cd "$POESY_PRINTED" && exec 2>&1 </dev/null || exit 1
   [ "$(id -u)" = 0 ] && sandbox=--no-sandbox  # Chromium refuses to have one as root
@@ -39,9 +40,9 @@ struct TemporaryFolder {
   }
 };
 
-/// Returns true if a PDF is complete, from its first line to its last one.
+/// Returns true if a PDF is complete: it has the first line and the end mark.
 bool is_whole(const std::string& pdf) {
-  constexpr std::size_t kEnd = 1024;  // readers of a PDF look for its end in this number of last bytes
+  constexpr std::size_t kEnd = 1024;  // number of last bytes in which readers of a PDF look for the end mark
   return pdf.starts_with("%PDF-") && pdf.find("%%EOF", std::max(pdf.size(), kEnd) - kEnd) != std::string::npos;
 }
 

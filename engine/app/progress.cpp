@@ -19,7 +19,7 @@
 namespace poesy::app {
 namespace {
 
-/// A duration in two units: "2 h 10 min". The smaller part is left out if it is zero.
+/// A duration in two units: "2 h 10 min". The smaller unit is left out if its count is zero.
 std::string two_parts(double count, double per_large, const char* large, const char* small) {
   const double whole = std::floor(count / per_large);
   const double rest = count - whole * per_large;
@@ -54,7 +54,7 @@ std::string rate_text(double rate) {
   return fmt::format("{:.3g} {}solves/s", rate, kPrefixes[prefix]);
 }
 
-/// The rate with a comma behind it; empty until there is one.
+/// The rate followed by a comma; empty as long as the rate is not known.
 std::string rate_part(const ProgressFacts& facts) {
   return facts.rate > 0.0 ? rate_text(facts.rate) + ", " : std::string();
 }
@@ -83,13 +83,13 @@ std::string bar(double share, std::size_t length) {
   return "[" + std::string(filled, '#') + std::string(length - filled, '.') + "]";
 }
 
-/// The line, or an empty text if the line is longer than `width`.
+/// The line, or an empty text if the line has more than `width` characters.
 std::string within(std::size_t width, std::string line) {
   return line.size() <= width ? std::move(line) : std::string();
 }
 
-/// A line with the percentage, a bar, the details and the time left. The bar takes the columns that are free, except
-/// for a few, because the time left may become longer. Empty if there is too little room.
+/// A line with the percentage, a bar, the details and the time left. The bar takes all free columns except a few,
+/// because the text of the time left may become longer. Empty if there is too little room.
 std::string with_bar(const ProgressFacts& facts, const std::string& details, std::size_t width) {
   const std::string begin = stage_text(facts) + fmt::format("{:5.1f} % ", percent_done(facts.progress));
   const std::string left = left_text(facts);
@@ -203,7 +203,7 @@ void ProgressLine::write(const std::function<std::string()>& plain,
 void ProgressPrinter::operator()(const Progress& progress) {
   const RecentRate::Clock::time_point now = RecentRate::Clock::now();
   const std::uint64_t done = progress.solves - progress.before;
-  if (done < done_) {  // a new stage began, so its solves are counted anew
+  if (done < done_) {  // a new part (stage) of the study began, and its solves are counted from 0
     rate_ = RecentRate(now);
     ++stage_;
   }

@@ -12,8 +12,8 @@
 
 namespace poesy::app {
 
-/// Reads a duration such as "10 s", "5 min" or "2 h", and returns it in s. Throws InputError, which names the option,
-/// for any other text and for a duration that is not greater than zero.
+/// Reads a duration such as "10 s", "5 min" or "2 h", and returns it in s. Throws InputError with the name of the
+/// option for any other text and for a duration that is not greater than zero.
 double parse_duration(const std::string& text, const std::string& option);
 
 /// A duration as text: "2.3 s", "45 s", "1 min 20 s", "35 min", "2 h 10 min", "3 d 4 h". Precondition: seconds >= 0.
@@ -22,16 +22,17 @@ std::string readable_duration(double seconds);
 /// The time since `start`, s.
 double seconds_since(std::chrono::steady_clock::time_point start);
 
-/// The present rate of work, averaged over about the last 15 seconds.
+/// The present rate of work: the average over about the last 15 seconds.
 class RecentRate {
  public:
   using Clock = std::chrono::steady_clock;
 
   explicit RecentRate(Clock::time_point start) : marks_{{start, 0}}, latest_{start, 0} {}
 
-  /// Records the amount of work that is done by now. Precondition: neither time nor amount decreases.
+  /// Records the amount of work that is done by now. Precondition: time and amount are not smaller than at the last
+  /// call.
   void add(Clock::time_point now, std::uint64_t done);
-  /// The rate in units of work per second; zero as long as nothing is done.
+  /// The rate in amount of work per second; zero as long as no work is done.
   double per_second() const;
 
  private:
@@ -40,30 +41,30 @@ class RecentRate {
     std::uint64_t done;
   };
 
-  /// Marks within the window, some time apart; the first one is at its beginning or just before.
+  /// Amounts of work at times in the last 15 seconds; the first one is at the beginning of this time or just before it.
   std::deque<Mark> marks_;
   Mark latest_;
 };
 
-/// The facts that a line of progress shows.
+/// What a line of progress shows.
 struct ProgressFacts {
   Progress progress;
   double rate = 0.0;      ///< present rate, solves per second; 0 as long as it is not known
-  std::size_t stage = 1;  ///< number of the present stage, from 1; its size is known when it begins
+  std::size_t stage = 1;  ///< number of the present part of the study, from 1; some studies solve in several parts
 };
 
 /// A line of progress as text: "43.2 % done, 7.21 M solves/s, 12 not converged (0.0012 %), 1 min 20 s left".
 std::string plain_line(const ProgressFacts& facts);
 
-/// A line of progress with a bar, in at most `width` columns of one byte each. If there is too little room, the bar
-/// becomes shorter first. Then the details are left out, and then the time left.
+/// A line of progress with a bar, in at most `width` columns of one byte each. If there is too little room, the bar is
+/// shortened first. If that is not enough, the details are left out, and after them the time left.
 std::string live_line(const ProgressFacts& facts, std::size_t width);
 
 /// The progress of a search for poses as text: "looking for poses: 12 of 100 found, 34000 candidates".
 std::string search_line(const PoseSearch& search);
 
-/// A line on stderr that shows progress. On a terminal the line is overwritten, at the terminal's present width.
-/// Elsewhere a new line is written every few seconds. If `quiet` is set, nothing is written.
+/// A line on stderr that shows progress. On a terminal the line is overwritten, at the terminal's present width. If
+/// stderr is not a terminal, a new line is written every few seconds. If `quiet` is set, nothing is written.
 class ProgressLine {
  public:
   using Clock = std::chrono::steady_clock;
@@ -73,9 +74,10 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Returns true if it is time to write the line, and then starts a new interval.
+  /// Returns true if it is time to write the line; in this case, a new interval begins.
   bool is_due(Clock::time_point now);
-  /// Writes the line. plain: gives its text. live(width): gives its text for a terminal, in at most this many columns.
+  /// Writes the line. plain: returns the text if lines cannot be overwritten. live: returns the text for a terminal, in
+  /// at most as many columns as its argument.
   void write(const std::function<std::string()>& plain, const std::function<std::string(std::size_t)>& live);
   /// Erases the line on a terminal, so that other lines may follow.
   void finish();

@@ -41,7 +41,8 @@ void check_number(const ReplayOptions& options, const std::string& what, std::si
          count == 1 ? "the only number is 0" : fmt::format("give a number from 0 to {}", count - 1));
 }
 
-/// The index, in a list of known names, of the name that the command line gives. Throws InputError if it is unknown.
+/// The position of the name options.factor in a list of known names. Throws InputError if the list lacks it. what: what
+/// the names are, for messages.
 std::size_t position_of(const ReplayOptions& options, const std::string& what, const std::vector<std::string>& known) {
   const auto found = std::ranges::find(known, options.factor);
   if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
@@ -72,7 +73,7 @@ ReplayedSample replay_drawn(const ReplayOptions& options, const StoredResult& re
   return replay_sample(stored.study, model, stored.poses.poses, slot, PoseIndex(options.pose), sample);
 }
 
-/// The index of the row of given errors that the command line names.
+/// The position of the row of given errors that the command line names.
 std::size_t row_of(const ReplayOptions& options, const GivenErrors& given) {
   if (given.samples == 0) refuse_sample(options, fmt::format("a {} has no samples", given.word));
   const std::size_t position = position_of(options, std::string(given.word), given.names);
@@ -81,7 +82,7 @@ std::size_t row_of(const ReplayOptions& options, const GivenErrors& given) {
   return given.pairing == Pairing::row_by_row ? options.pose : sample;
 }
 
-/// Solves a named case, or a row of errors of `poesy evaluate`, again.
+/// Solves a named case, or a row of errors of `poesy evaluate`, once more.
 ReplayedSample replay_given(const ReplayOptions& options, const StoredResult& result, const GivenErrors& given,
                             const StoredStudy& stored, const Model& model) {
   const std::size_t row = row_of(options, given);
@@ -114,7 +115,7 @@ void warn_of_other_program(const ReplayOptions& options, const StoredResult& res
                   options.result, result.poesy_version, result.git_commit, poesy_version(), git_commit()));
 }
 
-/// Warns if the result lists this sample with another status than the replay found.
+/// Warns if the result lists this sample with a status that differs from that of the replay.
 void warn_of_difference(const ReplayOptions& options, const StoredResult& result, const ReplayedSample& replayed) {
   for (const Failure& failure : result.failures) {
     if (result.varied[failure.slot] != options.factor || failure.pose.value != options.pose ||
@@ -179,8 +180,8 @@ std::string iterations_text(const SolveTrace& trace) {
   return text + "\n";
 }
 
-/// Lines that say whether the two solvers agree: the run's and the reference solver. If one did not converge, its
-/// responses are those of its last iterate, which may differ.
+/// Lines that say whether the solver of the run and the reference solver agree. If a solver did not converge, its
+/// responses are those of its last iterate and may differ for this reason.
 std::string agreement_text(const ModelDescription& model, const ReplayedSample& sample, const SolveTrace& trace) {
   std::string text = fmt::format("status: {}\n", sample.status == trace.status ? "the same" : "not the same");
   for (std::size_t r = 0; r < model.responses.size(); ++r) {

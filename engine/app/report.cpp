@@ -25,8 +25,8 @@ struct ReportOptions {
   std::string report;
 };
 
-/// The default path of a report. For one result, result.h5, it is result.html in the same folder. For before.h5 to
-/// after.h5 it is before-after.html in the folder of the first.
+/// The default path of a report, in the folder of the first result: result.html for result.h5, or before-after.html for
+/// several results from before.h5 to after.h5.
 std::string default_path(const std::vector<std::string>& results) {
   const std::filesystem::path first(results.front());
   std::string name = first.stem().string();
@@ -36,7 +36,7 @@ std::string default_path(const std::vector<std::string>& results) {
 
 bool may_be_replaced(const std::string& path) { return is_marked(path, kReportMark); }
 
-/// Reads a result file, and the model and the study that a report needs in addition to it.
+/// Reads a result file, and makes the model and the study that a report needs in addition.
 ReportedResult reported(const std::string& path) {
   ReportedResult result{read_result_with_warning(path), path};
   if (std::optional<Study> study = study_in(result.stored, registry())) {

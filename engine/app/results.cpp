@@ -49,8 +49,8 @@ std::string cpu_name() {
   return "unknown";
 }
 
-/// Advice on options that may solve more samples than `solves` shows. It names the solver's method only for the
-/// published metric, and for mechanisms without a choice of metrics, because the method matters only there.
+/// Advice on options with which fewer samples may fail. It names the solver's method only for the metric "published"
+/// and for mechanisms without a metric, because the method matters only for these.
 std::string advice(const Study& study, const SolveCounts& solves) {
   if (mostly_impossible(solves)) return std::string(kAssemblyAdvice);
   const std::string& metric = study.model().metric;
@@ -98,8 +98,8 @@ ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std
   return kTooManyNotConverged;
 }
 
-/// Judges a yield, and returns the exit code. certificate: true if the study found tolerances and tried these machines
-/// only to certify the tolerances.
+/// Judges a yield, and returns the exit code. certificate: true if the study found tolerances itself, and solved these
+/// machines only to certify the tolerances.
 ExitCode judge_yield(const YieldVerdict& yield, bool certificate, const std::string& study_path,
                      const std::string& remedy) {
   using enum YieldVerdict::Decision;
@@ -136,8 +136,8 @@ ExitCode judge_limits(const Study& study, const StoredResult& result, const std:
   print("\n" + text_of(*table, output_width()));
   const LimitVerdicts& verdicts = *result.verdicts;
   if (verdicts.yield) {
-    // A kind that can be asked for a yield judges machines itself. Any other kind whose result has a yield certifies
-    // its own result by it.
+    // A kind that can be asked for a yield (StudyKind::ask_yield) judges machines. Any other kind with a yield in its
+    // result certifies the result with it.
     const bool certificate = study.analysis.kind != nullptr && study.analysis.kind->ask_yield == nullptr;
     return judge_yield(*verdicts.yield, certificate, study_path, remedy);
   }
@@ -152,7 +152,7 @@ ExitCode judge_limits(const Study& study, const StoredResult& result, const std:
   return verdicts.passed() ? kDone : kLimitNotKept;
 }
 
-/// The outcome of a run, after all solves are done.
+/// The outcome of a run after all its solves.
 RunOutcome outcome_of(const Job& job) {
   const RunTime time = job.time();
   const SolveCounts solves = job.checkpoints().solves();
@@ -209,13 +209,13 @@ ExitCode judge(const Study& study, const SolveCounts& solves, const StoredResult
 
 namespace {
 
-/// The stem of the names of files beside a result: RESULT_certificate.
+/// The beginning of the names of files beside a result: RESULT_certificate.
 std::string stem_beside(const std::filesystem::path& result) { return result.stem().string() + "_certificate"; }
 
-/// The endings of the study that confirms the result, and of the files that it may name.
+/// How the names end of the study that confirms a result, and of the files that this study may name.
 constexpr std::array<std::string_view, 4> kBeside{".toml", "_mechanism.toml", "_poses.csv", "_measured.csv"};
 
-/// The beginning of the comment in the study that confirms a result. The name of the result follows it.
+/// The beginning of the comment in the study that confirms a result; the name of the result follows.
 constexpr std::string_view kRepeats = "repeats the certificate of ";
 
 /// The path of a file beside the result. end: ending of the file's name.
@@ -231,10 +231,10 @@ bool is_of_earlier_study(const std::filesystem::path& result, const std::string&
          std::filesystem::is_regular_file(file, ignored);
 }
 
-/// Writes the confirming study, RESULT_certificate.toml, and the files that it names, beside the result. Returns the
-/// path of the study. The next run refuses to replace files that no study names (check_files_beside()), so neither this
-/// run nor a killed run may leave such files. Therefore two rules hold: files that only an earlier study named are
-/// removed first, and the study is written before the files that it names.
+/// Writes the study that confirms the result, RESULT_certificate.toml, and the files that this study names, beside the
+/// result. Returns the path of the study. The next run refuses to replace files that no such study names
+/// (check_files_beside()), so neither this run nor a killed run may leave such files. For this reason, files that only
+/// an earlier study named are removed first, and the study is written before the files that it names.
 std::string write_beside(const Job& job, Study confirming) {
   const std::filesystem::path result(job.path);
   const std::string folder = result.has_parent_path() ? result.parent_path().string() : ".";
@@ -256,14 +256,14 @@ std::string write_beside(const Job& job, Study confirming) {
 
 void check_files_beside(const std::string& result, std::span<const std::string> inputs) {
   const std::filesystem::path path(result);
-  // Returns true if the file is a confirming study of an earlier run, or a file that such a study names.
+  // Returns true if an earlier run wrote the file: a study that confirms its result, or a file that such a study names.
   const auto is_ours = [&](std::string_view end, const std::string& file) {
     return end == kBeside.front() ? is_marked(file, kRepeats) : is_of_earlier_study(path, file);
   };
   for (const std::string_view end : kBeside) {
     const std::string file = path_beside(path, end);
     check_name_length(file);
-    std::error_code ignored;  // a path that cannot be examined is neither a file nor a folder
+    std::error_code ignored;  // a path that cannot be examined counts as no file
     for (const std::string& input : inputs) {
       if (!std::filesystem::equivalent(file, input, ignored)) continue;
       throw InputError({input}, "would be replaced by the study that confirms the result, " + file,
@@ -304,7 +304,7 @@ int report_outcome(const Job& job, const std::string& study_path, const RunOutco
   if (!outcome.confirming.empty()) {
     print(fmt::format("{}: the study that repeats the certificate\n", printable_line(outcome.confirming)));
   }
-  if (job.options.shard) return kDone;  // only the result of the whole study is judged
+  if (job.options.shard) return kDone;  // the limits are judged only in the result of the whole study
   const std::string remedy = fmt::format("the result is kept; see 'poesy show {}'", job.path);
   StoredResult result = described(job.study, job.model, job.poses);
   result.verdicts = outcome.verdicts;

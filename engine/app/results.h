@@ -18,13 +18,13 @@
 
 namespace poesy::app {
 
-/// The facts about a run that has just ended on this machine. wall_seconds: its duration, s.
+/// The facts about a run that has just ended on this machine. wall_seconds: duration of the run, s.
 RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solves);
 
 /// Options of the search for poses.
 struct SearchOptions {
   bool quiet = false;  ///< true if no progress is shown on stderr
-  /// Flag that stops the search soon if it is set from outside; may be null.
+  /// A flag that another thread or a signal sets to stop the search; may be null.
   const std::atomic<bool>* stop = nullptr;
 };
 
@@ -35,14 +35,14 @@ std::optional<SelectedPoses> find_poses(const Study& study, const Model& model, 
 /// The paths of the study file and of the files that it names.
 std::vector<std::string> inputs_of(const std::string& study_path, const Study& study);
 
-/// A study that is ready to run, with its model and poses.
+/// A study that is ready to run, with its model and its poses.
 struct Job {
   const Study& study;
   const Model& model;
   SelectedPoses poses;
   std::string path;    ///< path of the result
   RunOptions options;  ///< options of the run, with its checkpoints
-  /// Gives the time of the run so far, including that of the earlier runs that it continues.
+  /// Returns the time of this run so far, plus that of the earlier runs that it continues.
   std::function<RunTime()> time;
   std::size_t threads;  ///< number of threads of all ranks together
   std::size_t ranks = 1;
@@ -50,26 +50,26 @@ struct Job {
   Checkpoints& checkpoints() const { return *options.checkpoints; }
 };
 
-/// The outcome of a run: how its solves ended, how long it took, including the earlier runs that it continues, and the
-/// verdicts on limits.
+/// The outcome of a run: how the solves ended, the facts with the duration (including the earlier runs that the run
+/// continues), and the verdicts on limits.
 struct RunOutcome {
   SolveCounts solves;
   RunFacts facts;
   std::optional<LimitVerdicts> verdicts = std::nullopt;
-  std::vector<std::string> row_names = {};  ///< names of the rows of errors that verdicts refer to
-  std::string confirming = {};              ///< path of a study that confirms the result; empty if there is none
+  std::vector<std::string> row_names = {};  ///< names of the rows of errors in `verdicts`
+  std::string confirming = {};  ///< path of the study that confirms the result (check_files_beside()); empty: none
 };
 
-/// Checks the files of the study that confirms a result, which a run may write into the folder of the result. Throws
-/// InputError if this study, or a file that it names, would replace one of the inputs or a file that does not belong to
-/// such a study of an earlier run.
+/// A run may write, beside its result, a study that confirms the result with other draws, and files that this study
+/// names. Throws InputError if one of these files would replace an input, or a file that is not from such a study of an
+/// earlier run.
 void check_files_beside(const std::string& result, std::span<const std::string> inputs);
 
-/// Runs a study of any kind, or a shard of it, and writes its result. With several ranks, rank 0 writes it. None if the
-/// run was interrupted. Throws FileError.
+/// Runs a study of any kind, or a shard of it, and writes the result. If there are several ranks, only rank 0 writes.
+/// None if the run was interrupted. Throws FileError.
 std::optional<RunOutcome> run_to_file(const Job& job);
 
-/// Prints the outcome of a run, and returns the exit code.
+/// Prints the outcome of a run, and returns the exit code of the command.
 int report_outcome(const Job& job, const std::string& study_path, const RunOutcome& outcome);
 
 /// Advice to a user whose result is not good enough.
@@ -78,17 +78,17 @@ struct Remedies {
   std::string failures;  ///< what to do if too many samples failed
 };
 
-/// Judges a result, and returns the exit code of the command. Prints PASS or FAIL for each limit. Writes to stderr
-/// which limits are not met, with the values found. If more samples failed than the study allows, the message on stderr
-/// says so first, because then no limit can be trusted. study_path: path of the study.
+/// Judges a result, and returns the exit code of the command. Prints PASS or FAIL for each limit. Limits that are not
+/// met are named on stderr, with the values found. If more samples failed than the study allows, a message on stderr
+/// says this first, because in this case no limit can be trusted. study_path: path of the study.
 ExitCode judge(const Study& study, const SolveCounts& solves, const StoredResult& result, const std::string& study_path,
                const Remedies& remedies);
 
 /// An amount of memory in words: "about 250 MB", or "less than 1 MB".
 std::string memory_text(std::size_t bytes);
 
-/// Makes the error that work needs more memory than there is. path: path of the result. work: what was being done,
-/// "this run". needed: the memory that it needs, see memory_text().
+/// Makes the error that there is not enough memory. path: path of the result. work: what was being done, "this run".
+/// needed: the memory that the work needs, as memory_text() gives it.
 FileError too_little_memory(const std::string& path, const std::string& work, const std::string& needed);
 
 /// Reads a result file. Warns on stderr if the file was changed after it was written. Throws FileError.

@@ -42,12 +42,12 @@ struct ResumeOptions {
   }
 };
 
-/// Handles the checkpoints of one run of the program. Without --resume, the run refuses to start if there are
-/// checkpoints, because these may hold hours of work. With --resume, it refuses to start if there is a complete result
+/// Manages the checkpoints of one run of the program. Without --resume, the run does not start if there are
+/// checkpoints, because these may hold hours of work. With --resume, it does not start if there is a complete result
 /// and no checkpoint.
 class ResumableRun {
  public:
-  /// Throws InputError or FileError if the run must not start. resume_command: command line that messages show for
+  /// Throws InputError or FileError if the run must not start. resume_command: the command line that messages show for
   /// continuing the run.
   ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string resume_command)
       : lock_(result_path),
@@ -73,8 +73,9 @@ class ResumableRun {
   ResumableRun(const ResumableRun&) = delete;
   ResumableRun& operator=(const ResumableRun&) = delete;
 
-  /// Restores the checkpoint if the run resumes. Throws InputError if the checkpoint belongs to another run. Names the
-  /// checkpoint on stderr, unless `quiet` is set and the newest checkpoint could be used.
+  /// Must be called before the work begins. If there is a checkpoint, restores it, and names it on stderr unless
+  /// `quiet` is set and the newest checkpoint could be used. Throws InputError if the checkpoint belongs to another
+  /// run.
   void start(const CheckpointIdentity& run, bool quiet) {
     identity_ = run;
     std::vector<Bytes> stages;
@@ -100,16 +101,16 @@ class ResumableRun {
   /// The checkpoints of the run. Precondition: start() was called.
   Checkpoints& checkpoints() { return *checkpoints_; }
 
-  /// The time that the run took so far, including that of the earlier runs that it continues.
+  /// The time that this run took so far, plus that of the earlier runs that it continues.
   RunTime time() const { return {before_.wall + seconds_since(start_), before_.checkpoints + checkpoint_seconds_}; }
 
   /// Returns true if an earlier run left a checkpoint.
   bool continues() const { return files_.exist(); }
 
-  /// Returns true if the time limit ends the run within this number of seconds.
+  /// Returns true if the time limit (--max-wall) ends the run within this number of seconds.
   bool ends_within(double seconds) const { return end_ && *end_ <= Clock::now() + duration_of(seconds); }
 
-  /// Interrupts the run if its time limit is reached.
+  /// Interrupts the run if the time limit (--max-wall) is reached.
   void check_time() const {
     if (end_ && Clock::now() >= *end_) interrupt();
   }
@@ -124,17 +125,17 @@ class ResumableRun {
     }
   }
 
-  /// To be called after the study failed for good. Removes the checkpoints, because continuing them cannot lead to a
-  /// result.
+  /// To be called after an error that would occur again if the run were continued. Removes the checkpoints, because
+  /// they cannot lead to a result.
   void discard() { files_.remove(); }
 
-  /// To be called after the result could not be written. Keeps the last state if possible, and tells the user what to
-  /// do.
+  /// To be called after the run failed for lack of memory or because a file could not be written. Keeps the last state
+  /// if possible, and tells the user how to continue.
   void rescue() {
     try {
       if (!no_room_ && checkpoints_) checkpoints_->save();
     } catch (const FileError&) {
-      // Reports the first problem, and not that there is no room for a checkpoint.
+      // The first problem is reported, not that a checkpoint could not be written.
     } catch (const std::bad_alloc&) {
       // There is not enough memory for a checkpoint, either.
     }
@@ -144,14 +145,14 @@ class ResumableRun {
     }
   }
 
-  /// To be called after an interruption. Tells the user what to do.
+  /// To be called after an interruption. Tells the user how to continue.
   void explain_interruption() const {
     say(Message::note,
         files_.exist() ? "interrupted; the work so far is kept in " + files_.newer() + ", continue with: " + command_
                        : "interrupted before anything was solved, start again with: " + command_);
   }
 
-  /// Throws FileError for a checkpoint whose state cannot be read.
+  /// Throws FileError because the state in the checkpoint cannot be read.
   [[noreturn]] void refuse_state(const BytesError& error) const {
     throw FileError(taken_, error.what(), "restore a copy, or move it away to start afresh");
   }
@@ -159,7 +160,8 @@ class ResumableRun {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Converts seconds to a clock duration. Durations of more than a century are cut, so that they do not overflow.
+  /// Converts seconds to a clock duration. More than a century is shortened to a century, so that the number does not
+  /// overflow.
   static Clock::duration duration_of(double seconds) {
     constexpr double kCentury = 3.2e9;
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, kCentury)));
@@ -173,8 +175,8 @@ class ResumableRun {
   }
 
   void save(std::span<const ByteSource> stages) {
-    // The next checkpoint is written after at least kLeastRatio times the duration of the last one. So checkpoints take
-    // less than 1 % of the time, even if the last one took by far the longest.
+    // The next checkpoint is not written before kLeastRatio times the duration of this one has passed. With this rule,
+    // checkpoints take less than 1 % of the time, even if the last one took by far the longest.
     constexpr double kLeastRatio = 200.0;
     const Clock::time_point before = std::exchange(due_since_, std::nullopt).value_or(Clock::now());
     no_room_ = true;
@@ -190,20 +192,20 @@ class ResumableRun {
   std::string command_;
   CheckpointFiles files_;
   CheckpointIdentity identity_;
-  std::string taken_;  ///< path of the checkpoint from which the run was restored
+  std::string taken_;  ///< path of the checkpoint that start() restored
   Clock::duration every_;
   std::optional<Clock::time_point> end_;
   Clock::time_point start_;
   RunTime before_;  ///< time of the earlier runs that this run continues
   double checkpoint_seconds_ = 0.0;
   Clock::time_point next_;
-  std::optional<Clock::time_point> due_since_;  ///< time at which the checkpoint that is being written was due
+  std::optional<Clock::time_point> due_since_;  ///< time at which the present checkpoint was due
   bool no_room_ = false;                        ///< true if the last checkpoint could not be written
   std::optional<Checkpoints> checkpoints_;
 };
 
-/// Calls act(), which does the run. If it fails, the function says what happens to the checkpoints. too_little(): makes
-/// the error that the run needs more memory than there is.
+/// Calls act(), which does the run. If it fails, keeps or removes the checkpoints, and tells the user which.
+/// too_little: makes the error that the run needs more memory than there is.
 template <class Act, class TooLittle>
 auto run_to_end(ResumableRun& resumable, const Act& act, const TooLittle& too_little) -> decltype(act()) {
   try {

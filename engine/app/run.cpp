@@ -33,8 +33,8 @@
 namespace poesy::app {
 namespace {
 
-/// The number of processors for this process: those that the launcher assigned to it. If it assigned none, this process
-/// takes an equal share of the machine's processors.
+/// The number of processors for this process: those to which the launcher bound it. If the launcher bound it to none,
+/// the process takes an equal share of the machine's processors.
 std::size_t processors_of_rank(std::size_t ranks_on_this_machine) {
   const auto all = static_cast<std::size_t>(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));
   cpu_set_t allowed;
@@ -43,7 +43,7 @@ std::size_t processors_of_rank(std::size_t ranks_on_this_machine) {
   return bound < all ? bound : std::max<std::size_t>(1, all / ranks_on_this_machine);
 }
 
-/// Says why a rank left the run, if one did, and returns the exit code. Precondition: the run was interrupted.
+/// If a rank ended its work early, prints the reason. Returns the exit code. Precondition: the run was interrupted.
 int say_why_a_rank_left(const Team& team) {
   if (!team.left()) return kInterrupted;
   constexpr std::array kCodes{kInterrupted, kBadInput, kFileTrouble, kInternalError};  // exit code for each LeaveReason
@@ -96,12 +96,12 @@ Shard parse_shard(const std::string& text) {
   throw InputError({}, "--shard is '" + printable(text) + "'", "write K/N with K from 1 to N, e.g. 2/5");
 }
 
-/// The error that a run needs more memory than there is.
+/// The error that there is not enough memory for a run.
 FileError too_little_for_run(const std::string& path, const Study& study, const Model& model, const PoseSet& poses) {
   return too_little_memory(path, "this run", memory_text(outlook(study, model, poses).memory.peak()));
 }
 
-/// Runs the study and shows its progress. On failure, also says what happens to the checkpoints.
+/// Runs the study and shows the progress. If the run fails, also tells the user what happens to the checkpoints.
 std::optional<RunOutcome> run_with_progress(Job& job, ResumableRun& resumable, bool quiet) {
   const auto act = [&] {
     ProgressPrinter printer(quiet);
@@ -121,13 +121,13 @@ Study study_of(const RunCommandOptions& options) {
   return study;
 }
 
-/// A text that identifies the run, and must be equal on all ranks.
+/// A text that identifies the run. It must be equal on all ranks.
 std::string text_of(const CheckpointIdentity& identity) {
   return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", identity.poesy_version, identity.git_commit, identity.model,
                      identity.seed, identity.samples, identity.shard, identity.poses, identity.study);
 }
 
-/// Runs the study on a rank other than rank 0.
+/// Takes part in the run as a rank other than rank 0.
 void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
@@ -153,8 +153,8 @@ void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   }
 }
 
-/// Ends a run whose ranks did not begin their work. A checkpoint of an earlier run is kept. If there is none, an empty
-/// checkpoint is written, from which the run can be resumed.
+/// Ends a run if the ranks did not begin their work, and returns the exit code. The checkpoint of an earlier run is
+/// kept; without one, an empty checkpoint is written, from which the run can be resumed.
 int leave_before_the_start(const Team& team, ResumableRun& resumable) {
   const int code = say_why_a_rank_left(team);
   if (code != kInterrupted) return code;
@@ -168,7 +168,7 @@ int explained_interruption(const ResumableRun& resumable) {
   return kInterrupted;
 }
 
-/// Runs the study in one process, or as rank 0 of a team. team: null for one process.
+/// Runs the study in one process, or as rank 0 of a team of ranks. team: null for one process.
 int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
@@ -220,7 +220,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   return report_outcome(job, options.study, *outcome);
 }
 
-/// Runs the study on this process alone or on all ranks. Returns the exit code, which is the same on all ranks. Only
+/// Runs the study on this process alone, or on all ranks. Returns the exit code, which is the same on all ranks. Only
 /// rank 0 prints.
 int run_alone_or_on_ranks(const RunCommandOptions& options) {
   const auto launch = find_launch();
@@ -231,7 +231,7 @@ int run_alone_or_on_ranks(const RunCommandOptions& options) {
   Team team(*ranks);
   if (!team.leads()) return team.follow([&] { follow(options, threads, team); });
   const int code = exit_code_of([&] { return run(options, threads, &team); });
-  // The other ranks may take long to finish, so this rank waits only for a limited time.
+  // The other ranks may need long to finish, so this rank waits only for a limited time.
   if (!team.dismiss(code, std::chrono::seconds(code == kDone ? 60 : 10))) ranks->abort(code);
   return code;
 }

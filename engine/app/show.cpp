@@ -43,8 +43,8 @@ struct ShowOptions {
   bool method = false;  ///< true to show the method in words instead of tables
 };
 
-/// The name of the response to show. wanted: the response that the user asks for; if empty, the response is the one by
-/// which errors are ranked by default. Throws InputError if the result lacks it.
+/// The name of the response to show: `wanted`, or, if this is empty, the response by which errors are ranked by
+/// default. Throws InputError if the result lacks the response.
 std::string response_of(const std::string& wanted, const std::string& path, const StoredResult& result) {
   if (wanted.empty()) return default_ranking(result);
   const std::vector<std::string> known = names_of(result.responses);
@@ -63,8 +63,8 @@ RowOrder order_of(const ShowOptions& options) {
 
 bool ranks_errors(const StoredResult& result) { return kind_of(result).report.two_rankings != nullptr; }
 
-/// Throws InputError if --sort is given for a kind whose errors have a fixed order, or --top for a result without a
-/// ranking of errors.
+/// Throws InputError if --sort is given although the kind's errors have a fixed order, or --top although the result
+/// ranks no errors.
 void check_ranks(const ShowOptions& options, const std::string& path, const StoredResult& result,
                  const std::vector<Table>& tables) {
   const auto refuse = [&](std::string_view option, std::string_view what) {
@@ -75,14 +75,14 @@ void check_ranks(const ShowOptions& options, const std::string& path, const Stor
   if (options.top && std::ranges::none_of(tables, &Table::ranked)) refuse("--top", "ranks no errors");
 }
 
-/// Restricts the result to this response, so that tables show it alone.
+/// Makes this response the only one of the result's headline, so that tables show it alone.
 void show_alone(const std::string& response, StoredResult& result) {
   const auto at = std::ranges::find(result.responses, response, &NamedUnit::name) - result.responses.begin();
   result.headline = result.signed_headline = {static_cast<std::size_t>(at)};
 }
 
-/// Notes on the mechanism's numbers, on whether the study was calibrated, and on constant errors. The last two notes
-/// appear only if a study was solved, and not a table of errors. Empty if this program cannot read the study.
+/// Notes on the mechanism's numbers and, unless a table of errors was solved, on calibration and constant errors. Empty
+/// if this program cannot read the result's study.
 std::string study_lines(const StoredResult& result, std::size_t width) {
   const std::optional<Study> study = study_in(result, registry());
   if (!study) return {};
@@ -119,8 +119,8 @@ int show_one(const ShowOptions& options) {
   return kDone;
 }
 
-/// The responses for several results. --response gives one for all results, or one for each, separated by commas;
-/// without the option each result has its default.
+/// The response for each of several results. The option --response gives one for all results, or one for each,
+/// separated by commas. Without the option each result has its default.
 std::vector<std::string> responses_of(const ShowOptions& options, std::span<const ReportedResult> results) {
   std::vector<std::string> names;
   for (std::size_t from = 0; from <= options.response.size();) {
@@ -139,8 +139,8 @@ std::vector<std::string> responses_of(const ShowOptions& options, std::span<cons
   return names;
 }
 
-/// Adds to `compared` the comparison of two rankings of errors; for a kind of study without rankings, the tables of its
-/// own comparison.
+/// Adds to `compared` the comparison of two rankings of errors or, if the kind of study ranks no errors, the kind's own
+/// table of comparison for the first result's response.
 void compare_two(const ReportKind& kind, std::span<const ReportedResult> results, std::span<const RankedResult> ranked,
                  RowOrder order, ComparedResults& compared) {
   if (kind.two_rankings == nullptr) {
@@ -157,7 +157,7 @@ void compare_two(const ReportKind& kind, std::span<const ReportedResult> results
   compared.remarks = std::move(rankings.remarks);
 }
 
-/// The comparison of results: figures of merit, settings that differ, then errors or other items.
+/// The comparison of results: figures of merit, settings that differ, and, for two results, errors or other items.
 ComparedResults compare(const ReportKind& kind, std::span<const ReportedResult> results,
                         std::span<const RankedResult> ranked, RowOrder order) {
   ComparedResults compared;
@@ -204,7 +204,7 @@ int show_several(const ShowOptions& options) {
   return kDone;
 }
 
-/// Prints the method of one result in words, and what a paper should cite.
+/// Prints a description of the method of one result, and what a paper should cite.
 int show_method(const ShowOptions& options) {
   if (options.results.size() > 1) {
     throw InputError({}, "--method describes one result, but several are given", "give one");

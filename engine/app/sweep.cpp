@@ -65,14 +65,15 @@ std::string resume_command(const SweepOptions& options) {
   return shell_command(words);
 }
 
-/// The values of a design in words: "mechanism.geometry.R = 260 mm".
+/// The values of a design in words: "mechanism.geometry.R = 260 mm". given: the keys that the sweep changes, with their
+/// values.
 std::string words_of(std::span<const GivenKey> given) {
   std::string text;
   for (const GivenKey& one : given) text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", one.key, one.value);
   return printable(text, 200);
 }
 
-/// Calls act(). If it throws, the message of the error begins with the values of the design.
+/// Calls act(). If it throws InputError, the values of the design are put in front of the message.
 template <class Act>
 auto naming(std::span<const GivenKey> given, const Act& act) {
   try {
@@ -82,14 +83,14 @@ auto naming(std::span<const GivenKey> given, const Act& act) {
   }
 }
 
-/// The study with these values in place of its own.
+/// The study with the values of a design in place of its own.
 Study study_with(const SweepOptions& options, std::span<const GivenKey> given) {
   Study study = naming(given, [&] { return read_study(options.study, registry(), StudyUse::run, given); });
   if (options.seed) study.seed = *options.seed;
   return study;
 }
 
-/// The design with these values. None if it was stopped while it looked for poses.
+/// The design with these values: its study and its poses. None if the user stopped the search for poses.
 std::optional<SweptDesign> design_of(const SweepOptions& options, const std::vector<GivenKey>& given,
                                      const std::atomic<bool>& stop) {
   Study study = study_with(options, given);
@@ -99,7 +100,7 @@ std::optional<SweptDesign> design_of(const SweepOptions& options, const std::vec
   return SweptDesign{given, std::move(study), *std::move(poses)};
 }
 
-/// The designs with these values. None if the search for poses was stopped.
+/// The designs of a grid of values. None if the user stopped the search for poses.
 std::optional<std::vector<SweptDesign>> designs_of(const SweepOptions& options,
                                                    std::span<const std::vector<GivenKey>> grid,
                                                    const std::atomic<bool>& stop) {
@@ -113,8 +114,8 @@ std::optional<std::vector<SweptDesign>> designs_of(const SweepOptions& options,
   return designs;
 }
 
-/// The identity of a sweep. It is that of its first design, except that it has the studies and the poses of all
-/// designs.
+/// The identity of a sweep, by which a checkpoint is recognised: that of the first design, but with the studies and the
+/// poses of all designs.
 CheckpointIdentity identity_of(std::span<const SweptDesign> designs) {
   CheckpointIdentity all;
   std::string poses;
@@ -135,7 +136,7 @@ double seconds_of(std::span<const SweptDesign> designs, std::size_t threads) {
   return static_cast<double>(designs.size()) * seconds_of_long_run(first.study, *model, first.poses.poses, threads);
 }
 
-/// Runs all designs. On failure, also says what happens to the checkpoints.
+/// Runs all designs. If the run fails, also tells the user what happens to the checkpoints.
 std::optional<SweepResult> run_with_progress(const SweepOptions& options, std::span<const SweptKey> keys,
                                              std::span<const SweptDesign> designs, const std::string& path,
                                              RunOptions run, ResumableRun& resumable) {
@@ -169,7 +170,7 @@ std::optional<SweepResult> run_with_progress(const SweepOptions& options, std::s
   return run_to_end(resumable, act, too_little);
 }
 
-/// Prints what was found and returns the exit code. path: of the result.
+/// Prints what was found, and returns the exit code. path: path of the result.
 int report(const SweepOptions& options, const SweptDesign& first, const SweepResult& found, const std::string& path) {
   StoredResult result = described(first.study, *build_model(first.study.mechanism), first.poses);
   result.kind = kSweepKind.study.name;

@@ -86,7 +86,7 @@ void say(Message kind, const std::string& text) {
 }
 
 std::optional<bool> asked(const std::string& question) {
-  constexpr int kLook = 100;  // ms, interval of checks for an interrupt
+  constexpr int kLook = 100;  // ms between checks for an interrupt
   if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0) return std::nullopt;
   std::fputs(("poesy: " + printable_line(question) + " [y/N] ").c_str(), stderr);
   std::fflush(stderr);
@@ -124,7 +124,7 @@ int exit_code_of(const std::function<int()>& action) {
 const std::atomic<bool>& catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  // A closed terminal sends SIGHUP; nohup lets the program ignore it.
+  // A terminal that is closed sends SIGHUP. If nohup made the program ignore SIGHUP, it stays ignored.
   if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   return interrupted;
 }

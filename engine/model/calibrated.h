@@ -12,9 +12,9 @@ inline constexpr std::string_view kLeftByCalibration =
     "what the best correction of the actuators leaves, the best that any choice of drive offsets at each pose could "
     "do; no real calibration reaches that";
 
-/// A model like the given one, with the given model's calibrated_evaluator() as its evaluator: its responses are those
-/// that remain after the best correction of the actuators. It has no trace, because a trace shows uncorrected errors.
-/// Throws std::invalid_argument, whose text is a clause, if the given model has no such evaluator.
+/// A model with the calibrated_evaluator() of the given model as its evaluator. Its responses are those that remain
+/// after the best correction of the actuators. It has no trace, because a trace shows uncorrected errors. Throws
+/// std::invalid_argument with a clause as its text if the given model has no such evaluator.
 std::unique_ptr<Model> calibrated(std::unique_ptr<Model> model);
 
 }  // namespace poesy

@@ -11,10 +11,11 @@
 
 namespace poesy {
 
-/// The geometric kind of a feature of a part. `rectangle` and `round` are planes of this shape.
+/// The geometric kind of a feature of a part. `rectangle` and `round` are plane faces with that outline, `distance` is
+/// a length of the part.
 enum class FeatureKind { axis, rectangle, round, point, distance };
 
-/// What a tolerance zone limits.
+/// The property of a feature that a tolerance zone limits.
 enum class ZoneClass {
   location,     ///< the position of the feature, and with it the orientation
   orientation,  ///< the orientation alone
@@ -23,7 +24,7 @@ enum class ZoneClass {
 
 /// A tolerance of a drawing, as a zone in which a feature must be.
 struct Zone {
-  std::string_view key;  ///< such as "position"; see zone_traits()
+  std::string_view key;  ///< type of the zone, such as "position"; see zone_traits()
   /// Width or diameter of the zone as written on the drawing; for a distance, the largest deviation +- (m).
   double size;
   std::string datums;  ///< datums of the zone, such as "A|B"; empty: none
@@ -44,18 +45,19 @@ struct Feature {
   std::size_t limb;   ///< limb of the part, counted from 1
   std::size_t frame;  ///< frame of the limb that the errors of the feature displace
   FeatureKind kind;   ///< geometric kind of the feature
-  /// Size in m: length of an axis; sides of a rectangle; diameter of a round plane; nominal size of a distance, 0 if
+  /// Size in m: length of an axis; two sides of a rectangle; diameter of a round face; nominal size of a distance, 0 if
   /// unknown.
   std::array<double, 2> size = {};
   bool one_direction = false;  ///< true if the zone of an axis or a point is between two planes
-  /// Errors that move the feature: x, y for an axis; z for a plane; x, y, z for a point; the error of a distance.
+  /// Errors that move the feature: x and y of an axis; z of a plane face; x, y and z of a point; the error of a
+  /// distance.
   std::vector<FactorIndex> middle = {};
-  /// Errors that turn the feature: lean_x, lean_y for an axis; lift_x, lift_y for a plane.
+  /// Errors that turn the feature: lean_x and lean_y of an axis; lift_x and lift_y of a plane face.
   std::vector<FactorIndex> tilt = {};
-  std::optional<Zone> location = {};     ///< zone of class location; for a distance, its tolerance
-  std::optional<Zone> orientation = {};  ///< zone of class orientation
-  /// Clearance of the axis of a pin that is loose in its bore. Such a feature has no zones. Its place in the bore
-  /// changes from pose to pose.
+  std::optional<Zone> location = {};     ///< zone that limits the location; for a distance, the tolerance
+  std::optional<Zone> orientation = {};  ///< zone that limits the orientation alone
+  /// Clearance of the axis of a pin that is loose in its bore. Such a feature has no zones. The place of the pin in the
+  /// bore changes from pose to pose.
   std::optional<Clearance> clearance = {};
 
   std::vector<FactorIndex> errors() const;  ///< All errors: first those that move the feature, then those that turn it.
@@ -64,18 +66,18 @@ struct Feature {
 /// The properties of one type of zone.
 struct ZoneTraits {
   std::string_view key;   ///< name in files, such as "position"
-  ZoneClass of;           ///< property of the feature that the zone limits if the feature is a plane
+  ZoneClass of;           ///< property that the zone limits on a plane face; see zone_class() for other features
   std::string_view sign;  ///< symbol on a drawing, UTF-8
 };
 
 /// The properties of all types of zones, in the order of ISO 1101.
 const std::vector<ZoneTraits>& zone_traits();
 
-/// The properties of zones with this key. Precondition: the list has the key.
+/// The properties of zones with this key. Precondition: zone_traits() has the key.
 const ZoneTraits& zone_traits(std::string_view key);
 
 /// The property that a zone with this key limits on a feature of this kind. It is ZoneTraits::of, with one exception: a
-/// run-out of an axis limits its location, because a dial gauge shows twice the eccentricity.
+/// run-out limits the location of an axis, because a dial gauge shows twice the eccentricity of the axis.
 ZoneClass zone_class(std::string_view key, FeatureKind kind);
 
 }  // namespace poesy

@@ -8,8 +8,8 @@
 
 namespace poesy {
 
-/// The base class of models that wrap another model and change some of its functions. It forwards every call to the
-/// other model.
+/// The base class of models that wrap another model and change some of its functions. All functions that a derived
+/// class does not override call those of the wrapped model.
 class ForwardingModel : public Model {
  public:
   const ModelDescription& description() const override { return model_->description(); }
@@ -49,13 +49,13 @@ class ForwardingModel : public Model {
   std::optional<Sketch> sketch(std::span<const double> pose) const override { return model_->sketch(pose); }
   std::vector<std::string> unusual_geometry() const override { return model_->unusual_geometry(); }
 
-  const Model& behind() const { return *model_; }  ///< The model to which this one forwards.
-  /// Wraps an evaluator of the other model, so that it also computes the responses that this model adds. Null gives
-  /// null.
+  const Model& behind() const { return *model_; }  ///< The wrapped model.
+  /// Wraps an evaluator of the wrapped model, so that it also computes the responses that this model adds. Returns null
+  /// if the evaluator is null.
   virtual std::unique_ptr<Evaluator> formed(std::unique_ptr<Evaluator> evaluator) const { return evaluator; }
 
  protected:
-  /// Model: the other model, not null.
+  /// model: the model to wrap, not null.
   explicit ForwardingModel(std::unique_ptr<Model> model) : model_(std::move(model)) {
     POESY_EXPECTS(model_ != nullptr);
   }
@@ -64,11 +64,12 @@ class ForwardingModel : public Model {
   std::unique_ptr<Model> model_;
 };
 
-/// The innermost of the wrapped models, which solves the mechanism. The models around it compute further responses from
-/// those of the innermost one, which come first in the list of `model`.
+/// The model that solves the mechanism: the innermost of the wrapped models, or `model` itself if it wraps none. Each
+/// wrapper appends responses to the list of the model inside it, so the responses of the innermost model come first.
 const Model& solving_model(const Model& model);
 
-/// Wraps an evaluator of solving_model(model), so that it computes all responses of `model`.
+/// Wraps an evaluator of solving_model(model) in the evaluators of all wrappers, so that it computes all responses of
+/// `model`.
 std::unique_ptr<Evaluator> all_formed(const Model& model, std::unique_ptr<Evaluator> solving);
 
 }  // namespace poesy

@@ -25,7 +25,7 @@ struct Factor {
   std::string name;         ///< name in files, such as "delta_1_0_x"
   Dimension dimension;      ///< length (m) or angle (rad)
   std::size_t limb;         ///< limb, counted from 1 as in the literature
-  std::size_t frame;        ///< frame of the limb to which the error belongs; errors of one frame may act together
+  std::size_t frame;        ///< frame of the limb to which the error belongs
   std::string description;  ///< explanation for users
   std::string axis = {};    ///< "x", "y" or "z" if the error is a component of a vector; empty for a scalar
 };
@@ -45,7 +45,7 @@ struct Response {
   /// An upper bound on the ratio of two mean squares of the response: its mean square if all errors act together, over
   /// the sum of its mean squares if each error acts alone. The bound holds to first order and for independent errors of
   /// mean zero. It is 1 if the response is linear in the errors or the norm of a linear function, because mean squares
-  /// then add. It is larger if the response is a mean of several norms, or the largest of them.
+  /// add in these cases. It is larger if the response is a mean of several norms, or the largest of them.
   double mean_square_bound = 1.0;
   /// If the response is the norm of a vector of responses: positions of the components among the model's responses.
   std::vector<std::size_t> components = {};
@@ -87,9 +87,9 @@ struct NamedCurve {
   std::size_t chart;        ///< chart of the curve: position in ModelDescription::charts
   double start;             ///< beginning of the whole curve, s
   double end;               ///< end of the whole curve, s
-  /// The default point that is added to the curve, [coordinates of the chart], SI.
+  /// The default point that is added to the curve: chart coordinates, SI.
   std::vector<double> origin;
-  /// Chart coordinates at a time (s), SI, relative to the origin.
+  /// Returns chart coordinates (SI), relative to the origin, at a time (s).
   std::function<std::vector<double>(double time)> at;
 };
 
@@ -103,11 +103,12 @@ struct JointDisplacement {
 struct GeometryParameter {
   std::string name;         ///< name in study files
   Dimension dimension;      ///< length (m), angle (rad) or number
-  double published;         ///< value in the publication, SI
+  double published;         ///< value in the publication of the mechanism, SI
   std::string description;  ///< explanation for users
 };
 
-/// The response that shows whether an error deforms the mechanism, instead of only moving the platform.
+/// The response that shows whether an error deforms the mechanism, instead of only moving the platform as a perfect
+/// mechanism moves.
 struct DeformationMeasure {
   std::size_t response;  ///< position among the responses
   double rounding;       ///< largest value that rounding alone may give, SI
@@ -115,72 +116,75 @@ struct DeformationMeasure {
 
 using PlatformPoint = std::array<double, 3>;  ///< A point of the platform in its frame: x, y, z in m.
 
-/// The effect of each error on the platform, separated into the part along the actuated directions and the part along
-/// the constrained ones, to first order at one pose. All numbers are displacements of the platform, in m per SI unit of
-/// the error.
+/// The effect of each error on the platform, to first order at one pose. An effect has a part along the directions that
+/// the actuators drive, and a part along the directions that the limbs constrain. All numbers are magnitudes of
+/// displacements of the platform, in m per SI unit of the error.
 struct Separation {
-  std::vector<double> drive;       ///< [F] part of the effect along the actuated directions
-  std::vector<double> constraint;  ///< [F] part of the effect along the constrained directions
-  std::vector<double> effect;      ///< [F] whole effect
-  std::vector<double> residual;    ///< [F] effect that remains after the best correction by the actuators
+  std::vector<double> drive;       ///< [factors] part of the effect along the actuated directions
+  std::vector<double> constraint;  ///< [factors] part of the effect along the constrained directions
+  std::vector<double> effect;      ///< [factors] whole effect
+  std::vector<double> residual;    ///< [factors] part that remains after the best correction by the actuators
 };
 
-/// The words for the separated effects (Separation) of a model's errors.
+/// How results describe the separated effects (Separation) of errors.
 struct SeparationDescription {
   std::string measure;  ///< description of the displacement by which effects are measured
-  /// [F] Class of each error in the literature; empty if the literature has no classes.
+  /// [factors] Class of each error according to the literature; empty if the literature has no classes.
   std::vector<std::string> published;
 };
 
-/// The magnitude from which on an error makes no sense, because it is as large as the part of the mechanism to which it
-/// belongs.
+/// The magnitude from which on an error makes no sense, because it is as large as a dimension of the part of the
+/// mechanism to which it belongs.
 struct ErrorBound {
   double size = std::numeric_limits<double>::infinity();  ///< bound on the error's magnitude, SI
   std::string part = {};  ///< dimension of the part that sets the bound, such as "the length of the rod"
 };
 
-/// How each sample is solved.
+/// The iteration that solves samples, and when it ends.
 struct SolverOptions {
-  /// The iteration that solves a sample.
+  /// Which iteration solves a sample.
   enum class Method {
     newton,       ///< the model's own iteration, fast and with a large region of convergence
     gauss_newton  ///< the published iteration
   };
 
-  Method method = Method::newton;  ///< a model with one iteration uses it for both
-  /// A solve has converged when the largest component of the change of the residual is below this (rad, m). With the
-  /// metric "platform", the norm of the change must be below this times the mechanism's reach. Default 1e-15, Du et al.
-  /// 2022, Section 5.1; the default of a study is ModelDescription::tolerance.
+  Method method = Method::newton;  ///< a model that has only one iteration ignores this
+  /// A solve has converged when no component of the residual (in some models, of the platform's motion) changes by more
+  /// than this in an iteration (rad, m). With the metric "platform", the changes of bodies and joints must be below
+  /// this times the mechanism's reach. Default 1e-15, Du et al. 2022, Section 5.1; the default of a study is
+  /// ModelDescription::tolerance.
   double tolerance = 1e-15;
   int max_iterations = 50;  ///< Default 50, Du et al. 2022, Section 5.1.
 };
 
 /// A factor set that the literature treats as one source of errors.
 struct SourceSet {
-  std::string name;  ///< short name, such as "FS"; names of several sources are joined
+  std::string name;  ///< short name, such as "FS"; the name of a combination of sources is "FS+..."
   std::string set;   ///< name of the factor set
 };
 
 /// The properties of a mechanism that are known without solving it.
 struct ModelDescription {
-  std::string name;                               ///< name in study files
-  std::string title;                              ///< title with its source
-  std::vector<GeometryParameter> geometry;        ///< parameters that a study may change
-  std::vector<PoseCoordinate> pose_coordinates;   ///< coordinates, in the order of the numbers of a pose
-  std::vector<Factor> factors;                    ///< [F] all errors; their order determines the addresses of draws
-  std::vector<FactorSet> factor_sets;             ///< sets that a study may name; a set called "all" has every factor
-  std::vector<Feature> features = {};             ///< features of parts, with the tolerances of their drawings
-  std::vector<Response> responses;                ///< [R] responses, in the order of OutcomeBlock::responses
+  std::string name;                              ///< name in study files
+  std::string title;                             ///< title with its source
+  std::vector<GeometryParameter> geometry;       ///< parameters that a study may change
+  std::vector<PoseCoordinate> pose_coordinates;  ///< coordinates, in the order of the numbers of a pose
+  std::vector<Factor> factors;         ///< all errors; the random numbers of an error depend on its position here
+  std::vector<FactorSet> factor_sets;  ///< sets that a study may name; a set called "all" has every factor
+  std::vector<Feature> features = {};  ///< features of parts, with the tolerances of their drawings
+  std::vector<Response> responses;     ///< responses, in the order of OutcomeBlock::responses
   std::optional<DeformationMeasure> deformation;  ///< none if no error deforms the mechanism
-  std::vector<Detail> details;                    ///< additional outputs, in the order of OutcomeBlock::details
-  std::vector<JointDisplacement> joints;          ///< all joints, in the order of Model::joint_displacements
-  std::vector<double> pose_lower;                 ///< lower ends of a reachable workspace, [pose coordinates], SI
-  std::vector<double> pose_upper;                 ///< upper ends of the reachable workspace, [pose coordinates], SI
-  std::string workspace_note;                     ///< source of the reachable workspace
-  /// Choices of accuracy, from "exact" to "first-order"; the first is the default. Empty: there is no choice.
+  std::vector<Detail> details;  ///< additional outputs; OutcomeBlock::details has their components in this order
+  std::vector<JointDisplacement> joints;  ///< all joints, in the order of Model::joint_displacements
+  std::vector<double> pose_lower;         ///< lower ends of a reachable workspace, [pose coordinates], SI
+  std::vector<double> pose_upper;         ///< upper ends of the reachable workspace, [pose coordinates], SI
+  std::string workspace_note;             ///< source of the reachable workspace
+  /// Names of the choices of accuracy, from "exact" to "first-order"; the first is the default. Empty: there is no
+  /// choice.
   std::vector<std::string> fidelities;
-  /// How a mismatch of angle is weighed against one of length. "platform": by the displacement of points of the
-  /// platform. "published": radians against metres at the base's origin. Empty: the model needs no weights.
+  /// How a mismatch of angle is weighed against one of length. "platform": both are measured by the displacement that
+  /// they cause at points of the platform. "published": one radian counts as much as one metre at the base's origin.
+  /// Empty: the model needs no weights.
   std::string metric = {};
   double tolerance = SolverOptions().tolerance;     ///< default tolerance of solves
   std::vector<PoseChart> charts;                    ///< alternative coordinates of poses
@@ -194,20 +198,22 @@ struct ModelDescription {
   /// cancel. Empty: the headline.
   std::vector<std::size_t> signed_headline;
 
-  /// The position of the factor; none if there is no factor of that name.
+  /// The position of the factor of this name; none if there is no such factor.
   std::optional<FactorIndex> find_factor(std::string_view factor_name) const;
   const FactorSet* find_set(std::string_view set_name) const;  ///< Null if there is no set of that name.
 };
 
-/// B samples at one pose. V of the F factors have their own value in each sample; the others are constant.
+/// A block of samples at one pose. Some factors vary and have a value of their own in each sample; the others are
+/// constant.
 struct SampleBlock {
   std::span<const double> pose;         ///< [pose coordinates], SI
-  std::span<const double> errors;       ///< [F] values of all errors, SI; those of varied factors are ignored
-  std::span<const FactorIndex> varied;  ///< [V] factors that vary, each once
-  std::span<const double> values;       ///< [V x B], row-major: all samples of the first varied factor first
-  std::size_t count;                    ///< number of samples, B
-  /// If one factor varies: most of its values are within +-range, and a model may prepare for such values. 0: unknown.
-  /// The range changes the outcome of a sample only by rounding. An outcome never depends on the other samples.
+  std::span<const double> errors;       ///< [factors] values of all errors, SI; those of varied factors are ignored
+  std::span<const FactorIndex> varied;  ///< factors that vary, each once
+  std::span<const double> values;       ///< [varied x samples], row-major: all samples of the first varied factor first
+  std::size_t count;                    ///< number of samples
+  /// If one factor varies: most of its values are between -range and +range, and a model may prepare for such values.
+  /// 0: the range is unknown. The range changes the outcome of a sample only by rounding. An outcome never depends on
+  /// the other samples.
   double range = 0.0;
   /// The previous pose in the list of a study's poses, SI, for responses that are relative to it; empty if there is
   /// none.
@@ -216,10 +222,11 @@ struct SampleBlock {
 
 /// The outcomes of a block of samples. The caller owns the memory.
 struct OutcomeBlock {
-  std::span<double> responses;          ///< [R x B], row-major, SI; the last iterate if not converged
-  std::span<SolveStatus> status;        ///< [B] how each solve ended
-  std::span<std::uint32_t> iterations;  ///< [B] iterations of each solve
-  std::span<double> details;  ///< [D x B] the D components of all additional outputs (Detail); empty if not wanted
+  std::span<double> responses;          ///< [responses x samples], row-major, SI; the last iterate if not converged
+  std::span<SolveStatus> status;        ///< [samples] how each solve ended
+  std::span<std::uint32_t> iterations;  ///< [samples] iterations of each solve
+  /// [components x samples] The components of all additional outputs (Detail); empty if the caller does not want them.
+  std::span<double> details;
 };
 
 /// Solves samples for one thread, and owns the thread's scratch memory. A result depends only on the arguments.
@@ -227,12 +234,12 @@ class Evaluator {
  public:
   virtual ~Evaluator() = default;
 
-  /// Solves the samples. A sample that cannot be solved is not an exception but a SolveStatus. Preconditions: the model
-  /// reaches the pose, and shapes are as stated.
+  /// Solves the samples. A sample that cannot be solved gets a SolveStatus and causes no exception. Preconditions: the
+  /// model reaches the pose, and the arrays have the stated shapes.
   virtual void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) = 0;
 };
 
-/// A quantity that shows the progress of a solver, for each iteration.
+/// A quantity that a trace lists for each iteration of a solve.
 struct TraceColumn {
   std::string name;  ///< name of the quantity, such as "largest change"
   std::string unit;  ///< SI unit, or "1"
@@ -242,11 +249,11 @@ struct TraceColumn {
 /// in other steps or from another starting point.
 struct SolveTrace {
   std::string solver;                ///< solver and starting point, such as "Newton, from ..."
-  std::vector<TraceColumn> columns;  ///< numbers of each iteration
+  std::vector<TraceColumn> columns;  ///< quantities that are listed for each iteration
   std::vector<double> rows;  ///< [iterations x columns] values of the quantities, row-major; empty without iterations
-  SolveStatus status = SolveStatus::converged;  ///< how it ended
+  SolveStatus status = SolveStatus::converged;  ///< how the solve ended
   std::uint32_t iterations = 0;                 ///< number of iterations
-  std::vector<double> responses;                ///< [R], SI; the last iterate if not converged
+  std::vector<double> responses;  ///< [responses] responses, SI; those of the last iterate if not converged
 };
 
 /// A mechanism with its geometry. The object is immutable and shared by all threads.
@@ -259,8 +266,8 @@ class Model {
   /// The reason why the mechanism cannot reach this pose (SI); empty if it can.
   virtual std::optional<std::string> unreachable(std::span<const double> pose) const = 0;
 
-  /// Nominal displacements of all joints, limb by limb, base to platform (rad, m).
-  /// Precondition: the pose is reachable.
+  /// Nominal displacements of all joints (rad, m), in the order of ModelDescription::joints. Precondition: the pose is
+  /// reachable.
   virtual std::vector<double> joint_displacements(std::span<const double> pose) const = 0;
 
   /// How close the mechanism is to a singular pose: the condition number, without unit and at least 1, of the matrix
@@ -277,7 +284,8 @@ class Model {
   /// cannot do this.
   virtual std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& /*options*/) const { return nullptr; }
 
-  /// The iterations of a solve for these errors [F] at a reachable pose, SI; none if the model cannot show them.
+  /// The iterations of a solve for these errors [number of factors] at a reachable pose, SI; none if the model cannot
+  /// show them.
   virtual std::optional<SolveTrace> trace(std::span<const double> /*pose*/, std::span<const double> /*errors*/,
                                           const SolverOptions& /*options*/) const {
     return std::nullopt;
@@ -296,20 +304,21 @@ class Model {
     return {};
   }
 
-  /// The matrix [K x D], SI, from the D components of the additional outputs (ModelDescription::details) to a vector
-  /// with K components. The norm of the vector is the response. If the response is a mean of several norms, or the
-  /// largest of them, the vector is an approximation: its norm is about as large, and its mean square is in proportion
-  /// to the sum of the mean squares of these norms. Empty for other responses. Precondition: the model reaches the
-  /// pose.
+  /// The matrix [K x D], SI, that maps the D components of the additional outputs (ModelDescription::details) to a
+  /// vector with K components. The norm of this vector is the response. If the response is a mean of several norms, or
+  /// the largest of them, the vector is an approximation: its norm is about as large as the response, and its mean
+  /// square is in proportion to the sum of the mean squares of these norms. The matrix is empty if there is no such
+  /// vector. Precondition: the model reaches the pose.
   virtual std::vector<double> norm_of_details(std::size_t /*response*/, std::span<const double> /*pose*/) const {
     return {};
   }
 
-  /// The parts of the effect of each error. Preconditions: the model separates its errors and reaches the pose.
+  /// The parts of the effect of each error. Preconditions: the model has ModelDescription::separation and reaches the
+  /// pose.
   virtual Separation separation(std::span<const double> /*pose*/) const { return {}; }
 
   /// The largest standard deviation of a response (SI) that rounding errors of the solves may cause for an error
-  /// without effect. Default 0: rounding is then taken as a fixed share of each effect (stats/indices.h).
+  /// without effect. The default 0 means that rounding is assumed to be a fixed share of each effect (stats/indices.h).
   virtual double rounding(std::size_t /*response*/) const { return 0.0; }
 
   /// The largest sensible magnitude of an error; infinite by default.
@@ -354,7 +363,7 @@ struct CatalogEntry {
   /// metrics form a list, which this member links. Null at the end of the list.
   std::shared_ptr<const CatalogEntry> other_metric = nullptr;
   /// If the description's metric is "platform": builds the mechanism with other points of the platform, at least three
-  /// (in its frame, m). Throws std::invalid_argument as build() does.
+  /// (in the platform's frame, m). Throws std::invalid_argument as build() does.
   std::function<std::unique_ptr<Model>(std::span<const double> geometry, std::size_t fidelity,
                                        std::span<const PlatformPoint> points)>
       build_with_points = nullptr;
@@ -362,11 +371,11 @@ struct CatalogEntry {
   /// For a mechanism from a file: the same mechanism with the loads of another table `[load]`, in all its metrics.
   /// Throws InputError as Catalog::from_text() does.
   std::function<CatalogEntry(const StudyValue& load)> with_load = nullptr;
-  std::string load = {};  ///< keys of another table `[load]`, as TOML; empty: the loads are those of the file
+  std::string load = {};  ///< the table `[load]` that replaces the one of the file, as TOML; empty: the file's own
 };
 
 /// Finds the entry with this metric in the list that begins with `entry` and continues by other_metric. If no entry has
-/// this metric, returns the last entry of the list if that one has no metric at all, and otherwise `entry`.
+/// this metric, returns the last entry of the list if that entry has no metric at all, and otherwise `entry`.
 const CatalogEntry& by_metric(const CatalogEntry& entry, std::string_view metric);
 
 /// The built-in mechanisms, in the order in which they are listed, and the function that reads further mechanisms from
@@ -376,7 +385,7 @@ struct Catalog : std::vector<CatalogEntry> {
   /// Reads a mechanism from the text of a file; `path` is for messages. Null: files are not supported. Throws
   /// InputError "FILE:LINE:COL: ..." if the text does not describe a mechanism.
   CatalogEntry (*from_text)(const std::string& text, const std::string& path) = nullptr;
-  /// The reference of mechanism files, as Markdown.
+  /// Returns the reference of mechanism files, as Markdown.
   std::string (*file_reference)() = nullptr;
 };
 

@@ -63,7 +63,8 @@ Response response_of(const OwnResponse& own, const ModelDescription& model) {
   return response;
 }
 
-/// Computes one of the user's responses for each sample. rows: [R x samples] all responses. to: [samples] the result.
+/// Computes one of the user's responses for each sample. rows: the values of all responses [responses x samples],
+/// row-major. to: receives the values of this response [samples].
 void form(const OwnResponse& own, std::span<const double> rows, std::span<double> to) {
   std::ranges::fill(to, 0.0);
   for (const ResponseTerm& term : own.terms) {
@@ -77,13 +78,13 @@ void form(const OwnResponse& own, std::span<const double> rows, std::span<double
   for (double& value : to) value = std::sqrt(value);
 }
 
-/// The worse of two solve statuses of one machine; `one` if both are equally bad.
+/// Returns the worse of two solve statuses of one machine, and `one` if both are equally bad.
 SolveStatus worse(SolveStatus one, SolveStatus other) {
   const auto badness = [](SolveStatus status) { return solved(status) ? 0 : usable(status) ? 1 : 2; };
   return badness(other) > badness(one) ? other : one;
 }
 
-/// Computes the user's own responses. In an array of responses their rows follow those of the model.
+/// Computes the user's own responses. In an array of responses, the user's rows follow those of the model.
 class OwnRows {
  public:
   /// responses: the number of the model's responses.
@@ -99,7 +100,7 @@ class OwnRows {
   std::size_t of_model() const { return responses_; }
   /// The number of all responses.
   std::size_t all() const { return responses_ + own_->size(); }
-  /// The reference poses of the relative responses, each once. An empty list of numbers means the previous pose.
+  /// The reference poses of the relative responses, each once. An empty pose means the previous pose.
   const std::vector<std::vector<double>>& references() const { return references_; }
   /// The position of the previous pose in references(); none if no response is relative to it.
   std::optional<std::size_t> previous() const {
@@ -108,13 +109,13 @@ class OwnRows {
     return static_cast<std::size_t>(found - references_.begin());
   }
 
-  /// Computes the user's responses in `rows` [all x samples], as if no response were relative to a pose.
+  /// Computes the user's responses in `rows` [all() x samples], as if no response were relative to a pose.
   void form_all(std::span<double> rows, std::size_t samples) const {
     for (std::size_t k = 0; k < own_->size(); ++k) form((*own_)[k], rows, row(rows, k, samples));
   }
 
-  /// Subtracts the values `there` from those responses that are relative to this reference pose. If `there` is empty,
-  /// sets these responses to 0.
+  /// Subtracts the responses `there` at a reference pose from those rows of responses that are relative to this pose.
+  /// reference: position of the pose in references(). If `there` is empty, sets these rows to 0.
   void subtract(std::span<double> rows, std::size_t reference, std::span<const double> there,
                 std::size_t samples) const {
     for (std::size_t k = 0; k < own_->size(); ++k) {
@@ -128,7 +129,7 @@ class OwnRows {
     }
   }
 
-  /// Computes again those responses that are not relative themselves, because terms of them may be relative.
+  /// Computes the responses that are not relative themselves once more, because their terms may be relative.
   void form_the_rest(std::span<double> rows, std::size_t samples) const {
     for (std::size_t k = 0; k < own_->size(); ++k) {
       if (!(*own_)[k].relative_to) form((*own_)[k], rows, row(rows, k, samples));
@@ -146,7 +147,8 @@ class OwnRows {
 };
 
 /// The samples of a block and their responses at one pose. Machines are solved at one pose after the other, so most
-/// blocks have the same samples as the block before. The responses at a reference pose are then computed only once.
+/// blocks have the same samples as the block before, and the responses at a reference pose need to be computed only
+/// once.
 struct SolvedBlock {
   std::vector<double> pose;
   std::vector<double> errors;
@@ -154,7 +156,7 @@ struct SolvedBlock {
   std::vector<double> values;
   std::size_t count = 0;
   double range = 0.0;
-  std::vector<double> responses;  ///< [all responses x B samples], as if no response were relative to a pose
+  std::vector<double> responses;  ///< [all() x count], as if no response were relative to a pose
   std::vector<SolveStatus> status;
   std::vector<std::uint32_t> iterations;
 
@@ -225,7 +227,7 @@ class EvaluatorOfOwn final : public Evaluator {
 
   std::unique_ptr<Evaluator> inner_;
   const OwnRows* rows_;
-  std::vector<SolvedBlock> there_;  ///< [references] last samples that were solved at each reference pose
+  std::vector<SolvedBlock> there_;  ///< [reference poses] samples that were last solved at each reference pose
   SolvedBlock here_;                ///< block at the present pose, to which the next block may be relative
 };
 
@@ -271,7 +273,7 @@ class ModelOfOwn final : public ForwardingModel {
     return list;
   }
 
-  /// The result has NaN for responses that are relative to the previous pose, because only one pose is given.
+  /// In the result, a response that is relative to the previous pose is NaN, because only one pose is given.
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
                                   const SolverOptions& options) const override {
     std::optional<SolveTrace> trace = formed_trace(pose, errors, options);
@@ -292,8 +294,8 @@ class ModelOfOwn final : public ForwardingModel {
     return is_own(response) ? std::vector<double>() : ForwardingModel::norm_of_details(response, pose);
   }
 
-  /// The sum of the rounding of the response's terms. If the response is relative to another pose, the terms at both
-  /// poses count.
+  /// For one of the user's responses: the sum of the rounding of its terms. The sum counts twice for a response that is
+  /// relative to another pose, because the terms at both poses count.
   double rounding(std::size_t response) const override {
     if (!is_own(response)) return ForwardingModel::rounding(response);
     const OwnResponse& own = own_[response - inner().responses.size()];

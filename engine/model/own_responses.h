@@ -9,14 +9,15 @@
 
 namespace poesy {
 
-/// A term of a user's response: another response times a weight.
+/// A term of a response that a user defines: another response times a weight.
 struct ResponseTerm {
   std::size_t response;  ///< position in the list of the model's responses followed by the user's earlier ones
-  double weight = 1.0;   ///< factor on the response, SI
+  double weight = 1.0;   ///< factor by which the response is multiplied, SI
   Dimension weighed_in = Dimension::number;  ///< dimension of the weight: number or length
 };
 
-/// The pose at which a response is evaluated with the same errors. Its value there is subtracted from the response.
+/// The pose to which a response is relative: the value of the response at this pose, with the same errors, is
+/// subtracted.
 struct ReferencePose {
   std::vector<double> pose = {};  ///< [pose coordinates], SI; empty: the previous pose (SampleBlock::previous)
   Place place = {};               ///< place in the study file, for messages
@@ -31,8 +32,8 @@ struct OwnResponse {
   bool is_norm;                     ///< true: root of the sum of the squares of the terms; false: sum of the terms
   std::vector<ResponseTerm> terms;  ///< terms, at least one; each response once
   std::string description = {};     ///< explanation for users; empty: the list of the terms
-  /// The pose at which the subtracted value is taken. Only a sum of terms that are not relative may have one. At the
-  /// first pose, which has no previous pose, a response relative to the previous pose is 0.
+  /// The pose to which the response is relative; none: it is absolute. Only a sum whose terms are absolute may have
+  /// one. A response relative to the previous pose is 0 at the first pose.
   std::optional<ReferencePose> relative_to = {};
 };
 
@@ -41,15 +42,15 @@ struct OwnResponse {
 /// moment. Empty for other products.
 std::optional<Dimension> dimension_of(const ResponseTerm& term, const ModelDescription& model);
 
-/// The description with these responses appended. A summary shows them first.
+/// The description with the user's responses appended. A summary shows them first.
 ModelDescription described(ModelDescription model, const std::vector<OwnResponse>& own);
 
-/// The model with these responses appended. They are computed sample by sample, before any statistics. If a sample is
-/// not solved at the reference pose of a response, it counts as not solved at every pose. Throws InputError, with the
-/// place of the pose in the study, if a response is relative to a pose that the model does not reach.
+/// The model with the user's responses appended. They are computed sample by sample, before any statistics. If a sample
+/// is not solved at the reference pose of a response, it counts as not solved at every pose. Throws InputError, with
+/// the place of the pose in the study, if a response is relative to a pose that the model does not reach.
 std::unique_ptr<Model> with_responses(std::unique_ptr<Model> model, std::vector<OwnResponse> own);
 
-/// The catalog entry with these responses. The entries for its other metrics and loads do not get them.
+/// The catalog entry with the user's responses. The entries for other metrics and loads that it links do not get them.
 CatalogEntry with_responses(CatalogEntry entry, const std::vector<OwnResponse>& own);
 
 }  // namespace poesy

@@ -12,9 +12,9 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kRows = 4;  // responses of each point: x, y, z, position
+constexpr std::size_t kRows = 4;  // rows of each point among the responses: x, y, z, position
 
-/// The vector from the platform's origin to a point, in the base's axes (m). place: the same in the platform's frame;
+/// The vector from the platform's origin to a point, in the base's axes (m). place: the point in the platform's frame.
 /// R: base_R_platform.
 PlatformPoint arm_of(const PlatformPoint& place, const std::array<double, 9>& R) {
   PlatformPoint arm{};
@@ -29,9 +29,9 @@ struct Turn {
   double twice;
 };
 
-/// The factors for a rotation vector theta. square: |theta|^2.
+/// The factors for a rotation vector theta with |theta|^2 = `square`.
 Turn turn_of(double square) {
-  constexpr double kSmall = 1e-4;  // below this, further terms of the series are below rounding
+  constexpr double kSmall = 1e-4;  // if |theta|^2 is smaller, the neglected terms of the series are below rounding
   if (square < kSmall) {
     return {1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)),
             0.5 - square / 24.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0))};
@@ -45,7 +45,7 @@ std::array<double, 3> cross(const std::array<double, 3>& a, const std::array<dou
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// The position of the response of this name. Precondition: it exists.
+/// The position of the response of this name. Precondition: the model has this response.
 std::size_t row_of(const ModelDescription& model, std::string_view name) {
   const auto found = std::ranges::find(model.responses, name, &Response::name);
   POESY_EXPECTS(found != model.responses.end());
@@ -120,7 +120,8 @@ class PointedModel final : public ForwardingModel {
     return arms;
   }
 
-  /// Computes the responses of the points from the displacement of the platform. rows: [all responses x samples].
+  /// Computes the responses of the points from the displacement of the platform. rows: the values of all responses
+  /// [responses x samples], row-major.
   void displace(std::span<const PlatformPoint> arms, std::span<double> rows, std::size_t samples) const {
     for (std::size_t b = 0; b < samples; ++b) {
       std::array<double, 3> moved{};
@@ -178,8 +179,8 @@ class PointsEvaluator final : public Evaluator {
   }
 
  private:
-  /// The number of poses whose vectors are kept. Many blocks have the same pose, and computing the orientation there
-  /// may take an iteration.
+  /// The largest number of poses for which the vectors to the points are kept. Many blocks have the same pose, and a
+  /// model may need an iteration to compute the orientation at a pose.
   static constexpr std::size_t kMostPoses = 1024;
 
   std::span<const PlatformPoint> arms_at(std::span<const double> pose) {

@@ -11,7 +11,7 @@
 
 namespace poesy {
 
-/// A point of the platform whose displacement is reported.
+/// A point of the platform for which a model reports the displacement.
 struct NamedPlatformPoint {
   std::string name;     ///< name of the point; its responses are NAME_x, NAME_y, NAME_z and NAME_position
   PlatformPoint place;  ///< position in the platform's frame (m)
@@ -21,10 +21,10 @@ struct NamedPlatformPoint {
 /// [3 x 3], row-major.
 using PlatformOrientation = std::function<std::array<double, 9>(std::span<const double> pose)>;
 
-/// The model with the displacements of these points appended to its responses, in the base's axes. The model must have
-/// the responses x, y, z (displacement of the platform's origin) and theta_x, theta_y, theta_z (rotation vector). With
-/// r the nominal vector from the platform's origin to the point, the displacement of the point is d = (x, y, z) +
-/// (exp(theta) - 1) r, or d = (x, y, z) + theta x r if `is_linear`.
+/// The model with the displacements of these points, in the base's axes, appended to its responses. The model must have
+/// the responses x, y, z (displacement of the platform's origin) and theta_x, theta_y, theta_z (rotation vector). If r
+/// is the nominal vector from the platform's origin to a point, the displacement of the point is (x, y, z) +
+/// (exp(theta) - 1) r, or (x, y, z) + theta x r if `is_linear`.
 std::unique_ptr<Model> with_platform_points(std::unique_ptr<Model> model, std::vector<NamedPlatformPoint> points,
                                             PlatformOrientation orientation, bool is_linear);
 

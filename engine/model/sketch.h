@@ -7,22 +7,23 @@
 
 namespace poesy {
 
-/// A point or a direction in the base frame (m), at one pose.
+/// A point (m) or a direction in the base frame, at one pose.
 using SketchVector = std::array<double, 3>;
 
 /// A joint in a picture.
 struct SketchedJoint {
   std::string name;  ///< name in the mechanism's file; empty if it has none
-  char type;      ///< R (revolute), P (prismatic), H (helical), C (cylindrical), U (universal), S (spherical); F for a
-                  ///< fixed frame
-  bool actuated;  ///< true if a drive moves the joint
+  /// Type: R (revolute), P (prismatic), H (helical), C (cylindrical), U (universal), S (spherical); F for a fixed
+  /// frame.
+  char type;
+  bool actuated;       ///< true if a drive moves the joint
   SketchVector point;  ///< point of the joint: the origin of `frame` before the joint moves
   SketchVector axis;   ///< direction of the joint's first axis
   /// True if the frame from this joint to the next one, or to the platform, has errors; for the first joint also true
   /// if the joint itself or the base has errors.
   bool has_errors;
-  std::size_t first = 1;   ///< position, in the limb, of the frame of the joint's first axis
-  std::size_t frame = 1;   ///< position, in the limb, of the frame at whose origin the joint is
+  std::size_t first = 1;   ///< position in the limb of the frame of the joint's first axis
+  std::size_t frame = 1;   ///< position in the limb of the frame that has its origin at the joint
   std::string drive = {};  ///< name of the drive; empty if the joint has none
 };
 
@@ -35,22 +36,22 @@ struct SketchedFrame {
 /// A small motion of the platform as a twist [omega; v] at the base's origin (rad, m).
 using SketchTwist = std::array<double, 6>;
 
-/// An error in a picture. Joints count from 1, from the base to the platform: 0 is the base, and the number after the
-/// last joint is the platform.
+/// An error in a picture. `after` and `before` count the joints of the limb from 1, from the base to the platform; 0
+/// means the base, and the number after the last joint means the platform.
 struct SketchedError {
   std::size_t limb;    ///< limb, counted from 0
-  std::size_t frame;   ///< position of the error's frame in the limb's list in Sketch::frames
+  std::size_t frame;   ///< position of the error's frame in the limb's list of Sketch::frames
   std::size_t axis;    ///< axis of that frame: 0, 1 or 2
-  bool turns;          ///< whether the error is a rotation about the axis; otherwise a displacement along it
-  std::size_t after;   ///< preceding joint
-  std::size_t before;  ///< following joint; equal to `after` for an error inside a joint
-  /// The first-order motions of the platform by the error, one as seen by each limb, after the passive joints have
-  /// adapted; per SI unit of the error. Only one motion if it is the same in all limbs. Empty if passive joints are in
-  /// a singular configuration.
+  bool turns;          ///< true: rotation about the axis; false: displacement along it
+  std::size_t after;   ///< joint, or base, before the error
+  std::size_t before;  ///< joint, or platform, after the error; equal to `after` for an error inside a joint
+  /// The first-order motion of each limb's platform end by the error, after the passive joints have adapted, per SI
+  /// unit of the error. Only one motion if it is the same for all limbs. Empty if passive joints are in a singular
+  /// configuration.
   std::vector<SketchTwist> motions;
 };
 
-/// A body between limbs.
+/// A body at which limbs begin or end.
 struct SketchedBody {
   std::string name;     ///< name in the mechanism's file
   SketchVector origin;  ///< origin of the body's frame
@@ -73,7 +74,7 @@ struct SketchedFeature {
   std::string name;   ///< name on the drawing, such as "rail"
   std::string zones;  ///< tolerances as text, such as "position 0.05 mm to A|B"; empty: none
   std::size_t limb;   ///< limb, counted from 0
-  std::size_t frame;  ///< position of the part's frame in the limb's list in Sketch::frames
+  std::size_t frame;  ///< position of the part's frame in the limb's list of Sketch::frames
   /// Shape in the frame of the part (m): the ends of an axis, the corners of a plane in order, or one point.
   std::vector<SketchVector> outline;
 };
@@ -84,19 +85,20 @@ struct Sketch {
   std::vector<std::vector<SketchedJoint>> limbs;
   SketchVector platform;           ///< origin P of the platform
   std::vector<SketchVector> tool;  ///< position of the tool's tip; empty if there is no tool
-  /// The frames of each limb: base, axes of the joints, platform. If errors_at_joints is set, errors of the base and of
-  /// the platform rotate about the first and the last joint; the origins of these two frames are then at those joints.
+  /// [limbs] The frames of each limb: base, axes of the joints, platform. If errors_at_joints is set, the origins of
+  /// the first and the last frame are at the first and the last joint, because angle errors of these frames turn about
+  /// the joints.
   std::vector<std::vector<SketchedFrame>> frames = {};
-  std::vector<SketchedError> errors = {};  ///< [F] errors, in the order of ModelDescription::factors
+  std::vector<SketchedError> errors = {};  ///< errors, in the order of ModelDescription::factors
   bool errors_at_joints = false;  ///< true if angle errors of the first and last frames turn about the joints there
   bool z_is_down = false;         ///< true if the base's z axis points to the ground
   /// [limbs] bodies at the ends of each limb; empty: all limbs connect the base and the platform.
   std::vector<SketchedEnds> ends = {};
   std::vector<SketchedPoint> points = {};  ///< named points of the platform
-  std::vector<SketchedBody> bodies = {};   ///< base, platform, and bodies between them; empty if there are none between
+  std::vector<SketchedBody> bodies = {};   ///< base, platform, and further bodies; empty if there are no further bodies
   std::vector<SketchedFeature> features = {};  ///< features of the drawing
-  /// [limbs] The end of a response's name after "force_", where the response is the force in this limb; empty: there
-  /// are no such responses.
+  /// [limbs] The label of each limb in names of responses: "force_LABEL" is the force in the limb. Empty: there are no
+  /// such responses.
   std::vector<std::string> labels = {};
 
   /// The bodies at the ends of a limb.

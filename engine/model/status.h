@@ -8,10 +8,10 @@ namespace poesy {
 
 /// How the solve of one sample ended.
 enum class SolveStatus : std::uint8_t {
-  converged,      ///< the change of the residual fell below the tolerance
+  converged,      ///< the change in an iteration fell below the tolerance (SolverOptions::tolerance)
   stagnated,      ///< the change stays at rounding level without falling further: as exact as doubles allow
-  iteration_cap,  ///< still changing after the allowed number of iterations
-  singular,       ///< the matrix of the normal equations cannot be factored
+  iteration_cap,  ///< the solution still changed after the allowed number of iterations
+  singular,       ///< the matrix of the equations cannot be factored
   non_finite,     ///< a value overflowed or became undefined
   not_assembled   ///< no solution exists: the loops of a machine with these errors cannot be closed
 };

@@ -12,23 +12,23 @@
 #include "engine/result/result_file.h"
 #include "engine/schema/settings.h"
 
-/// Functions that show values to people. All tables make their columns and cells with them. They also convert the
-/// settings of a study to readable text.
+/// Functions that show values to people. All tables make their columns and cells with them. Some convert the settings
+/// of a study to readable text.
 namespace poesy {
 
 /// The index of a response in the result. Precondition: the result has the response.
 std::size_t response_named(const StoredResult& result, std::string_view name);
 
-std::string count_text(std::uint64_t count);  ///< A count with its digits in groups of three: "17 380 000".
+std::string count_text(std::uint64_t count);  ///< A whole number with its digits in groups of three: "17 380 000".
 /// A number with a noun: "1 pose", "3 poses".
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 std::string number_text(double value, int digits = 4);  ///< A number to this many significant digits; "-" for NaN.
-/// A share in percent, without the sign: "1.25", "99.73"; "-" for NaN. Three digits are shown: of the share, or, above
-/// 90 %, of its difference from 100 %.
+/// A share in percent, without the sign "%": "1.25", "99.73"; "-" for NaN. Up to 90 %, three significant digits are
+/// shown. Above 90 %, so many decimals are shown that the difference from 100 % has three digits.
 std::string percent_number(double share);
-/// A share in percent, as percent_number(), with the sign: "99.73 %"; "-" for NaN.
+/// A share in percent as percent_number() gives it, with the sign: "99.73 %"; "-" for NaN.
 std::string percent_text(double share);
-/// The unit in which results show this quantity, "mm"; empty for a number without unit.
+/// The unit in which results show this quantity, "mm"; empty if the quantity has no unit.
 std::string unit_text(const NamedUnit& named);
 
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things);  ///< The names of the things, in order.
@@ -36,8 +36,8 @@ std::vector<std::string> names_of(const std::vector<NamedUnit>& things);  ///< T
 /// A list of names that is cut after `most` names: "a, b, c and 3 more".
 std::string some_names(const std::vector<std::string>& names, std::size_t most = 5);
 
-/// Pairs of indices: for each name that two lists have in common, its index in the first list and its index in the
-/// second list. The pairs are in the order of the first list.
+/// For each name that two lists have in common: its position in the first list, and its position in the second list.
+/// The pairs are in the order of the first list.
 using Common = std::vector<std::pair<std::size_t, std::size_t>>;
 
 /// Finds the names that both lists have.
@@ -47,7 +47,7 @@ Common common(const std::vector<std::string>& a, const std::vector<std::string>&
 std::vector<std::string> only_in(const std::vector<std::string>& these, const std::vector<std::string>& others);
 
 /// The metric that weighs angles against lengths, in words: "platform, by displacement of 3 points". Empty if the
-/// result has none.
+/// result has no metric.
 std::string metric_text(const StoredResult& result);
 
 /// A value of a response (SI) as text in the unit that results show: "0.05 mm".
@@ -59,24 +59,24 @@ std::string coordinates_text(const StoredResult& result, std::size_t pose);
 /// A pose with its coordinates: "pose 14 (z -190 mm)".
 std::string place_text(const StoredResult& result, std::size_t pose);
 
-/// A column of words. dispensable: see Column::dispensable, also in the functions below.
+/// A column of words. dispensable: see Column::dispensable; the same in the functions below.
 Column text_column(std::string name, std::string heading, int dispensable = 0);
-/// A column of numbers that have one unit, or none.
+/// A column of numbers. unit: unit of all numbers; empty if they have none, or not the same.
 Column number_column(std::string name, std::string heading, std::string_view unit = "", int dispensable = 0);
 Column percent_column(std::string name, std::string heading, int dispensable = 0);  ///< A column of shares, in percent.
 
 /// A column and a function that makes its cells.
 struct FilledColumn {
   Column column;                          ///< heading, unit and kind of the column
-  std::function<Cell(std::size_t)> cell;  ///< makes the cell of the thing with this index
+  std::function<Cell(std::size_t)> cell;  ///< makes the cell for the thing with this index
 };
 
-/// Adds these columns to a table, and a row for each of these indices.
+/// Adds these columns to a table, and a row for each of these indices of things.
 void fill(Table& table, const std::vector<std::size_t>& positions, const std::vector<FilledColumn>& columns);
 
-/// A column with the names of things. word: heading of the column. Keeps a reference to the things.
+/// A column with the names of things. word: heading of the column. The result refers to the things.
 FilledColumn name_column(const std::vector<NamedUnit>& things, const std::string& word);
-/// A column with the units in which results show things. Keeps a reference to the things.
+/// A column with the units in which results show things. The result refers to the things.
 FilledColumn unit_column(const std::vector<NamedUnit>& things);
 
 std::vector<std::size_t> positions(std::size_t count);  ///< The indices 0, 1, ..., count - 1.
@@ -87,14 +87,15 @@ Cell number_cell(double value, int digits = 4);  ///< A cell with a number to th
 Cell value_cell(double si, const NamedUnit& named, int digits = 4);
 Cell count_cell(std::uint64_t count);  ///< A cell with a whole number, with all its digits.
 Cell percent_cell(double share);       ///< A cell with a share, for a percent_column().
-/// A cell with a sensitivity index or an end of its interval, which is shown as index * scale. A value below `rounding`
-/// (stats/indices.h) is shown as 0, or as kTooSmall without a number if the error is too small to tell.
+/// A cell with a sensitivity index, or with an end of its interval, shown as index * scale. A value below `rounding`
+/// (stats/indices.h) is shown as 0. If the value cannot be distinguished from rounding, the cell has the text kTooSmall
+/// and no number.
 Cell index_cell(double index, double scale, double rounding);
 
 /// The text for an index that cannot be distinguished from rounding.
 inline constexpr std::string_view kTooSmall = "rounding";
 
-/// The value of a study_setting() for people: without quotes and braces, quantities in mm and deg.
+/// A value that study_setting() returns, for people: without quotes and braces, quantities in mm and deg.
 std::string readable_setting(std::string_view value);
 
 /// The value of a key of a section in a resolved study, for people.

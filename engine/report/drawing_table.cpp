@@ -15,17 +15,18 @@
 namespace poesy {
 namespace {
 
-/// What the names of a feature's errors have between its label and the number of the limb.
+/// The directions in names of errors: a feature's error is named by the feature's label, a direction, and the limb's
+/// number.
 constexpr std::array<std::string_view, 8> kDirections{"", "_x", "_y", "_z", "_lean_x", "_lean_y", "_lift_x", "_lift_y"};
 
-/// "position 0.05 A|B", or "-".
+/// A zone as text: "position 0.05 A|B"; "-" if the feature has no such zone.
 std::string zone_text(const std::string& key, double size, const std::string& datums) {
   if (key == "-") return key;
   const bool is_size = key == "tolerance";
   return fmt::format("{}{:.6g}{}", is_size ? "+-" : key + " ", 1e3 * size, datums == "-" ? "" : " " + datums);
 }
 
-/// The number of errors of a feature that are measured.
+/// The number of errors of a feature that are measured. q: position of the feature in the result.
 std::size_t measured_errors(const StoredResult& result, std::size_t q) {
   const std::string& label = result.drawing->label(q);
   const std::string limb = result.drawing->names[q].substr(std::min(label.size(), result.drawing->names[q].size()));
@@ -37,7 +38,8 @@ std::size_t measured_errors(const StoredResult& result, std::size_t q) {
   return static_cast<std::size_t>(std::ranges::count_if(result.measured.names, is_of_feature));
 }
 
-/// Whether the zones of a feature are between planes, so that only one of its two directions has an error.
+/// Returns true if the zones of a feature are between two planes, so that their size is no diameter: always for a
+/// plane, for an axis or a point if errors in only one of the directions x and y exist.
 bool is_between_planes(const StoredResult& result, std::size_t q) {
   const DrawingResult& found = *result.drawing;
   const std::string& kind = found.kind(q);
@@ -51,7 +53,7 @@ bool is_between_planes(const StoredResult& result, std::size_t q) {
   return has("x") != has("y");
 }
 
-/// The cell of a zone, with a tolerance frame. For a distance or a clearance the cell has no frame.
+/// The cell of a zone, with a tolerance frame unless the zone is that of a distance or a clearance.
 Cell zone_cell(const StoredResult& result, std::size_t q, const std::string& key, double size,
                const std::string& datums) {
   if (key != "-" && measured_errors(result, q) > 0) {

@@ -16,10 +16,11 @@
 namespace poesy {
 namespace {
 
-/// The keys of [errors] by which all errors of a dimension have one distribution.
+/// The keys of [errors] that give all errors of a dimension one distribution.
 constexpr std::array<std::string_view, 3> kOfDimensions{"linear", "angular", "relative"};
 
-/// Whether the study sets errors by their dimension alone: no zones, overrides, parts, machines or correlations.
+/// Returns true if the study sets errors by their dimension alone: no zones, overrides, parts, machines or
+/// correlations.
 bool sizes_by_dimension(const StoredResult& result) {
   return std::ranges::all_of(study_settings(result.study_text), [](const StudySetting& one) {
     const bool of_dimension =
@@ -28,7 +29,7 @@ bool sizes_by_dimension(const StoredResult& result) {
   });
 }
 
-/// "linear: distribution = normal, sigma = 0.02 mm" for each dimension that an error has.
+/// The size of errors for each dimension that an error has: "linear: distribution = normal, sigma = 0.02 mm".
 std::vector<std::string> sizes_of_dimensions(const StoredResult& result) {
   std::vector<std::string> sizes;
   for (const std::string_view key : kOfDimensions) {
@@ -40,7 +41,7 @@ std::vector<std::string> sizes_of_dimensions(const StoredResult& result) {
   return sizes;
 }
 
-/// "24 normal with standard deviations of 0.002 to 0.02 mm" for each distribution and unit of the errors.
+/// The sizes of errors for each distribution and unit: "24 normal with standard deviations of 0.002 to 0.02 mm".
 std::vector<std::string> sizes_of_distributions(const StoredResult& result) {
   std::map<std::pair<std::string, std::string>, std::vector<double>> groups;
   for (std::size_t p = 0; p < result.factor_sigma.size(); ++p) {

@@ -15,7 +15,7 @@ namespace poesy {
 
 using Json = nlohmann::ordered_json;
 
-// The JSON library finds these functions by argument-dependent lookup. It uses them for lists of these types, too.
+// The JSON library finds these functions by argument-dependent lookup, also for the elements of lists.
 
 static void to_json(Json& json, const NamedUnit& thing) {
   json = {{"name", thing.name}, {"unit", thing.unit}, {"description", thing.description}};
@@ -59,7 +59,7 @@ static void to_json(Json& json, const SolveCounts& solves) {
 
 namespace {
 
-/// The seed of the result's study; null if its text has none.
+/// The seed in the text of the result's study; null if the text has none.
 Json seed_of(const StoredResult& result) {
   const Json seed = Json::parse(study_setting(result.study_text, "run", "seed"), nullptr, false);
   return seed.is_number_unsigned() ? seed : Json(nullptr);
@@ -92,8 +92,7 @@ Json ranked_json(const RankedResult& ranked) {
   return all;
 }
 
-/// JSON as text. The library escapes only control characters below U+0020, so other control characters are escaped
-/// here.
+/// JSON as text. The library escapes only control characters below U+0020, so this function escapes the others.
 std::string text_of(const Json& all) {
   const std::string json = all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   std::string text;

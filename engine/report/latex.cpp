@@ -18,7 +18,7 @@ namespace poesy {
 namespace {
 
 constexpr std::size_t kMostRowsOfAPage = 40;
-/// Most columns of a page; tables with more leave out columns that are dispensable.
+/// The largest number of columns that fit on a page. Tables with more columns leave out those that are dispensable.
 constexpr std::size_t kMostColumns = 9;
 constexpr std::size_t kFewColumns = 6;  ///< tables with at most this many columns are printed in the size of the text
 
@@ -57,7 +57,7 @@ std::string_view escaped(char c) {
   }
 }
 
-/// A sign beyond ASCII with what standard LaTeX has for it.
+/// A sign beyond ASCII, and its code in LaTeX.
 struct Sign {
   std::string_view sign;   ///< UTF-8
   std::string_view latex;  ///< LaTeX code of the sign, for pdflatex without further packages
@@ -76,8 +76,8 @@ constexpr std::array kSigns{Sign{"\u00b1", "$\\pm$"},     Sign{"\u2300", "\\O{}"
                             Sign{"\u03c3", "$\\sigma$"},  Sign{"\u03c6", "$\\phi$"},     Sign{"\u03c8", "$\\psi$"},
                             Sign{"\u03c9", "$\\omega$"},  Sign{"\u0394", "$\\Delta$"}};
 
-/// A character beyond ASCII: a letter of Latin alphabets as it is, because LaTeX reads UTF-8; a sign by its command,
-/// one of a drawing by its word; "?" for others, which pdflatex refuses.
+/// A character beyond ASCII. A letter of Latin alphabets stays unchanged, because LaTeX reads UTF-8. A sign becomes its
+/// command, and a sign of a drawing becomes its word. All others become "?", because pdflatex refuses them.
 std::string beyond_ascii(std::string_view character) {
   const auto known = std::ranges::find(kSigns, character, &Sign::sign);
   if (known != kSigns.end()) return std::string(known->latex);
@@ -95,8 +95,8 @@ std::string latex_unit(const std::string& unit) {
   return is_micro ? "$\\mu$" + text.substr(1) : text;
 }
 
-/// A number such as "-1.2e-05" in LaTeX's mathematics mode; none if the text is not a number. Blanks between groups of
-/// digits are allowed.
+/// A number such as "-1.2e-05" in LaTeX's mathematics mode; none if the text is not a number. Groups of digits may be
+/// separated by blanks.
 std::optional<std::string> latex_number(const std::string& text) {
   std::string digits = text;
   std::erase(digits, ' ');
@@ -119,15 +119,15 @@ std::string latex_cell(const Cell& cell, Column::Kind kind) {
   return latex_number(cell.text).value_or(latex_text(cell.text));
 }
 
-/// Whether a paper prints a column: not where it is dispensable in a table of many columns, and not a column of words
-/// that says nothing.
+/// Returns true if a paper prints a column. Of a table with many columns, dispensable columns and columns without
+/// content are not printed.
 bool is_printed(const Table& table, std::size_t c) {
   if (table.columns.size() <= kMostColumns) return true;
   if (table.columns[c].dispensable > 0) return false;
   return std::ranges::any_of(table.rows, [c](const std::vector<Cell>& row) { return row[c].text != "-"; });
 }
 
-/// The table with the columns that a paper prints.
+/// The table, reduced to the columns that a paper prints.
 Table printed(const Table& table) {
   Table made = table;
   for (std::size_t c = table.columns.size(); c-- > 0;) {

@@ -7,14 +7,13 @@
 
 namespace poesy {
 
-/// A comment by which poesy recognises pictures that it wrote.
+/// A comment in the file by which poesy recognises pictures that it wrote.
 inline constexpr std::string_view kPictureMark = "<!-- picture of poesy -->";
 
-/// The mechanism at home as an SVG document, seen from the front, the side and above, and in space. Each limb has its
-/// own colour from the base to the platform. A joint has the glyph of its type with a tick along its axis, filled if a
-/// drive moves the joint. A ring surrounds joints whose frames have errors. Features of the drawing are bars along
-/// axes, plates in planes, and dots; their titles are their names and zones. There is a scale bar. All texts are
-/// escaped.
+/// The mechanism at home as an SVG document, seen from the front, from the side, from above, and in space. Each limb
+/// has its own colour. A joint has the glyph of its type, filled if a drive moves the joint, and a tick along its axis.
+/// A ring surrounds joints whose frames have errors. Features of the drawing are bars along axes, plates in planes, and
+/// dots; their titles are their names and zones. There is a scale bar. All texts are escaped.
 std::string mechanism_picture(const Sketch& sketch, std::string_view title);
 
 }  // namespace poesy

@@ -33,15 +33,15 @@ std::string text_of(const Merit& merit, double value) {
   return number_text(value, kDigits) + (merit.unit.empty() ? "" : " " + merit.unit);
 }
 
-/// A change of a figure of merit in words: "+6.74 percentage points" for a share, else in percent of the value in A,
-/// "-17 %".
+/// A change of a figure of merit in words: "+6.74 percentage points" for a share, otherwise in percent of the value in
+/// A: "-17 %".
 std::string change_text(const Merit& a, const MeritChange& change) {
   if (a.unit == "%") return fmt::format("{:+.3g} percentage points", change.value);
   return fmt::format("{:+.3g} %", 100.0 * change.value / std::abs(a.value));
 }
 
 std::string interval_text(const Merit& a, const MeritChange& change) {
-  // The interval is not known, or the change is exact.
+  // There is no text if the interval is not known or the change is exact.
   if (std::isnan(change.low) || change.low == change.high) return {};
   const double scale = a.unit == "%" ? 1.0 : 100.0 / std::abs(a.value);
   return fmt::format(", interval {:+.3g} to {:+.3g}", scale * change.low, scale * change.high);
@@ -90,8 +90,8 @@ Cell change_cell(double change) {
   return cell;
 }
 
-/// A row of the table that compares results: one figure of merit of one result. first: the same figure of merit of the
-/// first result, A. result: index of the result.
+/// A row of the table of figures of merit: one figure of merit of one result. first: the same figure of merit of result
+/// A. result: index of the result.
 std::vector<Cell> row_of(const Merit& first, const Merit& merit, std::size_t result) {
   std::vector<Cell> row{text_cell(merit.what),
                         text_cell(merit.unit),

@@ -19,63 +19,65 @@ struct ReportKind;
 /// A figure of merit: one number of a result by which designs are compared, such as a yield, a total or a cost.
 struct Merit {
   std::string what;        ///< what the number is: "yield", "cost of all parts"
-  std::string unit = {};   ///< unit in which it is shown; empty for a number without unit
-  double value = kNaN;     ///< the number in this unit
-  double low = kNaN;       ///< lower end of its confidence interval; NaN if it has none
-  double high = kNaN;      ///< upper end of its confidence interval; NaN if it has none
+  std::string unit = {};   ///< unit of the numbers below; empty if they have no unit
+  double value = kNaN;     ///< value of the figure of merit
+  double low = kNaN;       ///< lower end of the confidence interval; NaN if there is none
+  double high = kNaN;      ///< upper end of the confidence interval; NaN if there is none
   bool most_best = false;  ///< true if a larger value is better, false if a smaller one is
 };
 
-/// The name of the yield as a figure of merit.
+/// What the yield is called as a figure of merit.
 inline constexpr std::string_view kYieldMerit = "yield";
 
 /// The largest number of results that can be compared, because letters name them.
 inline constexpr std::size_t kMostResults = 26;
 
-/// The name of one of several results: 'A', 'B', ... Precondition: result < kMostResults.
+/// The letter for one of several results: 'A', 'B', ... Precondition: result < kMostResults.
 char letter_of(std::size_t result);
 
-/// The response whose totals are compared. If all results have the first result's default_ranking(), it is that
-/// response; otherwise it is the first response that all results have. Empty if they have no response in common.
+/// The response for which results are compared by totals. It is default_ranking() of the first result if all results
+/// have this response, and otherwise the first response that all results have. Empty if they have no response in
+/// common.
 std::string compared_response(std::span<const StoredResult* const> results);
 
-/// The yield of machines as a figure of merit. If errors are drawn from measured parts, its interval also includes the
-/// uncertainty from the small number of these parts.
+/// The yield of machines as a figure of merit. If errors are drawn from measured parts, the interval also includes the
+/// uncertainty from the small number of measured parts.
 Merit yield_merit(const YieldVerdict& yield);
 
-/// The figures of merit of each of these results, with the totals of compared_response(). The lists are empty if the
-/// kind of study has no figures of merit, or if the results have different metrics, because equal names then mean
-/// different things.
+/// The figures of merit of each of these results; totals are those of compared_response(). The lists are empty if the
+/// kind of study has no figures of merit, or if the results have different metrics, because with different metrics
+/// equal names mean different things.
 std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results);
 
-/// The verdict on a change.
+/// The verdict on a change of a figure of merit from one result to another.
 enum class Change { better, worse, not_told_apart, without_interval };
 
-/// The change of a figure of merit from result A (with value a) to result B (with value b).
+/// The change of a figure of merit from result A, where its value is a, to result B, where its value is b.
 struct MeritChange {
-  double value = kNaN;                        ///< difference b - a, in the unit shown
+  double value = kNaN;                        ///< difference b - a, in the unit of the figure of merit
   double low = kNaN;                          ///< lower end of the interval of `value`; NaN if a or b has no interval
   double high = kNaN;                         ///< upper end of the interval of `value`; NaN if a or b has no interval
   Change verdict = Change::without_interval;  ///< verdict on the change
 };
 
 /// The change from a to b. Its interval is made from the intervals of both values (Zou and Donner 2008, Statistics in
-/// Medicine 27, 1693-1702; for shares, Newcombe 1998, ibid. 17, 873-890), as if the values were drawn independently. If
-/// both results share draws that move the values alike, the interval is too wide, never too narrow.
+/// Medicine 27, 1693-1702; for shares, Newcombe 1998, ibid. 17, 873-890), as if the values were independent. If both
+/// results use the same draws, so that both values deviate in the same direction, the interval is too wide, never too
+/// narrow.
 MeritChange change_of(const Merit& a, const Merit& b);
 
-/// A table of the figures of merit that all results have, with a row for each result and the changes from the first
+/// A table of the figures of merit that all results have, with a row for each result and its change from the first
 /// result. None if the results have no figure of merit in common. results: the figures of merit of each result, at
 /// least two results.
 std::optional<Table> merits_table(std::span<const std::vector<Merit>> results);
 
 /// A sentence on each figure of merit that both results have: "B is better: the yield is 8.96 % in A and 15.7 % in B
-/// (+6.74 percentage points, interval +5.5 to +8.0)." Empty if they have none in common. letter: the name of the second
-/// result.
+/// (+6.74 percentage points, interval +5.5 to +8.0)." Empty if they have none in common. letter: the letter of the
+/// second result.
 std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit>& b, char letter = 'B');
 
-/// A table of the settings of the studies of two results: those that agree if `same` is true, otherwise those that
-/// differ; in the order of the first result, a. other: index of b among the compared results, 1 for B.
+/// A table of the settings of the studies of two results, in the order of the first result, a: the settings that are
+/// equal if `same` is true, otherwise those that differ. other: index of b among the compared results, 1 for B.
 Table settings_table(const StoredResult& a, const StoredResult& b, std::size_t other, bool same);
 
 }  // namespace poesy

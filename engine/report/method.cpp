@@ -43,7 +43,7 @@ std::string poses_sentence(const StoredResult& result, const StudyWords& words) 
   return text + ".";
 }
 
-/// What a study with [analysis.calibration] takes away before responses are stated; `calibrated = true` likewise.
+/// A sentence on the errors that a calibration removes before responses are computed; empty if there is no calibration.
 std::string calibration_sentence(const StoredResult& result, const StudyWords& words) {
   constexpr std::string_view kTable = "analysis.calibration";
   if (words.from_tables) return {};
@@ -76,7 +76,7 @@ std::string limits_sentence(const StoredResult& result) {
     text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", response.name,
                         limit_text(one.limit, [&](double value) { return response_text(response, value); }));
   }
-  if (text.empty()) {  // a certificate judges all limits together, without a verdict on each
+  if (text.empty()) {  // a certificate judges all limits together and gives no verdict on each
     for (const StudySetting& one : study_settings(result.study_text)) {
       if (one.section != "analysis.limits") continue;
       text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", one.key, readable_setting(one.value));

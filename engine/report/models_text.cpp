@@ -23,7 +23,7 @@ std::string curve_text(const NamedCurve& curve, const ModelDescription& model) {
                      curve.name, curve.description, curve.start, curve.end, chart.name, origin);
 }
 
-/// The list of a model's responses, with the metric if there is one. usual: true if this metric is the default.
+/// The list of a model's responses, with the model's metric if it has one. usual: true if the metric is the default.
 std::string responses_text(const ModelDescription& model, bool usual) {
   std::string text = "\nresponses";
   if (!model.metric.empty()) text += fmt::format(" by [solver] metric = \"{}\"", model.metric);

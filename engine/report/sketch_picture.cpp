@@ -23,14 +23,14 @@ constexpr double kAxis = 36.0;        // pixels, length of a frame's axes
 constexpr double kThinnest = 2.0;     // pixels, width of a link without share
 constexpr double kThickest = 8.0;     // pixels, width of the link with the largest share
 constexpr double kMillimetres = 1e3;  // millimetres in a metre
-constexpr double kFlat = 1e-9;        // a row of points is flat if it is thinner than this share of its length
+constexpr double kFlat = 1e-9;        // points are on one line if their hull is thinner than this share of its length
 constexpr double kSamePoint = 1.0;    // pixels; joints that are closer share a point
-constexpr double kAlong = 0.99;       // cosine of the largest angle between a strut and its way
-constexpr double kRing = 11.0;        // radius of the ring for a link without length, pixels
-constexpr double kDigit = 9.0;        // pixels of a limb's number
-constexpr double kArrow = 60.0;       // pixels, the longest arrow
-constexpr double kTip = 3.5;          // pixels, radius of the end of an arrow
-constexpr double kDot = 2.5;          // pixels, radius of a feature without size
+constexpr double kAlong = 0.99;  // least cosine of the angle between a strut's axis and the line to the end of the limb
+constexpr double kRing = 11.0;   // radius of the ring for a link without length, pixels
+constexpr double kDigit = 9.0;   // pixels, width of a limb's number
+constexpr double kArrow = 60.0;  // pixels, the longest arrow
+constexpr double kTip = 3.5;     // pixels, radius of the end of an arrow
+constexpr double kDot = 2.5;     // pixels, radius of a feature without size
 constexpr std::array<std::string_view, 6> kLimbs{"#2563a8", "#b4541a", "#2f7d4f", "#8a3d8f", "#8a6d1b", "#3b7f8c"};
 
 double distance(const SketchVector& a, const SketchVector& b) {
@@ -86,7 +86,7 @@ std::vector<SketchVector> hull_of(const std::vector<SketchVector>& points) {
   }
   std::ranges::sort(corners, {}, [](const Corner& corner) { return std::pair(corner.x, corner.y); });
   std::vector<SketchVector> hull;
-  // The lower side from left to right, then the upper side back (Andrew's monotone chain).
+  // First the lower side from left to right, afterwards the upper side from right to left (Andrew's monotone chain).
   for (int side = 0; side < 2; ++side) {
     std::vector<Corner> chain;
     for (const Corner& next : corners) {
@@ -105,7 +105,7 @@ std::vector<SketchVector> hull_of(const std::vector<SketchVector>& points) {
 /// Draws a mechanism as SVG text.
 class Drawing {
  public:
-  /// shares: null for a picture in a file of its own.
+  /// shares: null for a picture in a separate file (still_sketch()).
   Drawing(const Sketch& sketch, const SketchView& view, const PartShares* shares)
       : sketch_(&sketch), view_(&view), shares_(shares) {}
 
@@ -137,7 +137,7 @@ class Drawing {
     text_ += svg_path(pixels, fmt::format("{} {}", points_attribute(points), attributes));
   }
 
-  /// Adds SVG content whose origin is this point.
+  /// Adds SVG content with this point as the origin.
   void add_group(const SketchVector& point, std::string_view attributes, std::string_view content) {
     const Pixel pixel = view_->at(point);
     text_ += fmt::format("<g transform=\"translate({:.1f} {:.1f})\" {} {}>{}</g>\n", pixel.x, pixel.y,
@@ -148,8 +148,8 @@ class Drawing {
     add_group(point, attributes, svg_text(offset, what));
   }
 
-  /// Draws the axes of the base, the bodies with lines to their joints, the platform's origin, the tool and the named
-  /// points.
+  /// Draws the axes of the base frame, the bodies with lines to their joints, the platform's origin, the tool and the
+  /// named points.
   void bodies() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       SketchVector end{};
@@ -177,8 +177,9 @@ class Drawing {
     return distance(a.point, b.point) < view_->metres(kSamePoint);
   }
 
-  /// Whether a limb ends with a strut: a slide that begins at the joint before it and points to the end of the limb.
-  /// Its point is where it begins, so it is not where the limb holds the body. last: end of the limb.
+  /// Returns true if a limb ends with a strut, which is a prismatic joint that begins at the joint before it and points
+  /// to the end of the limb. The point of such a joint is where the strut begins, which is not where the limb holds the
+  /// body. last: end of the limb.
   bool ends_with_strut(std::span<const SketchedJoint> joints, const SketchVector& last) const {
     if (joints.size() < 2 || joints.back().type != 'P') return false;
     const SketchVector way = plus(last, -1.0, joints.back().point);
@@ -187,7 +188,8 @@ class Drawing {
            std::abs(dot(way, joints.back().axis)) > kAlong * length;
   }
 
-  /// The points where limbs hold a body: their joints, or the body's origin where a limb ends with a strut.
+  /// The points where limbs hold a body: the limbs' first or last joints, or the body's origin if a limb ends with a
+  /// strut.
   std::vector<SketchVector> joints_at(std::size_t body) const {
     std::vector<SketchVector> points;
     for (std::size_t i = 0; i < sketch_->limbs.size(); ++i) {
@@ -201,8 +203,8 @@ class Drawing {
     return points;
   }
 
-  /// The point from which lines to a body's joints are drawn: the body's origin, or for the base the middle of its
-  /// joints.
+  /// The point from which lines to a body's joints are drawn: the body's origin, but for the base the middle of the
+  /// joints there.
   SketchVector middle_of(std::size_t body) const {
     if (body == kPlatform) return sketch_->platform;
     if (body != kBase) return sketch_->bodies[body].origin;
@@ -212,8 +214,8 @@ class Drawing {
     return plus({}, 1.0 / static_cast<double>(points.size()), sum);
   }
 
-  /// Draws the links and joints of a limb. A link with errors whose ends coincide is drawn as a ring, so that its
-  /// colour can be seen.
+  /// Draws the links and joints of a limb. If the ends of a link with errors coincide, a ring is drawn, so that the
+  /// colour of the link can be seen.
   void limb(std::size_t i) {
     const std::vector<SketchedJoint>& joints = sketch_->limbs[i];
     const SketchedEnds ends = sketch_->ends_of(i);
@@ -238,8 +240,8 @@ class Drawing {
     if (is_still()) text_ += "</g>\n";
   }
 
-  /// Draws a limb's number below its first joint, or above it if the limb goes downwards. Numbers at the same place are
-  /// side by side.
+  /// Draws a limb's number below the first joint, or above it if the limb goes downwards. Numbers of limbs that begin
+  /// at the same place are side by side.
   void number(std::size_t i, const SketchVector& place, const SketchVector& next) {
     const std::span others(sketch_->limbs.data(), i);
     const auto is_here = [&](const auto& limb) { return view_->distance(limb.front().point, place) < kDigit; };
@@ -268,14 +270,14 @@ class Drawing {
               content);
   }
 
-  /// Draws an arrow: a line that ends in a dot.
+  /// Draws an arrow as a line that ends in a dot.
   void arrow(const SketchVector& from, double share, const SketchVector& axis) {
     const SketchVector tip = plus(from, view_->metres(kArrow * share), axis);
     add_line(from, tip, "class=\"arrow\"");
     add_group(tip, "class=\"arrow-tip\"", svg_circle({0, 0}, kTip, ""));
   }
 
-  /// The style of a link or joint: its share in percent of the largest share, for the colour, and its width.
+  /// The style of a link or joint: the share in percent of the largest share, for the colour, and the line width.
   std::string share_style(std::vector<std::vector<double>> PartShares::*parts, std::size_t i, std::size_t j) const {
     if (is_still()) return fmt::format("stroke-width=\"{:.1f}\"", kThinnest);
     const double part = shares_->largest > 0.0 ? (shares_->*parts)[i][j] / shares_->largest : 0.0;
@@ -283,9 +285,9 @@ class Drawing {
                        kThinnest + (kThickest - kThinnest) * part);
   }
 
-  /// The places of the joints' glyphs: their points. Joints at one point form a row; a slide that begins at another
-  /// joint is drawn between the two joints that it connects, or between that joint and the end of the limb. last: end
-  /// of the limb.
+  /// The places of the joints' glyphs. Joints that share a point form a row there. If the last joint of such a row is
+  /// prismatic, it is drawn halfway to the next joint, or halfway to the end of the limb if the limb ends with a strut.
+  /// last: end of the limb.
   std::vector<SketchVector> places_of(std::span<const SketchedJoint> joints, const SketchVector& last) const {
     std::vector<SketchVector> places;
     while (places.size() < joints.size()) {
@@ -302,7 +304,7 @@ class Drawing {
     return places;
   }
 
-  /// Places joints that share a point in a row: towards the next joint if there is room, otherwise to the right.
+  /// Places joints that share a point in a row: towards `next` if there is room, otherwise to the right.
   void add_row(std::span<const SketchedJoint> row, const SketchVector& next, std::vector<SketchVector>& places) const {
     const SketchVector& here = row.front().point;
     std::vector<double> offsets{0.0};
@@ -315,7 +317,7 @@ class Drawing {
     for (const double offset : offsets) places.push_back(plus(here, offset, pixel));
   }
 
-  /// Draws a feature: an axis as a bar, a plane as a plate, and other features as a dot.
+  /// Draws a feature: a bar for two points (an axis), a plate for more (a plane), a dot for one.
   void feature(const SketchedFeature& feature) {
     const SketchedFrame& frame = sketch_->frames[feature.limb][feature.frame];
     std::vector<SketchVector> points;

@@ -10,11 +10,11 @@
 
 namespace poesy {
 
-/// Shares of the errors, summed for each link and joint of the mechanism. A link is between two consecutive joints.
-/// Here the base counts as joint 0, and the platform as the joint after the last.
+/// Shares of the errors (or forces), summed for each link and joint of the mechanism. A link is between two consecutive
+/// joints of a limb, between the base and the first joint, or between the last joint and the platform.
 struct PartShares {
   std::vector<std::vector<double>> links;   ///< [limbs][joints + 1] share of each link
-  std::vector<std::vector<double>> joints;  ///< [limbs][joints] share of errors between the axes of one joint
+  std::vector<std::vector<double>> joints;  ///< [limbs][joints] share of errors between the axes of a joint
   double largest = 0.0;                     ///< largest share of all links and joints; 0: there are no shares
   /// [limbs][joints] length of the arrow along each joint's axis, relative to the longest arrow; 0: no arrow.
   std::vector<std::vector<double>> arrows;
@@ -24,20 +24,20 @@ struct PartShares {
 };
 
 /// A mechanism as SVG elements in a picture of kSketchWidth x kSketchHeight. It has links, glyphs of joints
-/// (svg_shapes.h), which are side by side if joints share a point, and the features of the drawing with their names and
-/// zones as titles. Each element has its points (mm, base frame) in the attribute data-p="x,y,z x,y,z". The element of
-/// a joint also has the joint's own point in data-at, and the attributes data-limb and data-joint.
+/// (svg_shapes.h), and the features of the drawing with their names and zones as titles. Joints that share a point are
+/// drawn side by side. Each element has its points (mm, base frame) in the attribute data-p="x,y,z x,y,z". The element
+/// of a joint also has the joint's true point in data-at, and the attributes data-limb and data-joint.
 /// @{
-/// The picture for a page that sets colours and turns the picture. Links and joints are as thick as their shares, which
-/// are in the CSS variable --share, from 0 % to 100 % of the largest. mark: index of the error whose frame is drawn; an
-/// index beyond the errors draws none.
+/// The picture for a page that sets colours and turns the picture. The width of links grows with their shares, and the
+/// CSS variable --share of links and joints is their share in percent of the largest. mark: position of the error whose
+/// frame is drawn; a position beyond the errors draws none.
 std::string turnable_sketch(const Sketch& sketch, const SketchView& view, const PartShares& shares, std::size_t mark);
-/// The picture for a file of its own, with the style sheet kSketchStyle. Each limb has a colour, a ring marks joints
+/// The picture for a separate file, with the style sheet kSketchStyle. Each limb has a colour, a ring marks joints
 /// whose frames have errors, and drives have their names.
 std::string still_sketch(const Sketch& sketch, const SketchView& view);
 /// @}
 
-/// The style sheet of a picture in a file of its own.
+/// The style sheet of a picture in a separate file.
 inline constexpr std::string_view kSketchStyle =
     "<style>.link,.tick{stroke:currentColor}.link{stroke-linecap:round}.body{stroke-opacity:.35}"
     ".tick{stroke-dasharray:6 2 1 2}.frame-axis,.base{stroke:#8b93a1}.tool,.platform{stroke:#5a6270;stroke-width:1.5}"

@@ -8,7 +8,7 @@
 namespace poesy {
 namespace {
 
-constexpr double kMargin = 30.0;  // pixels, free on all sides
+constexpr double kMargin = 30.0;  // pixels that stay free on all sides
 
 std::vector<SketchVector> points_of(const Sketch& sketch) {
   std::vector<SketchVector> points = sketch.tool;

@@ -14,7 +14,7 @@
 namespace poesy {
 namespace {
 
-/// The key solver.max_not_converged of the result's study; 1 if the study's text does not state it.
+/// The value of solver.max_not_converged in the result's study; 1 if the study's text does not state it.
 double max_not_converged(const StoredResult& result) {
   const std::string text = study_setting(result.study_text, "solver", "max_not_converged");
   double share = 1.0;
@@ -22,7 +22,7 @@ double max_not_converged(const StoredResult& result) {
   return share;
 }
 
-/// The warning if more than kManyNotConverged of all solves did not converge.
+/// The warning if more than kManyNotConverged of all solves did not converge, unless kMissing applies.
 constexpr std::string_view kDoubt =
     " That is more than 1 %: all numbers rest on the rest, and both ways of treating such solves are wrong where they "
     "are many. Left out, they make numbers too small, because they are mostly the large errors; included, they fill "
@@ -32,7 +32,7 @@ constexpr std::string_view kDoubt =
 constexpr std::string_view kMissing =
     " That is more than 1 %: means, spreads and quantiles are those of the machines that can be assembled.";
 
-/// A sentence on the row (error, case or size) and the pose with the largest shares of unsolved samples, " The largest
+/// A sentence on the row (error, case or size) and the pose with the largest shares of unsolved samples: " The largest
 /// shares: ...". Empty if there is only one row and one pose.
 std::string largest_shares_text(const StoredResult& result, const SolveTally& tally) {
   std::vector<std::string> places;
@@ -51,7 +51,7 @@ std::string count_line(std::uint64_t failed, std::uint64_t solves, const std::st
                      why);
 }
 
-/// Sentences on the consequences if the share of unsolved samples is above kManyNotConverged, and advice if machines
+/// Sentences on what it means that the share of unsolved samples is above kManyNotConverged, and advice if machines
 /// cannot be assembled.
 std::string consequences_text(const SolveCounts& solves) {
   const bool many = share_not_converged(solves) > kManyNotConverged;
@@ -63,7 +63,7 @@ std::string consequences_text(const SolveCounts& solves) {
                      kAssemblyAdvice);
 }
 
-/// The line with the solves of two fidelities that did not converge.
+/// The line with the numbers of solves that did not converge at each of two fidelities.
 std::string line_of_both(const SolveCounts& first, const SecondFidelity& second) {
   return fmt::format(
       "{}: {} at fidelity \"{}\", {} at \"{}\"",
@@ -71,7 +71,7 @@ std::string line_of_both(const SolveCounts& first, const SecondFidelity& second)
       count_text(first.not_converged()), second.first, count_text(second.not_converged), second.second);
 }
 
-/// Says how many of the failures the result lists one by one.
+/// Says how many of the failed solves the result lists one by one.
 std::string listed_text(const StoredResult& result, const SolveTally& tally, std::uint64_t failed) {
   const std::size_t listed = result.failures.size();
   const std::string of = tally.second ? fmt::format(" at \"{}\"", tally.second->first) : "";

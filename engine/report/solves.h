@@ -8,14 +8,14 @@
 
 #include "engine/result/result_file.h"
 
-/// How the solves of any result ended, and when a reader is warned of solves that did not converge.
+/// How the solves of a result ended, and when a reader is warned of solves that did not converge.
 namespace poesy {
 
-/// The share of samples without a solution above which statistics over the solved samples mislead (D8).
+/// If a larger share of samples has no solution, statistics over the solved samples mislead (decision D8).
 inline constexpr double kManyNotConverged = 0.01;
 
-/// The share of samples without a solution above which a reader is warned. allowed: the share that the study allows
-/// (solver.max_not_converged). The result is `allowed`, or 0.1 % if `allowed` is 1, which means no limit.
+/// The share of samples without a solution above which a reader is warned: `allowed`, the share that the study allows
+/// (solver.max_not_converged), or 0.1 % if `allowed` is 1, which means that there is no limit.
 constexpr double unremarkable_failure_share(double allowed) {
   constexpr double kDefault = 0.001;
   return allowed < 1.0 ? allowed : kDefault;
@@ -27,7 +27,7 @@ constexpr double share_of(std::uint64_t part, std::uint64_t all) {
 }
 
 /// Returns true if the share of solves that did not converge is above unremarkable_failure_share(), so that a reader is
-/// warned. failed: number of these solves; solves: number of all solves.
+/// warned. failed: number of solves that did not converge. solves: number of all solves.
 bool many_not_converged(const StoredResult& result, std::uint64_t failed, std::uint64_t solves);
 
 /// Advice for machines that cannot be assembled, as a clause.
@@ -38,15 +38,15 @@ inline constexpr std::string_view kAssemblyAdvice =
 bool mostly_impossible(const SolveCounts& solves);
 
 /// The reason why samples were not solved, as words that follow the number of these samples: "did not converge", or
-/// "found no solution, 3 of them because the machine cannot be assembled". The inner number is left out if it is the
-/// number of all unsolved samples.
+/// "found no solution, 3 of them because the machine cannot be assembled". The number in the second text is left out if
+/// no unsolved sample has another reason.
 std::string why_unsolved(const SolveCounts& solves);
 
-/// The numbers of unsolved samples by reason: "12 not converged, 3 cannot be assembled". The second reason appears only
-/// if it occurs.
+/// The numbers of unsolved samples by reason: "12 not converged, 3 cannot be assembled". The second part is left out if
+/// it would be 0.
 std::string unsolved_in_short(const SolveCounts& solves);
 
-/// The solves of a second fidelity, which used the same draws as the first.
+/// The solves of a second fidelity, with the same draws as the solves of the first fidelity.
 struct SecondFidelity {
   std::string first;                ///< name of the first fidelity
   std::string second;               ///< name of the second fidelity
@@ -59,16 +59,16 @@ struct SecondFidelity {
 /// Counts of how solves ended, by row and pose. A row is an error, a case or a size; there is only one row if the
 /// result does not distinguish them.
 struct SolveTally {
-  std::string_view row_word;       ///< the word for a row: "error"; empty if there is only one row
-  std::vector<std::string> names;  ///< names of the rows
-  std::size_t poses = 0;           ///< number of poses, M; 1 if the result does not distinguish poses
-  std::vector<SolveCounts> cells;  ///< [rows x M] counts for each row and pose
+  std::string_view row_word;                            ///< the word for a row: "error"; empty if there is only one row
+  std::vector<std::string> names;                       ///< names of the rows
+  std::size_t poses = 0;                                ///< number of poses; 1 if the result does not distinguish poses
+  std::vector<SolveCounts> cells;                       ///< [rows x poses] counts for each row and pose
   std::optional<SecondFidelity> second = std::nullopt;  ///< set if the result compares two fidelities
 
   SolveCounts total() const;                   ///< The counts of all solves; with two fidelities, those of the first.
-  std::vector<double> shares() const;          ///< [rows x M] The share that did not converge; NaN without solves.
-  std::vector<double> shares_by_row() const;   ///< [rows] The share that did not converge; NaN without solves.
-  std::vector<double> shares_by_pose() const;  ///< [M] The share that did not converge; NaN without solves.
+  std::vector<double> shares() const;          ///< [rows x poses] Shares that did not converge; NaN without solves.
+  std::vector<double> shares_by_row() const;   ///< [rows] Shares that did not converge; NaN without solves.
+  std::vector<double> shares_by_pose() const;  ///< [poses] Shares that did not converge; NaN without solves.
 };
 
 /// The share of solves that did not converge; NaN without solves.
@@ -76,16 +76,16 @@ inline double share_not_converged(const SolveCounts& solves) {
   return share_of(solves.not_converged(), solves.total());
 }
 
-/// The name of the first of two fidelities in words: " at fidelity \"full\"". Empty if the result does not compare two.
+/// Names the first of two fidelities: " at fidelity \"full\"". Empty if the result does not compare fidelities.
 std::string at_first_fidelity(const SolveTally& tally);
 
 /// Sentences on the solves that did not converge: their number, why statistics cannot be trusted if their share is
 /// above kManyNotConverged, and the rows and poses with the largest shares.
 std::string unsolved_text(const StoredResult& result, const SolveTally& tally);
 
-/// Lines on the number of solves that did not converge, of both fidelities if there are two. For a result with samples
-/// also the address of the first failure, and the command that replays it. path: path of the result. prose_of() wraps
-/// the lines at `width`, except the command. Empty if the result does not count how its solves ended.
+/// Lines on the number of solves that did not converge; of both fidelities if there are two. For a result with samples,
+/// also the address of the first failure and the command that replays it. path: path of the result. All lines but the
+/// command are wrapped at `width` by prose_of(). Empty if the result does not count how its solves ended.
 std::string failures_text(const StoredResult& result, const SolveTally& tally, const std::string& path,
                           std::size_t width);
 

@@ -44,8 +44,8 @@ TextColumn column_text(const Table& table, std::size_t c) {
     made.cells.push_back(printable_line(row[c].text) + std::string(blanks, ' '));
     made.width = std::max(made.width, text_width(made.cells.back()));
   }
-  // A heading that is wider than the cells is wrapped, into at most kHeadingLines lines. If that is not enough, the
-  // column becomes wider.
+  // A heading that is wider than the cells is wrapped into at most kHeadingLines lines. If more lines would be needed,
+  // the column becomes wider.
   const std::string heading = printable_line(column.heading);
   made.heading = wrapped(heading, made.width);
   while (made.heading.size() > kHeadingLines) made.heading = wrapped(heading, ++made.width);
@@ -59,8 +59,8 @@ std::size_t total_width(const std::vector<const TextColumn*>& columns) {
   return width;
 }
 
-/// Removes dispensable columns until the remaining ones fit into `width`. Returns the headings of the removed groups of
-/// columns, from left to right.
+/// Removes dispensable columns until the remaining ones fit into `width`. Returns the headings that name the removed
+/// groups of columns, from left to right.
 std::vector<std::string> make_room(std::vector<const TextColumn*>& columns, std::size_t width) {
   const auto dispensable = [](const TextColumn* one) { return one->column.dispensable; };
   std::vector<std::string> left_out;

@@ -21,51 +21,52 @@ struct Column {
   std::string heading;     ///< heading for readers, without the unit
   std::string unit;        ///< unit of the whole column; empty if it has none, or if each cell states its own
   Kind kind = Kind::text;  ///< type of the cells
-  /// The order in which columns are removed if there is too little room. The columns with the largest number go first.
-  /// Columns with equal numbers form a group, whose name is the heading of its first column, and are removed together.
-  /// Columns with 0 are never removed.
+  /// The order in which columns are removed if there is not enough room: the columns with the largest number first.
+  /// Columns with equal numbers form a group, which is removed as a whole and is named by the heading of its first
+  /// column. Columns with 0 are never removed.
   int dispensable = 0;
-  /// True if a page leaves the column out, because boxes in another column show its content.
+  /// True if a page leaves the column out, because tolerance frames in another column show the same content.
   bool only_text = false;
 };
 
 /// A cell of a table.
 struct Cell {
   std::string text;  ///< text that is shown, with rounded numbers; "-" if there is no number
-  /// The number that the text shows, in the unit shown, not rounded; none if it is not finite.
+  /// The number that the text shows, in the same unit, not rounded; none if there is no number or it is not finite.
   std::optional<double> value;
-  /// The number of the cell if it is whole. It is needed because a double rounds large whole numbers.
+  /// The number of the cell if it is a whole number. It is stored separately because a double rounds large whole
+  /// numbers.
   std::optional<std::uint64_t> whole = std::nullopt;
-  /// The boxes of a tolerance frame, from left to right, which a page draws instead of the text. Empty: the page shows
+  /// The boxes of a tolerance frame, from left to right, which a page draws instead of the text; empty: the page shows
   /// the text.
   std::vector<std::string> boxes = {};
 };
 
-/// A table as plain values. Terminal, report and JSON show the same cells, and so the same digits.
+/// A table as plain values. Terminal, report and JSON show the same cells, and for this reason the same digits.
 struct Table {
-  std::string name;                          ///< name in JSON and of the anchor: letters, digits and underscores
+  std::string name;                          ///< name in JSON and in links: letters, digits and underscores
   std::string caption;                       ///< one line that describes the table
   std::vector<Column> columns;               ///< columns from left to right
   std::vector<std::vector<Cell>> rows = {};  ///< rows, each with columns.size() cells
   std::vector<std::string> notes = {};       ///< sentences below the table
-  bool ranked = false;                       ///< true if its rows are ranked errors
+  bool ranked = false;                       ///< true if the rows are ranked errors
 };
 
-/// The width for output that is not a terminal: columns are never removed.
+/// A width for output that is not a terminal: no column is removed.
 inline constexpr std::size_t kUnlimitedWidth = std::numeric_limits<std::size_t>::max();
 
-/// The number of characters of a number from the decimal point on, or from the exponent on if that comes first: 3 in
-/// "4.25". 0 for a cell without a number.
+/// The number of characters of a number from its decimal point, or from its exponent if it has no point: 3 in "4.25". 0
+/// for a cell without a number.
 std::size_t tail_of(const Cell& cell);
 
-/// Wraps a text between words at `width`, at most 100 characters. Lines end with '\n'. A word that is longer has its
-/// own line. Control characters are shown as '?', here and in tables, because names may come from any file.
+/// Wraps a text between words at `width`, at most at 100 characters. Lines end with '\n'. A longer word has a line of
+/// its own. Control characters are shown as '?', here and in tables, because names may come from any file.
 std::string prose_of(std::string_view prose, std::size_t width);
 
-/// A table as lines of text that end with '\n': caption, headings with units, rows, notes. Text is aligned left,
+/// A table as lines of text that end with '\n': caption, headings with units, rows, notes. Texts are aligned left,
 /// numbers by their decimal points. If the table is wider than `width`, columns are removed (Column::dispensable), and
-/// a line names them and says that `remedy` shows more. If the table is still too wide, lines exceed `width`; names are
-/// never cut. Notes are wrapped by prose_of(). No line ends with a blank.
+/// a line names them and says that `remedy` shows more. If the table is still too wide, its lines are longer than
+/// `width`; names are never cut. Notes are wrapped by prose_of(). No line ends with a blank.
 std::string text_of(const Table& table, std::size_t width, std::string_view remedy = "a wider terminal");
 
 /// Tables one below the other, with an empty line in between.

@@ -41,7 +41,7 @@ std::string rule(const LimitVerdicts& verdicts) {
       percent_text(verdicts.share));
 }
 
-/// The pose and the row of errors at which a limit's value was found; empty if the value belongs to all poses together.
+/// The row of errors and the pose at which a limit's value was found; empty if the value is over all poses.
 std::string place(const StoredResult& result, const LimitVerdict& verdict) {
   if (!verdict.pose) return {};
   const bool named = verdict.row && !result.row_names.empty();
@@ -66,7 +66,7 @@ std::string yield_caption(const YieldVerdict& yield) {
   return "Yield: " + found;
 }
 
-/// Gives the row further cells with the share of good machines, its interval, and the numbers of rejects and machines.
+/// Appends cells to the row: the share of good machines, the share's interval, and the numbers of rejects and machines.
 void add_share(std::vector<Cell>& row, std::uint64_t good, const YieldVerdict& yield) {
   const Estimate estimate = proportion(good, yield.machines, yield.conf_level);
   for (const double share : {estimate.value, estimate.interval.low, estimate.interval.high}) {
@@ -93,15 +93,16 @@ Cell end_cell(double end, const NamedUnit& response) {
   return number_cell((std::isfinite(end) ? end : kNaN) / display(response).si, kDigits);
 }
 
-/// A value beside its limit: with the digits of a limit where fewer read as an end of it.
+/// The cell of a value beside its limit. The value has as many digits as the limit if with fewer it would look equal to
+/// the limit.
 Cell value_beside(double value, const ValueLimit& limit, const Unit& unit) {
   const auto reads_as = [&](double end) { return number_text(value / unit.si) == number_text(end / unit.si); };
   const bool is_near = reads_as(limit.to()) || reads_as(limit.from());
   return is_near ? number_cell(value / unit.si, kDigits) : number_cell(value / unit.si);
 }
 
-/// Adds a column with the lower ends and one with the limits in words, if a limit is more than a magnitude at each
-/// pose. The last rows of the table are those of the limits.
+/// If a limit is not just a largest magnitude, adds a column with the lower ends of limits and a column with the limits
+/// in words. The last rows of the table are those of the limits.
 void add_limit_words(const StoredResult& result, std::span<const LimitVerdict> limits, Table& table) {
   if (std::ranges::all_of(limits, [](const LimitVerdict& one) { return one.limit.is_plain(); })) return;
   const std::size_t before = table.rows.size() - limits.size();
@@ -123,12 +124,13 @@ void add_limit_words(const StoredResult& result, std::span<const LimitVerdict> l
   }
 }
 
-/// The yield to which tolerances are usually set: three standard deviations of a normal error.
+/// The yield to which tolerances are usually set: the share within three standard deviations of a normal distribution.
 constexpr double kUsualYield = 0.9973;
 
 constexpr std::size_t kMostShown = 5;
 
-/// The indices in [R x P] of deciding quantities that did not reach the wanted interval, the widest interval first.
+/// The positions in an array [responses x errors] of those quantities of deciding responses that did not reach the
+/// wanted interval, the widest interval first.
 std::vector<std::size_t> not_reached(const ConvergenceResult& found, const Settling& settling) {
   const std::size_t slots = found.samples.size();
   std::vector<std::size_t> list;
@@ -151,8 +153,8 @@ std::string samples_text(const ConvergenceResult& found) {
   return fmt::format("from {} to {} samples at each pose", count_text(least), count_text(most));
 }
 
-/// The cell with the number of samples that would be enough, to two digits, rounded up. Half-widths fall with the
-/// square root of this number.
+/// The cell with the number of samples that would be enough, rounded up to two digits. The half-width of an interval is
+/// inversely proportional to the square root of this number.
 Cell needed_cell(const ConvergenceResult& found, std::size_t at) {
   const double ratio = found.relative_half_width[at] / found.relative_error;
   const double needed = static_cast<double>(found.samples[at % found.samples.size()]) * ratio * ratio;
@@ -226,7 +228,7 @@ std::string default_ranking(const StoredResult& result) {
 
 namespace {
 
-/// The table of the drawing's features, by their effect on the response that ranks errors.
+/// The table of the drawing's features, ordered by their effect on the response by which errors are ranked.
 std::optional<Table> features_table(const StoredResult& result, const TableOptions& options) {
   const auto response = std::ranges::find(result.responses, options.ranked_by, &NamedUnit::name);
   if (response == result.responses.end()) return std::nullopt;
@@ -238,7 +240,7 @@ std::optional<Table> features_table(const StoredResult& result, const TableOptio
 std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options) {
   std::vector<Table> tables = kind.tables(result, options);
   auto limits = limits_table(result);
-  // A kind that shows more of its yield has a table of this name already.
+  // A kind that shows more of the yield has its own table of this name.
   if (limits && std::ranges::find(tables, limits->name, &Table::name) == tables.end()) {
     tables.insert(tables.begin(), *std::move(limits));
   }
@@ -366,7 +368,7 @@ std::string few_parts_text(const StoredResult& result, double conf_level, double
       counted(found.names.size(), "error is", "errors are"), count_text(fewest),
       found.parts.size() > 1 && std::ranges::max(found.parts) > fewest ? " or more" : "", count_text(fewest),
       percent_text(shown), percent_text(conf_level));
-  if (!(shown < target && target < 1.0 && conf_level < 1.0)) return text;  // a file may have any numbers
+  if (!(shown < target && target < 1.0 && conf_level < 1.0)) return text;  // because a result file may have any numbers
   return text + fmt::format(", and cannot show {}, which takes {}", percent_text(target),
                             count_text(trials_without_failure(target, conf_level)));
 }

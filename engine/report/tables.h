@@ -15,34 +15,35 @@
 
 namespace poesy {
 
-/// A few lines on what was run and how long it took, wrapped at `width` by prose_of(). tally: how the result's solves
-/// ended.
+/// A few lines on what was run and how long it took, wrapped at `width` by prose_of(). tally: how the solves of the
+/// result ended.
 std::string summary_text(const StoredResult& result, const SolveTally& tally, std::size_t width);
 
-/// Returns true if a response varies, or if the result does not say.
+/// Returns true if a response varies, or if the result does not say whether it varies.
 bool varies(const StoredResult& result, std::size_t response);
 
-/// A sentence without full stop which says that this response does not vary, and what follows from that.
+/// A sentence without a full stop. It says that this response does not vary, and what follows from that.
 std::string constant_text(const NamedUnit& response);
 
-/// The responses in their order, except that those that do not vary come last.
+/// The given responses in the same order, except that those that do not vary come last.
 std::vector<std::size_t> varying_first(const StoredResult& result, std::vector<std::size_t> responses);
 
-/// The response by which errors are ranked by default. It is one of the responses of the headline that vary, or of all
-/// responses of the headline if none varies. If the first of these has a limit, or is the displacement of the tool or
-/// the platform, it is taken. Otherwise the first one that is a length is taken, or the first one if none is a length.
+/// The response by which errors are ranked by default. The candidates are the headline's responses that vary, or all of
+/// the headline's responses if none varies. If the first candidate has a limit, or is the displacement of the tool or
+/// the platform, it is the result. Otherwise the result is the first candidate that is a length, or the first candidate
+/// if none is a length. Empty if the headline is empty.
 std::string default_ranking(const StoredResult& result);
 
-/// The order in which tables show ranked errors, the largest first.
+/// The order in which tables show ranked errors.
 enum class RowOrder {
-  effect,        ///< index x sigma: the effect of the error if it has its size in the study
-  index,         ///< sensitivity index in the unit shown
-  name,          ///< name, a to z
+  effect,        ///< largest index x sigma first: the effect of the error if it has its size in the study
+  index,         ///< largest sensitivity index first, in the unit shown
+  name,          ///< names from a to z
   study,         ///< order of the study
-  not_converged  ///< share of samples that did not converge
+  not_converged  ///< largest share of samples that did not converge first
 };
 
-/// The words that users write, in the order of RowOrder.
+/// The words for the values of RowOrder in the command line, in the order of the enumeration.
 inline constexpr std::array<std::string_view, 5> kRowOrders{"effect", "index", "name", "order", "not-converged"};
 
 /// How tables show a result.
@@ -51,48 +52,49 @@ struct TableOptions {
   RowOrder order = RowOrder::effect;  ///< order of ranked errors
 };
 
-/// Keeps the first `most` rows of ranked tables. If rows are removed, a note states how many.
+/// Keeps the first `most` rows of ranked tables. If rows are removed, a note in the table states how many.
 void keep_first(std::size_t most, std::span<Table> tables);
 
-/// The quantities of a result that converge as the number of samples grows.
+/// The quantities of a result that become more exact as the number of samples grows.
 struct Settling {
   std::string_view quantities;         ///< name of the quantities: "global indices"
-  std::vector<std::string> slots;      ///< [P] names of the errors that have quantities
-  std::vector<std::size_t> responses;  ///< indices of the responses that decide when adaptive samples end
+  std::vector<std::string> slots;      ///< names of the errors
+  std::vector<std::size_t> responses;  ///< responses whose quantities decide when adaptive samples end
 };
 
-/// A table of how adaptive samples converged: the number of quantities that reached the interval that the study asks
-/// for, the samples that they took, and the quantities that did not reach it. None if the number of samples was fixed.
+/// A table of how adaptive samples converged: how many quantities reached the width of interval that the study asks
+/// for, the samples that were needed, and the quantities that did not reach it. None if the number of samples was
+/// fixed.
 std::optional<Table> convergence_table(const StoredResult& result, const Settling& settling);
 
-/// A sentence with the number of quantities that did not reach the interval that the study asks for. Empty if all did,
-/// or if the number of samples was fixed.
+/// A sentence with the number of quantities with an interval that is wider than the study asks for. Empty if there are
+/// none, or if the number of samples was fixed.
 std::string not_settled_text(const StoredResult& result, const Settling& settling);
 
 /// The verdict on the limit of a response; null if the study does not limit it.
 const LimitVerdict* verdict_on(const StoredResult& result, std::size_t response);
 
-/// A table of the yield with its interval and its verdict, then of the yield under each limit alone. Precondition:
+/// A table of the yield with its interval and the verdict, followed by the yield under each limit alone. Precondition:
 /// verdicts.yield is set.
 Table yield_table(const StoredResult& result, const LimitVerdicts& verdicts);
 
-/// A table of errors that are drawn from measured parts: the number of parts, and the scatter of parts and draws. None
-/// if there are no such errors.
+/// A table of the errors that are drawn from measured parts: the number of parts, and the scatter of parts and of
+/// draws. None if there are no such errors.
 std::optional<Table> measured_table(const StoredResult& result);
 
-/// A table of errors whose mean the study states, or which a machine draws anew at each pose. None if there are no such
-/// errors.
+/// A table of errors whose mean the study states, and of those that a machine draws anew at each pose. None if there
+/// are no such errors.
 std::optional<Table> stated_table(const StoredResult& result);
 
-/// Sentences on the largest yield that the smallest number of measured parts can show. asked: the yield that the study
-/// asks for. Precondition: some errors are drawn from measured parts.
+/// Sentences on the largest yield that can be shown with the smallest number of measured parts of an error. asked: the
+/// yield that the study asks for. Precondition: some errors are drawn from measured parts.
 std::string few_parts_text(const StoredResult& result, double conf_level, double asked);
 
-/// A table with PASS or FAIL for each limit, and with its value. None if the study states no limits. For Judge::yield
-/// it is yield_table().
+/// A table with PASS or FAIL and the value for each limit. If a yield is judged (Judge::yield), it is yield_table().
+/// None if the study states no limits.
 std::optional<Table> limits_table(const StoredResult& result);
 
-/// A result, and the response by which its errors are ranked. The result must have this response.
+/// A result, and the response by which its errors are ranked. Precondition: the result has this response.
 struct RankedResult {
   const StoredResult& result;  ///< must outlive this object
   std::string path;            ///< path of the result file
@@ -102,20 +104,20 @@ struct RankedResult {
 
 /// Two rankings of the same errors by their effects, with the sizes of the errors in each study.
 struct TwoRankings {
-  Table table;  ///< rank and effect of each error in the results A and B, in the order for A that was asked for
+  Table table;  ///< rank and effect of each error in the results A and B, ordered by the results of A
   double tau;   ///< Kendall's tau of the effects; NaN if not known
-  std::vector<std::string> remarks;  ///< sentences on tau, on how the metrics differ, and on what is left out
+  std::vector<std::string> remarks;  ///< sentences on tau, on different metrics, and on what is left out
 };
 
 /// Throws InputError with the path of B if the results are of different kinds or have no response in common.
 void check_comparable(const StoredResult& a, const std::string& path_a, const StoredResult& b,
                       const std::string& path_b);
 
-/// Returns true if two results have different metrics. Returns false if one of them has no metric.
+/// Returns true if two results have different metrics. Returns false if at least one of them has no metric.
 bool differ_in_metric(const StoredResult& a, const StoredResult& b);
 
 /// One line about one of several results: "A: title (path); metric: ...; ranked by gap; 5 of 1 000 solves did not
-/// converge". role: the words before the response in the line.
+/// converge". role: the words in front of the response.
 std::string ranked_text(char letter, const RankedResult& ranked, std::string_view role = "ranked by");
 
 /// The summary and the tables of a result as one JSON object, for programs:
@@ -150,7 +152,7 @@ struct ComparedResults {
 /// The results are in order, with A first.
 std::string json_of(std::span<const RankedResult> results, const ComparedResults& compared);
 
-std::string json_of(const Table& table);  ///< One table as JSON, in the form of `tables` above.
+std::string json_of(const Table& table);  ///< One table as JSON, in the form that json_of() of a result describes.
 
 std::string models_text(const Catalog& catalog);  ///< A list of all mechanisms, with a line for each.
 

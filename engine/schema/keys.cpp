@@ -35,7 +35,7 @@ bool fits(std::string_view described, std::string_view path) {
   return fits(described.substr(pattern.size() + 1), path.substr(name.size() + 1));
 }
 
-/// The condition under which a key is required: "required where select is interior, boundary or grid".
+/// The condition under which a key applies: "required where select is interior, boundary or grid".
 std::string condition(const StudyTable& table, const StudyKey& key) {
   if (key.only_for.empty()) return key.required ? "required" : "";
   return fmt::format("{}where {} is {}", key.required ? "required " : "", table.chooser, either(key.only_for));
@@ -68,8 +68,7 @@ std::string key_lines(const StudyTable& table, const StudyKey& key, std::size_t 
   return text;
 }
 
-/// The value that a template shows for a key. It is the default if that is a value (in backquotes), otherwise the
-/// example.
+/// The value that a template shows for a key: the default if that is a value (in backquotes), otherwise the example.
 std::string shown_value(const StudyKey& key) {
   if (!key.usual.starts_with('`')) return key.example;
   return key.usual.substr(1, key.usual.find('`', 1) - 1);

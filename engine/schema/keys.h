@@ -11,9 +11,10 @@
 #include "engine/base/text.h"
 #include "engine/schema/keys_section.h"
 
-/// A key of a file is described by one typed object (Key, a row of its table): its name, the member that it sets, its
-/// bounds and its meaning. Reading, the resolved text, templates and the reference all use these descriptions. A key's
-/// default is the value in a default-constructed object.
+/// A key of a file is described by one typed object (a Key, which is a row of a table Keys): its name, the member that
+/// it sets, its bounds and its meaning. The functions that read files, write the resolved text (a study with every
+/// default filled in), and make templates and the reference all use these descriptions. A key's default is the value in
+/// a default-constructed object.
 
 namespace poesy {
 
@@ -25,16 +26,16 @@ struct StudyWord {
 
 /// The description of a key for messages, templates and the reference.
 struct StudyKey {
-  std::string_view name;    ///< name of the key; a placeholder in capitals for names that the model gives: "FACTOR"
-  std::string type;         ///< type of its value: "integer", "length", "list of numbers", ...
-  std::string bounds = {};  ///< bounds of its value: "at least 1"; empty if the type has no further bounds
+  std::string_view name;              ///< name of the key; capitals stand for names that the model gives: "FACTOR"
+  std::string type;                   ///< type of the value: "integer", "length", "list of numbers", ...
+  std::string bounds = {};            ///< bounds of the value: "at least 1"; empty if the type has no further bounds
   std::vector<StudyWord> words = {};  ///< words that the key accepts; empty if it accepts other values
   bool required = false;              ///< true if the key is required where it applies
-  /// Advice to a user who leaves the key out; empty if its description does not require it.
+  /// Advice to a user who leaves out a required key; may be empty.
   std::string missing = {};
   std::string usual = {};                       ///< default: a value in backquotes, or a clause that describes it
   std::string example = {};                     ///< example of a value in TOML that is not the default
-  std::vector<std::string_view> only_for = {};  ///< words of the table's chooser for which the key applies; empty: all
+  std::vector<std::string_view> only_for = {};  ///< words of StudyTable::chooser for which the key applies; empty: all
   bool may_stay = false;     ///< true if the key is ignored where it does not apply, false if it is refused there
   std::string_view meaning;  ///< what the key means, as a sentence
 };
@@ -48,17 +49,17 @@ struct StudyTable {
   std::string_view meaning;  ///< what the table is for, as a sentence
   /// The key whose word determines which other keys of the table apply; empty: all apply.
   std::string_view chooser = {};
-  std::string_view owner = {};  ///< text for the chooser in messages: "select ="
+  std::string_view owner = {};  ///< how messages name the chooser: "select ="
   std::vector<StudyKey> keys;   ///< the keys, in the order in which they are listed
 
-  /// The key of this name; null if there is none. Several keys may have the name, each for other words of the chooser.
-  /// Then the key for `word` is returned, or the first one if none is for `word`.
+  /// The key of this name; null if there is none. Several keys may have the same name, each for other words of the
+  /// chooser. In this case the result is the key for `word`, or the first key of this name if none is for `word`.
   const StudyKey* find(std::string_view key, std::string_view word = {}) const;
   std::vector<std::string_view> names() const;  ///< The names of the keys, in order.
   bool has_names_of_model() const;  ///< Returns true if the table has a placeholder for names that the model gives.
   /// The setting to which a key belongs, for messages that the key does not apply for this word: `select = "grid"`.
   std::string owner_of(std::string_view word) const;
-  /// The advice for a user who leaves the key out. Names that the model gives have the advice of their placeholder.
+  /// The advice for a user who leaves the key out. A name that the model gives has the advice of its placeholder.
   std::string remedy(std::string_view key) const;
 };
 
@@ -77,20 +78,20 @@ std::string tables_reference(const StudyTables& tables);
 
 std::string comment(std::string_view text);  ///< Text of any number of lines as comment lines of TOML.
 
-/// Makes lines of a template. Each text that it returns consists of whole lines of TOML. Precondition: the tables and
-/// keys exist.
+/// Makes lines of a template, which is a study file with explanations that a user edits. Each text that it returns
+/// consists of whole lines of TOML. Precondition: the tables and keys exist.
 class TemplateLines {
  public:
   /// tables: must outlive this object. word: a word of the chooser, which selects among keys of the same name.
   explicit TemplateLines(const StudyTables& tables, std::string_view word = {}) : tables_(&tables), word_(word) {}
 
-  /// A line that sets this key, with the key's explanation. The explanation follows the line if there is room.
-  /// Otherwise it precedes the line as comment lines, with the words that the key accepts.
+  /// The given line, which sets this key, with the key's explanation. The explanation follows the line if there is
+  /// room. Otherwise it precedes the line as comment lines, with the words that the key accepts.
   std::string explained(std::string_view table, std::string_view key, std::string_view line) const;
-  /// A line "KEY = VALUE" with the explanation, as explained() makes it. The value is the key's default, or its example
-  /// if the default is described by a clause. sign: text in front of the line.
+  /// A line "KEY = VALUE" with the explanation, as explained() makes it. The value is the key's default if the
+  /// description states it as a value, otherwise the key's example. sign: text in front of the line.
   std::string usual(std::string_view table, std::string_view key, std::string_view sign = "") const;
-  /// "KEY: explanation" as comment lines, followed by the words that the key accepts.
+  /// "KEY: explanation" as comment lines, followed by the words that the key accepts with their meanings.
   std::string explanation_lines(std::string_view table, std::string_view key) const;
   /// The explanation_lines() of every key of an inline table, indented `depth` steps further.
   std::string keys_lines(std::string_view table, std::size_t depth = 1) const;
@@ -133,8 +134,8 @@ std::string inline_table(const std::vector<Named>& things, Value value) {
   return text + " }";
 }
 
-/// Calls read(k, value) for the k-th thing if the section has a key of its name, in the order of the things. Throws
-/// InputError for other keys. what: what the keys name, for messages.
+/// Calls read(k, value) for each thing whose name is a key of the section, in the order of the things; k is the
+/// position of the thing. Throws InputError for other keys. what: what the keys name, for messages.
 template <class Named, class Read>
 void read_named(const StudySection& section, const std::vector<Named>& things, std::string_view what, Read read) {
   section.allow(names(things), what);
@@ -161,7 +162,7 @@ NumberBounds between_0_and_1(std::string_view example);
 /// Reads a number within the bounds. Throws InputError at the value's place for a number outside.
 double read_number(const StudyValue& value, const NumberBounds& bounds);
 
-/// How a key's value is read into an object and written from it, and which values a file may have.
+/// How the value of a key is read into an object and written from it, and which values a file may have.
 template <class Object>
 struct KeyValue {
   std::string type;                   ///< type for readers: "integer", "length", "list of numbers", ...
@@ -173,10 +174,11 @@ struct KeyValue {
   std::function<std::string(const Object&)> text = {};
 };
 
-/// One key of a table (a row of Keys): its description, and its value in an object of a study.
+/// One key of a table (a row of Keys): its description, and the functions that read its value into an Object and write
+/// it. Scope: what a reader needs besides the value, such as the model.
 template <class Object, class Scope>
 struct Key {
-  std::string_view name;   ///< name of the key; capitals for names that the model gives: "FACTOR"
+  std::string_view name;   ///< name of the key; capitals stand for names that the model gives: "FACTOR"
   KeyValue<Object> value;  ///< type, bounds, words, and how it is read and written
   /// Advice to a user who leaves the key out, with "{}" in place of the example; if the advice is not empty, the key is
   /// required.
@@ -185,30 +187,30 @@ struct Key {
   /// The default in words, if it is not the value of a default-constructed object. An empty text means that there is no
   /// default.
   std::optional<std::string> usual = {};
-  std::string besides = {};                     ///< remark behind the default, or behind "required"
+  std::string besides = {};                     ///< remark after the default, or after "required"
   std::string example = {};                     ///< example of a value in TOML that is not the default
   std::vector<std::string_view> only_for = {};  ///< words of the table's chooser for which the key applies; empty: all
   bool may_stay = false;     ///< true if the key is ignored where it does not apply, false if it is refused there
   std::string_view meaning;  ///< what the key means, as a sentence
-  /// Reads a value whose meaning depends on the model, on files or on other keys.
+  /// Reads the value if its meaning depends on the model, on files or on other keys; replaces KeyValue::read.
   void (*reader)(const StudyValue& value, Object& object, const Scope& scope) = nullptr;
-  /// The key's lines of the resolved text, if they are not just "KEY = VALUE". The text may be empty.
+  /// Writes the key's lines of the resolved text, if they are not just "KEY = VALUE". The text may be empty.
   std::string (*lines)(const Object& object) = nullptr;
-  int late = 0;  ///< order in the resolved text: keys with a larger number come later
-  /// The key's lines of a template for this object, if they do not just show the default. The text may be empty.
+  int late = 0;  ///< position in the resolved text: keys with a larger number come later
+  /// Writes the key's lines of a template for this object, if they do not just show the default. The text may be empty.
   std::string (*shown)(const TemplateLines& lines, const Object& object) = nullptr;
   bool commented = false;  ///< true if a template shows the default as a comment
 };
 
-/// A table of keys with their values. Its members become those of StudyTable.
+/// A table of keys with their values. described() makes a StudyTable of it.
 template <class Object, class Scope>
 struct Keys {
   /// Paths of the table in a file: "analysis.cases"; empty for the file itself.
   std::vector<std::string_view> paths = {};
   std::string_view meaning = {};  ///< what the table is for, as a sentence
-  /// Key whose word determines which other keys apply; must be the first key; empty: all apply.
+  /// Key whose word determines which other keys of the table apply, the first of `rows`; empty: all apply.
   std::string_view chooser = {};
-  std::string_view owner = {};           ///< text for the chooser in messages: "select ="
+  std::string_view owner = {};           ///< how messages name the chooser: "select ="
   std::vector<Key<Object, Scope>> rows;  ///< keys, in the order in which they are listed and read
 };
 
@@ -242,8 +244,8 @@ std::string usual_text(const KeyValue<Object>& value) {
 template <class... Path>
 using OwnerOf = decltype(detail::owner_of(Path()...));
 
-/// How a key's value is read into a member of an object, and written from it. path: pointers to members that lead from
-/// the object to this member. read: converts a StudyValue to the value. text: writes the value as TOML.
+/// How the value of a key is read into a member of an object, and written from it. path: pointers to members that lead
+/// from the object to this member. read: converts a StudyValue to the member's value. text: writes this value as TOML.
 template <class Read, class Text, class... Path>
 KeyValue<OwnerOf<Path...>> value_at(std::string type, std::string_view bounds, Read read, Text text, Path... path) {
   using Object = OwnerOf<Path...>;
@@ -328,7 +330,7 @@ StudyTable described(const Keys<Object, Scope>& keys) {
   return table;
 }
 
-/// The word of the table's chooser in an object; empty if the table has no chooser.
+/// The word that an object has for the table's chooser; empty if the table has no chooser.
 template <class Object, class Scope>
 std::string chosen_word(const Keys<Object, Scope>& keys, const Object& object) {
   if (keys.chooser.empty()) return {};
@@ -352,7 +354,7 @@ void read_key(const Key<Object, Scope>& row, const StudyValue& value, Object& ob
   }
 }
 
-/// Which keys must be present when a table is read, and which may be.
+/// Which keys must be present when a table is read, and which may be present.
 enum class Extent {
   complete,  ///< all required keys must be present, and keys that do not apply are refused
   partial,   ///< required keys may be missing; keys that do not apply are refused
@@ -378,7 +380,7 @@ void read_keys(const Keys<Object, Scope>& keys, const StudySection& section, Obj
   }
 }
 
-/// The key's lines of a template that shows this object.
+/// The lines of a key in a template that shows this object.
 template <class Object, class Scope>
 std::string template_lines(const TemplateLines& lines, std::string_view table, const Key<Object, Scope>& row,
                            const Object& object) {
@@ -386,7 +388,7 @@ std::string template_lines(const TemplateLines& lines, std::string_view table, c
   return lines.usual(table, row.name, row.commented ? "# " : "");
 }
 
-/// The lines of all keys of a table, in a template that shows this object.
+/// The lines of all keys of a table in a template that shows this object.
 template <class Object, class Scope>
 std::string template_lines(const TemplateLines& lines, const Keys<Object, Scope>& keys, const Object& object) {
   std::string text;

@@ -11,7 +11,7 @@
 namespace poesy {
 namespace {
 
-/// The names in a key's full name: the names of its tables, then the name of the key itself.
+/// The names in the full name of a key: the names of the tables around it, followed by the name of the key itself.
 std::vector<std::string_view> parts_of(std::string_view key) {
   std::vector<std::string_view> parts;
   for (std::size_t begin = 0; begin <= key.size();) {

@@ -47,8 +47,9 @@ std::string plain_unit(std::string_view written) {
 }
 
 /// The unit that the user probably meant; null if none is probable. A unit is probable if its name differs from the
-/// text only in capitals and blanks, or if the text begins with its name, as "degrees" begins with "deg". Other similar
-/// names are not probable, because one letter more or less at the beginning gives another unit: dm, nm, mdeg, grad.
+/// written text only in capitals and blanks, or if the text begins with the name of the unit, as "degrees" begins with
+/// "deg". Other similar names are not probable, because one letter more or less at the beginning gives another unit:
+/// dm, nm, mdeg, grad.
 const Unit* meant_unit(std::string_view written, Dimension dimension) {
   constexpr std::size_t kTelling = 3;
   const std::string plain = plain_unit(written);

@@ -21,11 +21,11 @@ struct StudyTable;
 using StudyTables = std::vector<StudyTable>;  ///< The tables of a study file, with every key.
 
 /// One value of a study file. Each function that reads it throws InputError at the value's place if the value has
-/// another type or is not allowed. Refers to the parsed file, which must outlive it.
+/// another type or is not allowed. The object refers to the parsed file, which must outlive it.
 class StudyValue {
  public:
-  /// name: the value's full name for messages, "errors.linear.sigma". section: the place of its table, used if the
-  /// value has none.
+  /// name: the value's full name for messages, "errors.linear.sigma". section: the place of the table that has the
+  /// value; used if the parser gives no place for the value.
   StudyValue(const toml::node& node, std::string name, const Place& section, const StudyTables& tables);
 
   const std::string& full_name() const { return name_; }  ///< The full name, for messages.
@@ -51,9 +51,9 @@ class StudyValue {
   /// Reads one of these words, and returns its index.
   std::size_t word(std::span<const std::string_view> words) const;
   StudySection section() const;  ///< Reads a table.
-  /// Reads a list. The names of its elements have their positions: "pairs[0]".
+  /// Reads a list. The full name of each element ends with its position: "pairs[0]".
   std::vector<StudyValue> list() const;
-  /// Reads a list of this many elements. Throws InputError with this remedy if the number differs.
+  /// Reads a list of `size` elements. Throws InputError with this remedy if the number differs.
   std::vector<StudyValue> list(std::size_t size, std::string_view remedy) const;
 
   /// Throws InputError "NAME PROBLEM; REMEDY" at the value's place.
@@ -81,8 +81,8 @@ class StudySection {
   bool empty() const { return table_->empty(); }  ///< Returns true if the table has no key.
   std::vector<std::string> keys() const;          ///< The keys that the file gives, sorted by their bytes.
 
-  /// Throws InputError for a key that the table's description lacks (engine/schema/keys.h). For tables whose keys are
-  /// all fixed.
+  /// Throws InputError for a key that the table's description lacks (engine/schema/keys.h). This check is for tables
+  /// without keys that the model names.
   void allow() const;
   /// Throws InputError for a key that is not in `known`. what: what the keys of this table name, for messages.
   void allow(std::span<const std::string_view> known, std::string_view what) const;
@@ -92,7 +92,7 @@ class StudySection {
   void refuse(std::string_view key, std::string_view owner) const;
 
   std::optional<StudyValue> find(std::string_view key) const;  ///< The value of a key; none if it is missing.
-  /// The value of a key. Throws InputError if the key is missing. The message has this remedy, or, if it is empty, the
+  /// The value of a key. Throws InputError if the key is missing, with this remedy or, if `remedy` is empty, with the
   /// remedy of the key's description.
   StudyValue require(std::string_view key, std::string_view remedy = {}) const;
   StudySection section(std::string_view key) const;  ///< The table at a key; an empty one if the key is missing.

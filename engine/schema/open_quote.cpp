@@ -25,7 +25,7 @@ class Cursor {
     }
   }
 
-  /// The quote that is here: three equal characters, or one.
+  /// The quote at this position: three equal characters, or one.
   OpenQuote quote() const {
     const std::string_view three = text_.substr(at_, 3);
     const bool is_long = three.size() == 3 && three[1] == three[0] && three[2] == three[0];
@@ -39,7 +39,7 @@ class Cursor {
   std::size_t column_ = 1;
 };
 
-/// Goes behind the string that this quote opens. Returns whether it is closed.
+/// Moves past the string that this quote opens. Returns true if the string is closed.
 bool pass_string(Cursor& cursor, const OpenQuote& opened) {
   const char mark = opened.quote.front();
   cursor.advance(opened.quote.size());
@@ -51,7 +51,7 @@ bool pass_string(Cursor& cursor, const OpenQuote& opened) {
   }
   if (cursor.at_end()) return false;
   cursor.advance(opened.quote.size());
-  // A string of several lines may end with one or two quotes of its own.
+  // The text of a string of several lines may end with one or two quotes, followed by the closing three.
   for (int own = 0; own < 2 && !opened.is_of_one_line() && !cursor.at_end() && *cursor == mark; ++own) cursor.advance();
   return true;
 }

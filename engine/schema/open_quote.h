@@ -12,11 +12,12 @@ struct OpenQuote {
   std::size_t column;      ///< counts from 1, in characters
   std::string_view quote;  ///< one of " ' """ '''; a view of the text
 
-  bool is_of_one_line() const { return quote.size() == 1; }  ///< Whether its string has to end on its line.
+  /// True if the string that the quote opens must end on the same line.
+  bool is_of_one_line() const { return quote.size() == 1; }
 };
 
-/// The first quote whose string is not closed: on its line, or for a string of several lines up to the end of the text.
-/// Comments and escaped quotes do not count. None if all strings are closed.
+/// The first quote with a string that is not closed: a short string must be closed on its line, a string in triple
+/// quotes before the end of the text. Comments and escaped quotes do not count. None if all strings are closed.
 std::optional<OpenQuote> open_quote(std::string_view text);
 
 }  // namespace poesy

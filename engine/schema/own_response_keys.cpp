@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kPrevious = "previous";
 constexpr std::string_view kOrigin = "origin";
 
-/// The scope of the keys, whose readers need only the value.
+/// What the readers of these keys need besides the value.
 struct Nothing {};
 
 const Keys<OwnResponse, Nothing>& response_keys() {
@@ -77,10 +77,10 @@ std::optional<std::size_t> find_response(const ModelDescription& model, const st
   return static_cast<std::size_t>(found - model.responses.begin());
 }
 
-/// A point of which the model reports the displacement as three responses.
+/// A point with three responses that are its displacement.
 struct ReportedPoint {
   std::string name;
-  /// Indices of the responses that are its displacement along the base's x, y and z.
+  /// Positions of the responses that are the displacement along the base's x, y and z.
   std::array<std::size_t, 3> responses;
 };
 
@@ -103,7 +103,7 @@ std::vector<ReportedPoint> reported_points(const ModelDescription& model) {
   return points;
 }
 
-/// Reads tables of responses one after the other. Each may use the responses that were read before it.
+/// Reads tables of responses one after the other. Each response may use those that were read before it.
 class OwnReader {
  public:
   OwnReader(ModelDescription model, PoseBefore before) : model_(std::move(model)), before_(before) {}
@@ -151,7 +151,7 @@ class OwnReader {
     if (direction) read_direction(*direction, section.require("point", "name it: point = \"origin\""), own);
   }
 
-  /// The index of the response of this name. Throws InputError at the value if there is no such response.
+  /// The position of the response of this name. Throws InputError at the value if there is no such response.
   std::size_t response_of(const StudyValue& value, const std::string& name) const {
     const std::optional<std::size_t> found = find_response(model_, name);
     if (found) return *found;

@@ -9,13 +9,13 @@
 /// The tables [[response]] of studies and mechanism files, in which users define responses.
 namespace poesy {
 
-/// Whether a table [[response]] may define responses that are relative to the previous pose.
+/// Whether responses of a table [[response]] may be relative to the previous pose.
 enum class PoseBefore {
   known,   ///< yes: the file has a list of poses
   unknown  ///< no: the file has no list of poses
 };
 
-/// The tables with every key that a definition of a response may have, for the reference.
+/// The description of tables [[response]] and their inner tables, for the reference.
 StudyTables own_response_tables();
 
 /// Reads a list of tables [[response]] for a model with this description. If a norm is relative to a pose, the function

@@ -21,7 +21,7 @@ struct Entry {
   const toml::node* value;
 };
 
-/// The keys and values of a table in the order of the text.
+/// The keys and values of a table in the order of the file.
 std::vector<Entry> entries_of(const toml::table& table) {
   std::vector<Entry> entries;
   for (const auto& [key, value] : table) entries.push_back({key.str(), &value});
@@ -61,7 +61,7 @@ bool is_sections(const toml::node& value) {
   return list != nullptr && list->is_array_of_tables() && !list->front().as_table()->is_inline();
 }
 
-/// Adds to `settings` those of a section and of its inner sections. path: full name of the section.
+/// Adds the settings of a section and of its inner sections to `settings`. path: full name of the section.
 void add_settings(const toml::table& section, const std::string& path, int depth, std::vector<StudySetting>& settings) {
   if (depth == kDeepest) return;
   for (const Entry& entry : entries_of(section)) {

@@ -8,10 +8,10 @@ namespace poesy {
 
 /// One key of a resolved study and its value, for display.
 struct StudySetting {
-  std::string section;  ///< section of the key: "errors"; repeated sections have a number, "analysis.cases 2"; empty at
-                        ///< the top of the file
-  std::string key;      ///< name of the key: "linear"
-  std::string value;    ///< TOML on one line: "\"newton\"", "1000", "[\"1 m\", \"2 m\"]"
+  /// Section of the key: "errors". A repeated section has a number, "analysis.cases 2"; empty at the top of the file.
+  std::string section;
+  std::string key;    ///< name of the key: "linear"
+  std::string value;  ///< TOML on one line: "\"newton\"", "1000", "[\"1 m\", \"2 m\"]"
 };
 
 /// All settings of a resolved study, in the order of its text. Empty if the text is not TOML, as in a damaged result.

@@ -32,8 +32,8 @@ std::vector<std::string_view> lines_of(std::string_view text, const std::string&
   return lines;
 }
 
-/// Throws for a quote that is not closed, if it explains why the text is not TOML. The library names the end of the
-/// text or of the line where it misses the closing quote, or the place where it did not expect the rest of the line.
+/// Throws InputError if a quote that is not closed explains why the text is not TOML. noticed: the place where the TOML
+/// library noticed the mistake, which is often the end of the line or of the text.
 void refuse_open_quote(const std::string& text, const std::string& path, const toml::source_position& noticed) {
   const auto open = open_quote(text);
   if (!open) return;
@@ -63,8 +63,8 @@ toml::table parsed(const std::string& text, const std::string& path, std::string
   }
 }
 
-/// A number as the file writes it; empty if it is not found. lines: lines of the file. begin: position of the number,
-/// with the column counted in characters.
+/// A number as the file writes it; empty if the number is not found. lines: lines of the file. begin: position of the
+/// number, with the column counted in characters.
 std::string_view written_number(const std::vector<std::string_view>& lines, const toml::source_position& begin) {
   if (begin.line == 0 || begin.line > lines.size()) return {};
   std::string_view rest = lines[begin.line - 1];
@@ -96,7 +96,7 @@ struct KeyedNode {
   std::string_view key;
 };
 
-/// Checks all numbers of a file with check_zero(). There is no recursion, because tables may be nested deeply.
+/// Checks all numbers of a file with check_zero(), without recursion, because tables may be nested deeply.
 void check_numbers(const toml::table& table, const std::vector<std::string_view>& lines, const std::string& path) {
   std::vector<KeyedNode> open{{&table, ""}};
   while (!open.empty()) {

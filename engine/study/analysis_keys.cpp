@@ -34,7 +34,7 @@ std::vector<FactorIndex> factors_of_set(const StudyValue& value, const ModelDesc
   value.fail("is '" + printable(written) + "', which is not a factor set of the model", suggestion(written, known));
 }
 
-/// The factors that vary in a study of this kind if the study names none.
+/// The factors that vary in a study of this kind if the study itself names none.
 std::vector<FactorIndex> usual_factors(const StudyKind& kind, const ModelDescription& model) {
   const FactorSet* set = model.find_set(kind.usual_factors);
   return set != nullptr ? set->factors : all_factors(model);
@@ -109,8 +109,8 @@ KeyValue<Study> fixed_samples() {
   return value;
 }
 
-/// Reads the key `samples`: a number, or the table of adaptive samples. Throws InputError if this table and the key
-/// `conf_level` both state the confidence level of intervals.
+/// Reads the key `samples`: a number, or the table of adaptive samples. Throws InputError if both this table and the
+/// key `conf_level` state the confidence level of intervals.
 void read_samples(const StudyValue& value, Study& study, const Reading& reading) {
   Analysis& analysis = study.analysis;
   if (!value.is_section()) {
@@ -146,7 +146,7 @@ std::string shown_samples(const TemplateLines& lines, const Study&) {
          "# samples = " + lines.inline_table("analysis.samples") + "\n";
 }
 
-/// The line of the key `relative`; empty if no constant error is a number.
+/// The line of the key `relative` of the background; empty if no constant error is a number without a unit.
 std::string relative_line(const Background& background) {
   return background.relative == 0.0 ? "" : "relative = " + shortest(background.relative) + "\n";
 }
@@ -176,7 +176,8 @@ const InnerRows<Background>& background_keys() {
   return keys;
 }
 
-/// Reads the background. By default, its errors are as large as the study's errors of the same dimension.
+/// Reads the background (errors that are constant while others vary). By default, its errors are as large as the
+/// study's errors of the same dimension.
 void read_background(const StudyValue& value, Study& study, const Reading& reading) {
   const StudySection section = value.section();
   Background background{.factors = {},
@@ -199,7 +200,8 @@ std::string background_lines(const Study& study) {
          keys_text(background_keys(), background);
 }
 
-/// The background in a template: the set of constant errors that the kind suggests, if the model has this set.
+/// The template's lines of the background. They propose the set of constant errors that the kind suggests, if the model
+/// has this set.
 std::string shown_background(const TemplateLines& lines, const Study& study) {
   const std::string_view held = study.analysis.kind->usual_background;
   return lines.explanation_lines("analysis", "background") + lines.keys_lines("analysis.background") +
@@ -308,13 +310,13 @@ std::vector<StudyRow> own_rows(const StudyKind& kind) {
   return kind.rows == nullptr ? std::vector<StudyRow>() : kind.rows();
 }
 
-/// Returns true if the kind replaces the shared row (key) of this name by its own.
+/// Returns true if the kind has a key of this name itself, which replaces the shared one.
 bool has_own_row(const StudyKind& kind, std::string_view name) {
   return std::ranges::count(own_rows(kind), name, &StudyRow::name) > 0;
 }
 
-/// Adds to each shared row (key of [analysis]) the kinds to which it applies, and describes the key `kind`. Kinds that
-/// have the key `factors` come first.
+/// Adds to each shared key of [analysis] the kinds for which it applies, and describes the key `kind`. In these lists,
+/// kinds that have the key `factors` come first.
 void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   std::vector<const StudyKind*> listed(kinds.begin(), kinds.end());
   std::stable_partition(listed.begin(), listed.end(), [](const StudyKind* kind) { return kind->has_key("factors"); });
@@ -344,7 +346,7 @@ std::string usual_factors_text(std::span<const StudyKind* const> kinds) {
 
 namespace {
 
-/// Adds to `factors` those whose names match the pattern and that are not in the list yet.
+/// Adds the factors with names that match the pattern to `factors`, unless they are in the list already.
 void add_matching(const StudyValue& pattern, const ModelDescription& model, std::vector<FactorIndex>& factors) {
   bool any = false;
   for (std::size_t f = 0; f < model.factors.size(); ++f) {

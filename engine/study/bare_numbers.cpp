@@ -27,14 +27,14 @@ std::string line(std::string_view file, std::string_view column, Dimension dimen
       printable(file), printable(column), si_unit(dimension), found, printable(column), display_unit(dimension).name);
 }
 
-/// A clause that says by which factor a value exceeds the usual size. Both values are in SI. whose: the thing that has
-/// the usual size.
+/// A clause that says by which factor a value exceeds the usual size. Both values are in SI. whose: what has the usual
+/// size, in words.
 std::string beyond_text(double value, Dimension dimension, double usual, std::string_view whose) {
   return fmt::format("one is {}, more than {} times {} ({})", readable_text({value, dimension}, kDigits), kFarBeyond,
                      whose, readable_text({usual, dimension}, kDigits));
 }
 
-/// The size of the study's largest error of a dimension, SI; infinity if it has no such error.
+/// The size of the study's largest error of a dimension, SI; infinity if there is no such error.
 double largest_error(Dimension dimension, const Study& study) {
   double largest = 0.0;
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
@@ -54,7 +54,7 @@ double size_of_workspace(const ModelDescription& model) {
   return std::sqrt(squares);
 }
 
-/// The difference between a measured value and its value without errors, SI; none if finding the latter needs a solve.
+/// The measured value minus the value without errors, SI; none if the value without errors needs a solve.
 std::optional<double> departure(const MachineValue& value, const PoseTable& poses, const ModelDescription& model) {
   if (value.column != MachineColumn::actual) return value.value;
   const auto own = std::ranges::find(model.pose_coordinates, value.quantity, &PoseCoordinate::name);
@@ -74,8 +74,8 @@ std::string bare_pose_text(std::string_view file, const PoseTable& table, const 
   if (table.bare.empty()) return {};
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
     const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    // The columns of a chart give a coordinate of the pose only together. So the coordinate is checked if any of them
-    // has no unit.
+    // If the table has columns of a chart, a coordinate of the pose depends on all of them. So the coordinate is
+    // checked if any column has no unit.
     const auto own = std::ranges::find(table.bare, coordinate.name);
     if (!table.chart && own == table.bare.end()) continue;
     const double lower = model.pose_lower[c];

@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 9> kOftenChanged{"samples", "select", "co
 /// Keys that a short template leaves out even if they do not state a plain default.
 constexpr std::array<std::string_view, 3> kRarelyChanged{"title", "fidelity", "tolerance"};
 
-/// What the first key says, because it needs no explanation itself.
+/// The explanation of the first key. It describes the template, because the key itself needs no explanation.
 constexpr std::string_view kFirstKey = "format";
 constexpr std::string_view kAllKeys = "what is usually changed; every key with its explanation: poesy template --full";
 
@@ -45,13 +45,13 @@ std::string_view first_clause(std::string_view meaning) {
   return clause.ends_with('.') ? clause.substr(0, clause.size() - 1) : clause;
 }
 
-/// The line without the comment behind its value. No text value of a template holds " # ".
+/// The line without the comment after its value. No text value of a template contains "  # ".
 std::string_view without_comment(std::string_view line) {
   const std::string_view code = line.substr(0, line.find("  # "));
   return code.substr(0, code.find_last_not_of(' ') + 1);
 }
 
-/// A line with its explanation, if both fit.
+/// A line with its explanation, or without it if both together are too long.
 std::string explained(std::string_view code, std::string_view explanation) {
   std::string text = fmt::format("{}  # {}", code, explanation);
   return text.size() <= kWidth ? std::move(text) : std::string(code);
@@ -62,8 +62,8 @@ bool states_default(const StudyKey& key, std::string_view line) {
   return key.usual == fmt::format("`{}`", value);
 }
 
-/// The line that a short template has for a line of the full template that sets a key of this table; empty if the short
-/// template leaves the key out.
+/// The short template's line for a line of the full template that sets a key of this table; empty if the short template
+/// leaves the key out.
 std::string key_line(const StudyTable* table, std::string_view kind, std::string_view line) {
   const std::string_view code = without_comment(line);
   const StudyKey* key = table == nullptr ? nullptr : table->find(code.substr(0, code.find(' ')), kind);
@@ -73,7 +73,7 @@ std::string key_line(const StudyTable* table, std::string_view kind, std::string
   return explained(code, key->name == kFirstKey ? kAllKeys : first_clause(key->meaning));
 }
 
-/// A table of the template with the lines that are shown.
+/// A table of the short template: its header, and those of its lines that are shown.
 struct Block {
   std::string_view header;  ///< "[poses]", "[[analysis.parts]]"; empty for the keys before the first table
   std::vector<std::string> lines = {};
@@ -101,7 +101,7 @@ std::vector<Block> blocks_of(std::string_view full, const StudyTables& tables, s
   return blocks;
 }
 
-/// The lines of a table as a table on one line.
+/// The lines of a table, written as an inline table on one line.
 std::string on_one_line(const Block& block) {
   std::string text;
   for (const std::string& line : block.lines) {
@@ -110,8 +110,8 @@ std::string on_one_line(const Block& block) {
   return text + " },";
 }
 
-/// Writes consecutive tables of a list, such as [[analysis.parts]], as one array in the table that has the list: "parts
-/// = [" in [analysis]. shown: its last block gets the array.
+/// Writes consecutive tables of a list, such as [[analysis.parts]], as one array "parts = [...]" in [analysis]. The
+/// array is added to the last block of `shown`.
 void take_list(std::vector<Block>& shown, std::span<const Block> list, const StudyTables& tables,
                std::string_view kind) {
   const std::string_view path = path_of(list.front().header);
@@ -124,7 +124,8 @@ void take_list(std::vector<Block>& shown, std::span<const Block> list, const Stu
   lines.emplace_back("]");
 }
 
-/// The tables of a study, with each list of tables such as [[analysis.parts]] written as an array in the table above.
+/// The tables of a study, with each list of tables such as [[analysis.parts]] written as an array in the table before
+/// it.
 std::vector<Block> with_lists(std::span<const Block> blocks, const StudyTables& tables, std::string_view kind) {
   std::vector<Block> shown;
   while (!blocks.empty()) {

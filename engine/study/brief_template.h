@@ -7,10 +7,11 @@
 
 namespace poesy {
 
-/// What a person changes first of a study's template: its keys without those in comments, those that are rarely
-/// changed, and those that state their default and are not often changed. Each key has the first clause of its
-/// explanation behind it. Lists of tables ([[analysis.parts]]) are written as lists of tables on one line, and no line
-/// is empty, so that a template has some 25 lines. full: template_text(). tables: of the study's keys. kind: its kind.
+/// A shorter version of a template, with the keys that a person changes first. It leaves out keys that the full
+/// template shows in comments, keys that are rarely changed, and keys with their default unless they are often changed.
+/// The first clause of a key's explanation follows the key as a comment. Lists of tables ([[analysis.parts]]) are
+/// written as lists of tables on one line, and no line is empty, so that the template has some 25 lines. full: text of
+/// the full template. tables: the tables of the study's keys. kind: the kind of the study.
 std::string brief_template(std::string_view full, const StudyTables& tables, std::string_view kind);
 
 }  // namespace poesy

@@ -15,28 +15,28 @@
 
 namespace poesy {
 
-/// Errors whose sizes are fitted by one common number: each error is its weight times this number.
+/// Errors that a calibration fits by one common number: each of these errors is its weight times this number.
 struct FittedErrors {
   std::string name;                       ///< name of the combination, or of the error if there is only one
   std::vector<FactorIndex> factors = {};  ///< fitted errors, at least one, all different
-  std::vector<double> weights = {};       ///< SI unit of the error per SI unit of the number; none is 0
-  Dimension dimension;                    ///< dimension of the number, which is that of its first error
+  std::vector<double> weights = {};       ///< weight of each error: its SI unit per SI unit of the number; none is 0
+  Dimension dimension;                    ///< dimension of the number, which is that of the first error
   Place place = {};                       ///< place of the error or combination in the key `fit`, for messages
 };
 
 /// The unknown properties of the measuring device's frame.
 enum class MeasuringFrame {
-  known,   ///< nothing is unknown: it measures in the base's frame
-  height,  ///< the zero of its heights
-  plane,   ///< height and two slopes of the plane from which it measures heights
-  rigid    ///< position and orientation of its frame
+  known,   ///< nothing is unknown: the device measures in the base's frame
+  height,  ///< the height at which the device measures zero
+  plane,   ///< height and two slopes of the plane from which the device measures heights
+  rigid    ///< position and orientation of the device's frame
 };
 
 /// The unknown properties of the measured point of the platform.
 enum class MeasuredTarget {
   known,  ///< nothing is unknown
   point,  ///< the position of the point
-  rigid   ///< the position of the point and the axes of its frame
+  rigid   ///< the position of the point, and the orientation of the frame of the measured target
 };
 
 /// What is known of the fitted errors before anything is measured.
@@ -47,8 +47,8 @@ enum class PriorKnowledge {
 
 /// What is known about the standard deviations of measured values.
 enum class NoiseLevel {
-  given,     ///< they are as stated
-  estimated  ///< they are known up to one common factor, which the fit estimates from its residual
+  given,     ///< the stated standard deviations hold
+  estimated  ///< the stated ones hold up to one common factor, which the fit estimates from its residual
 };
 
 /// The standard deviation of the measurements of one quantity.
@@ -72,12 +72,12 @@ inline constexpr std::string_view kMeasuredPose = "pose";
 
 /// The table [analysis.calibration], which says how a machine is calibrated.
 struct CalibrationTable {
-  std::vector<FittedErrors> fit;           ///< [k] fitted errors, linearly independent
+  std::vector<FittedErrors> fit;           ///< numbers that are fitted, linearly independent
   std::vector<std::string> measured = {};  ///< what a study measures: names of responses, "pose" or "distance"
   std::vector<StatedNoise> noise = {};     ///< noise of measured quantities
   std::optional<PoseSelection> poses = std::nullopt;   ///< poses at which a study measures; none: the study's poses
   std::vector<std::array<std::size_t, 2>> pairs = {};  ///< pairs of poses between which distances are measured
-  std::size_t repeats = 1;                             ///< number of measurements of which each value is the mean
+  std::size_t repeats = 1;                             ///< number of measurements that are averaged to one value
   MeasuringFrame frame = MeasuringFrame::known;        ///< unknown properties of the measuring device's frame
   MeasuredTarget target = MeasuredTarget::known;       ///< unknown properties of the measured point of the platform
   PriorKnowledge prior = PriorKnowledge::none;         ///< what is known of the fitted errors beforehand
@@ -85,7 +85,8 @@ struct CalibrationTable {
   /// Coordinates that the controller commands; empty: the model's pose coordinates.
   std::vector<std::string> coordinates = {};
   std::vector<std::vector<std::string>> motors = {};  ///< drives that move together; empty: each moves alone
-  /// [k] SI, fitted errors that the controller already corrected while it measured; empty: none.
+  /// [fitted numbers] The values of the fitted numbers that the controller corrected already while the machine was
+  /// measured, SI; empty: none.
   std::vector<double> present = {};
   std::vector<ControllerNumber> controller = {};  ///< numbers to type into the controller
   std::size_t next = 0;                           ///< number of poses to propose for the next measurement

@@ -24,7 +24,7 @@ constexpr std::int64_t kMostNext = 1000;
 /// The six components of a pose, which the word "pose" in the key `measured` abbreviates.
 constexpr std::array<std::string_view, 6> kWholePose{"x", "y", "z", "theta_x", "theta_y", "theta_z"};
 
-/// What the readers of the keys of [analysis.calibration] use in addition to the key's value.
+/// What the readers of the keys of [analysis.calibration] need in addition to the key's value.
 struct CalibrationReading {
   const Study& study;
   const Reading& reading;
@@ -86,7 +86,7 @@ void read_noise(const StudyValue& value, CalibrationTable& table, const Calibrat
   if (table.noise.empty()) value.fail("is empty", "write e.g. { z = \"5 um\" }");
 }
 
-/// Reads a table with the keys of [poses].
+/// Reads a table that selects poses with the same keys as [poses].
 PoseSelection read_selection(const StudyValue& value, const CalibrationReading& at) {
   Study other;
   other.mechanism = at.study.mechanism;
@@ -188,8 +188,8 @@ void read_controller(const StudyValue& value, CalibrationTable& table, const Cal
   }
 }
 
-/// Throws InputError if the table lacks the noise of a measured quantity. Also throws if the table has measured
-/// distances but no pairs of poses, or pairs but no measured distances.
+/// Throws InputError if the noise of a measured quantity is missing, if distances are measured but no pairs of poses
+/// are stated, or if pairs are stated but no distances are measured.
 void check_measured(const CalibrationTable& table, const StudySection& section) {
   const bool measures_distances = std::ranges::find(table.measured, kMeasuredDistance) != table.measured.end();
   if (measures_distances && table.pairs.empty()) {
@@ -362,7 +362,7 @@ bool is_single(const FittedErrors& fitted, const ModelDescription& model) {
   return model.factors[fitted.factors.front().value].name == fitted.name;
 }
 
-/// The lines of a table [analysis.calibration.KEY] with a selection of poses.
+/// The lines of a table [analysis.calibration.KEY] that selects poses.
 std::string selection_lines(std::string_view key, const PoseSelection& selection, const Study& study) {
   Study other;
   other.mechanism = study.mechanism;
@@ -409,7 +409,8 @@ std::string calibration_lines(const Study& study) {
   return text;
 }
 
-/// Comment lines of a template that show a calibration of one error; empty if nothing of the mechanism can be measured.
+/// Comment lines of a template that show a calibration of one error; empty if the model reports no displacement that
+/// can be measured, or has no errors.
 std::string shown_calibration(const TemplateLines& lines, const Study& study) {
   const ModelDescription& model = study.model();
   const std::vector<std::string_view> known = measurable(model);

@@ -14,7 +14,7 @@
 namespace poesy {
 namespace {
 
-/// The word in a study file that asks for the correlations of measured parts. Each line of the measured table then
+/// The word in a study file that asks for the correlations of measured parts. With it, each line of the measured table
 /// belongs to one part.
 constexpr std::string_view kAsMeasured = "as measured";
 
@@ -40,14 +40,14 @@ const InnerRows<CorrelatedErrors>& block_keys() {
   return keys;
 }
 
-/// Columns of one file whose measured errors belong to the same parts, line by line.
+/// Columns of one file in which each line has the measured errors of one part.
 struct MeasuredTogether {
   std::string file;  ///< name of the file in the study
   std::vector<FactorIndex> factors;
   std::vector<std::string> columns;
 };
 
-/// The columns that [errors.override] takes from files, grouped by file.
+/// The columns of files from which [errors.override] takes distributions, grouped by file.
 std::vector<MeasuredTogether> measured_together(const StudySection& errors, const ModelDescription& model) {
   std::vector<MeasuredTogether> tables;
   const StudySection override = errors.section("override");
@@ -63,8 +63,8 @@ std::vector<MeasuredTogether> measured_together(const StudySection& errors, cons
   return tables;
 }
 
-/// [k x k] The correlation matrix of the normal scores of k columns. It is 2 sin(pi r / 6) for the rank correlation r
-/// (Spearman) of two columns.
+/// The correlation matrix [k x k] of the normal scores of a table's k columns. An entry is 2 sin(pi r / 6), where r is
+/// the rank correlation (Spearman) of two columns.
 std::vector<double> correlation_of(const MeasuredTogether& table, const StudySection& errors,
                                    const ModelDescription& model) {
   const std::string path = beside_study(errors.place(), table.file);
@@ -92,7 +92,7 @@ void check_definite(const StudyValue& value, std::span<const double> correlation
              "take smaller correlations, or leave out an error that follows from the others");
 }
 
-/// Reads a square matrix with `size` rows, and checks all numbers.
+/// Reads a square matrix with `size` rows, and checks that its entries are correlations.
 std::vector<double> read_matrix(const StudyValue& value, std::size_t size) {
   const std::string remedy = fmt::format("write {} rows of {} numbers, in the order of factors", size, size);
   std::vector<double> matrix;
@@ -114,7 +114,7 @@ std::vector<double> read_matrix(const StudyValue& value, std::size_t size) {
   return matrix;
 }
 
-/// The columns of these factors. Throws InputError unless one file has them all.
+/// The columns from which these factors take their distributions. Throws InputError unless one file has all of them.
 MeasuredTogether columns_of(const StudyValue& value, std::span<const FactorIndex> factors, const StudySection& errors,
                             const ModelDescription& model) {
   MeasuredTogether asked;
@@ -138,7 +138,7 @@ MeasuredTogether columns_of(const StudyValue& value, std::span<const FactorIndex
   return asked;
 }
 
-/// Throws InputError if some of these errors are drawn per machine and others per pose.
+/// Throws InputError if some of these errors are drawn once for each machine and others at each pose.
 void check_draws(const StudyValue& value, std::span<const FactorIndex> factors, const Study& study) {
   const auto anew = [&](FactorIndex factor) { return study.errors.is_per_pose(factor); };
   const auto fixed = std::ranges::find_if_not(factors, anew);
@@ -188,7 +188,7 @@ CorrelatedErrors read_block(const StudyValue& value, const Study& study, const R
   return block;
 }
 
-/// Makes a block of correlated errors for each file that has the values of several errors.
+/// Makes a block of correlated errors for each file from which several errors take their values.
 void read_as_measured(const StudyValue& value, Study& study, const Reading& reading) {
   const StudySection errors = reading.root.section("errors");
   for (const MeasuredTogether& table : measured_together(errors, study.model())) {

@@ -6,23 +6,24 @@
 #include "engine/base/units.h"
 #include "engine/study/text_file.h"
 
-/// Titles of the columns of a table that poesy reads.
+/// The titles of columns in tables that poesy reads.
 namespace poesy {
 
-/// A column's title, split into name and unit: "z [mm]" has the name "z" and the unit "mm". A title without brackets
-/// has no unit.
+/// The title of a column, split into name and unit: "z [mm]" has the name "z" and the unit "mm". A title without
+/// brackets has no unit.
 struct CsvTitle {
   explicit CsvTitle(std::string_view text);  ///< text: a cell of the first line, which must outlive it.
 
-  std::string_view name;                 ///< without the unit
-  std::optional<std::string_view> unit;  ///< unit as written; none without brackets
+  std::string_view name;                 ///< name without the unit
+  std::optional<std::string_view> unit;  ///< unit as written; none if there are no brackets
 };
 
-/// The size in SI of the unit of a column; 1 if its title has no unit. Throws InputError at the cell if the unit is
-/// unknown or belongs to another dimension.
+/// The size of a column's unit in SI; 1 if the title has no unit. Throws InputError at the cell if the unit is unknown
+/// or is not a unit of this dimension.
 double size_of_unit(const CsvCell& cell, const CsvTitle& title, Dimension dimension);
 
-/// Throws InputError if a title is in quotes or holds tabs, because then the file is not a table that poesy reads.
+/// Throws InputError if a title is in quotes or contains a tab. Files with such titles are tables that poesy does not
+/// read.
 void refuse_other_tables(const CsvCell& cell);
 
 }  // namespace poesy

@@ -19,21 +19,22 @@ namespace {
 
 using Shape = Distribution::Shape;
 
-/// The smallest size of an error, SI. With it, even the fourth power of an error's effect that is only rounding stays
-/// far above the smallest double.
+/// The smallest size of an error, SI. The effect of such an error may be mere rounding, far smaller than the error;
+/// even the fourth power of this effect is far above the smallest double.
 constexpr double kSmallest = 1e-30;
 
 /// The largest number of values of a measured distribution. Every result stores them, so they must stay few.
 constexpr std::size_t kMostMeasured = 10'000;
 
-/// The parameters of a distribution in a study.
+/// The distribution of an error as the keys of a study state it.
 struct Parameters {
   Shape shape = Shape::normal;
-  double sigma = 0.0;       ///< standard deviation, SI, before it is cut off; 0 if the shape has none
+  double sigma = 0.0;       ///< standard deviation before the distribution is cut off, SI; 0 if the shape has none
   double half_width = 0.0;  ///< largest size of the error before shift and mean, SI; 0 if the shape has none
   double shift = 0.0;       ///< half of the errors scatter about -shift, half about +shift; SI
   double mean = 0.0;        ///< mean, SI
-  /// Ends of the distribution, SI. They replace the mean, and half_width or (for a normal distribution) sigma.
+  /// Ends of the distribution, SI. If they are stated, take_limits() computes the mean, and half_width or (for a normal
+  /// distribution) sigma, from them.
   std::optional<SizeLimits> limits = {};
   /// For a normal distribution with limits: distance from the mean to a limit, in standard deviations.
   double sigmas = 0.0;
@@ -42,10 +43,10 @@ struct Parameters {
   std::string file = {};            ///< file of the measured values, as the study names it
   std::string column = {};          ///< column of the file
   std::vector<double> values = {};  ///< measured values, SI
-  std::string doubt = {};           ///< a warning about the unit of the measured values; empty if there is none
+  std::string doubt = {};           ///< warning about the unit of the measured values; empty if there is none
 };
 
-/// The distribution about zero, before its shift and mean are added.
+/// The distribution that the parameters state, before shift and mean are added.
 Distribution centred_distribution_of(const Parameters& parameters) {
   switch (parameters.shape) {
     case Shape::normal:
@@ -71,7 +72,7 @@ Distribution centred_distribution_of(const Parameters& parameters) {
   return measured;
 }
 
-/// A key that is the size of an error. read_size: StudyValue::positive_quantity or half_width.
+/// Describes a key that is the size of an error. read_size: StudyValue::positive_quantity or half_width.
 KeyValue<Parameters> size_at(double Parameters::*member, double (StudyValue::*read_size)(Dimension) const) {
   const auto read = [=](const StudyValue& value, Parameters& parameters) {
     parameters.*member = (value.*read_size)(parameters.dimension);
@@ -82,7 +83,7 @@ KeyValue<Parameters> size_at(double Parameters::*member, double (StudyValue::*re
   return {.type = "quantity", .bounds = "at least 1e-30 m or rad", .read = read};
 }
 
-/// An example of the key `limits` for messages.
+/// An example of the key `limits`, for messages.
 std::string_view example_limits(Dimension dimension) {
   if (dimension == Dimension::number) return "[\"-0.1 %\", 0]";
   return dimension == Dimension::angle ? "[\"-0.1 deg\", 0]" : "[\"-0.1 mm\", 0]";
@@ -98,7 +99,7 @@ KeyValue<Parameters> shift_value() {
   return {.type = "quantity", .bounds = "at least 0", .read = read};
 }
 
-/// Reads an end of the key `limits`: a quantity, or 0 without a unit; SI.
+/// Reads one end of the key `limits`, SI: a quantity, or 0 without a unit.
 double limit_of(const StudyValue& value, Dimension dimension) {
   return value.is_zero() ? 0.0 : value.quantity(dimension);
 }
@@ -246,8 +247,8 @@ const InnerRows<Parameters>& distribution_keys() {
   return keys;
 }
 
-/// The distribution of errors for which a study states none. It is a normal distribution with a standard deviation of 1
-/// mm, 1 deg or 0.1 %.
+/// The distribution of errors for which the study states no distribution: normal, with a standard deviation of 1 mm, 1
+/// deg or 0.1 %.
 Distribution default_distribution(Dimension dimension) {
   return Distribution::normal(dimension == Dimension::number ? 1e-3 : display_unit(dimension).si);
 }
@@ -256,9 +257,9 @@ bool has_errors_of(Dimension dimension, const ModelDescription& model) {
   return std::ranges::find(model.factors, dimension, &Factor::dimension) != model.factors.end();
 }
 
-/// Reads the measured values of a distribution from the file that the study names. Files are opened only for a run.
-/// usual: the distribution of other errors of this dimension. Returns true if there are values, from the file or in the
-/// study itself.
+/// Reads the measured values of a distribution from the file that the study names, if the study is read for a run; for
+/// other uses, files stay closed. usual: the distribution of other errors of this dimension. Returns true if there are
+/// values, from the file or in the study itself.
 bool take_values(const StudySection& section, StudyUse use, const Distribution& usual, Parameters& parameters) {
   if (section.find("values")) {
     for (const std::string_view key : {"file", "column"}) section.refuse(key, "a distribution with values");
@@ -287,7 +288,7 @@ struct StatedError {
   friend bool operator==(const StatedError&, const StatedError&) = default;
 };
 
-/// Converts the key `limits` to a mean and a size. Throws InputError if other keys state these, too.
+/// Computes mean and size of a distribution from the key `limits`. Throws InputError if other keys state them, too.
 void take_limits(const StudySection& section, Parameters& parameters) {
   const bool is_normal = parameters.shape == Shape::normal;
   if (!parameters.limits) {
@@ -307,7 +308,7 @@ void take_limits(const StudySection& section, Parameters& parameters) {
       is_normal ? (upper - lower) / (2.0 * parameters.sigmas) : 0.5 * (upper - lower);
 }
 
-/// Throws InputError if a key is missing that the distribution needs. word: the distribution in the study file.
+/// Throws InputError if a key is missing that the distribution needs. word: name of the distribution in the study file.
 void require_sizes(const StudySection& section, const std::string& word, const Parameters& parameters) {
   for (const auto& row : distribution_keys().rows) {
     if (!row.required || !holds_for(row.only_for, word)) continue;
@@ -362,8 +363,8 @@ void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
   set_by_zones(study);
 }
 
-/// The value in [errors.override] for a factor. A key applies if it is the factor's name or a pattern that matches it;
-/// the last one in the file counts.
+/// The value in [errors.override] for a factor. A key is for the factor if it is the factor's name or a pattern that
+/// matches the name. If several keys are, the last one in the file counts.
 std::optional<StudyValue> override_of(const StudySection& overrides, const std::string& factor) {
   const auto place = [](const StudyValue& value) { return std::pair(value.place().line, value.place().column); };
   std::optional<StudyValue> last;
@@ -375,7 +376,7 @@ std::optional<StudyValue> override_of(const StudySection& overrides, const std::
   return last;
 }
 
-/// Throws InputError for a key that names no factor, and for a pattern that matches none.
+/// Throws InputError for a key that is not the name of a factor, and for a pattern that matches no name.
 void check_override(const StudySection& overrides, const ModelDescription& model) {
   const std::vector<std::string> keys = overrides.keys();
   std::vector<std::string_view> known = names(model.factors);
@@ -388,8 +389,8 @@ void check_override(const StudySection& overrides, const ModelDescription& model
   overrides.allow(known, "factor");
 }
 
-/// Reads a value of [errors.override]. usual: distribution and draws of the error without this value. A table that has
-/// only the key `draws` keeps the usual distribution.
+/// Reads a value of [errors.override]. usual: what holds for the error without this value. A table that has only the
+/// key `draws` keeps the usual distribution.
 StatedError read_own_error(const StudyValue& value, Dimension dimension, StudyUse use, const StatedError& usual,
                            std::vector<std::string>& doubts) {
   if (!value.is_section() || value.section().keys() != std::vector<std::string>{"draws"}) {
@@ -412,10 +413,11 @@ void read_override(const StudyValue& value, Study& study, const Reading& reading
   }
 }
 
-/// The largest number of values of given machines. Every result stores them, so they must stay few.
+/// The largest number of values of given machines, whose errors a table states. Every result stores these values, so
+/// they must stay few.
 constexpr std::size_t kMostGiven = 200'000;
 
-/// A table of given machines, as a resolved study states it.
+/// A table of given machines in a study: the errors of each machine, which are not drawn.
 struct GivenRows {
   std::vector<std::string> columns = {};
   std::vector<std::vector<double>> rows = {};  ///< values of the machines, one row for each machine, SI
@@ -474,7 +476,7 @@ ErrorTable table_of(const StudyValue& value, const ModelDescription& model) {
   return table;
 }
 
-/// Stores a table of given machines, and makes each of its columns the distribution of its error.
+/// Stores a table of given machines, and gives each error of the table its column as the distribution.
 void take_machines(const StudyValue& value, ErrorTable table, Study& study) {
   if (table.values.size() > kMostGiven) {
     value.fail(fmt::format("has {} numbers", table.values.size()),
@@ -496,7 +498,8 @@ void take_machines(const StudyValue& value, ErrorTable table, Study& study) {
   study.errors.machines = std::move(table);
 }
 
-/// Reads given machines from a file, or from a table in the study. Files are opened only for a run.
+/// Reads given machines from a file, or from a table in the study. A file is opened only if the study is read for a
+/// run.
 void read_machines(const StudyValue& value, Study& study, const Reading& reading) {
   if (value.is_section()) return take_machines(value, table_of(value, study.model()), study);
   const std::string file = value.text();
@@ -521,12 +524,12 @@ std::string machines_lines(const Study& study) {
   return text + "]\n";
 }
 
-/// Returns true if given machines state this error.
+/// Returns true if the error is stated by given machines and not drawn.
 bool is_given(const Study& study, std::size_t f) {
   return study.errors.by_factor[f].shape() == Distribution::Shape::given;
 }
 
-/// The values as a TOML list over several lines, to keep lines of a study file short.
+/// The values as a TOML list over several lines, because lines of a study file must stay short.
 std::string values_text(std::span<const double> values, Dimension dimension, ValueText value) {
   constexpr std::size_t kOfLine = 5;
   std::string text = "[";
@@ -564,8 +567,9 @@ std::string error_text(const StatedError& error, Dimension dimension, ValueText 
   return text + " }";
 }
 
-/// Distribution and draws that most factors of this dimension have. Errors with a distribution by zones do not count.
-/// The resolved text states it once, as `linear` or `angular`.
+/// Distribution and draws that most factors of this dimension have. Factors whose distribution follows from a tolerance
+/// zone, and factors of given machines, do not count. The resolved text states the result once, as `linear` or
+/// `angular`.
 StatedError commonest_error(const Study& study, Dimension dimension) {
   const std::vector<Factor>& factors = study.model().factors;
   const std::vector<std::optional<Distribution>> zones = distributions_by_zones(study);
@@ -640,8 +644,8 @@ StudyRow relative_row() {
   return row;
 }
 
-/// Throws InputError at the value that determines the factor's distribution: the first of `keys` that is set, or else
-/// sigma.
+/// Throws InputError at the value that determines the factor's distribution: at the first of `keys` that the study
+/// sets, otherwise at sigma.
 [[noreturn]] void refuse_distribution(const StudySection& root, const Factor& factor, bool is_in_zone,
                                       const std::string& problem, std::span<const std::string_view> keys) {
   const StudySection errors = root.section("errors");
@@ -656,8 +660,8 @@ StudyRow relative_row() {
   refuse_error(distribution, "sigma", problem);
 }
 
-/// Throws InputError if a varied factor has a mean or a size that is too large for the model. The size is the largest
-/// possible error, or the standard deviation of a normal.
+/// Throws InputError if the mean or the size of a varied factor is too large for the model. The size is the largest
+/// possible error, or the standard deviation if the distribution has no largest error.
 void check_distributions(const StudySection& root, const Study& study, const Model& model) {
   constexpr std::array<std::string_view, 6> kKeys{"mean", "shift", "limits", "half_width", "values", "column"};
   const std::span keys(kKeys);
@@ -686,8 +690,8 @@ void check_distributions(const StudySection& root, const Study& study, const Mod
   }
 }
 
-/// Throws InputError if calibrated machines draw an error anew at each pose. The model's correction at each pose would
-/// remove this error, which no real calibration can do.
+/// Throws InputError if errors of calibrated machines are drawn anew at each pose. The model's correction at each pose
+/// would remove such errors, which no real calibration can do.
 void check_calibrated(const StudySection& analysis, const Study& study) {
   if (!study.mechanism.calibrated || study.analysis.draws != Draws::per_machine) return;
   for (const FactorIndex factor : study.analysis.factors) {

@@ -12,8 +12,8 @@
 namespace poesy {
 namespace {
 
-/// Throws InputError if a name that the user gives cannot be used in expressions, or is the name of an error. what: the
-/// named thing, for messages.
+/// Throws InputError if a name that the user chooses cannot be used in expressions, or is the name of an error. what:
+/// the named thing, for messages.
 void check_own_name(const StudyValue& value, const std::string& own, std::string_view what,
                     const ModelDescription& model) {
   const bool is_plain = std::ranges::all_of(own, [](char c) {
@@ -28,8 +28,8 @@ void check_own_name(const StudyValue& value, const std::string& own, std::string
   }
 }
 
-/// The weight of an error in a combination: a number, or a quantity in the error's unit per unit of the combination,
-/// "125 mm/rad".
+/// Reads the weight of an error in a combination: a number, or a quantity in the unit of the error over the unit of the
+/// combination, "125 mm/rad".
 double read_weight(const StudyValue& value, const Factor& factor, const FittedErrors& combination,
                    const ModelDescription& model) {
   const std::string remedy = "write a number, e.g. 1; where units differ with a unit, \"125 mm/rad\"";
@@ -84,7 +84,7 @@ std::vector<FittedErrors> read_combinations(const StudySection& section, const M
   return list;
 }
 
-/// Adds a single error to the fitted ones. Throws InputError if a machine draws this error anew at each pose.
+/// Adds a single error to `fit`. Throws InputError if a machine draws this error anew at each pose.
 void add_error(const StudyValue& value, FactorIndex factor, const Study& study, std::vector<FittedErrors>& fit) {
   const Factor& error = study.model().factors[factor.value];
   if (std::ranges::find(fit, error.name, &FittedErrors::name) != fit.end()) return;
@@ -132,14 +132,14 @@ void add_named(const StudyValue& value, const std::vector<FittedErrors>& combina
              suggestion(written, known.size() > 40 ? std::span(known).first(40) : std::span(known)));
 }
 
-/// [F] The weights of a combination as a vector over all factors of the model.
+/// The weights of a combination as a vector with an entry for each factor of the model.
 std::vector<double> column_of(const FittedErrors& errors, std::size_t factors) {
   std::vector<double> column(factors, 0.0);
   for (std::size_t n = 0; n < errors.factors.size(); ++n) column[errors.factors[n].value] = errors.weights[n];
   return column;
 }
 
-/// Measures the part of each next column of norm 1 that is linearly independent of the earlier columns.
+/// Finds how much of a column is linearly independent of the earlier columns.
 struct DirectionTest {
   std::vector<std::vector<double>> orthonormal;
 

@@ -47,7 +47,7 @@ ValueLimit between(const StudyValue& value, const Ends& ends, const Response& re
   return {ends.to};
 }
 
-/// Reads an end of a limit, SI; zero needs no unit.
+/// Reads one end of a limit, SI; 0 needs no unit.
 double read_end(const StudyValue& value, const Response& response) {
   return value.is_zero() ? 0.0 : value.quantity(response.dimension);
 }

@@ -16,14 +16,15 @@ void read_response_limits(const StudyValue& value, Study& study);
 /// The limits as lines of the resolved text, one for each limit.
 std::string response_limits_lines(const Study& study);
 
-/// The tables of the keys of limits.
+/// The description of the tables with limits.
 StudyTables limit_tables();
 
 /// The place of a limit in the section [analysis], for messages. Precondition: the study was read from this section.
 StudyValue limit_value(const StudySection& analysis, const Study& study, const ResponseLimit& limit);
 
 /// A limit in words: "0.03 mm", "-0.02 mm to 0.1 mm", "at most 0.1 mm", "a spread of 0.08 mm", "0.02 deg at 99 % of the
-/// poses". value_text: converts a value of the response (SI) to text. Precondition: the limit bounds something.
+/// poses". value_text: converts a value of the response (SI) to text. Precondition: the limit is finite on at least one
+/// side.
 std::string limit_text(const ValueLimit& limit, const std::function<std::string(double)>& value_text);
 /// The limit in words, with values in the unit in which results show this dimension.
 std::string limit_text(const ValueLimit& limit, Dimension dimension);

@@ -29,7 +29,7 @@ constexpr std::string_view kNoValue = "no column is measured: deviation_*, actua
 struct FileColumn {
   enum class Role { pose, deviation, actual, distance, sd, name, to };
   Role role;
-  std::string quantity;  ///< name of the quantity, without the prefix of the column
+  std::string quantity;  ///< name of the quantity: the title without a prefix such as "deviation_"
   std::string title;     ///< title without the unit
   double si = 1.0;       ///< size of the column's unit in SI
   bool is_bare = false;  ///< true if the column states no unit
@@ -38,8 +38,7 @@ struct FileColumn {
   bool is_measured() const { return role == Role::deviation || role == Role::actual || role == Role::distance; }
 };
 
-/// The coordinates of a pose whose columns a file must have together. They are either the model's own or those of a
-/// chart.
+/// The pose coordinates that a file must have as columns: either the model's own or those of a chart.
 struct PoseHeader {
   std::optional<std::size_t> chart;
   const std::vector<PoseCoordinate>* coordinates;
@@ -141,7 +140,7 @@ bool has(const std::vector<FileColumn>& columns, FileColumn::Role role) {
   return std::ranges::find(columns, role, &FileColumn::role) != columns.end();
 }
 
-/// Throws InputError for columns that have no use, or that need another column that is missing.
+/// Throws InputError for columns without a use, and for columns that need another one that is missing.
 void check_columns(const std::vector<FileColumn>& columns, const Place& header) {
   using Role = FileColumn::Role;
   if (std::ranges::none_of(columns, &FileColumn::is_measured)) {
@@ -166,7 +165,8 @@ void check_columns(const std::vector<FileColumn>& columns, const Place& header) 
   }
 }
 
-/// The pose coordinates or chart whose columns the file has. Throws InputError if some are missing or mixed.
+/// The kind of pose coordinates (PoseHeader) that the file has as columns. Throws InputError if some are missing, or if
+/// the file mixes kinds.
 PoseHeader header_of(const std::vector<FileColumn>& columns, const ModelDescription& model, const Place& place) {
   std::vector<std::string_view> given;
   for (const FileColumn& column : columns) {
@@ -201,7 +201,7 @@ double number_in(const CsvCell& cell, const FileColumn& column) {
                    "write a plain number, or leave the cell empty if it was not measured");
 }
 
-/// A line of a table of measurements, before the names of other lines in it are resolved.
+/// A line of a table of measurements. The name in its cell `to` has not yet been replaced by the index of a row.
 struct FileRow {
   Place place;
   std::map<std::string, double> pose;
@@ -256,7 +256,7 @@ FileRow read_row(CsvLines& lines, const std::vector<FileColumn>& columns) {
   return row;
 }
 
-/// Reads the rows. Throws InputError unless their names differ.
+/// Reads the rows. Throws InputError if two rows have the same name.
 std::vector<FileRow> read_rows_of_machine(CsvLines& lines, const std::vector<FileColumn>& columns) {
   if (lines.done()) {
     throw InputError(lines.next_place(), "there is no data below the column names", "write a row for each pose");
@@ -275,8 +275,8 @@ std::vector<FileRow> read_rows_of_machine(CsvLines& lines, const std::vector<Fil
   return rows;
 }
 
-/// The index of the row that the cell `to` names. Throws InputError if there is no such row, or if it is the row
-/// itself.
+/// The index of the row that the cell `to` of a row names. Throws InputError if there is no such row, or if the cell
+/// names its own row.
 std::size_t other_row(const FileRow& row, const std::vector<FileRow>& rows) {
   const std::string wanted(row.to->text);
   const auto found = std::ranges::find(rows, wanted, &FileRow::name);
@@ -289,7 +289,7 @@ std::size_t other_row(const FileRow& row, const std::vector<FileRow>& rows) {
   return static_cast<std::size_t>(found - rows.begin());
 }
 
-/// Adds the values of a row to the file, except for its distance, which is added to `distances`.
+/// Adds the values of row `at` to the file, except for a distance, which is added to `distances`.
 void add_values(const std::vector<FileRow>& rows, std::size_t at, MachineFile& file,
                 std::vector<MachineValue>& distances) {
   const FileRow& row = rows[at];

@@ -11,7 +11,7 @@
 
 namespace poesy {
 
-/// What a column of a table of measurements holds.
+/// What a column of a table of measurements contains.
 enum class MachineColumn {
   deviation,  ///< deviation of a response: its measured value minus its commanded value
   actual,     ///< a measured coordinate of the platform itself
@@ -31,34 +31,35 @@ struct MachineValue {
   std::string column_name() const;  ///< The title of the value's column: "deviation_z", "actual_z" or "distance".
 };
 
-/// Measurements of one machine: W rows. Each row has a pose and the values that were measured there.
+/// Measurements of one machine. Each row has a pose and the values that were measured at this pose.
 struct MachineFile {
-  PoseTable poses;                   ///< [W] poses of the rows, in the coordinates of the file
-  std::vector<std::string> names;    ///< [W] names of the rows: "p4", or "row 5" for a row without a name
-  std::vector<MachineValue> values;  ///< values row by row, in the order of the columns; then all distances
-  std::vector<std::string> bare;     ///< titles of columns of values or standard deviations that state no unit
+  PoseTable poses;                 ///< pose of each row, in the coordinates of the file
+  std::vector<std::string> names;  ///< name of each row: "p4", or "row 5" for a row without a name
+  /// All values except distances, row by row in the order of the columns, followed by all distances.
+  std::vector<MachineValue> values;
+  std::vector<std::string> bare;  ///< titles of columns of values or standard deviations that state no unit
 
   /// The value's name in messages: "deviation_z of p4", "distance p1 p4".
   std::string name_of(const MachineValue& value) const;
 };
 
-/// The responses R that a column deviation_R can have: the components of the platform's displacement that the model
-/// reports.
+/// The responses that a column deviation_RESPONSE can have: the components of the platform's displacement that the
+/// model reports.
 std::vector<std::string_view> measurable(const ModelDescription& model);
 
-/// Reads measurements from a CSV file. Its first line names all of the model's pose coordinates, or all coordinates of
+/// Reads measurements from a CSV file. The first line names all of the model's pose coordinates, or all coordinates of
 /// a chart. It may also name these columns:
 /// - deviation_R for a response R,
-/// - actual_C for a coordinate C of x, y, z, tip_x, tip_y and tip_z,
+/// - actual_C for a coordinate C, which is one of x, y, z, tip_x, tip_y and tip_z,
 /// - sd_R, sd_C and sd_distance for standard deviations,
-/// - name for the name of the row, and distance with to for the distance to the row of that name.
+/// - name for the name of the row; distance, with to for the name of the row to which the distance is measured.
 ///
 /// A title may have a unit in brackets; numbers without a unit are SI. A cell that is empty or has the text nan is a
 /// missing value.
 ///
 /// Throws InputError with line and column for a column that is unknown, repeated, missing or unused, a unit of another
 /// dimension, a cell without a number, an incomplete pose, a row name that is taken or unknown, a distance without the
-/// row to which it leads, and a file without any measured value. Throws FileError if the file cannot be read.
+/// name of the other row, and a file without any measured value. Throws FileError if the file cannot be read.
 MachineFile read_machine_file(const std::string& path, const ModelDescription& model);
 
 }  // namespace poesy

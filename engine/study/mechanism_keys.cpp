@@ -57,7 +57,7 @@ void read_geometry(const StudyValue& value, Study& study, const Reading&) {
   });
 }
 
-/// Reads loads that replace those of the mechanism file, and selects the catalog entry with these loads.
+/// Reads loads that replace the loads of the mechanism file, and selects the catalog entry with these loads.
 void read_load(const StudyValue& value, Study& study, const Reading&) {
   MechanismChoice& choice = study.mechanism;
   if (!choice.entry->with_load) {
@@ -72,7 +72,7 @@ std::string load_lines(const Study& study) {
   return load.empty() ? "" : "\n[mechanism.load]\n" + load;
 }
 
-/// Reads the key `fidelity`. The word "both" needs a model with two fidelities; it also sets `compared`.
+/// Reads the key `fidelity`. The word "both" sets `compared`, and needs a model with two fidelities.
 void read_fidelity(const StudyValue& value, Study& study, const Reading& reading) {
   const ModelDescription& model = study.model();
   if (model.fidelities.empty()) {

@@ -16,7 +16,8 @@ std::size_t slots_of(const Analysis& analysis) {
   return analysis.kind->varies == Varies::together ? 1 : analysis.factors.size();
 }
 
-/// The positions of factors among the factors that the analysis varies. Precondition: it varies all of them.
+/// The positions of these factors among the factors that the analysis varies. Precondition: the analysis varies all of
+/// them.
 std::vector<std::size_t> slots_of(std::span<const FactorIndex> factors, const Analysis& analysis) {
   std::vector<std::size_t> slots;
   for (const FactorIndex factor : factors) {
@@ -44,8 +45,8 @@ std::vector<ZoneSlots> zone_slots(const Study& study) {
   return blocks;
 }
 
-/// [rows] Uniforms from which the distribution of a given error computes its values in the rows of given machines;
-/// empty if the error is drawn.
+/// The uniforms from which the distribution of an error computes the values that given machines have, one for each row
+/// of their table; empty if the error is drawn.
 std::vector<double> given_uniforms(const ErrorModel& errors, FactorIndex factor) {
   if (errors.by_factor[factor.value].shape() != Distribution::Shape::given) return {};
   const std::vector<double> values = errors.machines->column(factor);

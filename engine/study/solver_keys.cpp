@@ -37,7 +37,7 @@ std::string points_text(std::span<const PlatformPoint> points, ValueText value) 
   return list_text(list);
 }
 
-/// Throws InputError if the model has no metric, because its responses then do not weigh angles against lengths.
+/// Throws InputError if the model has no metric, because the responses of such a model weigh no angles against lengths.
 void require_metric(std::string_view key, const Study& study, const Reading& reading) {
   if (!study.model().metric.empty()) return;
   reading.root.section("solver").refuse(
@@ -82,8 +82,8 @@ void read_points(const StudyValue& value, Study& study, const Reading& reading) 
   }
 }
 
-/// Returns true if the study asks for the platform's metric in order to leave out the mechanism's stiffness, and the
-/// model then has no metric, because the mechanism is not over-constrained.
+/// Returns true if the study asks for the metric "platform" only in order to leave out the mechanism's stiffness:
+/// without stiffness the mechanism has no metric, because it is not over-constrained.
 bool leaves_out_stiffness(const Study& study) {
   const std::optional<MechanismText>& file = study.mechanism.file;
   return study.model().metric.empty() && file && file->entry && !file->entry->description.metric.empty();
@@ -104,7 +104,8 @@ std::string shown_metric(const TemplateLines& lines, const Study& study) {
   return metric.empty() ? "" : lines.explained("solver", "metric", "metric = " + in_quotes(metric));
 }
 
-/// The template's line of the key `points`, with the points of the published mechanism.
+/// The template's line of the key `points`: the points that the metric uses for the mechanism with its published
+/// geometry.
 std::string shown_points(const TemplateLines& lines, const Study& study) {
   if (study.model().metric.empty()) return {};
   std::vector<double> geometry;
@@ -117,7 +118,7 @@ std::string shown_tolerance(const TemplateLines& lines, const Study& study) {
   return lines.explained("solver", "tolerance", "tolerance = " + shortest(study.model().tolerance));
 }
 
-/// Reads the key `not_converged`. "fail" means "exclude" with a limit of 0 on the share of failed samples.
+/// Reads the key `not_converged`. The word "fail" means "exclude", with 0 as the allowed share of failed samples.
 void read_not_converged(const StudyValue& value, Study& study, const Reading& reading) {
   const std::vector<std::string_view> known = names(row_of(solver_keys(), "not_converged").value.words);
   const std::string_view word = known[value.word(known)];
@@ -183,7 +184,7 @@ std::vector<StudyRow> solver_rows() {
                .meaning = "Share of all samples; if more fail, the run ends with exit code 5, its result kept."}};
 }
 
-/// The row (description and functions) of a table of the study file that a function of its own reads.
+/// The description of a key that is a table with a reader of its own.
 StudyRow table_row(std::string_view name, std::string missing, std::string usual, std::string_view meaning) {
   return {.name = name,
           .value = {.type = "table"},

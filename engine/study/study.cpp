@@ -41,8 +41,8 @@ std::vector<FactorIndex> held_errors(const Study& study) {
   return held;
 }
 
-/// The constant errors in words: "30 errors of set 'benign'", "2 of the 30 errors of set 'benign'", "delta_1 and
-/// delta_2", "12 errors".
+/// Says in words which errors are constant: "30 errors of set 'benign'", "2 of the 30 errors of set 'benign'", "delta_1
+/// and delta_2", "12 errors".
 std::string owners_text(const std::vector<FactorIndex>& held, const Study& study) {
   const std::vector<FactorIndex>& named = study.analysis.background->factors;
   const std::string all = held.size() == named.size() ? "" : fmt::format("{} of the ", held.size());
@@ -56,7 +56,7 @@ std::string owners_text(const std::vector<FactorIndex>& held, const Study& study
   return fmt::format("{}", fmt::join(names, " and "));
 }
 
-/// The sizes of the constant errors in words, one for each of their dimensions: "1 mm and 1 deg".
+/// The sizes of the constant errors in words, one for each dimension that these errors have: "1 mm and 1 deg".
 std::string sizes_text(const std::vector<FactorIndex>& held, const Study& study) {
   const Background& background = *study.analysis.background;
   std::vector<std::string> sizes;
@@ -118,7 +118,7 @@ MechanismChoice at_compared_fidelity(MechanismChoice mechanism) {
 
 namespace {
 
-/// Builds the mechanism without a calibration of its actuators.
+/// Builds the mechanism without the correction by the actuators that MechanismChoice::calibrated asks for.
 std::unique_ptr<Model> build_uncorrected(const MechanismChoice& mechanism) {
   const CatalogEntry& entry = *mechanism.entry;
   if (mechanism.points.empty()) {

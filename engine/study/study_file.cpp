@@ -26,7 +26,8 @@ bool begins_like_hdf5(const std::string& path) {
   return file.is_open() && file.read(0, std::as_writable_bytes(std::span(begin))) && begin == kSignature;
 }
 
-/// Throws InputError if the study has more cells or solves than memory and 64-bit counts allow.
+/// Throws InputError if the study asks for more numbers in the result, or more solves, than memory and 64-bit counts
+/// allow.
 void check_size(const StudySection& root, const Study& study) {
   const bool from_file = study.poses.select == PoseSelection::Select::file;
   const double poses = static_cast<double>(from_file ? study.poses.from_file.points.size() : study.poses.count);
@@ -65,7 +66,7 @@ void check_fidelities(const Study& study, const Reading& reading) {
   }
 }
 
-/// Throws InputError if the background names only errors that vary, because then it has no effect.
+/// Throws InputError if the background has no effect, because it names errors that vary.
 void check_background(const Study& study, const Reading& reading) {
   if (!study.analysis.background || study.analysis.kind->varies == Varies::none) return;
   const auto varies = [&](FactorIndex factor) {
@@ -112,8 +113,8 @@ Study study_from(const Reading& reading) {
   return study;
 }
 
-/// The keys of [analysis] for the study's kind. Every kind keeps a calibration, because `poesy calibrate` reads it from
-/// studies of all kinds.
+/// The keys of [analysis] for the study's kind. The key `calibration` is kept for every kind, because `poesy calibrate`
+/// reads it from studies of all kinds.
 StudyRows analysis_keys_of(const Study& study) {
   const StudyKind& kind = *study.analysis.kind;
   StudyRows keys = analysis_keys(kind);

@@ -11,22 +11,23 @@ namespace poesy {
 
 /// The purpose for which a study file is read. It determines which sections must be complete.
 enum class StudyUse {
-  run,                ///< all sections complete
-  evaluate_at_poses,  ///< [mechanism], [solver] and [poses]; others as for `evaluate`
-  evaluate            ///< [mechanism] and [solver]; others are checked if present but may be incomplete or absent, keys
-                      ///< of other kinds are ignored, and a pose file is not opened
+  run,                ///< all sections must be complete
+  evaluate_at_poses,  ///< [mechanism], [solver] and [poses] must be complete; others as for `evaluate`
+  /// [mechanism] and [solver] must be complete. Other sections are checked if they are present, but may be incomplete
+  /// or absent; keys of other kinds are ignored, and a pose file is not opened.
+  evaluate
 };
 
 struct StudyKinds;
 
-/// Reads and validates a study file (TOML, format "poesy-study", version 1) whose kind is one of `kinds`. A pose file
-/// is found relative to the study's folder. given: values that replace those of the file.
-/// Throws InputError with file, line and column for anything wrong with the content, also for a directory or a file
-/// that is not text. Throws FileError if the file cannot be read.
+/// Reads and validates a study file (TOML, format "poesy-study", version 1) of one of the kinds in `kinds`. Names of
+/// other files are relative to the study's folder. given: values that replace those of the file. Throws InputError with
+/// file, line and column for anything wrong with the content, also for a directory or a file that is not text. Throws
+/// FileError if the file cannot be read.
 Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, const StudyKinds& kinds,
                  std::span<const GivenKey> given = {});
 
-/// Reads the text of a study. path: name of the text in messages. mechanism_text: text to use instead of the mechanism
+/// Reads the text of a study. path: name of the text in messages. mechanism_text: content that replaces the mechanism
 /// file; null: the file is read. given: values that replace those of the text.
 Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use,
                     const StudyKinds& kinds, const std::string* mechanism_text = nullptr,

@@ -10,23 +10,24 @@
 #include "engine/schema/keys.h"
 #include "engine/study/study_file.h"
 
-/// The tables of a study file, as rows (one for each key, with its description and functions). For each table a source
-/// file has the functions that read and write its longer keys. A kind of study adds a StudyKind: data and functions, of
-/// which null or empty members add nothing. The kinds are in engine/kinds; this code knows none of them.
+/// The tables of a study file. A row of a table describes one key and has the functions that read and write it; longer
+/// functions are in a source file for each table. A kind of study extends these tables by a StudyKind, which has data
+/// and functions; a member that is null or empty adds nothing. The kinds are in engine/kinds; the files of this folder
+/// know none of them.
 
 namespace poesy {
 
 /// The word in a study file that asks to compare a model's two fidelities.
 inline constexpr std::string_view kBothFidelities = "both";
 
-/// Limits on the size of a study: far above any use, and safe for memory and arithmetic.
+/// Limits on the size of a study: far larger than useful studies, and safe for memory and arithmetic.
 inline constexpr std::int64_t kMostPoses = 10'000'000;
-inline constexpr std::int64_t kMostCells = 10'000'000;              ///< (factor, pose) pairs of a result
+inline constexpr std::int64_t kMostCells = 10'000'000;              ///< numbers in a result for one response
 inline constexpr std::int64_t kMostSolves = 1'000'000'000'000'000;  ///< solves of a run
 
 struct StudyKinds;
 
-/// What the reader of a key may use in addition to the key's value.
+/// What the reader of a key may use in addition to the value of the key.
 struct Reading {
   const StudySection& root;  ///< the whole study file
   const Catalog& catalog;    ///< catalog of mechanisms
@@ -36,7 +37,7 @@ struct Reading {
   const std::string* mechanism_text = nullptr;
 };
 
-/// The scope of keys whose readers need only the value.
+/// What the readers of keys need besides the value, if they need nothing.
 struct Nothing {};
 
 using StudyRow = Key<Study, Reading>;    ///< A key of a study's own tables: description and functions.
@@ -55,7 +56,7 @@ enum class Varies {
   together     ///< all together, drawn from their distributions
 };
 
-/// The numbers of values and solves of a study at each pose, and words that say how they are computed.
+/// The number of values and solves of a study at each pose, with words that say how these numbers are computed.
 struct AtPose {
   double values;               ///< number of values of one response in the result
   std::string_view of_values;  ///< the product that gives `values`, in words: "factors"
@@ -69,21 +70,21 @@ struct Refusal {
   std::string remedy;   ///< advice to the user
 };
 
-/// A kind of study, as far as study files need it.
+/// What study files need to know of a kind of study.
 struct StudyKind {
   std::string_view name;                   ///< the word in a study file
   std::string_view asks;                   ///< what the kind asks, as a clause: "what each error does on its own"
   std::span<const std::string_view> keys;  ///< keys of [analysis] that the kind has, in the order of templates
-  Varies varies = Varies::none;            ///< which factors vary together
-  bool compares_fidelities = false;        ///< whether it can compare two fidelities
-  Draws draws = Draws::per_pose;           ///< where errors are drawn unless a study says so
-  bool draws_machines_anew = false;        ///< whether it tries several sets of machines, which cannot be given
-  bool has_pose_before = false;            ///< whether the same errors are solved at all poses, whatever `draws` is
-  bool decides_by_samples = false;         ///< whether changing `samples` invalidates a checkpoint
-  std::string_view usual_factors = {};     ///< set of factors if a study names none; "all" for a model without it
+  Varies varies = Varies::none;            ///< how factors vary
+  bool compares_fidelities = false;        ///< true if the kind can compare two fidelities
+  Draws draws = Draws::per_pose;           ///< when errors are drawn if the study does not state it
+  bool draws_machines_anew = false;     ///< true if it tries several sets of machines, so that no machines can be given
+  bool has_pose_before = false;         ///< true if the same errors are solved at all poses for any value of `draws`
+  bool decides_by_samples = false;      ///< true if changing `samples` invalidates a checkpoint
+  std::string_view usual_factors = {};  ///< set of factors if a study names none; "all" for a model without it
   std::string_view usual_background = {};  ///< set of constant errors in templates, for models that have it
   std::string_view overrides = {};         ///< where a constant error may get another value: "a case sets"
-  /// The rows of [analysis] that only this kind has. One with the name of a shared key replaces that key.
+  /// The rows of [analysis] that only this kind has. A row with the name of a shared key replaces this key.
   std::vector<StudyRow> (*rows)() = nullptr;
   StudyTables (*tables)() = nullptr;  ///< tables inside [analysis] that only this kind has
   /// The reason why a study of this kind cannot run with this model; none if it can.
@@ -118,7 +119,7 @@ const StudyKind* find(const StudyKinds& kinds, std::string_view name);
 
 std::vector<std::string_view> names(const StudyKinds& kinds);  ///< The names of the kinds, in order.
 
-/// Makes a value of the study from a value of the kind's options (asked_of()).
+/// Makes the description of a key that is read into a study from one that is read into the kind's options (asked_of()).
 template <class Options>
 KeyValue<Study> asked_value(KeyValue<Options> value) {
   KeyValue<Study> whole{.type = value.type, .bounds = value.bounds, .words = value.words};
@@ -153,14 +154,14 @@ StudyTables errors_tables();
 StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<const std::string_view> order);
 /// @}
 
-/// The row of the shared key of [analysis] with this name. A kind makes its own row (for the same key) from it.
-/// Precondition: the row exists.
+/// The shared key of [analysis] with this name, from which a kind may make a row of its own. Precondition: the key
+/// exists.
 StudyRow shared_analysis_row(std::string_view name);
 
 /// Each of these functions reads a part of a study file. They throw InputError at the first problem.
 /// @{
 void read_mechanism(Study& study, const Reading& reading);
-/// Follows read_solver(), because responses may use the metric.
+/// Must be called after read_solver(), because the responses depend on the metric.
 void read_responses(Study& study, const Reading& reading);
 void read_poses_section(Study& study, const Reading& reading);
 /// Reads a table with the keys of [poses] into the study's selection of poses.
@@ -176,35 +177,36 @@ StudyRow response_row();
 /// throws if a response is relative to any other pose, and machines draw varied errors anew at each pose.
 void check_other_poses(const Study& study, const Reading& reading);
 
-/// The study's distribution of errors of this dimension, for errors that have none of their own.
+/// The distribution that the study states for errors of this dimension that have no distribution of their own.
 Distribution usual_distribution(const Reading& reading, Dimension dimension);
-/// The row of the key `correlated` in [errors]. Its reader needs a study whose distributions have been read.
+/// The key `correlated` of [errors], which must be read after the distributions, and the table of its keys.
 /// @{
 StudyRow correlated_row();
 StudyTable correlated_table();
 /// @}
-/// The row of the key `zones` in [errors]. Its reader needs a study whose distributions of lengths have been read.
+/// The key `zones` of [errors], which must be read after the distribution of lengths, and the table of its keys.
 /// @{
 StudyRow zones_row();
 StudyTable zones_table();
 /// @}
 /// The errors that are clearances, ascending. A machine draws them anew at each pose.
 std::vector<FactorIndex> clearance_errors(const ModelDescription& model);
-/// Sets the distributions of features' errors as errors.zones asks. Sets those of clearances, too, and lets machines
-/// draw them anew at each pose.
+/// Gives the errors of features the distributions for which errors.zones asks. Also gives clearances their
+/// distributions, and lets machines draw them anew at each pose.
 void set_by_zones(Study& study);
-/// [F] The distribution that errors.zones gives to each error, or that it has as a clearance; none for other errors.
-/// Errors of a feature that are drawn together get normal distributions with their standard deviations.
+/// For each factor of the model: the distribution that errors.zones gives to it, or that it has as a clearance; none
+/// for other errors. Errors of a feature that are drawn together get normal distributions with the same standard
+/// deviations.
 std::vector<std::optional<Distribution>> distributions_by_zones(const Study& study);
 /// The features of a study whose errors vary and are drawn together (drawing::ZoneDraws).
 std::vector<Feature> features_drawn_together(const Study& study);
 /// Throws InputError if the errors of a feature that are drawn together do not all vary, are correlated, or are drawn
 /// partly per pose and partly per machine.
 void check_zones(const Study& study, const Reading& reading);
-/// Whether [errors] states the size of an error, by its dimension or by a key of [errors.override].
+/// Returns true if [errors] states the size of an error, by its dimension or by a key of [errors.override].
 bool states_size(const StudySection& errors, const Factor& factor);
-/// Throws InputError if an error of a feature varies to which the study gives no size, neither by errors.zones nor by
-/// another key. The default size of a length is not that of a drawing.
+/// Throws InputError if an error of a feature varies but neither errors.zones nor another key states its size. For such
+/// an error the default size of lengths makes no sense.
 void check_sizes_of_features(const Study& study, const Reading& reading);
 /// Throws InputError at the block's place if correlated errors do not vary together.
 void check_correlated(const Study& study, const Reading& reading);
@@ -218,7 +220,7 @@ std::string beside_study(const Place& place, const std::string& file);
 std::string named_file(const StudyValue& value);
 /// Reads a factor set, "all", or a list of names without repetition.
 std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescription& model);
-/// Reads the key `name`, or returns `usual` if the section has none. Throws InputError if the name is taken.
+/// Reads the key `name`, or returns `usual` if the section lacks the key. Throws InputError if `taken` has the name.
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual);
 /// The factors as TOML: the name of their set in quotes, or a list of names.
 std::string factors_text(std::span<const FactorIndex> factors, const ModelDescription& model);
@@ -226,8 +228,9 @@ std::string factors_text(std::span<const FactorIndex> factors, const ModelDescri
 std::string factor_list_text(std::span<const FactorIndex> factors, const ModelDescription& model);
 /// The factor sets of a model, as comment lines of a template.
 std::string sets_comment(const ModelDescription& model);
-/// An example of a limit as a TOML table. It limits the displacement of the tool or of the platform (leading_rank),
-/// else the first response that is a length, else the first response. Empty for a model without responses.
+/// An example of a limit as a TOML table. It limits the displacement of the tool or of the platform (leading_rank) if
+/// the model has such a response, otherwise the first response that is a length, or the first response. Empty for a
+/// model without responses.
 std::string example_limits(const ModelDescription& model);
 /// Lines of a template that list the model's responses in a comment and show example_limits(). Each line begins with
 /// `sign`. Empty for a model without responses.
@@ -235,8 +238,9 @@ std::string template_limits(const TemplateLines& lines, const ModelDescription& 
 /// A length or an angle of this number of millimetres or degrees, as templates show it: "1 mm" in quotes.
 std::string example_size(Dimension dimension, double units);
 
-/// Throws InputError at its place if an error of the study is too large for this model (Model::error_bound). Checks the
-/// standard deviations of errors that vary, and the sizes of errors that are constant or that the kind sets.
+/// Throws InputError if an error of the study is too large for this model (Model::error_bound), at the place of the key
+/// that states it. Checks the standard deviations of errors that vary, and the sizes of errors that are constant or
+/// that the kind sets.
 void check_error_bounds(const StudySection& root, const Study& study, const Model& model);
 /// Checks one error of this size (SI), which the key `linear`, `angular` or `relative` of the section sets. Throws
 /// InputError if it is too large for this model.

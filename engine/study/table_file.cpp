@@ -23,32 +23,33 @@ using Names = std::vector<std::string_view>;
 
 bool contains(const Names& list, std::string_view name) { return std::ranges::find(list, name) != list.end(); }
 
-/// A known column of numbers.
+/// A column of numbers that a table may have.
 struct KnownColumn {
   std::string_view name;  ///< name in the header
   Dimension dimension;    ///< dimension of the column's numbers
-  /// Name of the coordinate or factor that the column gives: `name` itself, or the name of which it is a synonym.
+  /// Name of the coordinate or factor to which the numbers belong: `name`, or another name if `name` is a synonym of
+  /// it.
   std::string_view meant;
 };
 
 /// The columns that the header of a table may name.
 struct KnownColumns {
   std::vector<KnownColumn> numbers;  ///< columns that are read
-  Names facts = {};                  ///< columns that are ignored because `poesy export` writes them
-  Names labels = {};                 ///< names of columns of labels, of which a table may have one
+  Names facts = {};                  ///< columns that `poesy export` writes and reading ignores
+  Names labels = {};                 ///< titles of a column of labels; a table may have one such column
   bool has_texts = false;            ///< true if columns of text are allowed; they are ignored
   std::string_view what;             ///< what a column of numbers is, for messages: "pose coordinate"
 };
 
 /// A column of a table, while it is read.
 struct TableColumn {
-  /// What the cells of a column hold.
+  /// What the cells of a column contain. A `fact` is a column that `poesy export` writes and reading ignores.
   enum class Role { number, fact, label, text };
-  Role role;                                ///< what the cells hold
-  std::string_view name;                    ///< KnownColumn::meant, or one of KnownColumns::labels; a view of these
-  std::string_view title;                   ///< title in the header, with its unit; a view of the lines
-  Dimension dimension = Dimension::number;  ///< dimension of its numbers
-  double si = 1.0;                          ///< factor that converts its numbers to SI
+  Role role;               ///< what the cells contain
+  std::string_view name;   ///< KnownColumn::meant for a column of numbers, otherwise the title without the unit
+  std::string_view title;  ///< title in the header, with the unit; a view of the lines
+  Dimension dimension = Dimension::number;  ///< dimension of the column's numbers
+  double si = 1.0;                          ///< factor that converts the column's numbers to SI
   Place place = {};                         ///< place of the title, for a column of text
   bool bare = false;                        ///< true if the title states no unit
 
@@ -80,9 +81,9 @@ TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
   return {.role = text, .name = title.name, .title = cell.text, .place = cell.place};
 }
 
-/// Reads the first line. The unit of a column may follow its name in brackets, "z [mm]"; numbers without a unit are SI.
-/// Throws InputError at its place for an unknown or repeated column, for a unit that is unknown or of another
-/// dimension, and for two columns of labels.
+/// Reads the first line. The unit of a column may follow the column's name in brackets, "z [mm]"; numbers without a
+/// unit are SI. Throws InputError at the place of the mistake for an unknown or repeated column, for a unit that is
+/// unknown or of another dimension, and for two columns of labels.
 std::vector<TableColumn> read_header(CsvLines& lines, const KnownColumns& known) {
   std::vector<TableColumn> columns;
   for (const CsvCell& cell : lines.next()) {
@@ -109,13 +110,14 @@ Names names_of_numbers(std::span<const TableColumn> columns) {
   return list;
 }
 
-/// Whether a table of poses must have a column of times, or need not have one.
+/// Whether a table of poses must have a column of times.
 enum class Timed { no, yes };
 
 constexpr std::string_view kTime = "t";
 constexpr std::string_view kExportedTime = "time";
 
-/// The sets of columns that a table of poses may have: the pose's own coordinates, then the coordinates of each chart.
+/// The sets of columns that a table of poses may have: first the pose's own coordinates, followed by those of each
+/// chart.
 std::vector<Names> possible_headers(const ModelDescription& model, Timed timed) {
   const auto header = [&](const std::vector<PoseCoordinate>& coordinates) {
     Names columns;
@@ -134,7 +136,8 @@ std::string one_of(const std::vector<Names>& headers) {
   return fmt::format("{}", fmt::join(list, " | "));
 }
 
-/// The position in `headers` of the set of columns that has these names, in any order.
+/// The position in `headers` of the set that has exactly these columns, in any order. Throws InputError if there is
+/// none.
 std::size_t header_of(const Names& columns, const std::vector<Names>& headers, const std::string& path) {
   const Names* unfinished = nullptr;
   for (std::size_t k = 0; k < headers.size(); ++k) {
@@ -155,9 +158,9 @@ std::size_t header_of(const Names& columns, const std::vector<Names>& headers, c
 /// The cells of all lines below the first.
 struct Rows {
   std::vector<double> values;       ///< row-major, SI, in the order of the columns of numbers
-  std::vector<std::string> labels;  ///< labels of the rows; empty without a column of labels
-  std::map<std::string_view, std::size_t, std::less<>>
-      line_of;                       ///< line of each label; the labels are views of the lines
+  std::vector<std::string> labels;  ///< labels of the rows; empty if the table has no column of labels
+  /// Line of each label; the labels are views of the lines.
+  std::map<std::string_view, std::size_t, std::less<>> line_of;
   std::set<std::string_view> texts;  ///< columns with text
 };
 
@@ -199,7 +202,8 @@ void read_label(const CsvCell& cell, const TableColumn& column, Rows& rows) {
   rows.labels.emplace_back(cell.text);
 }
 
-/// Checks a number (SI) in a column of numbers, the n-th one. Throws InputError if the number is not allowed there.
+/// Checks a number (SI) in a row; n is its position among the row's numbers. Throws InputError if it is not allowed
+/// there.
 using CheckCell = std::function<void(const Place& place, std::size_t n, const TableColumn& column, double value)>;
 
 /// Reads one line and adds its cells to `rows`.
@@ -265,7 +269,7 @@ KnownColumns pose_columns(const ModelDescription& model, Timed timed) {
   return known;
 }
 
-/// Throws InputError unless the last time is finite and larger than the time before it.
+/// Throws InputError unless the last time is at most 1e9 s from 0 and larger than the time before it.
 void check_last(const std::vector<double>& time, const std::string& path) {
   if (!time.empty() && std::abs(time.back()) > kLatestTime) {
     throw InputError({path, time.size() + 1, 1}, "t = " + shortest(time.back()) + " s is more than 1e9 s from 0",

@@ -14,44 +14,44 @@ namespace poesy {
 /// Labels that a user gave to rows.
 struct RowLabels {
   std::string column;              ///< title of the column of labels: "part"
-  std::vector<std::string> names;  ///< [S] labels of the S rows, all different
+  std::vector<std::string> names;  ///< [rows] labels, all different
 };
 
-/// Errors from a table: S rows of V factors.
+/// Errors from a table. Each row of the table has a value for each of its factors.
 struct ErrorTable {
-  std::vector<FactorIndex> factors;  ///< [V] factors, one for each of V columns
-  std::vector<double> values;        ///< [S x V], row-major, SI
-  std::size_t rows = 0;              ///< number of rows, S
+  std::vector<FactorIndex> factors;  ///< factors, one for each column
+  std::vector<double> values;        ///< [rows x factors] errors, row-major, SI
+  std::size_t rows = 0;              ///< number of rows
   RowLabels labels{};                ///< labels of the rows; empty if they have none
-  std::vector<bool> bare{};          ///< [V] whether the file states no unit; empty if no file was read
+  std::vector<bool> bare{};  ///< [factors] true if the file states no unit for the column; empty if no file was read
 
-  /// [S] The values of one factor, SI. Precondition: the factor is in `factors`.
+  /// The values of one factor in all rows, SI. Precondition: the factor is in `factors`.
   std::vector<double> column(FactorIndex factor) const;
 };
 
 /// A column of measured values.
 struct MeasuredColumn {
-  std::string name;            ///< name without its unit
+  std::string name;            ///< title without the unit
   std::vector<double> values;  ///< values in the order of the lines, SI
   bool bare = false;           ///< true if the file states no unit
 };
 
 /// Reads poses from a CSV file. The first line names all of the model's pose coordinates, or all coordinates of one of
-/// its charts, in any order; each further line is a pose. A name may have a unit in brackets ("z [mm]"); numbers
-/// without a unit are SI. The columns "pose", "time" (or "t") and "condition", which `poesy export` writes into
-/// poses.csv, are ignored. The points are returned in the model's order of coordinates, SI. Whether the model reaches
-/// the poses is not checked.
+/// the model's charts, in any order; each further line is a pose. A name may have a unit in brackets ("z [mm]");
+/// numbers without a unit are SI. The columns "pose", "time" (or "t") and "condition", which `poesy export` writes into
+/// poses.csv, are ignored. The result has the coordinates in the model's order, SI. Whether the model reaches the poses
+/// is not checked.
 /// Throws InputError with line and column for a missing, unknown or repeated column, a unit of another dimension,
 /// columns that mix coordinates, a cell that is not a finite number, a line with too few or many cells, or no data.
 /// Throws FileError if the file cannot be read.
 PoseTable read_poses(const std::string& path, const ModelDescription& model);
 
 /// Reads a trajectory from a CSV file like read_poses(), with an additional column "t" or "time" (s, or the stated
-/// unit). Also throws InputError for times that do not ascend strictly, and for a single line of points.
+/// unit). Also throws InputError if times are not strictly ascending, or if there is only one point.
 TimedPoints read_trajectory(const std::string& path, const ModelDescription& model);
 
 /// Reads errors from a CSV file. The first line names factors of the model, any subset in any order, with units as in
-/// read_poses(); each further line is a sample. A column "part" or "name" gives labels to the lines, which must differ
+/// read_poses(); each further line is a sample. A column "part" or "name" gives labels to the lines; labels must differ
 /// and follow label_problem(). The columns "sample", "pose" and "case", which `poesy export` writes into errors.csv,
 /// are ignored. Columns of text, such as "operator", are ignored, too. A column is one of text if at least one of its
 /// cells has a letter and no cell begins like a number.
@@ -60,7 +60,7 @@ TimedPoints read_trajectory(const std::string& path, const ModelDescription& mod
 ErrorTable read_errors(const std::string& path, const Model& model);
 
 /// Reads one column of measured values from a CSV file. The first line names the columns. The column is found by its
-/// name with or without unit, "hole [mm]" or "hole"; numbers without a unit are SI. Other columns may hold anything.
+/// name with or without unit, "hole [mm]" or "hole"; numbers without a unit are SI. Other columns may have any content.
 /// Throws InputError with line and column for a column that is missing or repeated, a unit of another dimension, a cell
 /// of the column that is not a finite number, a line with too few or many cells, or no data. Throws FileError if the
 /// file cannot be read.

@@ -10,28 +10,29 @@
 namespace poesy {
 
 /// Reads a whole file. what: the kind of file for messages ("study"). Throws InputError if it is not a plain file or
-/// has more than most_bytes, FileError if it cannot be read.
+/// has more than `most_bytes` bytes. Throws FileError if it cannot be read.
 std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes);
 
 /// A cell of a CSV line, without surrounding blanks.
 struct CsvCell {
-  std::string_view text;  ///< text of the cell, a view of the lines
+  std::string_view text;  ///< text of the cell, a view of the text in CsvLines
   Place place;            ///< place where the text begins
 };
 
-/// Reads a CSV file line by line. Cells are separated by commas; there are no quotes, and blank lines only at the end.
-/// A byte order mark and line ends of Windows are ignored.
+/// Reads a CSV file line by line. Commas separate the cells. Quotes have no special meaning, and blank lines may only
+/// be at the end. A byte order mark and line ends of Windows are ignored.
 class CsvLines {
  public:
-  /// what: the kind of file for messages ("table of poses"). Throws InputError for an empty file or one that is not a
-  /// plain file, FileError if it cannot be read.
+  /// what: the kind of file for messages ("table of poses"). Throws InputError if the file is empty or not a plain
+  /// file. Throws FileError if it cannot be read.
   CsvLines(const std::string& path, std::string_view what);
   CsvLines(const CsvLines&) = delete;
   CsvLines& operator=(const CsvLines&) = delete;
 
   bool done() const { return rest_.empty(); }                 ///< Returns true if all lines were read.
   Place next_place() const { return {path_, line_ + 1, 1}; }  ///< The place of the next line.
-  /// Reads a line. Throws InputError if semicolons separate its cells.
+  /// Reads the next line. Throws InputError for a line with a semicolon, because such a file is separated by semicolons
+  /// instead of commas.
   std::vector<CsvCell> next();
 
  private:

@@ -25,7 +25,7 @@ struct WrittenScatter {
   std::optional<double> within;
 };
 
-/// The words for ScatterShape, in its order.
+/// The words for the values of ScatterShape, in the order of the enumeration.
 constexpr std::array<std::string_view, 4> kShapes{"normal", "uniform", "boundary", "inspected"};
 
 std::string_view name(ScatterShape shape) { return kShapes[static_cast<std::size_t>(shape)]; }
@@ -34,14 +34,14 @@ void read_shape(const StudyValue& value, WrittenScatter& written) {
   written.shape = static_cast<ScatterShape>(value.word(kShapes));
 }
 
-/// The range in which a number of standard deviations must be. A larger number would make the standard deviation of an
-/// error too small.
+/// The allowed range of a number of standard deviations. A larger number would make the standard deviation of an error
+/// too small.
 NumberBounds above_zero_to_a_million(std::string_view example) {
   return {0.0, 1e6, false, "greater than 0 and less than 1e6",
           fmt::format("it must lie between 0 and 1e6, e.g. {}", example)};
 }
 
-/// A key that is a number within bounds, and that may be absent.
+/// Describes an optional key that is a number within bounds.
 KeyValue<WrittenScatter> number(std::optional<double> WrittenScatter::*member, const NumberBounds& bounds) {
   return {
       .type = bounds.percent ? "number or percent" : "number",
@@ -113,7 +113,7 @@ ZoneScatter scatter_of(const StudyValue& value) {
 
 /// Throws InputError if a feature's zone does not allow the shape of the scatter.
 void check_shape(const StudyValue& value, const ZoneScatter& scatter, const std::vector<Feature>& features) {
-  constexpr double kLeastInspected = 1.5;  // below this, inspection would reject too many parts
+  constexpr double kLeastInspected = 1.5;  // with less, inspection would reject too many parts
   for (const Feature& feature : features) {
     if (feature.clearance || (!feature.location && !feature.orientation)) continue;
     if (scatter.shape == ScatterShape::boundary && !drawing::can_touch(feature)) {
@@ -158,8 +158,9 @@ std::string shown_zones(const TemplateLines& lines, const Study& study) {
          "zones = { distribution = \"normal\", sigmas = 3 }\n";
 }
 
-/// The distribution of one error of a feature. sigma: standard deviation of the error, m. If the errors of the feature
-/// are not drawn together, the error has the shape of the scatter; otherwise it gets a normal distribution.
+/// The distribution of one error of a feature. sigma: standard deviation of the error, m. The distribution has the
+/// shape of the scatter if the error is drawn alone. It is normal for a clearance, and for errors that are drawn
+/// together with others of the feature.
 Distribution distribution_of(const Feature& feature, const ZoneScatter& scatter, double sigma) {
   const bool has_shape = !feature.clearance && !drawing::are_drawn_together(feature, scatter);
   if (has_shape && scatter.shape == ScatterShape::uniform) {
@@ -172,15 +173,15 @@ Distribution distribution_of(const Feature& feature, const ZoneScatter& scatter,
   return Distribution::normal(sigma);
 }
 
-/// Returns true if the study varies an error with the distribution that its zone gives.
+/// Returns true if the study varies an error with the distribution that follows from the tolerance zone.
 bool varies_by_zone(const Study& study, const std::vector<std::optional<Distribution>>& by_zones, FactorIndex error) {
   const std::vector<FactorIndex>& varied = study.analysis.factors;
   return by_zones[error.value] && study.errors.by_factor[error.value] == *by_zones[error.value] &&
          std::ranges::find(varied, error) != varied.end();
 }
 
-/// Throws InputError if the errors of a feature that are drawn together do not all vary by their zone, are drawn partly
-/// per pose and partly per machine, or are correlated.
+/// Throws InputError if the errors of a feature that are drawn together do not all vary with distributions from their
+/// zone, are drawn partly per pose and partly per machine, or are correlated.
 void check_feature(const StudyValue& zones, const Feature& feature, const Study& study,
                    const std::vector<std::optional<Distribution>>& by_zones) {
   const auto name_of = [&](FactorIndex error) { return study.model().factors[error.value].name; };

@@ -14,7 +14,7 @@ namespace {
 
 using Shape = std::vector<std::size_t>;
 
-/// A shape as Python writes it: "(71,)", "(71, 1000)".
+/// A shape as text in the notation of Python: "(71,)", "(71, 1000)".
 std::string text_of(const Shape& shape) {
   return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
 }
@@ -36,7 +36,8 @@ py::array_t<Number> array_of(const py::object& given, const std::string& name, c
                   name, is, type, type));
 }
 
-/// Throws ValueError unless the elements of the array are aligned in memory.
+/// Throws ValueError unless the array begins at a multiple of the size of its elements in memory. size: size of an
+/// element in bytes.
 void check_aligned(const py::array& array, const std::string& name, std::size_t size) {
   if (reinterpret_cast<std::uintptr_t>(array.data()) % size == 0) return;
   throw py::value_error(name + " does not begin at a multiple of its elements' size in memory; copy it");

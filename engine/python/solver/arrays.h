@@ -23,36 +23,36 @@ enum class Layout {
 
 /// A checked array of errors at one pose.
 struct ErrorArray {
-  const double* data;   ///< [P x B] errors, in the caller's memory
-  std::size_t samples;  ///< number of samples, B
-  Layout layout;        ///< layout of this array, which the responses share
+  const double* data;   ///< [errors x samples] errors, in the caller's memory
+  std::size_t samples;  ///< number of samples
+  Layout layout;        ///< layout of the errors; an array for their responses must have the same
 };
 
 /// Checks an array of errors. Throws TypeError unless it is an array of float64. Throws ValueError unless it has one of
 /// the layouts. errors: the number of errors, P.
 ErrorArray error_array(const pybind11::object& given, std::size_t errors);
 
-/// Checks an array of errors that many poses share. It must have the layout one_sample or rows. Throws as error_array()
+/// Checks an array of errors that many poses share. Its layout must be one_sample or rows. Throws as error_array()
 /// does.
 ErrorArray shared_error_array(const pybind11::object& given, std::size_t errors);
 
-/// Checks an array of errors (M, P) in C order, whose row m belongs to pose m. Throws as error_array() does.
+/// Checks an array of errors of shape (M, P) in C order; row m has the errors at pose m. Throws as error_array() does.
 const double* paired_error_array(const pybind11::object& given, std::size_t poses, std::size_t errors);
 
-/// The array for responses to errors of one pose: a new one if None is given, otherwise the given one after a check.
-/// Throws TypeError unless it is an array of float64. Throws ValueError unless it is writable and has the shape and
-/// layout that the errors require. responses: the number of responses, R.
+/// The array for the responses at one pose: a new one if None is given, otherwise the given one after a check. Throws
+/// TypeError unless the given object is an array of float64. Throws ValueError unless it is writable and has the shape
+/// and layout that `errors` require. responses: the number of responses.
 pybind11::array_t<double> response_array(const pybind11::object& given, std::size_t responses,
                                          const ErrorArray& errors);
 
 /// The array for responses of this shape in C order, as response_array() gives it.
 pybind11::array_t<double> response_block(const pybind11::object& given, const std::vector<std::size_t>& shape);
 
-/// The memory for statuses of this shape; null if None is given. Throws TypeError unless it is an array of uint8.
-/// Throws ValueError unless it is writable and has this shape in C order.
+/// The memory for statuses of this shape; null if None is given. Throws TypeError unless the given object is an array
+/// of uint8. Throws ValueError unless it is writable and has this shape in C order.
 SolveStatus* status_array(const pybind11::object& given, const std::vector<std::size_t>& shape);
 
-/// The memory of an array, to find arrays that overlap.
+/// The memory of an array; check_apart() compares it with that of other arrays.
 struct Memory {
   const char* name;   ///< name of the array, for messages
   const void* begin;  ///< first byte; null: there is no array
@@ -62,9 +62,10 @@ struct Memory {
 /// Throws ValueError if two arrays share memory.
 void check_apart(std::span<const Memory> arrays);
 
-/// The numbers of one pose (C,), or of poses (M, C) one after the other, SI, from an array or anything that NumPy
-/// converts to one. axes: 1 or 2. Throws TypeError if the conversion fails. Throws ValueError unless the array has this
-/// number of axes, and its last axis has the length C, the number of pose coordinates.
+/// The coordinates of one pose, from an array of shape (C,), or of M poses, from an array of shape (M, C), one pose
+/// after the other, SI. `given` is an array or anything that NumPy converts to one. axes: 1 or 2. Throws TypeError if
+/// the conversion fails. Throws ValueError unless the array has this number of axes and C is the number of pose
+/// coordinates.
 std::vector<double> pose_numbers(const pybind11::object& given, std::size_t axes, const ModelDescription& model);
 
 }  // namespace poesy::python

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The texts of help() in Python. The stub poesy_solver.pyi has the types.
+/// The texts that help() shows in Python. The types are in the stub poesy_solver.pyi.
 namespace poesy::python {
 
 inline constexpr char kModuleText[] = R"(What errors do to a mechanism, solved on NumPy arrays where they stand.

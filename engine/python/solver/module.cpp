@@ -33,8 +33,8 @@ struct AtPose {
   std::vector<double> pose;  ///< [coordinates] SI, checked by ArraySolver::check_poses
 };
 
-/// Lets Ctrl-C end a long call. While the solver runs, Python notices Ctrl-C only if the solver asks for it. To be
-/// called without the GIL.
+/// Lets Ctrl-C end a long call. While the solver runs, Python notices Ctrl-C only if the solver asks for it, so the
+/// solver calls this object from time to time, without holding the GIL.
 class Interruption {
  public:
   void operator()() {
@@ -93,7 +93,8 @@ py::dict units(const ArraySolver& solver) {
   return units;
 }
 
-/// The mechanism that Python names. A text is taken as it is; a path object becomes the name of a file.
+/// The mechanism that a caller in Python names. A str may be a name of the catalog or a path. A path object is always a
+/// path, so "./" is put in front of one without a folder.
 std::string mechanism_text(const py::object& mechanism) {
   const auto text = py::module_::import("os").attr("fspath")(mechanism).cast<std::string>();
   const bool is_bare = text.find('/') == std::string::npos;

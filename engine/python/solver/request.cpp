@@ -20,7 +20,7 @@ namespace {
 constexpr std::array<std::string_view, 2> kEvaluatorKeys{"factors", "calibrated"};
 
 /// The only kind of study in this module. Its [analysis] states which errors vary, and whether the actuators correct
-/// them. So the module needs neither the registry of kinds nor the code that runs and stores studies.
+/// them. With this kind the module needs neither the registry of kinds nor the code that runs and stores studies.
 const StudyKind kEvaluator{.name = "evaluator",
                            .asks = "what given errors do",
                            .keys = kEvaluatorKeys,
@@ -34,8 +34,8 @@ Study study_of_text(const std::string& text, std::span<const GivenKey> given = {
   return poesy::study_of_text(text, "", registry(), StudyUse::evaluate, kinds, nullptr, given);
 }
 
-/// The geometry parameters of the request as keys of a study. usual: a study of the mechanism, from which their
-/// dimensions are known.
+/// The geometry parameters of the request as keys of a study. usual: a study of the same mechanism with its default
+/// geometry, which gives the dimensions of the parameters.
 std::vector<GivenKey> geometry_keys(const Request& request, const Study& usual) {
   std::vector<GivenKey> keys;
   for (const auto& [name, value] : request.geometry) {

@@ -15,17 +15,17 @@ using GeometryValue = std::variant<double, std::string>;
 /// The options of an evaluator in Python, with the words of study files.
 struct Request {
   std::string mechanism = {};       ///< name of the catalog, or path of a mechanism file
-  std::string metric = "platform";  ///< metric; ignored if the mechanism weighs no angles against lengths
-  std::string fidelity = "exact";   ///< fidelity; ignored if the mechanism offers no choice
-  /// A factor set, or names of errors in any order.
+  std::string metric = "platform";  ///< metric; ignored if the mechanism does not weigh angles against lengths
+  std::string fidelity = "exact";   ///< accuracy; ignored if the mechanism offers no choice
+  /// Errors that vary: a factor set, or names of errors in any order.
   std::variant<std::string, std::vector<std::string>> factors = "all";
   /// True if responses are those after the best correction of the actuators; see [analysis] of study files.
   bool calibrated = false;
   std::map<std::string, GeometryValue> geometry = {};  ///< parameters with other values than the mechanism's own
 };
 
-/// Makes a study with the mechanism, the solver settings and the varied errors of the request; its other members are
-/// unused. Throws InputError and FileError as reading a study file does, but without a place in the file.
+/// Makes a study with the mechanism, the solver settings and the varied errors of the request; its other members keep
+/// their defaults. Throws InputError and FileError as reading a study file does, but without a place in the file.
 Study study_of(const Request& request);
 
 }  // namespace poesy::python

@@ -25,13 +25,14 @@ std::vector<Value> picked(const std::vector<Value>& values, const Kept& kept) {
   return list;
 }
 
-/// The Comparable `from`, reduced to these options and items.
+/// The same quantities, options and items as in `from`, but only those options and items that are kept, in their new
+/// order.
 Comparable kept_part(const Comparable& from, const Kept& options, const Kept& items) {
   Comparable part = from;
   part.options = picked(from.options, options);
   part.items = picked(from.items, items);
   if (!from.totals.empty()) part.totals = picked(from.totals, options);
-  Kept cells;  // indices in [R x P]
+  Kept cells;  // positions in an array [options x items] of `from`
   for (const std::size_t option : options) {
     for (const std::size_t item : items) cells.push_back(option * from.items.size() + item);
   }
@@ -47,7 +48,7 @@ Comparable kept_part(const Comparable& from, const Kept& options, const Kept& it
   return part;
 }
 
-/// The indices of the common names in the first list (if `first`), or in the second list.
+/// The positions of the common names in the first list if `first` is true, otherwise in the second list.
 Kept positions_in(const Common& both, bool first) {
   Kept kept;
   for (const auto& [of_a, of_b] : both) kept.push_back(first ? of_a : of_b);
@@ -77,8 +78,8 @@ Bars bars_of(const Comparison& compared, ArrayPool& pool) {
   return bars;
 }
 
-/// A scatter plot of the first quantity: its values in result A against those in result B. Precondition: the quantity
-/// has the same unit for all items.
+/// A scatter plot of the first quantity that plots its values in result A against those in result B. Precondition: for
+/// each option the quantity has the same unit for all items.
 Scatter scatter_of(const Comparison& compared, ArrayPool& pool) {
   const ComparableQuantity& a = compared.a.quantities.front();
   Scatter scatter{{{compared.a.option_word, compared.a.options}},
@@ -90,7 +91,8 @@ Scatter scatter_of(const Comparison& compared, ArrayPool& pool) {
   return scatter;
 }
 
-/// The ranks, from 1, of the P items of one option. Items with unknown values come last.
+/// The rank of each of an option's items by the magnitude of its value, from 1 for the largest. Items with unknown
+/// values come last.
 std::vector<std::size_t> ranks(std::span<const double> values) {
   std::vector<std::size_t> order = positions(values.size());
   const auto key = [&](std::size_t p) { return std::isnan(values[p]) ? -HUGE_VAL : std::abs(values[p]); };
@@ -113,7 +115,7 @@ std::string_view overlap(const ComparableQuantity& a, const ComparableQuantity& 
   return a.low[at] <= b.high[at] && b.low[at] <= a.high[at] ? "overlap" : "apart";
 }
 
-/// The table of one option: of the first quantity, which is that of the figures and of the answer.
+/// The table of one option, with the values of the first quantity.
 Table table_of(const Comparison& compared, std::size_t option) {
   const Comparable& all = compared.a;
   const ComparableQuantity& a = all.quantities.front();
@@ -153,7 +155,7 @@ Table table_of(const Comparison& compared, std::size_t option) {
   return table;
 }
 
-/// The table of the totals of each option in the results A and B, and of the ratio of B to A.
+/// The table with each option's total in the results A and B, and the ratio of B to A.
 Table totals_table(const Comparison& compared) {
   const Comparable& a = compared.a;
   Table table{.name = "totals",
@@ -169,8 +171,8 @@ Table totals_table(const Comparison& compared) {
   return table;
 }
 
-/// The clause of a caption that describes the order of bars. If the units of a quantity differ between items, its bars
-/// have the order of the first quantity.
+/// The clause of a caption that describes the order of bars. If some quantity has different units for its items, the
+/// clause also warns that such values do not compare.
 std::string order_of(const Comparable& a) {
   const auto differ = [](const ComparableQuantity& quantity) {
     return std::ranges::any_of(quantity.units, [](const std::vector<std::string>& units) {

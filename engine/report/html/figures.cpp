@@ -14,7 +14,7 @@ namespace poesy {
 
 using Json = nlohmann::ordered_json;
 
-// The JSON library finds these functions by argument-dependent lookup. It uses them for lists of these types, too.
+// The JSON library finds these functions by argument-dependent lookup, also for the elements of lists.
 
 static void to_json(Json& json, const Choice& choice) { json = {{"label", choice.label}, {"options", choice.options}}; }
 
@@ -165,7 +165,7 @@ std::string base64_floats(const std::vector<float>& values) {
   return base64(bytes);
 }
 
-/// Replaces "<" by its Unicode escape. In JSON it occurs only inside strings.
+/// Replaces "<" by its Unicode escape. In JSON the character occurs only inside strings.
 std::string without_tags(std::string text) {
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
   return text;

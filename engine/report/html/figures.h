@@ -8,8 +8,9 @@
 #include <variant>
 #include <vector>
 
-/// Figures as plain values. Numbers are in the unit shown; NaN means not known. The files here and the script that
-/// draws the figures (engine/report/html/web) know neither mechanisms nor kinds of study.
+/// Figures as plain values. Numbers are in the unit that the figure shows; NaN means that a number is not known. The
+/// files of this folder and the script that draws the figures (engine/report/html/web) know neither mechanisms nor
+/// kinds of study.
 namespace poesy {
 
 /// The name of an array in an ArrayPool; empty: no array.
@@ -18,8 +19,8 @@ using ArrayName = std::string;
 /// Arrays of numbers by name. Each array is stored once, however many figures show it.
 class ArrayPool {
  public:
-  /// Stores values / unit as 32-bit floats; infinities become NaN. If the name exists, its array is kept, because equal
-  /// names must mean equal arrays. Returns the name.
+  /// Stores values / unit as 32-bit floats; infinities become NaN. If the pool has an array of this name, that array is
+  /// kept, because equal names must mean equal arrays. Returns the name.
   ArrayName add(const std::string& name, std::span<const double> values, double unit = 1.0);
 
   const std::map<std::string, std::vector<float>>& arrays() const { return arrays_; }  ///< The arrays by their names.
@@ -28,62 +29,65 @@ class ArrayPool {
   std::map<std::string, std::vector<float>> arrays_;
 };
 
-/// A choice that the reader of a figure has.
+/// A choice between options that the reader of a figure has.
 struct Choice {
   std::string label;                 ///< label of the choice
   std::vector<std::string> options;  ///< options from which the reader chooses
 };
 
-/// A quantity that bars may show: values for S series, R options of the choices and P items.
+/// A quantity that bars may show. It has a value for each series, each combination of options of Bars::choices, and
+/// each item.
 struct BarQuantity {
-  std::string label;                            ///< label for people
-  std::vector<std::vector<std::string>> units;  ///< [R] a list with one unit for all items, or with P units
-  ArrayName value;                              ///< [S x R x P] values
-  ArrayName low = {};                           ///< [S x R x P] lower ends of the intervals; empty if there are none
-  ArrayName high = {};                          ///< [S x R x P] upper ends of the intervals; empty if there are none
+  std::string label;  ///< label for people
+  /// [combinations of options] The units of the values: a list with one unit for all items, or with one for each item.
+  std::vector<std::vector<std::string>> units;
+  ArrayName value;      ///< [series x combinations of options x items] values
+  ArrayName low = {};   ///< lower ends of the intervals of `value`; empty if there are none
+  ArrayName high = {};  ///< upper ends of the intervals of `value`; empty if there are none
 };
 
-/// A figure of horizontal bars.
+/// A figure of horizontal bars. A reader chooses an option of each choice, and sees a bar for each series and item.
 struct Bars {
-  std::vector<Choice> choices;           ///< choices, whose options together number R
+  std::vector<Choice> choices;           ///< choices of the reader
   std::vector<BarQuantity> quantities;   ///< quantities that bars may show
-  std::vector<std::string> items;        ///< [P] names of the items
-  std::vector<std::string> series = {};  ///< [S] names of the series; empty if S = 1
+  std::vector<std::string> items;        ///< names of the items
+  std::vector<std::string> series = {};  ///< names of the series; empty if there is only one
   bool sorted = true;                    ///< true if the largest bar comes first
 };
 
-/// An axis of a figure.
+/// An axis of a figure, with a value for each column, pose or point of the figure.
 struct Coordinate {
   std::string name;  ///< name of the axis for people
   std::string unit;  ///< unit of the values
-  ArrayName value;   ///< [M] values at the M columns, poses or points of the figure
+  ArrayName value;   ///< values, one for each column, pose or point
 };
 
 /// A quantity that a heat map may show.
 struct HeatLayer {
   std::string label;           ///< label for people
   std::string unit;            ///< unit of the values
-  ArrayName value;             ///< [P x M] values
-  bool signed_values = false;  ///< true if values are differences; colours are then centred at 0
+  ArrayName value;             ///< [rows x columns] values
+  bool signed_values = false;  ///< true if values are differences, so that colours are centred at 0
 };
 
-/// A heat map with P rows and M columns.
+/// A heat map.
 struct HeatMap {
   std::vector<HeatLayer> layers;        ///< quantities from which the reader chooses
   std::vector<std::string> rows;        ///< names of the rows, from top to bottom
   std::string column_label;             ///< label of the columns
   std::vector<Coordinate> coordinates;  ///< coordinates of the columns
-  ArrayName numbers = {};               ///< [M] numbers of the columns; empty: they are counted from 0
-  /// Order of the columns at first: a coordinate's name, or "|name|" for its magnitude; empty: order of the arrays.
+  ArrayName numbers = {};               ///< numbers of the columns; empty: 0, 1, 2, ...
+  /// First order of the columns: a coordinate's name, or "|name|" for the coordinate's magnitude; empty: order of the
+  /// arrays.
   std::string order = {};
 };
 
-/// A quantity that may colour the dots of M poses. If it has P rows of values, the reader chooses one row.
+/// A quantity that may colour the dots of poses. If it has several rows of values, the reader chooses one of the rows.
 struct Field {
   std::string label;                   ///< label for people
   std::string unit;                    ///< unit of the values
-  ArrayName value;                     ///< [M] values, or [P x M] values by row
-  std::vector<std::string> rows = {};  ///< [P] names of the rows; empty: there is only one
+  ArrayName value;                     ///< [poses] or [rows x poses] values
+  std::vector<std::string> rows = {};  ///< names of the rows; empty: there is only one
   bool signed_values = false;          ///< true if values are differences; see HeatLayer
 };
 
@@ -91,23 +95,23 @@ struct Field {
 struct WorkspaceMap {
   std::vector<Coordinate> coordinates;  ///< coordinates of the poses
   std::vector<Field> fields;            ///< quantities that may colour the poses
-  ArrayName numbers = {};               ///< [M] numbers of the poses; empty: they are counted from 0
+  ArrayName numbers = {};               ///< numbers of the poses; empty: 0, 1, 2, ...
 };
 
-/// A curve with K points, one at each value of the x axis.
+/// A curve with a point at each value of the x axis.
 struct Series {
   std::string label;            ///< label for people
-  ArrayName value;              ///< [K] values
-  ArrayName low = {};           ///< [K] lower ends of the intervals; empty if there are none
-  ArrayName high = {};          ///< [K] upper ends of the intervals; empty if there are none
+  ArrayName value;              ///< values at the points
+  ArrayName low = {};           ///< lower ends of the intervals of `value`; empty if there are none
+  ArrayName high = {};          ///< upper ends of the intervals of `value`; empty if there are none
   std::string style = "solid";  ///< "solid", "dashed" or "dotted"
 };
 
 /// A value that is marked by a line across a panel.
 struct Mark {
   std::string label;        ///< label for people
-  double value;             ///< value in the unit of its axis
-  std::string beyond = {};  ///< side that a limit forbids, "above" or "below"; empty: the mark is not a limit
+  double value;             ///< marked value in the unit of the axis
+  std::string beyond = {};  ///< side that a limit forbids, "above" or "below"; empty: not a limit
 };
 
 /// Curves that share a y axis.
@@ -115,54 +119,54 @@ struct Panel {
   std::string label;           ///< label for people
   std::string unit;            ///< unit of the values
   std::vector<Series> series;  ///< curves of the panel
-  /// Marked values of the y axis; a value far beyond the curves is mentioned instead of drawn.
+  /// Marked values of the y axis; a value far beyond the curves is written as text instead.
   std::vector<Mark> marks = {};
 };
 
-/// Panels one below the other, over the same x axis.
+/// Panels one below the other, with the same x axis.
 struct Lines {
   Coordinate x;               ///< x axis of all panels
   std::vector<Panel> panels;  ///< panels from top to bottom
   bool log = false;           ///< true if the x axis is logarithmic
   std::size_t most = 8;       ///< largest number of curves that are shown at first
-  /// Marked values of the x axis, drawn in every panel; they may be beyond the curves.
+  /// Marked values of the x axis, drawn in every panel even if they are beyond the curves.
   std::vector<Mark> marks = {};
 };
 
-/// A scatter plot of P named points, for R options of the choices.
+/// A scatter plot of named points. A reader chooses an option of each choice.
 struct Scatter {
-  std::vector<Choice> choices;          ///< choices, whose options together number R
-  std::pair<std::string, ArrayName> x;  ///< label and values [R x P] of the horizontal axis
-  std::pair<std::string, ArrayName> y;  ///< label and values [R x P] of the vertical axis
-  std::vector<std::string> units;       ///< [R] unit of both axes
-  std::vector<std::string> names;       ///< [P] names of the points
+  std::vector<Choice> choices;          ///< choices of the reader
+  std::pair<std::string, ArrayName> x;  ///< label and values [combinations of options x points] of the horizontal axis
+  std::pair<std::string, ArrayName> y;  ///< label and values [combinations of options x points] of the vertical axis
+  std::vector<std::string> units;       ///< unit of both axes, for each combination of options
+  std::vector<std::string> names;       ///< names of the points
 };
 
 /// An error in a picture of the mechanism.
 struct PicturedError {
   std::string name;   ///< name of the error
   std::string words;  ///< place and axis of the error, in words
-  std::size_t frame;  ///< index of its frame among the frames of all limbs
+  std::size_t frame;  ///< position of the error's frame among the frames of all limbs
   std::size_t axis;   ///< axis of the frame: 0, 1 or 2 for x, y or z
   bool turns;         ///< true if the error is a rotation about the axis, false if it is a displacement along it
-  std::string size;   ///< size for which its effect is shown, with the unit; empty if it has none
-  std::string share;  ///< the error's share (ErrorShares) as text with its unit; empty if it has none
+  std::string size;   ///< size of the error in the figure, with the unit; empty if it is not known
+  std::string share;  ///< share of the error (ErrorShares) as text with the unit; empty if there are no shares
 };
 
-/// A picture of a mechanism at K poses that the reader can turn. L limbs hold the platform; F frames and E errors are
-/// shown. Lengths are in mm, in the base frame.
+/// A picture of a mechanism at some poses. The reader can turn it, and choose the pose and an error. Lengths are in mm,
+/// in the base frame.
 struct Robot {
-  double yaw;                              ///< first yaw angle, deg
-  double pitch;                            ///< first pitch angle, deg
+  double yaw;                              ///< yaw angle at first, deg
+  double pitch;                            ///< pitch angle at first, deg
   double scale;                            ///< pixels per millimetre
-  std::vector<double> centre;              ///< [3] point in the middle of the picture
+  std::vector<double> centre;              ///< point in the middle of the picture: x, y, z
   bool z_is_down;                          ///< true if y and z change their signs before the picture is turned
-  std::vector<std::string> poses = {};     ///< [K] names of the poses
-  std::vector<PicturedError> errors = {};  ///< [E] errors that the reader can choose
-  ArrayName frames = {};                   ///< [K x F x 12] origin, x, y and z axis of each frame
-  std::size_t limbs = 0;                   ///< number of limbs, L
-  /// [K x E x L x 6] The motion of the platform by each limb if an error has its size, [rotation; displacement at the
-  /// base's origin]; empty if not known.
+  std::vector<std::string> poses = {};     ///< names of the poses
+  std::vector<PicturedError> errors = {};  ///< errors that the reader can choose
+  ArrayName frames = {};                   ///< [poses x frames x 12] origin, x, y and z axis of each frame
+  std::size_t limbs = 0;                   ///< number of limbs
+  /// [poses x errors x limbs x 6] The motion of the end of each limb if the error has the size that is shown: rotation,
+  /// and displacement at the base's origin. Empty if the motions are not known.
   ArrayName motions = {};
   double exaggeration = 1.0;  ///< initial factor by which motions are enlarged
 };
@@ -170,56 +174,62 @@ struct Robot {
 /// A size of an error or of a tolerance, as a slider shows it.
 struct WhatIfSize {
   std::string label;  ///< what the size is: "sigma"
-  double value;       ///< size in its unit
+  double value;       ///< size in `unit`
   std::string unit;   ///< unit: "mm"
 };
 
-/// A slider that multiplies the sizes of some errors by a factor.
+/// A slider that multiplies the sizes of some errors by one of WhatIf::factors.
 struct WhatIfSlider {
   std::string name;                 ///< name of the error, the feature or the part
   std::vector<WhatIfSize> sizes;    ///< sizes in the study
-  std::vector<std::size_t> errors;  ///< indices among the E errors of WhatIf
-  std::vector<double> costs = {};   ///< cost at each of WhatIf::factors; empty: no cost is stated
+  std::vector<std::size_t> errors;  ///< positions among the errors in WhatIf::deviations
+  std::vector<double> costs = {};   ///< cost at each of WhatIf::factors; empty: the study states no cost
 };
 
 /// A limit on a component with its sign, or on the norm of several components.
 struct WhatIfLimit {
   std::size_t components;  ///< number of components, 1 or more
-  double low;              ///< lower end in the unit of the components; minus infinity for none
-  double high;             ///< upper end in the unit of the components; infinity for none
+  double low;              ///< lower end in the unit of the components; minus infinity if there is none
+  double high;             ///< upper end in the unit of the components; infinity if there is none
 };
 
-/// Data by which a page predicts the yield of machines whose errors have other sizes than in the study. There are B
-/// machines at K poses. The limited responses have C components, which are taken to change linearly with E errors.
+/// Data from which a page predicts the yield of machines if their errors have other sizes than in the study. The
+/// machines were solved at some of the study's poses. The limits are on components of responses, which are assumed to
+/// change linearly with the errors.
 struct WhatIf {
-  std::vector<double> factors;        ///< factors to which a slider can be set, ascending; 1 is one of them
+  std::vector<double> factors;        ///< factors at which a slider can be, ascending; one of them is 1
   std::vector<WhatIfSlider> sliders;  ///< sliders that the reader moves
-  /// Limits; each takes as many of the C components as it has, one limit after the other.
+  /// Limits on the components. The first limit is on the first WhatIfLimit::components of them, the second limit on the
+  /// next ones, and so on.
   std::vector<WhatIfLimit> limits;
-  std::size_t machines = 0;   ///< number of machines, B
-  std::size_t poses = 0;      ///< number of poses, K
-  ArrayName components = {};  ///< [K x C x B] components at the study's sizes; NaN if a machine is not solved
-  ArrayName deviations = {};  ///< [E x B] deviations of the errors from their means
-  ArrayName slopes = {};      ///< [K x C x E] derivatives of the components by the errors
+  std::size_t machines = 0;  ///< number of machines
+  std::size_t poses = 0;     ///< number of poses
+  /// [poses x components x machines] The components with the errors of the study; NaN if a machine is not solved.
+  ArrayName components = {};
+  ArrayName deviations = {};  ///< [errors x machines] deviations of the errors from their means
+  ArrayName slopes = {};      ///< [poses x components x errors] derivatives of the components by the errors
   double yield = 0.0;         ///< yield of the study
   double yield_low = 0.0;     ///< lower end of the interval of the study's yield
   double yield_high = 0.0;    ///< upper end of the interval of the study's yield
-  double quantile = 0.0;      ///< standard normal quantile that belongs to the level of the intervals
-  double linear_error = 0.0;  ///< error of a machine's predicted distance to its limit if all sizes change by 100 %
-  double missed = 0.0;  ///< share of machines that are rejected only by poses not shown here, or that are not solved
-  double other_costs = 0.0;  ///< cost of the parts that no slider changes
+  double quantile = 0.0;      ///< standard normal quantile for the confidence level of the intervals
+  /// Estimated error of the prediction: the error in a machine's distance to its limit if all sizes change by 100 %.
+  double linear_error = 0.0;
+  /// Share of machines that are rejected only at one of the study's other poses, or because they are not solved.
+  double missed = 0.0;
+  double other_costs = 0.0;  ///< cost of the parts that have no slider
 };
 
 using Figure = std::variant<Bars, HeatMap, WorkspaceMap, Lines, Scatter, Robot, WhatIf>;  ///< Any kind of figure.
 
 /// The figures of a document, and the arrays of their numbers.
 struct FigureSet {
-  std::map<std::string, std::string> about;  ///< explanations of names that appear in figures, as far as known
+  std::map<std::string, std::string> about;  ///< explanations of names that appear in figures; not every name has one
   std::map<std::string, Figure> figures;     ///< figures by their keys in the page
   ArrayPool pool;                            ///< numbers of all figures
 };
 
-/// The figure set as JSON for a script element of HTML, without "<". Arrays are little-endian 32-bit floats in base64.
+/// The figure set as JSON for a script element of HTML; it has no "<". Arrays are little-endian 32-bit floats in
+/// base64.
 std::string figures_json(const FigureSet& set);
 
 std::string base64(std::span<const std::byte> bytes);  ///< Bytes as base64 (RFC 4648, with padding).

@@ -14,16 +14,16 @@
 namespace poesy {
 namespace {
 
-// A force is zero if it is smaller than this, relative to the largest force of a limb.
+// A force smaller than this, relative to the largest force of a limb, counts as zero.
 constexpr double kRounding = 1e-12;
 
-/// The force of a limb or of a drive, at each pose.
+/// The force of a limb or of a drive, at each of the result's M poses.
 struct Force {
   std::size_t limb;
   /// Index of the driven joint in the limb; none: the force is that of the whole limb.
   std::optional<std::size_t> drive;
   std::size_t response;     ///< index of the force's response in the result
-  std::vector<double> rms;  ///< [M] root mean square over the errors, SI
+  std::vector<double> rms;  ///< [poses] root mean square over the errors, SI
 };
 
 void add_force(const ReportKind& kind, const StoredResult& result, const std::string& name, std::size_t limb,
@@ -48,7 +48,7 @@ std::vector<Force> forces_of(const ReportKind& kind, const StoredResult& result,
   return list;
 }
 
-/// The largest force at a pose, among drives or among limbs.
+/// The largest force at a pose: of a drive if `of_drives` is true, otherwise of a limb.
 double largest_at(std::span<const Force> forces, bool of_drives, std::size_t pose) {
   double largest = 0.0;
   for (const Force& force : forces) {
@@ -79,8 +79,8 @@ std::vector<ForcePose> poses_of(const StoredResult& result, const Model& model, 
   return list;
 }
 
-/// The forces at a pose as shares. The forces of limbs are divided by of_limbs, those of drives by of_drives. These are
-/// the largest forces of limbs and of drives in all pictures.
+/// The forces at a pose, to be shown as shares. of_limbs, of_drives: the largest force of a limb and of a drive in all
+/// pictures, which are shown as the largest share and as the longest arrow.
 PartShares shares_at(const Sketch& sketch, std::size_t pose, std::span<const Force> forces, double of_limbs,
                      double of_drives) {
   PartShares parts(sketch);
@@ -96,8 +96,8 @@ PartShares shares_at(const Sketch& sketch, std::size_t pose, std::span<const For
   return parts;
 }
 
-/// The forces at a pose in words: "limb 1 12.3 N, limb 2 0 N". A force is shown as zero if it is only rounding error
-/// compared with the largest force.
+/// The forces of limbs at a pose in words: "limb 1 12.3 N, limb 2 0 N". A force that is only rounding error compared
+/// with the largest force of a limb is shown as zero.
 std::string forces_text(const StoredResult& result, std::span<const Force> forces, std::size_t pose) {
   const double rounding = kRounding * largest_at(forces, false, pose);
   std::string text;

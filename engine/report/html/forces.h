@@ -4,10 +4,10 @@
 
 namespace poesy {
 
-/// Adds to the section pictures of the mechanism with limbs coloured by the forces that the errors cause, and with
-/// arrows along the drives. Forces are root mean squares over the errors. The pictures show the poses at which the
-/// largest force is largest and smallest. Adds nothing if the result has no forces of limbs, or if its mechanism cannot
-/// be built again.
+/// Adds pictures of the mechanism to the section. Limbs are coloured by the forces that the errors cause in them, and
+/// arrows along the drives show the forces of the drives. Forces are root mean squares over the errors. The pictures
+/// show two poses: the one where the largest force of a limb is largest, and the one where it is smallest. Nothing is
+/// added if the result has no forces of limbs, or if the result's mechanism cannot be built again.
 void add_forces(const ReportKind& kind, const ReportedResult& reported, Section& section);
 
 }  // namespace poesy

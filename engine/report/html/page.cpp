@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
 
-/// Escapes a character that has one byte.
+/// Escapes a character of one byte.
 std::string_view escaped_ascii(std::string_view character) {
   constexpr std::pair<char, std::string_view> kEscapes[] = {
       {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
@@ -44,15 +44,15 @@ struct NumberColumn {
 NumberColumn column_of_numbers(const Table& table, std::size_t c) {
   std::vector<Cell> cells;
   for (const std::vector<Cell>& row : table.rows) cells.push_back(row[c]);
-  constexpr int kShareDigits = 3;  // digits of a share; above 90 %, digits of its difference from 100 %
+  constexpr int kShareDigits = 3;  // digits of a share, or above 90 % of its difference from 100 %
   const bool shares = table.columns[c].unit == "%";
   NumberColumn column{printed_numbers(cells, shares ? kShareDigits : 0)};
   for (const PrintedNumber& one : column.cells) column.longest_tail = std::max(column.longest_tail, one.tail);
   return column;
 }
 
-/// The attributes of a number's cell, with enough space behind it to align its decimal point with the others. A point
-/// is half as wide as a digit.
+/// The attributes of a number's cell. They add space after the number, so that the decimal points of a column are
+/// aligned. A point is half as wide as a digit.
 std::string number_attributes(const PrintedNumber& cell, std::size_t longest_tail) {
   const double point = cell.tail == 0 ? 0.5 : 0.0;
   const double room = static_cast<double>(longest_tail - cell.tail) - point;
@@ -69,8 +69,8 @@ bool is_long(const Cell& cell) {
   return text_width(cell.text) > kLong;
 }
 
-/// The CSS class of a column. Short texts stay on one line; a column of long texts gets room for some words in each
-/// line.
+/// The attribute of a column's heading. Short texts stay on one line; a column of long texts is wide enough for some
+/// words in each line.
 std::string_view width_class(const Table& table, std::size_t c) {
   const bool any = std::ranges::any_of(table.rows, [&](const std::vector<Cell>& row) { return is_long(row[c]); });
   return any ? "class=\"long\"" : "";
@@ -86,13 +86,13 @@ std::string row_heading(const PrintedNumber& cell, std::size_t longest_tail) {
   return element("th", cell.text, "scope=\"row\" " + number_attributes(cell, longest_tail));
 }
 
-/// Replaces "+-" at the beginning of a text, as in "+-0.1 mm", by the printed sign.
+/// Replaces "+-" at the beginning of a text, as in "+-0.1 mm", by the sign for plus or minus.
 std::string printed_text(std::string_view text) {
   return text.starts_with("+-") ? "\u00b1" + std::string(text.substr(2)) : std::string(text);
 }
 
-/// A tolerance frame as on a drawing. Its title has the signs in words, for screen readers and for fonts without these
-/// signs.
+/// A tolerance frame as on a drawing. Its title and label have words in place of the signs, for screen readers and for
+/// fonts without these signs.
 std::string frame_element(const Cell& cell) {
   std::string boxes;
   for (const std::string& box : cell.boxes) boxes += element("span", box);
@@ -101,7 +101,8 @@ std::string frame_element(const Cell& cell) {
                      words, boxes);
 }
 
-/// The rows of a table as HTML. The first column of texts is their heading, or the first of all if none has texts.
+/// The rows of a table as HTML. The heading of a row is its cell in the first column of texts, or in the first column
+/// if there is no column of texts.
 std::string body_html(const Table& table) {
   const std::size_t columns = table.columns.size();
   const auto texts = std::ranges::find(table.columns, Column::Kind::text, &Column::kind);
@@ -128,7 +129,7 @@ std::string body_html(const Table& table) {
   return html;
 }
 
-/// The content security policy: scripts and styles of this document are allowed, and nothing from elsewhere.
+/// The content security policy: scripts and styles of this document are allowed, and nothing from other sources.
 constexpr std::string_view kPolicy =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:";
 
@@ -140,7 +141,7 @@ std::string head(const Page& page) {
       kReportMark, kPolicy, element("title", page.title), asset("report.css"));
 }
 
-/// The body of the page: a header with links to the sections, then the sections.
+/// The body of the page: a header with links to the sections, followed by the sections.
 std::string sections(const Page& page) {
   std::string links;
   std::string html;

@@ -12,7 +12,7 @@
 
 namespace poesy {
 
-/// The line by which a report is recognised among other pages. It is in the first kilobyte of the file.
+/// The line by which poesy recognises its reports among other pages. It is in the first kilobyte of the file.
 inline constexpr std::string_view kReportMark = "<meta name=\"generator\" content=\"poesy report\">";
 
 /// The text of a file that is part of a report's page: "d3.js", "plot.js", "report.js" (to be run in this order) or
@@ -27,11 +27,11 @@ std::string escaped(std::string_view text);
 /// An element `<TAG ATTRIBUTES>text</TAG>` with the text escaped. attributes: HTML, not escaped.
 std::string element(std::string_view tag, std::string_view text, std::string_view attributes = {});
 
-/// A table as HTML in a box that scrolls: caption, headings with units, cells, and notes below. The box has the table's
-/// name in the attribute data-table. A cell with boxes is drawn as a tolerance frame.
+/// A table as HTML in a box that scrolls: caption, headings with units, cells, and notes. The box has the table's name
+/// in the attribute data-table. A cell with Cell::boxes is drawn as a tolerance frame.
 std::string html_table(const Table& table);
 
-/// A section of the report with a heading. The functions escape all texts, but not arguments that are HTML.
+/// A section of the report with a heading. Its functions escape all texts, except arguments that are HTML.
 class Section {
  public:
   /// id: anchor of the section. heading: text for people.
@@ -40,19 +40,19 @@ class Section {
   Section& paragraph(std::string_view text);  ///< Adds a paragraph.
   /// Adds a list of names with their meanings.
   Section& definitions(const std::vector<std::pair<std::string, std::string>>& list);
-  /// Adds the place of a figure that a script draws. key: key of the figure in FigureSet. drawn: HTML that is shown
-  /// without scripts.
+  /// Adds the place where a script draws a figure. key: key of the figure in FigureSet. drawn: HTML that is shown if
+  /// scripts are not run.
   Section& figure(std::string_view key, std::string_view caption, std::string_view drawn = {});
-  /// Adds a picture that needs no script. drawn: HTML.
+  /// Adds a picture that needs no script. drawn: the picture as HTML.
   Section& picture(std::string_view caption, std::string_view drawn);
-  Section& table(const Table& table);  ///< Adds a table, unfolded.
-  /// Adds the table of this name, unfolded, if it exists.
+  Section& table(const Table& table);  ///< Adds a table that is always visible.
+  /// Adds the table of this name, always visible, if there is one.
   Section& table(std::span<const Table> tables, std::string_view name);
-  /// Adds tables that the reader can unfold. summary: text that is always shown.
+  /// Adds tables that a reader sees after unfolding them. summary: text that is always visible.
   Section& folded(std::string_view summary, std::span<const Table> tables);
-  /// Adds a table that the reader can unfold.
+  /// Adds a table that a reader sees after unfolding it. summary: text that is always visible.
   Section& folded(std::string_view summary, const Table& table) { return folded(summary, std::span(&table, 1)); }
-  /// Adds a long text that the reader can unfold.
+  /// Adds a long text that a reader sees after unfolding it. summary: text that is always visible.
   Section& folded_text(std::string_view summary, std::string_view text);
 
   const std::string& id() const { return id_; }            ///< The anchor of the section.
@@ -80,10 +80,10 @@ struct Page {
   std::deque<Section> sections;       ///< sections in their order on the page
   FigureSet figures;                  ///< figures of all sections
 
-  /// Appends an empty section. The reference stays valid as long as the page.
+  /// Appends an empty section. The returned reference stays valid if further sections are appended.
   Section& add_section(std::string id, std::string heading);
-  /// Inserts an empty section after the section with the id `after`, or at the end if there is none. References to
-  /// other sections become invalid.
+  /// Inserts an empty section after the section with the id `after`, or at the end if no section has this id.
+  /// References to other sections become invalid.
   Section& insert_section(std::string_view after, std::string id, std::string heading);
 };
 

@@ -13,7 +13,8 @@
 namespace poesy {
 namespace {
 
-/// The decision on a yield in words: "FAIL, 95 % are asked for: ". Empty if the study asks for no yield.
+/// The decision on a yield in words, before a sentence: "FAIL, 95 % are asked for: ". Empty if the study asks for no
+/// yield.
 std::string decision_text(const YieldVerdict& yield) {
   using Decision = YieldVerdict::Decision;
   const std::string_view word = yield.decision == Decision::kept        ? "PASS"

@@ -19,7 +19,7 @@ namespace poesy {
 
 struct ReportKind;
 
-/// A result with what was read and built for its report.
+/// A result, with the model and the study of its mechanism if they can be made again.
 struct ReportedResult {
   StoredResult stored;                           ///< content of the result file
   std::string path;                              ///< path of the result file
@@ -29,24 +29,24 @@ struct ReportedResult {
 
 /// The names of those things that are at these indices.
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions);
-/// The indices of the headline's responses. The response that ranks errors (default_ranking()) comes first, and
-/// responses that do not vary come last.
+/// The positions of the headline's responses (those that a summary shows). The response that ranks errors
+/// (default_ranking()) comes first, and responses that do not vary come last.
 std::vector<std::size_t> headline_order(const StoredResult& result);
-/// The indices of all responses: those of the headline in headline_order(), then the others. Responses that do not vary
-/// come last.
+/// The positions of all responses: those of the headline in headline_order(), followed by the others, except that all
+/// responses that do not vary come last.
 std::vector<std::size_t> response_order(const StoredResult& result);
 
-/// The units in which these responses are shown, each as a list with one unit.
+/// The units in which these responses are shown, each in a list of its own.
 std::vector<std::vector<std::string>> response_units(const StoredResult& result,
                                                      std::span<const std::size_t> responses);
-/// The words of a caption that describe the order of errors. mixed: true if the units of the errors differ.
+/// The words of a caption that describe the order of errors. mixed: true if errors have different units.
 std::string order_by_effect(bool mixed);
 bool mixed_units(const std::vector<NamedUnit>& things);  ///< Returns true if the things have different units.
 
-/// The responses and poses whose numbers the figures of a result show. They are limited so that a report stays small.
+/// The responses and poses that the figures of a result show. They are limited so that a report stays small.
 struct ShownCells {
-  /// The largest number of values at which figures show all responses. Above it, figures first leave out the responses
-  /// outside the headline, then poses.
+  /// The largest number of values with which figures show all responses. With more, figures leave out first the
+  /// responses outside the headline, and if that is not enough, poses.
   static constexpr std::size_t kMostWithAllResponses = 300'000;
   static constexpr std::size_t kMost = 600'000;         ///< The largest number of values in the figures of a page.
   static constexpr std::size_t kMostInLayer = 400'000;  ///< The largest number of values in one layer of a figure.
@@ -56,43 +56,45 @@ struct ShownCells {
   std::size_t all_responses = 0;       ///< number of responses in the result
   std::size_t all_poses = 0;           ///< number of poses in the result
 
-  /// [rows x shown poses] The values at the poses that are shown. values: [rows x M] values at all poses.
+  /// Keeps the values at the poses that are shown: [rows x shown poses]. values: values at all poses [rows x all
+  /// poses].
   std::vector<double> at_poses(std::span<const double> values) const;
   bool thinned() const { return poses.size() < all_poses; }  ///< Returns true if poses are left out.
   std::string note() const;  ///< A sentence that says what is left out; empty if nothing is left out.
 };
 
-/// The number of values for each response and pose in figures that show summaries, such as mean or median and
-/// quantiles.
+/// The number of values for each response and pose in figures that show a summary of the samples, such as mean, or
+/// median and quantiles.
 inline constexpr std::size_t kSummaryRows = 4;
 
 /// Chooses the responses and poses that figures show. rows: number of values of each response at each pose. responses:
-/// the responses to show; none: all responses, or those of the headline if all are too many.
+/// the responses to show; none: all responses, or those of the headline if all would give too many values.
 ShownCells shown_cells(const StoredResult& result, std::size_t rows,
                        std::optional<std::vector<std::size_t>> responses = std::nullopt);
 
-/// Makes a result's figures by pose, with the responses and poses that are shown. Refers to the result and the page.
+/// Makes figures of a result over its poses, with the responses and poses that are shown.
 class PoseFigures {
  public:
-  /// Refers to `result` and `page`. shown: the responses and poses that figures show.
+  /// The object refers to `result` and `page`. shown: the responses and poses that figures show.
   PoseFigures(const StoredResult& result, ShownCells shown, Page& page);
 
-  /// The positions of the responses shown.
+  /// The positions of the responses that are shown.
   const std::vector<std::size_t>& responses() const { return shown_.responses; }
   void add_note(Section& section) const;  ///< Adds a note to the section if responses or poses are left out.
-  /// Adds values / unit at the poses shown to the page's arrays. values: [rows x M] at all poses.
+  /// Adds values / unit at the shown poses to the page's arrays. values: values at all poses [rows x all poses].
   ArrayName add(const std::string& name, std::span<const double> values, double unit = 1.0) const;
-  /// Adds values of a response (SI), in the unit shown, to the page's arrays. values: [rows x M] at all poses.
+  /// Adds values of a response at the shown poses to the page's arrays, in the unit that results show. values: values
+  /// at all poses [rows x all poses], SI.
   ArrayName add(const std::string& name, std::span<const double> values, const NamedUnit& response) const;
 
   /// The x axis of curves over poses: the time on a trajectory, otherwise the pose's number.
   Coordinate axis() const;
-  /// A heat map with these rows. Its columns are the poses, which the reader orders by time or any coordinate. order:
-  /// first order; see HeatMap::order.
+  /// A heat map with these rows. The columns are the poses, which the reader orders by time or by a coordinate. order:
+  /// first order of the columns; see HeatMap::order.
   HeatMap heat_map(std::vector<HeatLayer> layers, std::vector<std::string> rows, std::string order) const;
   /// Adds a field with the condition number of each pose.
   void add_condition(std::vector<Field>& fields) const;
-  /// A field with the share of solves that did not converge, [M].
+  /// A field with the share of solves that did not converge at each pose. shares: the shares at all poses.
   Field not_converged(std::span<const double> shares) const;
   /// Adds a map of the poses to a section, coloured by these fields. key: key of the figure in the page.
   void add_workspace(Section& section, std::vector<Field> fields,
@@ -110,86 +112,88 @@ class PoseFigures {
   ShownCells shown_;
 };
 
-/// The course with both ends of all intervals. They are computed from half-widths if the course has only these.
+/// The course with both ends of all intervals. If the course has half-widths instead of the ends, the ends are computed
+/// from them.
 EstimateCourse with_ends(EstimateCourse course);
 
-/// The curve of one quantity over the number of samples, with its interval, in units of `unit`. at: index of the
-/// quantity in [R x P]. array: name of the stored arrays.
+/// The curve of one quantity over the number of samples, with its interval, in units of `unit`. at: position of the
+/// quantity in the course. array: name of the stored arrays.
 Series series_of(const EstimateCourse& course, std::size_t at, double unit, std::string label, const std::string& array,
                  ArrayPool& pool);
 
 /// A figure with an x axis for the number of samples, and no panels yet.
 Lines over_samples(const EstimateCourse& course, ArrayPool& pool);
 
-/// Adds to the page a section on the uncertainty of estimates, which begins by explaining the intervals. heading: "How
-/// sure are ...".
+/// Adds to the page a section on the uncertainty of estimates; its first paragraph explains the intervals. heading:
+/// "How sure are ...".
 Section& add_how_sure(Page& page, std::string heading, double conf_level);
 
-/// The ends of a response's limit as marks for its distribution or curves. The lower end is left out unless the
-/// response has negative values. Empty if the study does not limit the response.
+/// The ends of a response's limit as marks for the response's distribution or curves. The lower end is left out unless
+/// the response has negative values (has_negative). Empty if the study does not limit the response.
 std::vector<Mark> limit_marks(const StoredResult& result, std::size_t response, bool has_negative);
 
-/// A sentence for each limit, "gap keeps its limit of 12 mm with 3.05 mm.", or one sentence on the yield. Empty if the
-/// study states no limits.
+/// A sentence for each limit, "gap keeps its limit of 12 mm with 3.05 mm.", or if a yield is judged one sentence on the
+/// yield. Empty if the study states no limits.
 std::string limits_text(const StoredResult& result);
 
 /// A clause as a sentence, with a capital letter and a full stop.
 std::string as_sentence(std::string clause);
 
-/// Adds to the page a section on the study's limits before all others, if the study states limits. tables: the result's
-/// tables.
+/// Puts a section on the study's limits in front of all other sections, if the tables include the one of the limits or
+/// of the yield. tables: the result's tables.
 void add_limits(std::span<const Table> tables, Page& page);
 
 /// Adds to the page the section that describes the responses in words.
 void add_responses(const StoredResult& result, Page& page);
 
-/// Adds to the page the section with the unit and the meaning of every error and every pose coordinate. Figures also
-/// show these if a reader points at a name.
+/// Adds to the page the section with the unit and the meaning of every error and every pose coordinate. Figures show
+/// the same explanation if a reader points at a name.
 void add_glossary(const StoredResult& result, Page& page);
 
-/// Adds to the page the section on solves that did not converge. It has how solves ended, counts by row and pose, and
-/// the listed failures with the commands that replay them.
+/// Adds to the page the section on solves that did not converge. It has how solves ended, their numbers by row (an
+/// error, case or size) and pose, and the listed failures with the commands that replay them.
 void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& page);
 
-/// Adds to the page the section on what was run, for one result or for several results side by side. Settings that
-/// differ come first, and equal settings are folded.
+/// Adds to the page the section on what was run, for one result or for several results side by side. For several
+/// results, settings that differ are visible, and settings that are equal are folded.
 void add_what_was_run(const ReportKind& kind, std::span<const ReportedResult> results, Page& page);
 
 /// Adds a figure to a page, and the place where it is drawn to a section. key: key of the figure in the page.
 void add_figure(Page& page, Section& section, const std::string& key, Figure figure, std::string_view caption);
 
-/// A quantity by which results are compared, with values for R options and P items, in the units shown.
+/// A quantity by which results are compared. It has a value for each option and each item, in the unit shown.
 struct ComparableQuantity {
-  std::string label;                            ///< label for people
-  std::string array;                            ///< prefix of the names of its arrays in the page
-  std::vector<std::vector<std::string>> units;  ///< [R] a list with one unit for all items, or with P units
-  std::vector<double> value;                    ///< [R x P] values
-  std::vector<double> low = {};                 ///< [R x P] lower ends of intervals; empty if there are none
-  std::vector<double> high = {};                ///< [R x P] upper ends of intervals; empty if there are none
+  std::string label;  ///< label for people
+  std::string array;  ///< prefix of the names of the quantity's arrays in the page
+  /// [options] The units of the values: a list with one unit for all items, or with one for each item.
+  std::vector<std::vector<std::string>> units;
+  std::vector<double> value;      ///< [options x items] values
+  std::vector<double> low = {};   ///< lower ends of the intervals of `value`; empty if there are none
+  std::vector<double> high = {};  ///< upper ends of the intervals of `value`; empty if there are none
 };
 
-/// The numbers of a result that can be compared with those of another result of its kind.
+/// The numbers of a result that can be compared with those of another result of the same kind, for options (such as
+/// responses) and items (such as errors).
 struct Comparable {
   std::string option_word;           ///< what an option is: "response"
-  std::vector<std::string> options;  ///< [R] names of the options
+  std::vector<std::string> options;  ///< names of the options
   std::string item_word;             ///< what an item is: "error"
-  std::vector<std::string> items;    ///< [P] names of the items
-  /// The compared quantities. Bars show all of them. Ranks and the scatter plot use the first quantity, and the table
-  /// uses the last one.
+  std::vector<std::string> items;    ///< names of the items
+  /// The compared quantities. Bars show all of them; ranks, scatter plot, table and answer use the first one.
   std::vector<ComparableQuantity> quantities = {};
   bool ranked = false;              ///< true if items are ordered by size
   std::string total_label = {};     ///< label of the totals; empty: there are none
-  std::vector<double> totals = {};  ///< [R] total over all items, in the units shown
+  std::vector<double> totals = {};  ///< [options] total over all items, in the units shown
 };
 
-/// A Comparable without quantities, whose options are the responses in the order of response_order().
+/// A Comparable without quantities; its options are the responses in the order of response_order().
 Comparable comparable_by_response(const StoredResult& result, std::string item_word, std::vector<std::string> items);
 
-/// Adds a quantity that has the unit of each response. value(response, item): the value, SI.
+/// Adds a quantity with the units of the responses. value(response, item): the value, SI.
 void add_quantity(Comparable& to, const StoredResult& result, std::string label, std::string array,
                   const std::function<double(std::size_t, std::size_t)>& value);
 
-/// Two results, with only the options and items that both have, in the order of the first result (A).
+/// Two results, reduced to the options and items that both have, in the order of the first result (A).
 struct Comparison {
   Comparable a;                     ///< part of the first result
   Comparable b;                     ///< part of the second result

@@ -32,8 +32,8 @@ int digits_of(std::string_view text) {
 /// A number with this many significant digits, including trailing zeros.
 std::string with_digits(double value, int digits) { return fmt::format("{:#.{}g}", value, digits); }
 
-/// The largest number of digits, up to `most`, to which the cell's text can be padded with zeros and still be correctly
-/// rounded.
+/// The largest number of digits, up to `most`, to which zeros can be appended to the cell's text so that it is still
+/// correctly rounded.
 int full_digits(const Cell& cell, int most) {
   const int shown = digits_of(cell.text);
   const double as_shown = std::strtod(cell.text.c_str(), nullptr);
@@ -83,7 +83,7 @@ PrintedNumber printed(double shown, int digits) {
 
 std::vector<PrintedNumber> printed_numbers(std::span<const Cell> column, int digits) {
   int most = digits;
-  for (const Cell& cell : column) {  // only cells with a fraction matter, because whole numbers are counts or exact
+  for (const Cell& cell : column) {  // whole numbers are counts or exact, so they do not matter
     if (digits == 0 && cell.value && cell.text.find_first_of(".e") != std::string::npos)
       most = std::max(most, digits_of(cell.text));
   }

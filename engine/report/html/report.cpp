@@ -13,7 +13,7 @@
 namespace poesy {
 namespace {
 
-/// The condition number above which a report calls a pose ill-conditioned. A study refuses poses above 1e8.
+/// The condition number above which a report calls a pose ill-conditioned. By default a study refuses poses above 1e8.
 constexpr double kIllConditioned = 1e4;
 
 using Warnings = std::vector<std::string>;
@@ -109,7 +109,7 @@ std::string subtitle(const StoredResult& result) {
 
 constexpr std::string_view kHowSure = "How sure";
 
-/// The kind's summary of a result, with how the solves ended added to the line "How sure".
+/// The kind's summary of a result, with a sentence on how the solves ended appended to the line "How sure".
 Answer answer(const ReportKind& kind, const StoredResult& result) {
   Answer lines = kind.answer(result);
   const auto sure = std::ranges::find(lines, kHowSure, &AnswerLine::first);
@@ -124,7 +124,7 @@ Answer answer(const ReportKind& kind, const StoredResult& result) {
   return lines;
 }
 
-/// Adds to the page the section with pictures of the mechanism, the places of its errors, and its file.
+/// Adds to the page the section with pictures of the mechanism, the places of the errors, and the mechanism's file.
 void add_mechanism(const ReportKind& kind, const ReportedResult& result, Page& page) {
   Section section("mechanism", "The mechanism");
   const ErrorShares shares = kind.error_shares == nullptr ? ErrorShares() : kind.error_shares(result.stored);
@@ -161,7 +161,7 @@ Page page_of(const ReportKind& kind, const ReportedResult& result) {
   return page;
 }
 
-/// Adds to the page a table of how the solves of the results A and B ended.
+/// Adds to the page a table that shows how the solves of the results A and B ended.
 void add_unsolved(const SolveCounts& of_a, const SolveCounts& of_b, Page& page) {
   Table table{.name = "solves",
               .caption = "How the solves of A and B ended",
@@ -182,7 +182,7 @@ std::string name_of(const ReportedResult& result) {
   return result.stored.title.empty() ? result.path : fmt::format("{} ({})", result.stored.title, result.path);
 }
 
-/// Adds to the page a section on which result is better, by how much, and whether that is certain.
+/// Adds to the page a section on which result is better, by how much, and whether this is certain.
 void add_merits(std::span<const ReportedResult> results, std::span<const std::vector<Merit>> found, Page& page) {
   const std::optional<Table> table = merits_table(found);
   if (!table) return;
@@ -193,7 +193,7 @@ void add_merits(std::span<const ReportedResult> results, std::span<const std::ve
   section.table(*table);
 }
 
-/// Adds to the page a section on the differences between the studies, because they explain differences between the
+/// Adds to the page a section on the differences between the studies, because these explain differences between the
 /// results.
 void add_studies(std::span<const ReportedResult> results, Page& page) {
   Section& section = page.add_section("studies", "How the studies differ");
@@ -221,7 +221,7 @@ Answer merits_answer(std::span<const std::vector<Merit>> found) {
   return text.empty() ? Answer() : Answer{{"Answer", text}};
 }
 
-/// Adds to the page the comparison of two results by their errors or other items.
+/// Adds to the page the comparison of two results by their items, such as errors.
 void add_two(const ReportKind& kind, const ReportedResult& a, const ReportedResult& b, Page& page) {
   const Comparison compared = comparison(kind, a, b);
   for (auto& line : comparison_answer(compared)) {

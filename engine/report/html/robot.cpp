@@ -19,10 +19,11 @@ namespace {
 
 constexpr std::size_t kMostPoses = 10;    // largest number of poses in a picture
 constexpr std::size_t kShownAtOnce = 3;   // number of poses that are visible without scripts
-constexpr std::size_t kMostErrors = 300;  // a page with more errors than this shows no motions
+constexpr std::size_t kMostErrors = 300;  // if a page has more errors, its picture shows no motions
 constexpr std::size_t kOpenRows = 10;     // number of rows that the table of errors shows unfolded
 constexpr double kMillimetres = 1e3;      // millimetres in a metre
-// Largest motion as a share of the picture's size, before the factor of enlargement is rounded down.
+// The share of the picture's size that the largest motion would take if the factor of enlargement were not rounded
+// down.
 constexpr double kShownMotion = 0.15;
 
 /// A pose that the picture shows.
@@ -50,7 +51,7 @@ bool finite(const Sketch& sketch) {
          });
 }
 
-/// The index of the largest number, or of the smallest if `sign` is -1; none if no number is known.
+/// The position of the largest number, or of the smallest if `sign` is -1; none if all numbers are unknown.
 std::optional<std::size_t> extreme(std::span<const double> values, double sign) {
   std::optional<std::size_t> found;
   for (std::size_t m = 0; m < values.size(); ++m) {
@@ -59,7 +60,7 @@ std::optional<std::size_t> extreme(std::span<const double> values, double sign) 
   return found;
 }
 
-/// Collects the poses that interest a reader, each once and with the reasons.
+/// Collects the home pose and extreme poses for the picture, each once and with the reasons.
 class PoseChoice {
  public:
   PoseChoice(const StoredResult& result, const Model& model) : result_(&result), model_(&model) {
@@ -105,7 +106,7 @@ std::vector<RobotPose> poses_of(const StoredResult& result, const Model& model, 
   return std::move(choice.list);
 }
 
-/// The errors of the result that the model has, ordered by share, the largest first.
+/// The errors of the result that the model has. If shares are known, the error with the largest share comes first.
 std::vector<RobotError> errors_of(const StoredResult& result, const Model& model, const ErrorShares& shares) {
   const bool known = !shares.what.empty() && shares.values.size() == result.factors.size();
   std::vector<RobotError> list;
@@ -136,8 +137,8 @@ PartShares part_shares(const Sketch& sketch, const std::vector<RobotError>& erro
   return parts;
 }
 
-/// A region of a limb with the share of the errors there. The joints `after` and `before` bound it, as in
-/// SketchedError.
+/// A part of a limb between the joints `after` and `before` (see SketchedError), with the sum of the shares of the
+/// errors there.
 struct RankedPart {
   std::size_t limb;
   std::size_t after;
@@ -201,14 +202,14 @@ void add_frames(const Sketch& sketch, std::vector<double>& to) {
   }
 }
 
-/// The index of an error's frame among the frames of all limbs.
+/// The position of an error's frame among the frames of all limbs.
 std::size_t frame_number(const Sketch& sketch, const SketchedError& error) {
   std::size_t number = error.frame;
   for (std::size_t i = 0; i < error.limb; ++i) number += sketch.frames[i].size();
   return number;
 }
 
-/// The largest displacement (m) that a motion gives to the platform's joints, its origin, the tool and the named
+/// The largest displacement (m) that a motion of the platform gives to its joints, its origin, the tool and the named
 /// points.
 double displacement(const Sketch& sketch, const SketchTwist& motion) {
   std::vector<SketchVector> points = sketch.tool;
@@ -224,8 +225,8 @@ double displacement(const Sketch& sketch, const SketchTwist& motion) {
   return largest;
 }
 
-/// Adds the motion of the platform by each limb if an error has one standard deviation, and the factor by which the
-/// picture enlarges motions.
+/// Adds to `robot` the motions of the limbs' ends if an error has the size of one standard deviation, and the factor by
+/// which the picture enlarges motions.
 void add_motions(const StoredResult& result, const std::vector<RobotPose>& poses, const std::vector<RobotError>& errors,
                  Robot& robot, ArrayPool& pool) {
   if (result.factor_sigma.size() != result.factors.size() || errors.size() > kMostErrors) return;
@@ -280,14 +281,14 @@ Robot robot_figure(const StoredResult& result, const Model& model, const std::ve
   return robot;
 }
 
-/// The description of an error in the mechanism's file. Empty if the file has none, or if the description is poesy's
-/// own.
+/// The description that the mechanism's file gives to an error; empty if it gives none.
 std::string own_words(const StoredResult& result, std::size_t error) {
   const std::string& words = result.factors[error].description;
   return result.mechanism_text.find(words) == std::string::npos ? std::string() : words;
 }
 
-/// A table of the errors with their places, their words in the mechanism's file, and their shares if there are any.
+/// A table of the errors with their places, with their descriptions in the mechanism's file, and with their shares if
+/// there are any.
 Table errors_table(const StoredResult& result, const Sketch& sketch, std::span<const RobotError> errors,
                    const ErrorShares& shares) {
   Table table{.name = "where_errors_are",
@@ -330,7 +331,7 @@ std::string legend(const PartShares& parts, const std::string& what) {
   return parts.largest > 0.0 ? colour_legend(what, "0 %", percent_text(parts.largest)) : std::string();
 }
 
-/// The pictures of all poses. The first ones are visible without scripts.
+/// The pictures of all poses. The first kShownAtOnce pictures are visible without scripts.
 std::string pictures(const StoredResult& result, const std::vector<RobotPose>& poses,
                      const std::vector<RobotError>& errors, const SketchView& view, const PartShares& parts,
                      const std::string& what) {

@@ -10,40 +10,42 @@
 
 namespace poesy {
 
-/// Shares of the errors, which colour the picture of the mechanism, and a measure by which its poses are chosen.
+/// Shares of the errors, which colour the picture of the mechanism, and a quantity by which poses for the picture are
+/// chosen.
 struct ErrorShares {
   std::string what = {};  ///< words for the shares: "share of the mean square of gap"; empty: there are no shares
-  std::vector<double> values = {};  ///< [P] share of each of the result's errors; NaN or below 0 counts as 0
-  /// The word for errors that are ranked together, "group" or "part", which divide their share evenly; empty: each
-  /// error is ranked alone.
+  std::vector<double> values = {};  ///< [errors of the result] share of each error; NaN or below 0 counts as 0
+  /// The word for errors that are ranked together, "group" or "part"; each of them has an equal part of their share.
+  /// Empty: each error is ranked alone.
   std::string joined = {};
-  /// Words for at_poses: "the effect of all errors on gap"; empty: there are no such values.
+  /// What at_poses is, in words: "the effect of all errors on gap"; empty: there are no such values.
   std::string pose_what = {};
-  std::vector<double> at_poses = {};  ///< [M] measure by which poses for the picture are chosen
+  std::vector<double> at_poses = {};  ///< [poses of the result] quantity by which poses are chosen
 };
 
-/// [P] The share of each error if errors are ranked in groups: the share of a group is divided evenly among its
-/// members. members: for each group the names of its errors, separated by blanks. shares: the shares of the groups.
+/// The share of each of the result's errors if errors are ranked in groups: each member has an equal part of the share
+/// of its group. members: for each group the names of its errors, separated by blanks. shares: the shares of the
+/// groups.
 std::vector<double> divided_shares(const StoredResult& result, const std::vector<std::string>& members,
                                    std::span<const double> shares);
 
-/// Returns true if pictures can be made: the model is known and has as many pose coordinates as the result. That is
-/// checked because a result file may state any number of coordinates.
+/// Returns true if pictures can be made: the model is known and has as many pose coordinates as the result, which is
+/// not certain because a result file may have any number of coordinates.
 bool has_pictures(const ReportedResult& reported);
 
-/// The sketch of the mechanism at a pose. None if the model has no picture, or if it cannot reach the pose: a result
-/// file may name such a pose.
+/// The sketch of the mechanism at a pose. None if the model has no picture, or if it cannot reach the pose, because a
+/// result file may have any poses.
 std::optional<Sketch> sketch_at(const Model& model, std::span<const double> pose);
 
-/// The title of a picture: "Pose 4 (z -195 mm): why".
+/// The title of a picture: "Pose 4 (z -195 mm): WHY".
 std::string pose_title(const StoredResult& result, std::size_t pose, const std::string& why);
 
-/// The legend of the colours as HTML. what: words for what the colours show; least, largest: labels of the two ends.
+/// The legend of the colours as HTML. what: what the colours show, in words. least, largest: labels of the two ends.
 std::string colour_legend(const std::string& what, const std::string& least, const std::string& largest);
 
-/// Adds pictures of the mechanism at home and at its most interesting poses to a section, and tables with the place of
-/// each error. The shares of their errors colour limbs and joints. Adds nothing if the mechanism cannot be built again
-/// or has no picture.
+/// Adds to a section pictures of the mechanism at home and at extreme poses (largest effect, condition number or
+/// coordinate), and tables with the place of each error. Limbs and joints are coloured by the shares of their errors.
+/// Nothing is added if the mechanism cannot be built again or has no picture.
 void add_robot(const ReportedResult& reported, const ErrorShares& shares, Page& page, Section& section);
 
 }  // namespace poesy

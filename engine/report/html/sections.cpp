@@ -62,7 +62,8 @@ Table failures_table(const ReportedResult& result) {
   return table;
 }
 
-/// Adds to the page bars with the share of solves that did not converge in each row, if there are several rows.
+/// Adds to the page bars that show for each row the share of solves that did not converge, if the result has several
+/// rows (errors, cases or sizes).
 void add_bars(const SolveTally& outcomes, Page& page, Section& section) {
   if (outcomes.names.size() < 2) return;
   const std::vector<double> shares = outcomes.shares_by_row();
@@ -91,8 +92,7 @@ void add_figures(const ReportKind& kind, const StoredResult& result, const Solve
                         "not-converged-where");
 }
 
-/// The label of a fact about a run, and the text of the fact, which is empty if the fact is not known or does not
-/// apply.
+/// A fact about a run: its label and its text. The text is empty if the fact is not known or does not apply.
 using RunFact = std::pair<std::string, std::string>;
 
 std::string setting(const StoredResult& result, std::string_view section, std::string_view key) {
@@ -165,8 +165,8 @@ std::vector<RunFact> run_facts(const ReportKind& kind, const ReportedResult& rep
   };
 }
 
-/// A table of facts. For one result it has all facts. For several results it has those in which they agree (`same`) or
-/// those in which they differ.
+/// A table of facts. For one result it has all facts. For several results it has the facts in which they agree if
+/// `same` is true, and otherwise those in which they differ.
 Table facts_table(const ReportKind& kind, std::span<const ReportedResult> results, bool same) {
   const bool several = results.size() > 1;
   Table table{.name = same ? "what_was_run_alike" : "what_was_run",
@@ -216,7 +216,7 @@ void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& pa
   const StoredResult& stored = result.stored;
   const SolveTally outcomes = kind.tally(stored);
   const SolveCounts total = outcomes.total();
-  if (total.total() == 0 && !outcomes.second) return;  // not counted: a calibration solves again and again
+  if (total.total() == 0 && !outcomes.second) return;  // a study of calibrations does not count its solves
   const std::string at_first = at_first_fidelity(outcomes);
   Section& section = page.add_section("not-solved", "What was not solved");
   if (total.not_converged() == 0) {

@@ -17,7 +17,7 @@ namespace {
 /// Scaled coordinates are equal up to rounding if they differ by less than this.
 constexpr double kRounding = 1e-12;
 
-/// The number of intervals of a line in which the search looks for a change of feasibility.
+/// The number of intervals of a chord in which the search looks for a change of feasibility.
 constexpr std::size_t kScanIntervals = 32;
 
 constexpr double kGoldenRatio = 0.6180339887498949;
@@ -31,8 +31,9 @@ double dot(std::span<const double> a, std::span<const double> b) {
 /// The number of uniforms that unit_vector() needs for a vector with n entries.
 std::size_t uniforms_for(std::size_t n) { return n <= 3 ? n - 1 : n; }
 
-/// Computes a vector that is uniform on the unit sphere, [n], from uniforms [uniforms_for(n)]; for n = 1 it is always
-/// 1. For n <= 3 a closed form needs fewer uniforms, and a low-discrepancy sequence is more even in fewer dimensions.
+/// Computes a vector with n entries that is uniform on the unit sphere, from uniforms_for(n) uniforms; for n = 1 it is
+/// always 1. For n = 2 and 3 a closed form needs fewer uniforms than entries, which is better, because a
+/// low-discrepancy sequence is more even in fewer dimensions.
 void unit_vector(std::span<const double> uniforms, std::span<double> vector) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   if (vector.size() == 1) {
@@ -53,8 +54,8 @@ void unit_vector(std::span<const double> uniforms, std::span<double> vector) {
   }
 }
 
-/// Maps a vector perpendicular to the last axis to a vector perpendicular to `unit`, by the reflection that exchanges
-/// the last axis and `unit` up to sign. Precondition: the vector's last entry is 0.
+/// Maps a vector that is perpendicular to the last axis to a vector perpendicular to `unit`, by the reflection that
+/// maps the last axis to `unit` or -`unit`. Precondition: the vector's last entry is 0.
 void reflect_last_axis_to(std::span<const double> unit, std::span<double> vector) {
   const double last = unit.back();
   const double factor = dot(unit, vector) / (1.0 + std::abs(last));
@@ -62,17 +63,18 @@ void reflect_last_axis_to(std::span<const double> unit, std::span<double> vector
   vector.back() -= (last < 0.0 ? -factor : factor);
 }
 
-/// A line in scaled coordinates.
+/// A line in coordinates that are scaled so that the workspace is the unit cube.
 struct Line {
   Vector point;
   Vector direction;
 };
 
-/// A line distributed by the kinematic measure, from a point of the Sobol' sequence. Its direction is uniform. Its
-/// point nearest to the cube's centre is uniform in a ball that covers the cube and is perpendicular to the direction.
+/// A random line from a point of the Sobol' sequence, with the distribution in which no place and no direction is
+/// preferred (the kinematic measure). The direction of the line is uniform. The line's point nearest to the cube's
+/// centre is uniform in a ball that is perpendicular to the direction and wide enough to cover the cube.
 Line line_of(Vector uniforms, std::size_t coordinates) {
   // A fixed irrational step is added in each dimension, modulo 1. Without it, the first points of the sequence are
-  // symmetric about the middle, and their lines meet edges and corners.
+  // symmetric about the middle, so that their lines pass through edges and corners.
   const auto fraction = [](double value) { return value - std::floor(value); };
   double step = 0.0;
   double share = 0.5;  // the first dimension covers half of the sphere, because a line has no sign
@@ -96,7 +98,7 @@ Line line_of(Vector uniforms, std::size_t coordinates) {
   return line;
 }
 
-/// The part of a line inside the unit cube.
+/// The part of a line inside the unit cube, between two positions along the line.
 struct Chord {
   Line line;
   double enter = -std::numeric_limits<double>::infinity();
@@ -129,8 +131,7 @@ std::optional<Chord> chord_of(const Line& line) {
   return chord.enter < chord.leave ? std::optional(chord) : std::nullopt;
 }
 
-/// Keeps every point at which the chord crosses the boundary of the feasible set. These are the two ends of each
-/// feasible piece of the chord.
+/// Keeps every point at which the chord enters or leaves the feasible set: the two ends of each feasible piece.
 void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollector& collector) {
   Vector scaled(workspace.coordinates());
   Vector pose(workspace.coordinates());
@@ -138,7 +139,7 @@ void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollecto
     chord.at(position, scaled);
     workspace.unscale(scaled, pose);
   };
-  // Bisects between a feasible and an infeasible position, and returns the last feasible position.
+  // Finds the change of feasibility between two positions by bisection, and returns the last feasible position.
   const auto refined = [&](double feasible, double infeasible) {
     while (std::abs(infeasible - feasible) > std::numeric_limits<double>::epsilon()) {
       const double middle = std::midpoint(feasible, infeasible);
@@ -171,8 +172,8 @@ void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollecto
   if (inside) keep_piece(entry, chord.leave);
 }
 
-/// Returns true if two of the poses are equal up to rounding in every scaled coordinate. Poses are sorted along a
-/// direction that is not parallel to a face, so only near neighbours need to be compared.
+/// Returns true if two poses are equal up to rounding in every scaled coordinate. Poses are sorted along a direction
+/// that is not parallel to a face of the cube, so only near neighbours need to be compared.
 bool some_coincide(const Workspace& workspace, const PoseCollector& collector) {
   const std::size_t count = collector.kept();
   const std::size_t coordinates = workspace.coordinates();

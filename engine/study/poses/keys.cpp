@@ -15,7 +15,7 @@ using Select = PoseSelection::Select;
 
 constexpr std::size_t kCurvePoints = 201;
 
-/// Reads the two ends of a range, the lower end first: a range of values, or the range of time of a trajectory.
+/// Reads the two ends of a range, the lower end first: the range of a coordinate or joint, or the time of a trajectory.
 Range read_range(const StudyValue& value, Dimension dimension) {
   const bool is_time = dimension == Dimension::time;
   const auto ends =
@@ -72,7 +72,7 @@ void read_count(const StudyValue& value, Study& study, const Reading&) {
   selection.count = static_cast<std::size_t>(product);
 }
 
-/// Reads the name of a file of poses. With StudyUse::evaluate the file is not opened.
+/// Reads the key for a file of poses, and the file itself unless the study is read with StudyUse::evaluate.
 void read_pose_file(const StudyValue& value, Study& study, const Reading& reading) {
   study.poses.file = value.text();
   if (reading.use == StudyUse::evaluate) return;
@@ -120,8 +120,8 @@ const InnerRows<Trajectory>& trajectory_keys() {
   return keys;
 }
 
-/// The range of time that the study takes from the range `whole`; all of it if the study states no range. Throws
-/// InputError if the study's range goes beyond `whole`. what: a name for `whole` in messages.
+/// The range of time that the study takes from the range `whole`: all of `whole` if the study states no range. Throws
+/// InputError if the study's range goes beyond `whole`. what: name of `whole` in messages.
 Range part_of(const StudySection& section, const Trajectory& trajectory, const Range& whole, const std::string& what) {
   const Range time = trajectory.time.value_or(whole);
   if (time.lower < whole.lower || time.upper > whole.upper) {
@@ -154,7 +154,7 @@ void read_curve(const StudySection& section, const StudyValue& value, const Mode
   trajectory.time = part_of(section, trajectory, {curve.start, curve.end}, "curve '" + curve.name + "'");
 }
 
-/// Reads the file of a trajectory. With StudyUse::evaluate the file is not opened.
+/// Reads the key for the file of a trajectory, and the file itself unless the study is read with StudyUse::evaluate.
 void read_curve_file(const StudySection& section, const ModelDescription& model, const Reading& reading,
                      Trajectory& trajectory) {
   section.refuse("origin", "a trajectory from a file, whose points are as they are");
@@ -201,8 +201,8 @@ std::string workspace_text(const std::vector<Range>& workspace, const ModelDescr
          "\n";
 }
 
-/// A trajectory as a TOML table. It names the curve and its origin, or the file with the points. The number of poses
-/// and the range of time follow, if the trajectory has them.
+/// A trajectory as a TOML table. It names the curve and the curve's origin, or the file with the points. The number of
+/// poses and the range of time follow if the trajectory states them.
 std::string trajectory_text(const Trajectory& trajectory, const ModelDescription& model, ValueText value) {
   std::string text = "file = " + in_quotes(trajectory.file);
   if (trajectory.curve) {

@@ -29,7 +29,8 @@ SelectedPoses interior_poses(const PoseSelection& selection, const Model& model,
   return std::move(collector).result();
 }
 
-/// Adds all feasible points of a grid to an empty collector; the last coordinate changes fastest.
+/// Adds all feasible points of a grid to an empty collector; the last coordinate changes fastest. counts: the number of
+/// points along each coordinate.
 PoseCollector grid_points(PoseCollector collector, std::span<const std::size_t> counts, const Workspace& workspace) {
   std::vector<double> scaled(counts.size());
   std::vector<double> pose(counts.size());
@@ -46,8 +47,8 @@ PoseCollector grid_points(PoseCollector collector, std::span<const std::size_t> 
   return collector;
 }
 
-/// The number of points of a grid with `number` points along each coordinate. If it exceeds `most`, the function
-/// returns only some number above `most`, to avoid overflow.
+/// The number of points of a grid with `number` points along each coordinate. If it exceeds `most`, the result is some
+/// number above `most`, because the exact one might overflow.
 std::size_t grid_size(std::size_t number, std::size_t coordinates, std::size_t most) {
   std::size_t size = 1;
   for (std::size_t c = 0; c < coordinates && size <= most; ++c) size *= number;
@@ -65,7 +66,7 @@ SelectedPoses grid_poses(const PoseSelection& selection, const Model& model, con
   const std::size_t most = most_candidates(selection.count);
   std::size_t number = 1;
   while (grid_size(number, workspace.coordinates(), most) < selection.count) ++number;
-  std::size_t tested = 0;  // candidates in all grids so far, for the feasible share
+  std::size_t tested = 0;  // number of candidates in all grids so far; `feasible` counts the feasible ones of them
   std::size_t feasible = 0;
   for (;; ++number) {
     PoseCollector points = grid_points(PoseCollector(workspace, selection.count, watch, tested),
