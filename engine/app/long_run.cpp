@@ -12,19 +12,22 @@
 
 namespace poesy::app {
 
-double seconds_of_long_run(const Study& study, const Model& model, const PoseSet& poses, std::size_t threads) {
+double seconds_of_long_run(const Study& study, const Model& model, const PoseSet& poses, std::size_t threads,
+                           std::size_t runs) {
   // With fewer draws a run is short: a solve takes far less than a second, and nearly all solves are solves of draws.
   constexpr double kFewDraws = 1e7;
   // The first estimate is from single pieces of work and so is rough; a run below this limit is surely shorter than
   // kLongRun.
   constexpr double kShort = kLongRun / 4.0;
   constexpr double kTrial = 0.25;  // s, duration of the second, more exact measurement
-  const double draws = static_cast<double>(study.analysis.samples) * static_cast<double>(poses.size()) *
-                       static_cast<double>(study.analysis.factors.size());
+  const double draws = static_cast<double>(runs) * static_cast<double>(study.analysis.samples) *
+                       static_cast<double>(poses.size()) * static_cast<double>(study.analysis.factors.size());
   if (draws < kFewDraws) return 0.0;
   try {
     const Outlook expected = outlook(study, model, poses);
-    const auto seconds = [&](double trial) { return expected_time(expected, threads, trial).least; };
+    const auto seconds = [&](double trial) {
+      return static_cast<double>(runs) * expected_time(expected, threads, trial).least;
+    };
     return seconds(0.0) < kShort ? 0.0 : seconds(kTrial);
   } catch (const std::bad_alloc&) {
     return 0.0;  // the run itself will report how much memory it needs

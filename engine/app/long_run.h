@@ -10,9 +10,10 @@
 /// The question that the program asks before a run that takes more than a day.
 namespace poesy::app {
 
-/// The least expected duration of a run with this number of threads, s. It is 0 if the run is clearly shorter than a
-/// day, or if there is not enough memory to estimate the duration.
-double seconds_of_long_run(const Study& study, const Model& model, const PoseSet& poses, std::size_t threads);
+/// The least expected duration of `runs` runs of a study, one after the other, with this number of threads, s. It is 0
+/// if they are clearly shorter than a day, or if there is not enough memory to estimate the duration.
+double seconds_of_long_run(const Study& study, const Model& model, const PoseSet& poses, std::size_t threads,
+                           std::size_t runs = 1);
 
 /// If the duration (s) exceeds kLongRun, asks on a terminal whether to start the run. Returns if the answer is yes or
 /// after an interrupt (`stop`). Otherwise throws InputError with the path of the study.

@@ -133,7 +133,7 @@ CheckpointIdentity identity_of(std::span<const SweptDesign> designs) {
 double seconds_of(std::span<const SweptDesign> designs, std::size_t threads) {
   const SweptDesign& first = designs.front();
   const std::unique_ptr<Model> model = build_model(first.study.mechanism);
-  return static_cast<double>(designs.size()) * seconds_of_long_run(first.study, *model, first.poses.poses, threads);
+  return seconds_of_long_run(first.study, *model, first.poses.poses, threads, designs.size());
 }
 
 /// Runs all designs. If the run fails, also tells the user what happens to the checkpoints.

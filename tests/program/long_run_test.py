@@ -37,6 +37,14 @@ class LongRun(ProgramTest):
                                           r"machine; give --yes to start it all the same, or ask for fewer samples or poses$")
                 self.expect_nothing_written()
 
+    def test_a_sweep_of_short_runs_is_long(self):
+        """A design takes some hours at most, and all of them weeks: 2e10 solves each."""
+        self.write("long.toml", STUDY.replace("samples = 1500", "samples = 1000000000"))
+        done = self.poesy("sweep", "long.toml", "--set", "errors.linear.sigma=1:400:1um")
+        message = done.stderr.decode().splitlines()[-1]
+        self.assertEqual((done.returncode, done.stdout), (2, b""), message)
+        self.assertRegex(message, r"^poesy: long\.toml: this run takes about [\d ]+ d")
+
     def test_check_says_so(self):
         self.assertRegex(self.succeeds("check", "long.toml"), r"# time: .* d.*; poesy run asks before it starts, or wants --yes\n")
         self.write("study.toml", STUDY)
