@@ -14,7 +14,8 @@
 
 namespace poesy {
 
-/// Writes or reads the state of an object. The class lists its members once, for both directions:
+/// Writes or reads the state of an object. The class of the object lists its members once, in state(), for both
+/// directions:
 ///
 ///     void Moments::state(Archive& archive) {
 ///       archive.number(count_);
@@ -29,8 +30,7 @@ class Archive {
 
   bool reads() const { return from_ != nullptr; }  ///< Returns true if the archive reads, false if it writes.
 
-  /// Writes or reads a whole number, an index or an enumeration, up to `most`. The functions below do the same for
-  /// other types.
+  /// Writes or reads a whole number, an index or an enumeration, up to `most`.
   template <class Whole>
   void number(Whole& value, std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
     if (reads()) {
@@ -50,8 +50,9 @@ class Archive {
     real(value);
     real(more...);
   }
-  /// Writes or reads the state of an object, or of a list of objects whose number the reader knows. When reading, the
-  /// object already exists. A packed object has write(ByteWriter&) and a static read(ByteReader&) instead of state().
+  /// Writes or reads the state of an object, or the states of a list of objects. When reading, the object exists
+  /// already, and a list has its length. A packed object has write(ByteWriter&) and a static read(ByteReader&) instead
+  /// of state().
   template <class Object>
   void object(Object& object) {
     if constexpr (requires { object.state(*this); }) {
@@ -75,7 +76,7 @@ class Archive {
       to_->reals(values);
     }
   }
-  /// Writes or reads a list of `count` doubles. Reading fills an empty list.
+  /// Writes or reads a list of `count` doubles, without its length.
   void list(std::vector<double>& values, std::size_t count) {
     if (reads()) {
       values = from_->reals(count);
@@ -83,8 +84,8 @@ class Archive {
       to_->reals(values);
     }
   }
-  /// Writes or reads an object that may be missing. The reader constructs it with these sizes, and then reads its
-  /// state.
+  /// Writes or reads an object that may be missing. sizes: arguments of the object's constructor, which the reader
+  /// calls before it reads the state.
   template <class Object, class... Sizes>
   void optional(std::optional<Object>& value, const Sizes&... sizes) {
     if (!flag(value.has_value())) return value.reset();
@@ -114,8 +115,8 @@ class Archive {
       to_->block(bytes);
     }
   }
-  /// Writes a number that the reader knows already, or checks it: throws BytesError, with this problem as its text, if
-  /// the number that is read differs.
+  /// Writes a number that the reader already knows. When reading, throws BytesError, with this problem as its text, if
+  /// the number that is read is not the known one.
   void known(std::uint64_t value, const char* problem) {
     std::uint64_t read = value;
     number(read);
@@ -126,8 +127,8 @@ class Archive {
     if (reads() && !holds) throw BytesError(problem);
   }
 
-  /// Writes or reads an object with write(ByteWriter&) and a static read(ByteReader&, known...) that returns the
-  /// object.
+  /// Writes an object by its write(ByteWriter&), or reads it by its static read(ByteReader&, known...). known: facts
+  /// about the object that the reader has.
   template <class Object, class... Known>
   void packed(Object& object, const Known&... known) {
     if (reads()) {
@@ -151,8 +152,8 @@ void write_state(const Object& object, ByteWriter& to) {
   archive.object(const_cast<Object&>(object));  // writing does not change it
 }
 
-/// Reads the state of an object that is constructed with these sizes. Throws BytesError for bytes that such an object
-/// cannot have written.
+/// Constructs an object and reads its state. sizes: arguments of the object's constructor. Throws BytesError for bytes
+/// that such an object cannot have written.
 template <class Object, class... Sizes>
 Object read_state(ByteReader& from, const Sizes&... sizes) {
   Object object(sizes...);

@@ -16,7 +16,7 @@
 
 namespace poesy {
 
-/// A text that can be a parameter of a template.
+/// The name of an axis, in a form that can be an argument of a template.
 template <std::size_t kSize>
 struct AxisName {
   /// Copies a string literal.
@@ -25,7 +25,8 @@ struct AxisName {
   char text[kSize]{};  ///< characters of the text and a final zero
 };
 
-/// A named axis of an array; the name is that in result files. Axes with the same name are the same axis.
+/// An axis of an array with its name, which is also its name in result files. Axes with the same name are the same
+/// axis.
 template <AxisName kText>
 struct Axis {
   /// The name of the axis in result files.

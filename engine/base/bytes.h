@@ -39,7 +39,7 @@ class ByteWriter {
   /// bytes. An exception of the sink is thrown by the function that filled the piece.
   explicit ByteWriter(Sink sink) : sink_(std::move(sink)) { bytes_.reserve(2 * kPiece); }
 
-  /// Reserves memory for this many bytes in all, so that a long state is not copied while it grows.
+  /// Reserves memory for `bytes` bytes in all, so that a long state is not copied while it grows.
   void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
   void number(std::uint64_t value);                         ///< Writes a whole number (LEB128).
   void real(double value) { reals(std::span(&value, 1)); }  ///< Writes a double, bit by bit.
@@ -82,10 +82,10 @@ class ByteReader {
   std::size_t count(std::size_t least_bytes);
   double real();                                 ///< Reads a double.
   void reals(std::span<double> values);          ///< Fills `values` with doubles.
-  std::vector<double> reals(std::size_t count);  ///< Reads this many doubles.
+  std::vector<double> reals(std::size_t count);  ///< Reads `count` doubles.
   std::span<const std::byte> block();            ///< Reads a block, and returns a view of its bytes.
   std::string text();                            ///< Reads a block as text.
-  /// Reads this many bytes, and returns a view of them.
+  /// Reads `count` bytes, and returns a view of them.
   std::span<const std::byte> raw(std::size_t count);
 
   std::size_t left() const { return left_.size(); }  ///< The number of bytes that are left.

@@ -73,7 +73,7 @@ std::string shortest(double value);  ///< The shortest text that reads back as t
 /// A quantity for a study file, which reads back exactly: "0.001 m", "0.5 rad".
 std::string to_text(Quantity quantity);
 
-/// A quantity in its display_unit(), to this many digits, such as "80 mm" or "1 deg".
+/// A quantity in its display_unit(), to `digits` digits, such as "80 mm" or "1 deg".
 std::string readable_text(Quantity quantity, int digits = 12);
 
 }  // namespace poesy

@@ -6,8 +6,8 @@
 
 namespace poesy {
 
-/// A limit on a response: the values that are allowed, SI. The limit is kept at each pose of a machine, or at a share
-/// of the poses, or it is a limit on the spread over the poses. The ends of the range are allowed.
+/// A limit on a response: the range of allowed values, SI, including its ends. A machine must keep the limit at each
+/// pose, or at a share of its poses. A limit can also be on the spread of the response over the poses of a machine.
 class ValueLimit {
  public:
   /// Allows magnitudes up to `most` at each pose. Infinite: no limit.
@@ -40,12 +40,12 @@ class ValueLimit {
   /// The number of poses, out of `poses`, at which a machine may be beyond the limit.
   std::size_t poses_beyond(std::size_t poses) const;
   /// The number that decides whether a machine keeps the limit. For a limit on the spread it is the spread of the
-  /// values. For other limits it is the value with the largest badness, after leaving out as many values as
-  /// poses_beyond() permits. values: the response at the poses where the machine is solved; the function reorders them.
-  /// poses: the number of all poses of the machine. NaN if no value decides.
+  /// values. For other limits it is the worst value (largest badness) after poses_beyond() worse ones are left out.
+  /// values: the response at the poses where the machine is solved; the function reorders them. poses: the number of
+  /// all poses of the machine. NaN if no value is left, or for a spread if a value is NaN.
   double deciding(std::span<double> values, std::size_t poses) const;
-  /// Returns true if a machine keeps the limit. values, poses: as for deciding(). The limit counts as kept at a pose
-  /// where the machine is not solved.
+  /// Returns true if a machine keeps the limit. values, poses: as for deciding(). A pose where the machine is not
+  /// solved counts as a pose where the limit is kept.
   bool keeps(std::span<double> values, std::size_t poses) const;
 
   /// Returns true if both limits are equal.

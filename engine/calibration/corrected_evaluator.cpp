@@ -12,7 +12,8 @@ namespace poesy::calibration {
 namespace {
 
 constexpr int kMostSteps = 20;
-// In m or rad: a smaller error of the commanded coordinates is removed to first order, and far less of it remains.
+// m or rad: if the error of the commanded coordinates is smaller, one first-order correction suffices, because far less
+// than this remains after it.
 constexpr double kSmall = 1e-8;
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -20,10 +20,10 @@ struct Controllers {
   Matrix phi;
 };
 
-/// Solves calibrated machines, each with its drives where its own controller moves them. The responses of the
-/// platform's displacement state what remains: the displacement from the commanded pose as the measuring device sees
-/// it. All other responses are those of the machine at that position. The outcome is non_finite if the machine was not
-/// calibrated, or if its controller finds no drive positions.
+/// Solves calibrated machines, each at the drive positions to which its own controller moves. The responses that are
+/// components of the platform's displacement give the remaining displacement: the displacement from the commanded pose
+/// as the measuring device sees it. All other responses are those of the machine at these drive positions. The outcome
+/// is non_finite if the machine was not calibrated, or if its controller finds no drive positions.
 class CorrectedEvaluator final : public Evaluator {
  public:
   /// The responses are those of solving_model(model). Throws std::invalid_argument as ExactMachine does.
@@ -36,7 +36,7 @@ class CorrectedEvaluator final : public Evaluator {
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override;
 
  private:
-  /// The outcomes of two sets of errors at one pose: what the controller knows, and the true errors.
+  /// The outcomes at one pose for two sets of errors: the errors that the controller knows, and the true errors.
   struct Pair {
     std::vector<double> responses;  ///< [responses x 2] responses of both sets
     std::vector<double> details;    ///< [components x 2] additional outputs of both sets

@@ -9,8 +9,8 @@
 
 namespace poesy::calibration {
 
-/// Gives the errors of the commanded coordinates of a displaced platform (actual minus commanded values), SI. Their
-/// number is that of the coordinates of a pose.
+/// Gives the errors of the commanded coordinates of a displaced platform (actual minus commanded values), SI. There is
+/// one for each coordinate of a pose.
 using CoordinateError = std::function<Vector(const Placement& nominal, const Displacement& displacement)>;
 
 /// Commanded coordinates that are components of a displacement, given by positions in kComponents. If one angle is
@@ -41,7 +41,7 @@ class DriveCorrection {
   /// Prepares a pose that is commanded to many controllers. Precondition: the pose is reachable.
   CommandedPose at(std::span<const double> pose) const;
   /// The coordinate errors (SI) with respect to the commanded pose. other: the placement of the perfect mechanism with
-  /// the drive positions of the machine. displacement: that of the machine from this placement.
+  /// the machine's drive positions. displacement: the machine's displacement from `other`.
   Vector error_of(const CommandedPose& commanded, const Placement& other, const Displacement& displacement) const {
     return commanded_(commanded.nominal, seen_from(displacement, other, commanded.nominal));
   }

@@ -43,7 +43,8 @@ using Components = Eigen::Matrix<double, 9, 1>;  ///< values in the order of kCo
 /// The components of a displacement. nominal: placement of the perfect mechanism at the commanded pose.
 Components components(const Displacement& displacement, const Placement& nominal);
 
-/// The displacement with respect to the nominal placement `to`, given with respect to the nominal placement `from`.
+/// Converts a displacement from the nominal placement `from` to the displacement from the nominal placement `to`. The
+/// placement of the platform stays the same.
 Displacement seen_from(const Displacement& displacement, const Placement& from, const Placement& to);
 
 /// Computes the displacement of a mechanism's platform under given errors. Owns the scratch memory of one thread. The
@@ -54,7 +55,7 @@ class ExactMachine {
   /// sketch of its home pose.
   ExactMachine(const Model& model, const SolverOptions& solver);
 
-  /// The model that is solved: solving_model() of the given model, without the responses that wrapping models add.
+  /// The model that is solved: solving_model() of the given model, without responses that a study adds to it.
   const Model& model() const { return *model_; }
   Evaluator& evaluator() { return *evaluator_; }            ///< The evaluator of the model.
   std::size_t errors() const { return no_errors_.size(); }  ///< F, the number of all errors of the model.

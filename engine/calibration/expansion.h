@@ -24,7 +24,7 @@ class Expansion {
   const std::vector<Displacement>& without_errors() const { return without_errors_; }
 
   /// The derivatives of the measured values at the estimates theta of the errors and phi of the places (Derivatives).
-  /// displacements: [poses] of the machine with the errors theta.
+  /// displacements: those of the machine with the errors theta, one for each pose.
   Derivatives derivatives(const Measurement& measurement, const Vector& theta,
                           const std::vector<Displacement>& displacements, const Vector& phi) const;
 

@@ -12,20 +12,21 @@ namespace {
 
 constexpr int kMostSteps = 30;
 constexpr int kMostHalvings = 20;
-constexpr double kShortest = 1e-9;  // the iteration ends at a step below this share of the scale
+constexpr double kShortest = 1e-9;  // the iteration ends if the step of the scaled numbers is below this
 // A step that changes all values together by less than this share of their noise moves each estimate by at most this
 // share of its standard deviation.
 constexpr double kShortestInNoise = 1e-8;
-// The number that takes the place of kShortestInNoise if derivatives come from an expansion, which is not exact.
+// The same bound if derivatives come from an expansion, which is not exact: used instead of kShortestInNoise.
 constexpr double kShortestByExpansion = 1e-5;
 constexpr double kRounding = 1e-15;  // m or rad: rounding of an exact solve
 // A sum of squares that grows by less than this share counts as not growing.
 constexpr double kRoundingOfSum = 1e-10;
-constexpr double kGrowthByExpansion = 1e-6;  // takes the place of kRoundingOfSum with an expansion
+constexpr double kGrowthByExpansion = 1e-6;  // used instead of kRoundingOfSum with an expansion
 constexpr double kRankOfFrame = 1e-9;        // smallest pivot relative to the largest, among columns of norm 1
-constexpr double kStepOfPlace = 1e-4;  // m, rad or a slope: step of the numbers of the places for finite differences
-// Step of finite differences, as a share of the reach or in rad. The errors of truncation (its fourth power) and of
-// rounding (of a solve, over the step) are both below 1e-12.
+// m, rad or a slope: step of each number of phi (see Derivatives) for finite differences
+constexpr double kStepOfPlace = 1e-4;
+// Step of a fitted number for finite differences, as a share of the machine's reach or in rad. The error of truncation
+// (fourth power of the step) and the error of rounding (of a solve, over the step) are both below 1e-12.
 constexpr double kStep = 5e-4;
 
 /// The points of a central difference of fourth order, in steps, and their weights.
@@ -116,7 +117,7 @@ class Path {
   }
 
  private:
-  /// The largest sum of squares that rounding alone may cause.
+  /// The sum of squares that rounding alone may cause.
   double least_sum() const { return (kRounding * problem_->sd.cwiseInverse()).squaredNorm(); }
 
   std::optional<Point> point(const Vector& theta, const Vector& phi) const {

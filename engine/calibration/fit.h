@@ -23,8 +23,8 @@ struct Prior {
   Vector centre = {};  ///< [rows] root times the prior's mean
 };
 
-/// The steps of finite differences for the columns of F. Each is the largest step that moves no length error by more
-/// than kStep of the machine's reach, and no angle error by more than kStep rad.
+/// The steps of finite differences along the fitted directions, the columns of F. Each is the largest step that moves
+/// no length error by more than kStep of the machine's reach, and no angle error by more than kStep rad.
 Vector difference_steps(const ExactMachine& machine, const Matrix& F);
 
 /// The derivatives of the measured values h(F theta, phi). theta are the fitted numbers, and F theta the errors of the

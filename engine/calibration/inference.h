@@ -50,7 +50,7 @@ struct Inference {
   double outlier_limit = kNaN;         ///< a value whose |outlier_score| exceeds this is an outlier
   std::vector<std::size_t> outliers;   ///< positions of the outliers, largest score first
   std::vector<std::size_t> unchecked;  ///< positions of values that no other value checks
-  std::size_t below_noise = 0;         ///< number of singular values below 1 (effects below the noise), out of k
+  std::size_t below_noise = 0;         ///< number of singular values below 1 (effects below the noise)
   ObservabilityIndices indices;        ///< observability indices of the first `rank` singular values
 };
 

@@ -9,13 +9,14 @@
 namespace poesy::calibration {
 namespace {
 
-constexpr double kStepOfPlace = 1e-5;  // m, rad or a slope: step of the numbers of the places for finite differences
-// Step of two-point differences, as a share of the step of the four-point formula. The differences are then exact to
-// 1e-10.
+// m, rad or a slope: step of each number of phi (see Derivatives) for finite differences
+constexpr double kStepOfPlace = 1e-5;
+// Step of two-point differences, as a share of the step of the four-point formula. With this step the differences are
+// exact to 1e-10.
 constexpr double kShareOfStep = 0.02;
 
-/// [9 x (numbers + places)] The derivatives of the remaining displacement with respect to the fitted numbers of the
-/// errors, and with respect to the numbers of the places of measuring device and target.
+/// [9 x (numbers + places)] The derivatives of the remaining displacement with respect to theta, the fitted numbers of
+/// the errors, and to phi, the numbers of the device's frame and of the target.
 Matrix left_derivatives(ExactMachine& machine, std::span<const double> pose, std::span<const double> drive_at,
                         const Vector& at, const Corrected& corrected, const Knowledge& known) {
   const Eigen::Index k = known.theta.size();

@@ -37,7 +37,8 @@ struct Corrected {
 struct LeftAtPose {
   std::vector<double> drive_at;  ///< pose at which the perfect mechanism has the corrected drive positions, SI
   Components mean;               ///< exact remaining displacement for the estimated errors, SI
-  /// Standard deviations to first order, SI: about the perfect machine, or about the estimate if the frame is unknown.
+  /// Standard deviations to first order, SI. The derivatives are those at the perfect machine, or at the estimated
+  /// errors if the frame is unknown.
   Components sd;
 };
 

@@ -12,7 +12,7 @@ namespace poesy::calibration {
 enum class Measured {
   deviation,  ///< a component of the platform's displacement from its commanded pose
   actual,     ///< a coordinate of P or of the tool point
-  distance    ///< the distance between the places of the tool point (P if there is no tool) at two poses
+  distance    ///< the distance between two positions of the tool point (of P if there is no tool), at two poses
 };
 
 /// A measured value.
@@ -76,8 +76,8 @@ class Measurement {
   /// The displacements at all poses for each column of errors [all errors x machines], SI; none if any machine is not
   /// solved.
   std::optional<std::vector<std::vector<Displacement>>> displacements(const Matrix& errors) const;
-  /// [values] The values that are measured at these displacements [poses], SI. phi: numbers of the places, see the
-  /// class's comment.
+  /// [values] The values that are measured at these displacements [poses], SI. phi: numbers of the frame and
+  /// of the target, see the class.
   Vector values_of(const std::vector<Displacement>& displacements, const Vector& phi) const;
 
   /// The numbers phi of the places at which a fit begins: the frame that best maps the nominal points to the measured

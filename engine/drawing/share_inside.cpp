@@ -17,7 +17,8 @@ using std::numbers::sqrt2;
 /// The probability that a standard normal is within +-k.
 double in_interval(double k) { return std::erf(k / sqrt2); }
 
-/// The probability that two, or three, independent standard normals are within a disc, or a ball, of radius k.
+/// The probability that a point with two (three) independent standard normal coordinates is in a disc (ball) of radius
+/// k.
 double in_disc(double k) { return -std::expm1(-0.5 * k * k); }
 double in_ball(double k) { return in_interval(k) - std::sqrt(2.0 / pi) * k * std::exp(-0.5 * k * k); }
 
@@ -27,8 +28,8 @@ double integral(const F& f, double from, double to) {
 }
 
 /// The probability that both ends of an axis are within k of their nominal position. Each coordinate of an end has
-/// standard deviation 1. The same coordinate of both ends has this correlation, so that given one end, the other end is
-/// normal about `correlation` times the first.
+/// standard deviation 1. correlation: that of the same coordinate at both ends. Given one end, the other end is normal
+/// about `correlation` times the first one.
 double ends_inside(double k, double correlation, bool one_direction) {
   const double rest = std::sqrt(std::max(0.0, (1.0 - correlation) * (1.0 + correlation)));
   if (rest < 1e-6) return one_direction ? in_interval(k) : in_disc(k);

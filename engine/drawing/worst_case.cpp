@@ -56,7 +56,7 @@ void append(const Across& errors, std::size_t count, OfErrors& list) {
   if (count > 1) list.push_back(errors.y);
 }
 
-/// The point q that minimises w0 |q| + w (|q - p1| + |q - p2|).
+/// The point q that minimises w0 |q| + w (|q - p1| + |q - p2|), a weighted median of the origin, p1 and p2.
 Across weighted_median(const Across& p1, const Across& p2, double w0, double w) {
   const std::array<Across, 3> points{Across{}, p1, p2};
   const std::array<double, 3> weights{w0, w, w};
@@ -110,8 +110,8 @@ struct Ends {
   Across near;
 };
 
-/// The two ends (far and near) of an axis for which the sum of scalar products far . a + near . b is largest. Both ends
-/// are in discs of this radius and differ by at most `lean`.
+/// The displacements of the two ends (far and near) of an axis for which far . a + near . b is largest. Each end stays
+/// in a disc of this radius, and the two displacements differ by at most `lean`.
 Ends extreme_ends(const Across& a, const Across& b, double radius, double lean) {
   const Ends free{radius * unit(a), radius * unit(b)};
   if ((free.far - free.near).length() <= lean) return free;
@@ -195,7 +195,7 @@ std::vector<Direction> starts(std::size_t components) {
   return list;
 }
 
-/// A state of the ascent to the largest length of the sum of the features' vectors.
+/// A point of the ascent, which looks for the largest length of a sum of vectors, one for each feature.
 struct Reached {
   LargestLength top;
   Direction direction{};  ///< direction of the sum of vectors, from which the ascent goes on

@@ -27,7 +27,7 @@ class ZoneDraws {
 
   /// Replaces uniforms by errors (m). rows: one for each error, in the order of Feature::errors(), all with the same
   /// number of samples. A sample depends only on its own uniforms. If an inspected feature is outside its zones, it is
-  /// drawn again; the address of the new draw is the sample's first two uniforms and the number of the attempt.
+  /// drawn again, with random numbers that follow from the sample's first two uniforms and the number of the attempt.
   void transform(std::span<const std::span<double>> rows) const;
 
  private:

@@ -31,7 +31,7 @@ struct Density {
   }
 };
 
-/// Integrals of a density over all features within a zone.
+/// Integrals of a density over all positions of a feature within its zones.
 struct Integrals {
   double one = 0.0;
   double middle = 0.0;  ///< integral of the squared middle, summed over its coordinates
@@ -53,8 +53,8 @@ Integrals integrals(const F& f, double end) {
   return {one_of(&Integrals::one), one_of(&Integrals::middle), one_of(&Integrals::tilt)};
 }
 
-/// Integrates over the middles of an axis with this lean whose two ends are in a disc. The middles fill a lens between
-/// two arcs.
+/// Integrates over the middles of an axis with this lean whose two ends stay in a disc. These middles fill a lens
+/// between two arcs.
 Integrals over_lens(const Density& middle, double radius, double lean) {
   const auto at = [&](double angle) {  // integrand at a point of an arc of the lens
     const double across = radius * std::sin(angle);

@@ -11,8 +11,9 @@ namespace {
 
 using std::numbers::sqrt2;
 
-/// The standard deviation of each tilt error in a zone of orientation of width 1, if half a zone is one standard
-/// deviation of a coordinate of an extreme point.
+/// The standard deviation of each error that tilts a feature, for a zone of orientation of width 1. With it, the
+/// tilt displaces an extreme point (an end of an axis, a corner of a plane) with the standard deviation 1/2, half the
+/// width of the zone.
 double tilt_of_orientation(FeatureKind kind) {
   if (kind == FeatureKind::axis) return 1.0;
   return kind == FeatureKind::round ? 0.5 : 0.5 / sqrt2;

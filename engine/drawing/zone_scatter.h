@@ -15,8 +15,9 @@ enum class ScatterShape {
   inspected  ///< normal, but features outside their zones are rejected
 };
 
-/// How the extreme points of features scatter in their zones. Features use a zone of location and a zone of orientation
-/// independently. Under normal scatter, the errors that displace an extreme point contribute equally to its variance.
+/// How the extreme points of features (ends of axes, corners of planes) scatter in their zones. Features use a zone of
+/// location and a zone of orientation independently. Under normal scatter, the errors that displace an extreme point
+/// contribute equally to its variance.
 struct ZoneScatter {
   ScatterShape shape = ScatterShape::normal;  ///< distribution of the extreme points
   /// Half a zone, in standard deviations of a coordinate of an extreme point. Applies to `normal` and `inspected`.
@@ -42,8 +43,8 @@ struct FeatureSigmas {
   std::optional<double> tilt;  ///< standard deviation of each error that turns the feature; none if no zone limits it
 };
 
-/// The standard deviations of a feature's normal errors, if half a zone is `sigmas` standard deviations. For a feature
-/// with a clearance, those that have the mean square of the clearance.
+/// The standard deviations of a feature's normal errors, if half a zone is `sigmas` standard deviations. A feature
+/// with a clearance has the mean square that follows from the clearance.
 FeatureSigmas feature_sigmas(const Feature& feature, double sigmas);
 
 /// The largest useful zone of orientation, as a share of the zone of location. A wider one limits nothing more.

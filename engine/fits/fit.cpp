@@ -18,7 +18,7 @@ namespace {
 /// The largest nominal size that kSteps covers, mm.
 constexpr double kLargest = 500.0;
 
-/// The distances of shaft zones below the nominal size, for sizes up to and including `up_to`. The zone of a hole H
+/// How far the zones of shafts are below the nominal size, for sizes up to and including `up_to`. The zone of a hole H
 /// begins at the nominal size; the zone of a shaft h ends there.
 struct DistanceStep {
   double up_to;                      ///< largest nominal size, mm

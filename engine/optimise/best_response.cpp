@@ -10,7 +10,7 @@ namespace poesy {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// A process whose lagrangian is this many mu above the least has no weight.
+/// A process has no weight if its lagrangian exceeds the least one by more than this multiple of mu.
 constexpr double kNegligibleExponent = 40.0;
 constexpr int kMaxNewtonSteps = 100;  ///< largest number of Newton steps in common_size()
 
@@ -30,8 +30,8 @@ CostCurve common_curve(const SizedProcess& process, double size, Stacking stacki
           outer.curvature + share * share * inner.curvature};
 }
 
-/// The range of sizes of a pair's outer part in which the bounds of the inner part allow it the largest size, share x
-/// size of the outer part.
+/// A range of sizes of a pair's outer part. For each size in it, the bounds of both parts allow the largest inner part
+/// that fits, whose size is share x size of the outer part.
 struct CommonRange {
   double lo;
   double hi;
@@ -43,9 +43,9 @@ CommonRange common_range(const SizedProcess& process) {
   return {lo, std::fmax(lo, std::fmin(process.hi, inner.hi / inner.share))};
 }
 
-/// The size of a pair's outer part that minimises cost + price x size if the inner part has the largest size, share x
+/// The size of a pair's outer part that minimises cost + price x size, with the largest inner part that fits: share x
 /// size of the outer part. Newton's method solves for the logarithm of the slope as a function of the logarithm of the
-/// size, which is nearly linear. An error of the size changes the minimum only by its square.
+/// size, which is nearly linear. An error of the size changes the minimum only to second order.
 double common_size(const SizedProcess& process, double price, Stacking stacking) {
   auto [lo, hi] = common_range(process);
   if (lo == hi || price <= 0.0 || common_curve(process, hi, stacking).slope + price <= 0.0) return hi;
@@ -91,7 +91,8 @@ ProcessResponse pair_response(const SizedProcess& process, const Prices& prices,
   return {size, cost, cost + prices.own * size + prices.inner * within, within};
 }
 
-/// The decrease of the sizes of a part, or of a pair, per unit of their prices.
+/// The decrease of sizes per unit of price. own: of the part's size, by the part's own price. inner: of the inner
+/// part's size, by the inner part's price. cross: of the size of either part, by the price of the other.
 struct InverseCurvature {
   double own;
   double inner = 0.0;
@@ -142,8 +143,8 @@ struct PairOfParts {
   static constexpr bool kHasInner = true;
 };
 
-/// Computes the mean over the processes. Sizes are taken relative to those of the main process, so that the variance
-/// does not lose digits.
+/// Sets the weighted means over the allowed processes. Sizes are taken relative to those of the main process, so that
+/// the variance does not lose digits.
 template <class Kind>
 void mix(std::span<const SizedProcess> processes, ProcessRange allowed, double mu, Stacking stacking,
          BestResponse& part) {

@@ -41,7 +41,7 @@ struct InnerResponse {
 /// The best response of a part, or of both parts of a pair, at given multipliers. If several processes are allowed, the
 /// response is a weighted mean over them (a mix).
 struct BestResponse {
-  double price = 0.0;              ///< price of a unit of the part's size: sum over the limits of multiplier x effect
+  double price = 0.0;              ///< price of a unit of the part's own size
   double size = 0.0;               ///< mean size over the mixed processes
   double inverse_curvature = 0.0;  ///< decrease of the size per unit of price
   double cost = 0.0;               ///< mean cost over the mixed processes

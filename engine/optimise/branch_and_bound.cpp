@@ -29,8 +29,8 @@ struct Node {
 };
 
 /// The cost of a process at its largest sizes that use no more of any limit than the sizes of `most` do; infinite if
-/// the process has no such sizes. For a pair, the use of a limit grows with the inner size, and with the outer size
-/// beyond the one that just holds the inner part.
+/// the process has no such sizes. In a pair, the inner part becomes no larger than in `most`, and the outer part
+/// exceeds the smallest size that holds the inner part by no more than in `most`.
 double cost_within(const SizedProcess& process, const BestResponse& most, Stacking stacking) {
   const auto cost = [&](const CostLaw& law, double size) { return law.at(tolerance_of(size, stacking)); };
   if (!process.inner) return cost(process.cost, std::fmin(process.hi, most.size));
@@ -61,7 +61,8 @@ struct Raise {
   std::size_t process;  ///< position of the new process
 };
 
-/// The spread of price x size within a mix. The part with the largest spread is branched first.
+/// How much price x size scatters over the mixed processes of a part (standard deviation). The part with the largest
+/// value is branched first.
 double spread_of(const BestResponse& part) {
   return part.price * part.deviation + std::abs(part.inner.price) * part.inner.deviation;
 }
@@ -95,7 +96,7 @@ class BranchAndBound {
   /// The best solutions, ascending by cost; at most one more than SearchOptions::alternatives.
   std::vector<ConvexSolution> best_;
   std::vector<double> relaxed_;  ///< [limits] multipliers at the root
-  double closed_ = kInfinity;    ///< lowest lower bound among pruned and solved nodes
+  double closed_ = kInfinity;    ///< lowest lower bound among the nodes that were pruned or solved
   std::size_t nodes_ = 0;        ///< nodes that were expanded
   std::size_t made_ = 0;
 };
@@ -158,8 +159,8 @@ Choice BranchAndBound::round_down(const std::vector<ProcessRange>& allowed, cons
   return choice;
 }
 
-/// Improves a choice of single values greedily, as long as the limits allow it. In each step the part that saves most
-/// takes its next larger value; a pair may take any cheaper values.
+/// Improves greedily, as long as the limits allow it, a choice of processes that allow one size each. In each step the
+/// part that saves most takes its next larger value; a pair may take any cheaper values.
 void BranchAndBound::raise_greedily(Choice& choice) const {
   std::vector<double> sizes(choice.size());
   for (std::size_t i = 0; i < choice.size(); ++i) {
@@ -192,7 +193,8 @@ void BranchAndBound::raise_greedily(Choice& choice) const {
   }
 }
 
-/// The ways to make one part of a choice of single values coarser and cheaper, the largest saving first.
+/// The ways to change one part of a choice to a coarser and cheaper process, the largest saving first. Each process
+/// allows one size.
 std::vector<Raise> BranchAndBound::raises(const Choice& choice) const {
   std::vector<Raise> found;
   for (std::size_t i = 0; i < choice.size(); ++i) {
@@ -212,7 +214,7 @@ std::vector<Raise> BranchAndBound::raises(const Choice& choice) const {
   return found;
 }
 
-/// Removes processes at the ends of the ranges that cannot belong to a choice cheaper than the cutoff.
+/// Removes from both ends of each range the processes that cannot belong to a choice cheaper than the cutoff.
 void BranchAndBound::prune_by_bound(std::vector<ProcessRange>& allowed, const PathPoint& point, double bound) {
   const double most = cutoff();
   for (std::size_t i = 0; i < allowed.size(); ++i) {
@@ -229,7 +231,7 @@ void BranchAndBound::prune_by_bound(std::vector<ProcessRange>& allowed, const Pa
   }
 }
 
-/// Splits the range of the part whose mix spreads most, next to its main process, and queues both halves.
+/// Splits the range of the part with the largest spread_of(), next to the part's main process, and queues both halves.
 void BranchAndBound::branch(const std::vector<ProcessRange>& allowed, const PathPoint& point, double bound) {
   std::size_t part = allowed.size();
   double most = -1.0;

@@ -36,8 +36,8 @@ void set_inner(const AllocationProblem& problem, const SizedProblem& sized, std:
   }
 }
 
-/// [parts] The lowest sizes. In a pair they keep the proportion of `sizes` where bounds allow it, because the smallest
-/// inner part may use more of a limit than a larger one.
+/// [parts] The lowest sizes. In a pair they keep the proportion of the two `sizes` where bounds allow it, because the
+/// smallest inner part may use more of a limit than a larger one.
 std::vector<double> lowest_like(const SizedProblem& sized, std::span<const double> sizes) {
   std::vector<double> lo;
   for (const auto& processes : sized.processes) lo.push_back(processes.front().lo);
@@ -50,7 +50,7 @@ std::vector<double> lowest_like(const SizedProblem& sized, std::span<const doubl
   return lo;
 }
 
-/// The tolerances [parts] that belong to the sizes lo + keep (sizes - lo), with the lowest sizes lo of lowest_like().
+/// The tolerances [parts] of the sizes lo + keep (sizes - lo), where lo are the sizes that lowest_like() gives.
 std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedProblem& sized,
                                   std::span<const double> sizes, double keep) {
   std::vector<double> tolerance(sizes.size());
@@ -66,8 +66,8 @@ std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedP
   return tolerance;
 }
 
-/// The largest s from 0 to 1 for which the sizes lo + s (sizes - lo) keep all limits, with the lowest sizes lo of
-/// lowest_like().
+/// The largest s from 0 to 1 for which the sizes lo + s (sizes - lo) keep all limits, where lo are the sizes that
+/// lowest_like() gives.
 double share_within(const SizedProblem& sized, std::span<const double> sizes) {
   const double room = 1.0 - 4.0 * rounding_margin(sized.parts());
   const std::vector<double> lo = lowest_like(sized, sizes);
@@ -80,8 +80,8 @@ double share_within(const SizedProblem& sized, std::span<const double> sizes) {
   return share;
 }
 
-/// The tolerances of sizes [parts], which move towards the lowest bounds where rounding would break a limit. None if
-/// even the lowest bounds break a limit.
+/// The tolerances [parts] of these sizes. Where rounding would break a limit, the sizes move towards the lowest bounds.
+/// None if even the lowest bounds break a limit.
 std::optional<std::vector<double>> tolerances_within(const AllocationProblem& problem, const SizedProblem& sized,
                                                      std::span<const double> sizes) {
   for (const double keep : {1.0, share_within(sized, sizes), 0.0}) {
@@ -106,7 +106,7 @@ double cost_of(const AllocationProblem& problem, const SizedProblem& sized, std:
   return cost;
 }
 
-/// Multipliers [K] of the K limits in a working set, and the lower bound on the cost that they prove.
+/// The multipliers of the limits in a working set, in the same order, and the lower bound on the cost that they prove.
 struct DualCertificate {
   std::vector<std::size_t> working_set;
   std::vector<double> multipliers;
@@ -129,9 +129,9 @@ DualCertificate without_negligible(const SizedProblem& sized, const DualCertific
   return cost - less.bound <= 2.0 * (cost - whole.bound) + kGoodGap * std::abs(cost) ? less : whole;
 }
 
-/// Adds multipliers of tight limits: the smallest ones for which the lowest bounds are the best sizes of the parts
-/// under the limit. An infinite multiplier is omitted. The lower bound does not change, because these parts have no
-/// other size.
+/// Adds a multiplier for each tight limit: the smallest multiplier at which the lowest bounds are the cheapest sizes of
+/// the parts that affect the limit. An infinite multiplier is omitted. The lower bound does not change, because these
+/// parts have no other size.
 void add_tight_limits(const AllocationProblem& problem, const SizedProblem& sized, DualCertificate& found) {
   for (std::size_t l = 0; l < sized.limits; ++l) {
     if (!sized.tight[l]) continue;

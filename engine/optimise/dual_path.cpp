@@ -16,23 +16,25 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kMuReduction = 0.1;
 /// Relative gap at the end of the path. The reference is the part of the cost that tolerances can change.
 constexpr double kRelativeGap = 1e-12;
-/// The path ends at this mu, relative to its scale, because rounding dominates below.
+/// The path ends if mu is below this share of the scale of multipliers, because rounding dominates there.
 constexpr double kSmallestMu = 1e-16;
-/// The path ends at this mu if processes are mixed. It is relative to the part of the cost that tolerances can change.
+/// The path ends when its parameter mu has this value, if processes are mixed. The value is a share of the part of the
+/// cost that tolerances can change.
 constexpr double kSmallestMixingMu = 3e-8;
 constexpr int kMaxNewtonSteps = 60;      ///< largest number of Newton steps for one maximum
 constexpr int kMaxLineSearchSteps = 60;  ///< largest number of trial steps along one direction
 constexpr int kMaxIterations = 400;      ///< largest number of maxima and of additions to the working set, together
 constexpr std::size_t kAddedAtOnce = 4;  ///< number of violated limits that join the working set in one iteration
 
-/// The part of a mix's cost that tolerances can change.
+/// The mean cost of the mixed processes, less the smallest fixed cost of an allowed process. Tolerances can change at
+/// most this part of the cost.
 double changeable(std::span<const SizedProcess> processes, ProcessRange allowed, const BestResponse& part) {
   double least = kInfinity;
   for (std::size_t p = allowed.first; p < allowed.last; ++p) least = std::fmin(least, processes[p].fixed_cost());
   return std::fmax(0.0, part.cost - least);
 }
 
-/// A scale for multipliers: the price of the whole room of a limit if each part uses an equal share of the limit that
+/// A scale for multipliers: the total price of all sizes if each part uses an equal share of the room of the limit that
 /// it affects most.
 double multiplier_scale(const SizedProblem& problem, std::span<const ProcessRange> allowed) {
   const auto parts = static_cast<double>(problem.parts());
@@ -52,8 +54,8 @@ double multiplier_scale(const SizedProblem& problem, std::span<const ProcessRang
   return costs > 0.0 && std::isfinite(costs) ? costs : 1.0;
 }
 
-/// Factorises a symmetric matrix [K x K] in place (Cholesky), given its lower half. Adds a little to the diagonal,
-/// because rounding may leave the matrix not quite positive definite.
+/// Factorises a symmetric matrix of size k x k in place (Cholesky), given its lower half. Adds a little to the
+/// diagonal, because rounding may leave the matrix not quite positive definite.
 void factorise(std::vector<double>& matrix, std::size_t k) {
   double trace = 0.0;
   for (std::size_t r = 0; r < k; ++r) trace += matrix[r * k + r];
@@ -164,8 +166,8 @@ void DualPath::update_responses(double mu) {
   }
 }
 
-/// Whether multiplier x slack is between mu / 2 and 3 mu / 2 for every limit of the working set. All these limits are
-/// then kept.
+/// Whether multiplier x slack is between mu / 2 and 3 mu / 2 for every limit of the working set. If so, all these
+/// limits are kept.
 bool DualPath::is_centred(double mu) const {
   for (std::size_t k = 0; k < working_set_.size(); ++k) {
     if (!(std::abs(mu - multipliers_[k] * slack_[k]) <= 0.5 * mu)) return false;
@@ -223,8 +225,8 @@ bool DualPath::find_newton_direction(double mu) {
 }
 
 /// Searches along Newton's direction. The function is concave, so its slope falls along the direction. A step is too
-/// long if the slope at its end is more negative than half the first slope. The search then looks for a small slope
-/// between this step and a shorter one, because the function bends sharply where parts reach a bound.
+/// long if the slope at its end is more negative than half the first slope. If it is too long, the search looks for a
+/// small slope between this step and a shorter one, because the function bends sharply where parts reach a bound.
 void DualPath::search_line(double mu) {
   const std::vector<double> before = multipliers_;
   double step = 1.0;

@@ -9,12 +9,12 @@
 #include "engine/optimise/sized_problem.h"
 
 /// The Lagrange dual of the least-cost problem, and its central path. Given multipliers of the limits, the best size of
-/// each part does not depend on the other parts. The sum of the parts' costs and of multiplier x (use - room) is then a
-/// lower bound on the least cost.
+/// each part does not depend on the other parts. At these sizes, the sum of the parts' costs and of multiplier x (use -
+/// room) is a lower bound on the least cost.
 namespace poesy {
 
-/// The lower bound on the cost that multipliers >= 0 of the limits in the working set prove: all tolerances within the
-/// allowed processes and the limits cost at least this much. A margin for rounding is subtracted.
+/// The lower bound on the cost that these multipliers, >= 0, of the limits in the working set prove. All tolerances
+/// within the allowed processes and the limits cost at least this much. A margin for rounding is subtracted.
 double lower_bound(const SizedProblem& problem, std::span<const ProcessRange> allowed,
                    std::span<const std::size_t> working_set, std::span<const double> multipliers);
 

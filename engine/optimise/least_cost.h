@@ -23,7 +23,7 @@ struct Process {
 /// The only process of a part whose tolerance is given, SI.
 Process fixed_process(double tolerance, double cost = 0.0);
 
-/// One process for each available tolerance (SI), such as the grades of a standard. Its cost follows from the law.
+/// One process for each available tolerance (SI), such as the grades of a standard. The law gives the cost of each.
 std::vector<Process> available_values(const CostLaw& cost, std::span<const double> tolerances);
 
 /// When the inner part of a pair may be left out. A part that is left out has no tolerance of its own and costs
@@ -67,7 +67,7 @@ struct SearchOptions {
   std::size_t max_nodes = 20000;
 };
 
-/// Whether a tolerance is at a bound of its process.
+/// Whether a tolerance is at a bound of its process; single: the process allows only one tolerance.
 enum class AtBound { none, lower, upper, single };
 
 /// A choice of processes, and the tolerances with the least cost for this choice.

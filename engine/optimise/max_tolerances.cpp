@@ -62,7 +62,7 @@ std::vector<double> corners(std::span<const double> proportions, std::span<const
 double factor_of(const ToleranceLimits& limits, std::size_t l, double inside, std::span<const double> proportions,
                  std::span<const ToleranceRange> ranges) {
   double held = 0.0;  // sum over the parts at a bound of effect x size
-  // The sum over the other parts of effect x size at the factor 1. It is proportional to the size of the factor.
+  // The sum over the other parts of effect x size at the factor 1. At another factor it is size_of(factor) times this.
   double grows = 0.0;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const double effect = limits.row(l)[i];

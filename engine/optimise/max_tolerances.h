@@ -17,8 +17,9 @@ struct ToleranceRange {
   double hi;  ///< largest tolerance, SI
 };
 
-/// [parts] The tolerances at which each part alone would use up the limit that it affects most: T_i = 1 / sqrt(max_l
-/// a_li^2 / room_l) for the effects a_li of part i on limit l. Infinite for a part without effect.
+/// [parts] The tolerances at which each part alone would use up the limit that it affects most: T_i = 1 / sqrt(e_i), or
+/// 1 / e_i in the worst case, where e_i is the largest effect / room of part i over the limits. Infinite for a part
+/// without effect.
 std::vector<double> equal_effect_proportions(const ToleranceLimits& limits);
 
 /// The largest tolerances in given proportions.

@@ -37,15 +37,15 @@ std::vector<double> lowest_tolerances(const SizedProblem& problem) {
   return tolerance;
 }
 
-/// The least combined effect of all parts on limit l; also valid with pairs.
+/// The least combined effect of all parts on limit l, also for a problem with pairs.
 double least_need(const ToleranceLimits& limits, const SizedProblem& problem, std::size_t l) {
   if (problem.pairs.empty()) return limits.need(l, lowest_tolerances(problem));
   const auto all = all_processes(problem);
   return limits.room[l] * least_use(problem, l, all, lowest(problem, all));
 }
 
-/// The limit that is exceeded most if each pair uses it least and all other parts have their lowest bounds. None if
-/// each limit alone can be kept.
+/// The limit that is exceeded most if each pair takes the sizes that use the limit least, and all other parts have
+/// their lowest bounds. None if each limit alone can be kept.
 std::optional<Infeasible> find_infeasible_with_pairs(const ToleranceLimits& limits, const SizedProblem& problem) {
   std::optional<Infeasible> worst;
   for (std::size_t l = 0; l < limits.count(); ++l) {
@@ -127,8 +127,9 @@ std::optional<std::size_t> tighten_bounds(SizedProblem& problem) {
   return std::nullopt;
 }
 
-/// Fixes the parts of tight limits, whose room the lowest bounds use up to rounding. Returns the first limit whose
-/// fixed parts would have an infinite cost, or none.
+/// Finds the tight limits (SizedProblem::tight): with the lowest bounds of all parts, nothing but rounding is left of
+/// their room. Fixes the parts that affect them. Returns the first tight limit for which the cost of a fixed part is
+/// infinite, or none.
 std::optional<std::size_t> fix_tight_limits(SizedProblem& problem) {
   auto all = all_processes(problem);
   const std::vector<double> lo = lowest(problem, all);

@@ -17,14 +17,14 @@ struct InnerProcess {
   CostLaw cost;       ///< cost as a function of the tolerance
   double lo;          ///< least size
   double hi;          ///< largest size
-  std::size_t index;  ///< position in AllocationProblem::parts
-  std::size_t part;   ///< position of the inner part
+  std::size_t index;  ///< position of the process in the list of its part in AllocationProblem::parts
+  std::size_t part;   ///< position of the inner part among all parts
   double share;       ///< the size of the inner part is at most share x size of the outer part
   bool left_out;  ///< true if the inner part is left out: it costs nothing and its size is exactly share x size of the
                   ///< outer part
 };
 
-/// The effects on one limit of a part and of the inner part of its pair.
+/// The effects of a part, and of the inner part of its pair, on one limit.
 struct Effects {
   double own;    ///< effect of the part, >= 0
   double inner;  ///< effect of a pair's inner part; may be negative, but own + share x inner is >= 0
@@ -36,13 +36,14 @@ struct SizedProcess {
   double lo;     ///< least size
   double hi;  ///< largest size, finite after presolve: at most the size that the limits allow if all other parts are at
               ///< their lowest sizes
-  std::size_t index;                       ///< position in AllocationProblem::parts
+  std::size_t index;  ///< position of the process in the list of its part in AllocationProblem::parts
   std::optional<InnerProcess> inner = {};  ///< the inner part of a pair
 
   /// Whether the process allows only one size.
   bool single() const { return lo == hi && (!inner || inner->left_out || inner->lo == inner->hi); }
   double fixed_cost() const;  ///< The part of the cost that does not depend on sizes.
-  /// The least use of a limit over the sizes that the process allows. effects: of its parts on this limit.
+  /// The least use of a limit over the sizes that the process allows. effects: those of the process's parts on the
+  /// limit.
   double least_use(const Effects& effects) const;
 };
 

@@ -21,8 +21,8 @@ class Distribution {
   /// The least number of measured values for a distribution.
   static constexpr std::size_t kLeastMeasured = 8;
 
-  /// A normal with sigma > 0. This function and the following ones throw std::invalid_argument for bad parameters. Its
-  /// text is a clause that names the parameter and its rule.
+  /// A normal with sigma > 0. This function and the following ones throw std::invalid_argument for bad parameters. The
+  /// exception's text is a clause that names the parameter and the rule that it breaks.
   static Distribution normal(double sigma);
   /// A normal of standard deviation sigma > 0, truncated at +-half_width > 0.
   static Distribution truncated_normal(double sigma, double half_width);
@@ -65,10 +65,10 @@ class Distribution {
   /// The measured values and how they are smoothed; none for other shapes.
   const std::optional<SmoothedValues>& parts() const { return parts_; }
 
-  /// The value below which a share u of all draws lies. For a shifted distribution the function is a different one,
-  /// which still gives the distribution for a uniform u: -shift + q(2u) for u < 1/2, else shift + q(2u - 1), where q is
-  /// the quantile without the shift. It increases with u on either side of 1/2, and falls at 1/2. Precondition: 0 < u <
-  /// 1.
+  /// The value below which a share u of all draws lies. For a shifted distribution quantile(u) is another function,
+  /// which also turns a uniform u into a draw: -shift + q(2u) for u < 1/2, else shift + q(2u - 1), where q is the
+  /// quantile without the shift. This function increases with u on either side of 1/2, and falls at 1/2. Precondition:
+  /// 0 < u < 1.
   double quantile(double u) const;
   void transform(std::span<double> uniforms) const;  ///< Replaces each uniform number u by quantile(u).
   /// Replaces each normal score z (a standard normal) by the error with the same share below it: centre + sigma z for

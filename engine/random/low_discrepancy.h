@@ -15,8 +15,8 @@ class SobolSequence {
   SobolSequence(const SobolSequence&) = delete;
   SobolSequence& operator=(const SobolSequence&) = delete;
 
-  /// Writes the next point [dimensions], or as many points [points x dimensions], row-major, as fit into the memory.
-  /// Coordinates are strictly inside (0, 1).
+  /// Fills `point` with the coordinates of the next point. If `point` has room for several points, fills it with the
+  /// next points, row-major [points x dimensions]. Coordinates are strictly inside (0, 1).
   void next(std::span<double> point);
 
  private:

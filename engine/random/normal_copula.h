@@ -6,7 +6,7 @@
 
 namespace poesy {
 
-/// The smallest eigenvalue of a symmetric square matrix, whose size is above 0.
+/// The smallest eigenvalue of a symmetric matrix with at least one row.
 double smallest_eigenvalue(std::span<const double> matrix);
 
 /// The least eigenvalue that a correlation matrix may have. With a smaller eigenvalue, one error would follow from the
@@ -39,9 +39,8 @@ class NormalCopula {
   std::vector<double> triangle_;  ///< [k x k] Cholesky factor L of R
 };
 
-/// Computes normal scores of some errors of a copula, given the scores of the other errors. The conditional
-/// distribution is normal with mean R_ds R_ss^-1 z_s and covariance R_dd - R_ds R_ss^-1 R_sd, where s are the shared
-/// and d the drawn errors.
+/// Computes normal scores of some errors of a copula (d, drawn), given the scores of the other errors (s, shared). The
+/// conditional distribution is normal with mean R_ds R_ss^-1 z_s and covariance R_dd - R_ds R_ss^-1 R_sd.
 class ConditionalScores {
  public:
   /// shared, drawn: positions of errors in the copula; each error is in exactly one of the two lists.

@@ -15,10 +15,10 @@ namespace poesy {
 /// a digital net, as the points of SobolSequence are. The points of one replicate depend on each other, but replicates
 /// are independent, so the scatter of their estimates shows the uncertainty.
 ///
-/// Digit k of a coordinate is flipped by a random bit that depends on the k digits before it. A block of Philox4x64-10,
-/// with purpose scrambled_sobol, factor = dimension and pose = replicate, has these bits for a binary tree of eight
-/// digits. The digits after the 32nd are random. So any coordinate of any point is a function of its address, and a
-/// larger set of points begins with the smaller one.
+/// Digit k of a coordinate is flipped by a random bit that depends on the k digits before it. A block of Philox4x64-10
+/// (stream.h), with purpose scrambled_sobol, factor = dimension and pose = replicate, has these bits for a binary tree
+/// of eight digits. The digits after the 32nd are random. So each coordinate is computed from the seed, the dimension,
+/// the replicate and the number of the point, and a larger set of points begins with the smaller one.
 class ScrambledSobol {
  public:
   /// The number of points of a replicate: 2^32.

@@ -9,8 +9,8 @@ namespace {
 using Gauss = boost::math::quadrature::gauss<double, 10>;
 static_assert(kExactDegree == 2 * 10 - 1);
 
-/// Adds to `found` the weighted points of a piece [low, high] of the error's range that has this share of all errors.
-/// slope: how much the density grows over half of the piece, relative to its mean; between -1 and 1.
+/// Adds to `found` the weighted points of a piece [low, high] of the error's range. share: the part of all errors that
+/// is in this piece. slope: how much the density grows over half of the piece, relative to its mean; between -1 and 1.
 void add_piece(double low, double high, double share, double slope, WeightedPoints& found) {
   const double middle = 0.5 * (low + high);
   const double half = 0.5 * (high - low);

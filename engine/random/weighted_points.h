@@ -16,9 +16,9 @@ struct WeightedPoints {
   std::vector<double> weights;  ///< [points] weights, positive, with the sum 1
 };
 
-/// Gauss-Legendre points, ten in each piece of the range with constant or linear density: one piece for the uniform,
-/// two for the triangular, and those of SmoothedValues, which may have zero length. Means of polynomials up to
-/// kExactDegree are exact. Throws std::logic_error for other shapes.
+/// Gauss-Legendre points, ten in each piece of the range with constant or linear density. The uniform has one such
+/// piece and the triangular two. Measured values have those of SmoothedValues, some of which may have zero length.
+/// Means of polynomials up to kExactDegree are exact. Throws std::logic_error for other shapes.
 WeightedPoints weighted_points(const Distribution& distribution);
 
 }  // namespace poesy

@@ -23,9 +23,9 @@ CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const s
   rest.seed = 0;
   rest.title.clear();
   rest.max_not_converged = 1.0;  // does not matter here, because it is checked only at the end of a run
-  // A run may continue with other limits if these are applied only at the end. That is so for limits on magnitudes if
-  // errors are drawn per pose. But machines (draws per machine) are judged during the run, and limits on signed values
-  // need those draws that are near the ends of the limits.
+  // A run may continue with other limits if these are applied only at its end. That is so for limits on magnitudes if
+  // errors are drawn per pose. But if machines are drawn, they are judged during the run. And for a limit on signed
+  // values, the run keeps draws near the ends of the limit.
   if (study.analysis.draws == Draws::per_pose) {
     std::erase_if(rest.analysis.limits, [](const ResponseLimit& limit) { return limit.allowed.is_magnitude(); });
   }

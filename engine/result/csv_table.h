@@ -44,7 +44,7 @@ struct CsvTable {
   /// Columns of numbers; NaN is written as "NaN", a whole number with all its digits.
   std::vector<CsvColumn> columns = {};
   CsvText last = {};  ///< column of texts after the numbers; none if its heading is empty
-  /// Returns true for each line that is written; an empty function: every line is.
+  /// Returns true for each line that is written. If it is empty, all lines are written.
   std::function<bool(std::size_t line)> has = {};
   std::vector<CsvText> more = {};  ///< columns of texts between `first` and the numbers
   std::vector<CsvText> rest = {};  ///< columns of texts after `last`
@@ -70,8 +70,8 @@ std::string si_units(const std::vector<NamedUnit>& things);
 /// The units in which results show these things: "mm or deg".
 std::string display_units(const std::vector<NamedUnit>& things);
 
-/// The unit of numbers in CSV. unit: unit of their dataset in fields.h. response: the response to which the numbers
-/// belong; null if they belong to none.
+/// The unit of numbers in a CSV file. unit: unit of the numbers' dataset, as fields.h states it. response: the response
+/// to which the numbers belong; null if they belong to none.
 std::string csv_unit(const std::string& unit, const StoredResult& result, const NamedUnit* response = nullptr);
 
 /// A table with a line for each error of the result, and no columns of numbers yet.

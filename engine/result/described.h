@@ -14,12 +14,12 @@ std::vector<NamedUnit> named_responses(const ModelDescription& model);
 /// The names, units and descriptions of a mechanism's pose coordinates.
 std::vector<NamedUnit> named_coordinates(const ModelDescription& model);
 
-/// The chosen indices; if none are chosen, all indices from 0 to count - 1. count: the number of all responses.
+/// The chosen indices; if none are chosen, all indices from 0 to count - 1.
 std::vector<std::size_t> chosen_or_all(std::vector<std::size_t> chosen, std::size_t count);
 
-/// The beginning of a result, which is known before there are numbers: kind, title, mechanism, metric, coordinates,
-/// poses, responses and measured errors. The headline is in the order of the model; read_result() orders it by limits.
-/// All other members are empty. model: the built mechanism of the study.
+/// The part of a result that is known before there are numbers: kind, title, mechanism, metric, coordinates, poses,
+/// responses and measured errors. All other members are empty. The headline (the responses of a summary) is in the
+/// order of the model; read_result() orders it by limits. model: the built mechanism of the study.
 StoredResult described(const Study& study, const Model& model, const SelectedPoses& poses);
 
 }  // namespace poesy

@@ -13,9 +13,9 @@ namespace axis {
 using Feature = Axis<"feature">;  ///< The features of a drawing, over all limbs.
 }  // namespace axis
 
-/// The effect on the responses if the features of a drawing scatter in their tolerance zones, to first order; SI. A
-/// feature counts if the study varies its errors; errors that belong to no feature do not count. Values are NaN for a
-/// response that is neither signed nor the norm of signed responses, and if a pose is not solved.
+/// The effect of the features of a drawing on the responses if the features scatter in their tolerance zones, to first
+/// order; SI. A feature counts if the study varies its errors; errors that belong to no feature do not count. Values
+/// are NaN for a response that is neither signed nor the norm of signed responses, and if a pose is not solved.
 struct DrawingResult {
   /// A text for each feature.
   using Texts = Array<std::string, axis::Feature>;
@@ -46,8 +46,8 @@ struct DrawingResult {
   /// Root mean square of the response from all features, if each zone of location is divided evenly between the errors
   /// that move the feature (middle) and those that turn it (tilt).
   AtPoses rms;
-  /// Root mean square like `rms`, but each zone of location without a zone of orientation belongs to middle or tilt
-  /// alone, whichever is worse.
+  /// Root mean square as `rms`, but a zone of location without a zone of orientation is used by the middle alone or by
+  /// the tilt alone, whichever is worse.
   AtPoses rms_worst_division;
   AtPoses worst_case;      ///< largest magnitude of the response with all features in their zones
   OfFeatures worst_share;  ///< share of each feature in worst_case, at the pose where worst_case is largest

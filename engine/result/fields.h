@@ -17,8 +17,9 @@
 #include "engine/base/number.h"
 #include "engine/storage/h5.h"
 
-/// A row (FieldRow) describes one dataset of a result file. From the row, the program writes the dataset with its unit,
-/// description and axes, reads it with a check of its shape, and makes columns of CSV tables from it (csv_table.h).
+/// Descriptions of datasets. A FieldRow describes one dataset of a result file. From it the program writes the dataset
+/// with its unit, description and axes, reads the dataset with a check of its shape, and makes columns of CSV tables
+/// (csv_table.h).
 namespace poesy {
 
 /// The names of the axes of a dataset, the slowest first.
@@ -31,8 +32,8 @@ inline const Axes kByFactor{"factor"};
 inline const Axes kByPose{"pose"};
 /// @}
 
-/// Texts for the units of datasets whose numbers have the unit of a response, of an error, or of a response over an
-/// error.
+/// Texts for the units of datasets: for numbers with the unit of a response, of an error, of a response divided by an
+/// error, and of a length divided by an error.
 /// @{
 inline constexpr const char* kResponseUnit = "SI: response unit, see /responses/unit";
 inline constexpr const char* kFactorUnit = "SI: factor unit, see /factors/unit";
@@ -106,7 +107,7 @@ class ResultBuilder {
   void add_scalar(const std::string& path, const T& value, const Label& label) {
     write(path, {}, std::span<const T>(&value, 1), label);
   }
-  /// Links these axes into a group, because xarray opens one group at a time.
+  /// Links these axes into a group under their own names, because xarray opens one group at a time.
   void show_axes(const std::string& group, const Axes& axes) {
     for (const std::string& axis : axes) {
       const std::string shown = group + "/" + axis;
@@ -192,7 +193,7 @@ inline constexpr bool kIsArray = false;
 template <class T, class... A>
 inline constexpr bool kIsArray<Array<T, A...>> = true;
 
-/// The names of the axes of a member, which its type determines.
+/// The names of the axes of a member of a result, which follow from the type of the member.
 template <class Value>
 Axes axes_of() {
   static_assert(!kIsList<Value>, "the type of a list does not say its axes");
@@ -249,7 +250,7 @@ struct Place {
   Presence presence;        ///< whether a file may lack the dataset
 };
 
-/// Access to one member of objects of type `Found`. The class hides the type of the member.
+/// Reads and writes one member of objects of type `Found`, whatever the type of the member.
 template <class Found>
 class Member {
  public:
@@ -266,11 +267,11 @@ class Member {
   virtual std::size_t element_bytes() const = 0;  ///< Size of one element in bytes, in memory and in a file alike.
 };
 
-/// Access to a member of the type `Value`.
+/// Reads and writes a member of the type `Value`.
 template <class Found, class Value>
 class MemberOf final : public Member<Found> {
  public:
-  explicit MemberOf(Value Found::*member) : member_(member) {}  ///< member: pointer to the member of `Found`.
+  explicit MemberOf(Value Found::*member) : member_(member) {}  ///< member: pointer to this member of `Found`
 
   bool write(ResultBuilder& result, const Place& place, std::span<const Found> things) const override {
     if constexpr (kIsList<Value> || kIsArray<Value>) {
@@ -337,8 +338,9 @@ struct Attribute {
   double Found::*member;  ///< member with the number
 };
 
-/// A dataset in a group of a result file. If the member is an Array, its axes are those of the dataset. If the member
-/// is a single value, the dataset is a scalar, or has one element for each thing of a list along a named axis.
+/// Describes a dataset in a group of a result file by the member of `Found` that has its numbers. If the member is an
+/// Array, its axes are those of the dataset. If the member is a single value, the dataset is a scalar, or has one
+/// element for each thing of a list along a named axis.
 template <class Found>
 struct FieldRow {
   /// Describes a dataset from an Array or a single value.
@@ -446,8 +448,8 @@ void write_group(ResultBuilder& result, const Group<Found>& group, Found&& found
   write_group(result, group, std::as_const(found), [&](const FieldRow<Found>& field) { field.member->clear(found); });
 }
 
-/// Reads the members with these datasets for several objects, as many as were written. Throws h5::Error if a dataset is
-/// missing or has another shape.
+/// Reads the members with these datasets for several objects; the datasets have one element for each of them. Throws
+/// h5::Error if a dataset is missing or has another shape.
 template <class Found>
 void read_fields(const h5::File& file, const std::string& group, const Fields<Found>& fields, std::span<Found> things) {
   for (const FieldRow<Found>& field : fields) {
@@ -485,7 +487,7 @@ void read_group(const h5::File& file, const Group<Found>& group, Found& found) {
 }
 
 /// The number of bytes of all elements of these datasets, in memory and in a file alike. lengths: the lengths of all
-/// axes that they have.
+/// axes of these datasets.
 template <class Found>
 std::size_t bytes_of(const Fields<Found>& fields, const AxisLengths& lengths) {
   std::size_t bytes = 0;

@@ -43,8 +43,8 @@ const Fields<RunFacts> kFactFields{
     {"checkpoint_seconds", &RunFacts::checkpoint_seconds, kScalar, "s", "Of that time, spent on checkpoints"},
     {"solves", &RunFacts::solves, kScalar, "1", "Solves of the mechanism"}};
 
-/// Descriptions of the datasets with names, units and descriptions of a list of things. what: the word for a thing in
-/// descriptions; for the axis "factor", for instance, it is "error".
+/// Describes the datasets of a list of things: their names, units and descriptions. what: the word for a thing in these
+/// descriptions, such as "error" for the axis "factor".
 Fields<NamedUnit> name_fields(const std::string& axis, const std::string& what) {
   return {{"name", &NamedUnit::name, {axis}, "1", "Name of the " + what},
           {"unit", &NamedUnit::unit, {axis}, "1", "SI unit of the " + what},
@@ -193,7 +193,7 @@ void add_facts(ResultBuilder& result, const RunFacts& facts) {
   result.add_scalar("/run/solves_per_second", rate, {"1/s", "Solves a second, all threads and ranks together"});
 }
 
-/// Writes a whole file into `result`. compose(result): adds the parts between the header and the facts of the run.
+/// Writes a whole file into `result`. compose(result) adds the parts between the header and the facts of the run.
 void compose_all(ResultBuilder& result, std::string_view filetype, std::string_view kind, const Study& study,
                  const SelectedPoses& poses, const RunFacts& facts,
                  const std::function<void(ResultBuilder&)>& compose) {

@@ -65,21 +65,21 @@ struct NamedUnit {
 
 const Unit& display(const NamedUnit& named);  ///< The unit in which results show this quantity: mm for m.
 
-/// The errors of a result that are drawn from measured parts: E errors, SI.
+/// The errors of a result that are drawn from measured parts, SI.
 struct MeasuredErrors {
-  std::vector<std::string> names;      ///< [E] names of the errors
-  std::vector<std::size_t> factors;    ///< [E] indices among all errors of the result
-  std::vector<std::uint64_t> parts;    ///< [E] number of measured parts
-  std::vector<double> mean;            ///< [E] mean of the parts, which is also that of the draws
-  std::vector<double> sigma_of_parts;  ///< [E] standard deviation of the parts, with divisor n - 1 for n parts
-  std::vector<double> sigma;           ///< [E] standard deviation of the draws
-  std::vector<double> least_part;      ///< [E] smallest value of the parts
-  std::vector<double> greatest_part;   ///< [E] largest value of the parts
-  std::vector<double> least;           ///< [E] lower bound of the draws
-  std::vector<double> greatest;        ///< [E] upper bound of the draws
-  /// [E] the other error with which this error is correlated most; "-" for none.
+  std::vector<std::string> names;      ///< [errors] names of the errors
+  std::vector<std::size_t> factors;    ///< [errors] indices among all errors of the result
+  std::vector<std::uint64_t> parts;    ///< [errors] number of measured parts
+  std::vector<double> mean;            ///< [errors] mean of the parts, which is also that of the draws
+  std::vector<double> sigma_of_parts;  ///< [errors] standard deviation of the parts, with divisor n - 1 for n parts
+  std::vector<double> sigma;           ///< [errors] standard deviation of the draws
+  std::vector<double> least_part;      ///< [errors] smallest value of the parts
+  std::vector<double> greatest_part;   ///< [errors] largest value of the parts
+  std::vector<double> least;           ///< [errors] lower bound of the draws
+  std::vector<double> greatest;        ///< [errors] upper bound of the draws
+  /// [errors] The other error with which this error is correlated most; "-" for none.
   std::vector<std::string> most_correlated;
-  std::vector<double> correlation;  ///< [E] correlation with this other error, between normal scores; 0 for none
+  std::vector<double> correlation;  ///< [errors] correlation with this other error, between normal scores; 0 for none
 };
 
 /// The content of a result file of any kind. A member is empty if the file lacks its data.
@@ -96,27 +96,29 @@ struct StoredResult {
   std::string metric;          ///< the metric of the responses (ModelDescription::metric); empty if there is none
   std::vector<PlatformPoint> metric_points;  ///< points of the platform's metric, in its frame, m
   std::vector<NamedUnit> pose_coordinates;   ///< coordinates of a pose
-  PoseSet poses;                             ///< [M] poses of the study, M in number
-  std::vector<double> condition;             ///< [M] condition number at each pose
-  std::vector<double> time;                  ///< [M] s, ascending, for poses along a trajectory; else empty
-  std::vector<NamedUnit> factors;            ///< [P] errors that vary or are tried, P in number
-  std::vector<NamedUnit> responses;          ///< [R] responses of the mechanism, R in number
+  PoseSet poses;                             ///< poses of the study
+  std::vector<double> condition;             ///< [poses] condition number at each pose
+  std::vector<double> time;                  ///< [poses] s, ascending, for poses along a trajectory; else empty
+  std::vector<NamedUnit> factors;            ///< errors that vary or are tried
+  std::vector<NamedUnit> responses;          ///< responses of the mechanism
   /// Indices of the responses that a summary shows; all, unless the model selects some.
   std::vector<std::size_t> headline;
   std::vector<std::size_t> signed_headline;  ///< indices of the responses that a summary of coupled errors shows
   std::vector<std::size_t> constant;         ///< indices of responses that do not vary (stats/indices.h)
   RunFacts facts;                            ///< facts of the run, not part of the content
 
-  MeasuredErrors measured;                       ///< errors that were drawn from measured parts
-  std::vector<double> factor_sigma;              ///< [P] standard deviations of errors that were drawn, SI
-  std::vector<std::string> factor_distribution;  ///< [P] names of the distributions of these errors: "normal", ...
-  std::vector<double> factor_mean;               ///< [P] means that the study states, SI; empty if it states none
-  /// [P] "per pose" for errors that a machine draws anew at each pose, else "per machine"; empty if no error is drawn
-  /// per pose.
+  MeasuredErrors measured;           ///< errors that were drawn from measured parts
+  std::vector<double> factor_sigma;  ///< [factors] standard deviations of errors that were drawn, SI
+  /// [factors] names of the distributions of these errors: "normal", ...
+  std::vector<std::string> factor_distribution;
+  std::vector<double> factor_mean;  ///< [factors] means that the study states, SI; empty if it states none
+  /// [factors] "per pose" for errors that a machine draws anew at each pose, else "per machine"; empty if no error is
+  /// drawn per pose.
   std::vector<std::string> factor_draws;
-  /// What each slot of the samples varies: the name of an error, or kAllFactors. Empty if nothing was drawn.
+  /// The errors that samples vary: names of errors that vary alone, or kAllFactors if all vary together. Empty if
+  /// nothing was drawn.
   std::vector<std::string> varied;
-  std::vector<Failure> failures;  ///< first failures; a slot is an index of `varied`
+  std::vector<Failure> failures;  ///< first failures; Failure::slot is a position in `varied`
   /// How adaptive samples converged; none if the number of samples was fixed.
   std::optional<ConvergenceResult> convergence;
   std::optional<LimitVerdicts> verdicts;  ///< verdicts on the limits; none if the study states no limits
@@ -138,7 +140,7 @@ const Found& found_of(const StoredResult& result) {
   return std::any_cast<const Found&>(result.found);
 }
 
-/// The word for the varied error in a failure's address if all errors vary together.
+/// The word that stands in place of the varied error in the description of a failure if all errors vary together.
 inline constexpr std::string_view kAllFactors = "all";
 
 /// Reads a result file. Throws FileError if the file is not a result of a kind that find_kind knows, or has another
@@ -150,7 +152,7 @@ StoredResult read_result(const std::string& path, FindFileKind find_kind);
 StoredResult as_stored(std::string_view name, const FileKind& kind, const Study& study, const SelectedPoses& poses,
                        std::any found, const DrawingResult* drawing = nullptr);
 
-/// The content hash that a file states, and that of its present content.
+/// The content hash that a file states, and the hash of its present content.
 struct Verification {
   std::string stored;                                  ///< hash that the file states
   std::string computed;                                ///< hash of the file's present content
@@ -160,11 +162,11 @@ struct Verification {
 /// Computes the content hash of a result file. Throws FileError if the file cannot be read.
 Verification verify_result(const std::string& path);
 
-/// Writes every table of a result as a CSV file into a folder, which is made if missing. Unchanged tables of an earlier
-/// result are replaced (OutputFolder). The first line of a file has the column names with their units;
-/// engine/docs/result-file.md lists them. Most tables have text only in the first column, such as names of errors. So
-/// in Octave `t = importdata('global.csv', ',', 1)` gives t.data and t.rowheaders. Returns the paths of the files.
-/// Throws FileError, and InputError if a file that would be replaced is not poesy's or was changed.
+/// Writes every table of a result as a CSV file into a folder, which is made if missing. Tables of an earlier result
+/// are replaced if they were not changed (OutputFolder). The first line of a file has the column names with their
+/// units; engine/docs/result-file.md lists them. Most tables have text only in the first column, such as names of
+/// errors. So in Octave `t = importdata('global.csv', ',', 1)` gives t.data and t.rowheaders. Returns the paths of the
+/// files. Throws FileError, and InputError if a file that would be replaced is not poesy's or was changed.
 std::vector<std::string> export_tables(const StoredResult& result, const FileKind& kind, const std::string& folder);
 
 }  // namespace poesy

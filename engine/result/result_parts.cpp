@@ -9,12 +9,12 @@
 namespace poesy {
 namespace {
 
-/// How the solves of C cells ended, as columns of the group /solver.
+/// How the solves of the cells ended, as columns of the group /solver.
 struct SolverColumns {
-  std::vector<std::uint64_t> not_converged;   ///< [C] samples without a solution
-  std::vector<double> iterations_mean;        ///< [C] mean number of iterations
-  std::vector<std::uint32_t> iterations_max;  ///< [C] largest number of iterations
-  std::vector<std::uint64_t> by_status;       ///< [statuses x C] samples that ended with each status
+  std::vector<std::uint64_t> not_converged;   ///< [cells] samples without a solution
+  std::vector<double> iterations_mean;        ///< [cells] mean number of iterations
+  std::vector<std::uint32_t> iterations_max;  ///< [cells] largest number of iterations
+  std::vector<std::uint64_t> by_status;       ///< [statuses x cells] samples that ended with each status
 };
 
 double mean_iterations(const SolveCounts& cell) {
@@ -80,7 +80,7 @@ const Fields<LimitRow> kLimitFields{
     {"pose", &LimitRow::pose, kLimited, "1", "Pose of the value, from 0; -1 where it is of all poses"},
     {"row", &LimitRow::row, kLimited, "1", "Row of errors, or case, of the value, from 0; -1 where there are none"}};
 
-/// Additional datasets of /limits, for files with a limit that is not simply a magnitude at each pose.
+/// Additional datasets of /limits, for files with a limit that is not on the magnitude at each pose.
 const Fields<LimitRow> kEndFields{
     {"from", &LimitRow::from, kLimited, kResponseUnit,
      "Lower end of the limit, of which /limits/limit is then the upper end: minus infinity or infinity for none, and "
@@ -106,7 +106,7 @@ bool has_ends(const LimitVerdicts& verdicts) {
   return !std::ranges::all_of(verdicts.limits, [](const LimitVerdict& one) { return one.limit.is_plain(); });
 }
 
-/// The verdict that a row states. Its limit is taken as a limit on magnitudes.
+/// The verdict in a row of the file. Its limit is taken as a limit on magnitudes.
 LimitVerdict verdict_of(const LimitRow& row) {
   return {.limit = row.limit,
           .value = row.value,
@@ -117,7 +117,7 @@ LimitVerdict verdict_of(const LimitRow& row) {
           .row = row.row};
 }
 
-/// The limit that a row states by its two ends. Throws h5::Error if no limit can have these numbers.
+/// The limit in a row of the file, given by its two ends. Throws h5::Error if no limit can have these numbers.
 ValueLimit limit_of(const LimitRow& row) {
   const bool is_possible = row.from < row.limit && row.pose_share > 0.0 && row.pose_share <= 1.0 &&
                            !(row.spread && (row.pose_share < 1.0 || row.from != -row.limit));
@@ -135,8 +135,8 @@ constexpr std::string_view kLimitsMeaning =
     "any "
     "row of errors";
 
-/// The datasets of /convergence that describe the end of a course, with a number for each quantity or for each slot.
-/// They are written after those of the course itself.
+/// The datasets of /convergence that describe how the course of estimates ended, with a number for each quantity or for
+/// each varied error (slot). They are written after the datasets of the course itself.
 Fields<ConvergenceResult> end_fields(const CourseWords& words) {
   // The axes of the quantities, followed by the axis of the numbers of samples.
   const Axes& all = words.group.fields.front().axes;
@@ -261,8 +261,8 @@ std::vector<double> stated_means(const Study& study) {
 
 namespace {
 
-/// Adds to the result file the means that a study states, and the names of the errors that its machines draw per pose.
-/// Adds nothing for either if the study states none.
+/// Adds to the result file the means that the study states, and which errors its machines draw per pose. If the study
+/// states no such means or errors, their dataset is not written.
 void add_stated(ResultBuilder& result, const Study& study) {
   if (const std::vector<double> mean = stated_means(study); !mean.empty()) {
     result.add("/factors/mean", {"factor"}, mean, {kFactorUnit, "Mean of the error, as set in the study"});

@@ -68,7 +68,7 @@ CsvTable pose_table(const StoredResult& result);  ///< The table of poses.csv.
 
 /// The errors that a study varies and draws from measured parts.
 MeasuredErrors measured_errors(const Study& study);
-/// [P] The means that a study states for the errors that it varies, SI; empty if all are zero.
+/// [errors] The means that a study states for the errors that it varies, SI; empty if all are zero.
 std::vector<double> stated_means(const Study& study);
 /// Adds to the result file the distributions of the errors that the study varies: /factors/sigma with standard
 /// deviations and /factors/distribution with names. Adds /factors/mean if the study states means, /factors/draws if
@@ -80,7 +80,7 @@ void read_sigma(const h5::File& file, StoredResult& result);
 /// errors are drawn from measured parts.
 void append_sigma_tables(CsvTables& tables, const StoredResult& result);
 
-/// The indices of the responses that do not vary. varies: [R] 0 or 1 for each response, or empty if all vary.
+/// The indices of the responses that do not vary. varies: [responses] 0 or 1 for each response, or empty if all vary.
 std::vector<std::size_t> constant_responses(std::span<const std::uint8_t> varies);
 
 /// The statuses of solves that a result lists. They are kStatusNames, except that the last status, not_assembled, is
@@ -90,7 +90,8 @@ std::vector<std::string> listed_statuses(std::uint64_t not_assembled);
 /// The number of statuses on the axis /status. Throws h5::Error if their names differ from kStatusNames.
 std::size_t listed_statuses(const h5::File& file);
 
-/// Adds to the result file the group /solver, which counts how the solves of each cell ended. axes: axes of the cells.
+/// Adds to the result file the group /solver, which counts how the solves of each cell (varied error at a pose, or
+/// pose) ended. axes: axes of the cells.
 void add_solver(ResultBuilder& result, const Axes& axes, std::span<const SolveCounts> solves);
 /// Adds to the result file the group /solver for an array of cells.
 template <class... A>
@@ -104,18 +105,18 @@ template <class Solves>
 Solves read_solver(const h5::File& file) {
   return {lengths_in<Solves>(file), read_solver(file, Solves::axis_names())};
 }
-/// A number about how the solves of a cell ended, as a column of CSV.
+/// A number that tells how the solves of a cell ended, with the heading of its column in a CSV file.
 struct SolveNumber {
   std::string name;                               ///< heading: "not_converged", "iterations_mean", ..., "solves_STATUS"
   std::function<Number(const SolveCounts&)> get;  ///< number of a cell
 };
-/// All numbers of this sort. solves_not_assembled is among them only if a solve ended with this status.
+/// All numbers that tell how solves ended. solves_not_assembled is among them only if a solve ended with this status.
 std::vector<SolveNumber> solve_numbers(std::span<const SolveCounts> solves);
 /// Adds to the table a column for each number of solve_numbers(); line n shows the n-th cell. Refers to the solves.
 void append_solve_columns(CsvTable& table, std::span<const SolveCounts> solves);
 
-/// Adds to the result file the addresses of the first failures. slots: name of each slot. total: number of all
-/// failures. Precondition: add_solver() was called.
+/// Adds to the result file which samples failed first. slots: names of what varies (StoredResult::varied). total:
+/// number of all failures. Precondition: add_solver() was called.
 void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, const std::vector<std::string>& slots,
                   std::uint64_t total);
 /// Reads the list of failures. result: must have `varied` and `poses` already.
@@ -134,7 +135,7 @@ inline const std::vector<Attribute<EstimateCourse>> kCourseLevel{{"conf_level", 
 
 /// The names and descriptions of a course: estimates after ascending numbers of samples.
 struct CourseWords {
-  /// Datasets of the course; their axes are that of the quantities and that of the numbers of samples.
+  /// Datasets of the course. Their axes are those of the quantities, followed by the axis of the numbers of samples.
   Group<EstimateCourse> group;
   std::string samples_axis;              ///< name of the axis of numbers of samples
   std::string samples_description;       ///< description of that axis
@@ -144,8 +145,8 @@ struct CourseWords {
 };
 
 /// The names and descriptions of /convergence. axes: axes of the estimated quantities, beginning with the responses.
-/// name, unit, quantity: name, unit and meaning of the dataset of these quantities. rule: the rule by which samples
-/// end, in words.
+/// name, unit, quantity: name, unit and meaning of the dataset of these quantities. rule: the rule that ends the
+/// sampling, in words. csv_slot: see CourseWords.
 CourseWords convergence_words(Axes axes, const std::string& name, const std::string& unit, const std::string& quantity,
                               const std::string& rule, const std::string& csv_slot);
 
@@ -154,8 +155,9 @@ CourseWords convergence_words(Axes axes, const std::string& name, const std::str
 void add_course(ResultBuilder& result, const CourseWords& words, const EstimateCourse& found);
 /// Reads the course that add_course() wrote.
 EstimateCourse read_course(const h5::File& file, const CourseWords& words);
-/// Adds to `tables` a table for each response, with a line for each slot and number of samples. ends: [slots] the final
-/// number of samples at each pose; empty if all slots reached the end of the course. Refers to all arguments.
+/// Adds to `tables` a table for each response, with a line for each varied error (slot) and each number of samples.
+/// ends: [slots] the final number of samples at each pose; empty if all slots reached the end of the course. Refers to
+/// all arguments.
 void append_course_tables(CsvTables& tables, const StoredResult& result, const CourseWords& words,
                           const EstimateCourse& found, std::span<const std::uint64_t> ends);
 

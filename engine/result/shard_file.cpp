@@ -115,8 +115,8 @@ void check_all_there(std::span<const StoredShard> shards) {
                    "run them with --shard and merge all of them");
 }
 
-/// The states of one stage (a call of `fold`) from all shards, joined in the order of the shards. The function removes
-/// them from the shards.
+/// The states of one stage (a call of `fold`) from all shards, joined in the order of the shards. Removes the states
+/// from the shards.
 Bytes take_state(std::span<StoredShard> shards, std::size_t stage) {
   std::size_t bytes = 0;
   for (const StoredShard& shard : shards) bytes += shard.stages[stage].size();

@@ -18,51 +18,53 @@ inline constexpr std::size_t kMostStateInMemory = std::size_t{64} << 20U;
 /// Saves the state of a run from time to time, so that another run can continue it. A run merges finished work in a
 /// fixed order, so between two merges its accumulators are its whole state. A study may have several stages, one for
 /// each call of fold() (engine/run/fold.h). A continued study goes through the same stages; in a finished stage nothing
-/// is left to solve. A state is written directly from the accumulators. Memory keeps only small states of finished
-/// stages.
+/// is left to solve. A state is written directly from the accumulators of its stage. Only small states of finished
+/// stages are kept in memory.
 class Checkpoints {
  public:
   /// A function that says whether it is time for another checkpoint.
   using Due = std::function<bool()>;
   /// A function that saves the states of all stages, in order. It is never called from two threads at once. Throws
-  /// FileError; the states that were saved earlier are then still there.
+  /// FileError; earlier saved states then stay saved.
   using Save = std::function<void(std::span<const ByteSource> stages)>;
-  /// A function that writes the last saved state of a stage to `to`. Throws FileError.
+  /// A function that writes to `to` the last saved state of a stage. Throws FileError.
   using Fetch = std::function<void(std::size_t stage, ByteWriter& to)>;
 
   /// Checkpoints that are never saved, for a run that will not be continued.
   Checkpoints() = default;
-  /// stages: the states of an earlier run; empty for a new run. fetch: if given, it returns these states until the
-  /// first save, and states of more than most_in_memory bytes are not kept in memory.
+  /// stages: the states that an earlier run saved; empty for a new run. fetch: if given, it returns these states until
+  /// the first save, and states of more than most_in_memory bytes are not kept in memory.
   Checkpoints(Due due, Save save, std::vector<Bytes> stages = {}, Fetch fetch = {},
               std::size_t most_in_memory = kMostStateInMemory);
 
   /// Begins the next stage. Returns the state to restore; empty for a stage that starts afresh.
   Bytes begin();
-  /// Called after a merge: writes a checkpoint if one is due. state: the state of the stage that began last, here and
-  /// in the functions below.
+  /// Writes a checkpoint if one is due. Called after a merge. state: here and in the functions below, the state of the
+  /// stage that began last.
   void merged(const ByteSource& state) {
     if (due_ && due_()) save(state);
   }
-  /// Ends the stage or one of its rounds, complete or stopped. solves: all solves of the run, including those of the
-  /// earlier run that it continues.
+  /// Records that the stage or one of its rounds has ended: complete, or stopped. solves: all solves of the run,
+  /// including those of the earlier run that it continues.
   void end(bool complete, const SolveCounts& solves);
   /// Keeps the final state of the stage: a small one in memory, a large one in a checkpoint that is written now. If the
   /// disk has no room for the checkpoint, the state stays in memory, because the result may be smaller.
   void keep(const ByteSource& state);
-  /// Writes a checkpoint after the run was stopped in work that follows its stages and has no state.
+  /// Writes a checkpoint after the run was stopped in work that comes after the stages. Such work has no state of its
+  /// own.
   void stopped_after_stages();
 
   /// Returns true if all stages that began are complete, and the work after them was not stopped.
   bool complete() const;
   /// The solves of the stages that have ended.
   SolveCounts solves() const;
-  /// A copy of the state of each stage; empty if none was kept. Throws FileError.
+  /// A copy of the state of each stage; an empty one for a stage without a kept state. Throws FileError.
   std::vector<Bytes> stages() const;
 
   /// Writes a checkpoint with this state now.
   void save(const ByteSource& state);
-  /// Writes a checkpoint of the states that were kept, unless the last checkpoint has all of them and can be read.
+  /// Writes a checkpoint of the states that were kept. Does nothing if the last checkpoint has all of them and can be
+  /// read again.
   void save();
 
  private:
@@ -70,7 +72,7 @@ class Checkpoints {
     bool complete = false;
     SolveCounts solves;
   };
-  /// The state of a stage: the bytes in this object, or, if there are none, what fetch_ returns.
+  /// The state of a stage. It is in `bytes`, or if these are empty, in the checkpoint from which fetch_ reads.
   struct Kept {
     Bytes bytes;
     bool is_saved = false;  ///< true if fetch_ returns this state or an earlier state of the stage
@@ -84,7 +86,9 @@ class Checkpoints {
   Save save_;
   Fetch fetch_;
   std::size_t most_in_memory_ = kMostStateInMemory;
-  std::vector<Kept> stages_;  ///< stages that began, followed by stages of the earlier run that have not begun yet
+  /// First the states of the stages that have begun. After them, states that an earlier run saved for stages that have
+  /// not begun yet.
+  std::vector<Kept> stages_;
   std::size_t begun_ = 0;
   std::vector<End> ends_;  ///< ends of the finished stages
   bool stopped_ = false;

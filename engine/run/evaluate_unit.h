@@ -18,20 +18,21 @@ namespace poesy {
 
 /// The statistics of one work unit.
 struct UnitStats {
-  /// [R] Moments of each response over the samples that count in statistics (counts()).
+  /// [responses] Moments of each response over the samples that count in statistics (counts()).
   std::vector<Moments> responses;
   SolveCounts solves;    ///< how the solves of the unit ended
   FailedSamples failed;  ///< the first failed samples
 
-  /// Adds later samples. Precondition: the samples of `other` come after those of this object.
+  /// Adds the statistics of later samples. Precondition: the samples of `other` come after those of this object.
   void merge(const UnitStats& other);
   /// Reads or writes the statistics. first: number of the first sample.
   void state(Archive& archive, std::uint64_t first);
 };
 
-/// The output of one work unit of a sensitivity study: its statistics, and indices after its first samples.
+/// The output of one work unit of a sensitivity study: its statistics, and the indices after some of its first samples.
 struct CellUnit : UnitStats {
-  /// [K x R] indices over the first samples of the unit, for each number of samples in points_within().
+  /// [history points x responses] Indices over the first samples of the unit, for each number of samples in
+  /// points_within().
   std::vector<LocalIndex> within;
 
   /// Reads or writes the unit as a message between ranks. first: number of its first sample.
@@ -49,7 +50,7 @@ struct ResponseUnit {
 
 /// The output of one work unit of a Monte Carlo study.
 struct PoseUnit {
-  std::vector<ResponseUnit> responses;    ///< [R] data of each response
+  std::vector<ResponseUnit> responses;    ///< [responses] data of each response
   SolveCounts solves;                     ///< how the solves of the unit ended
   FailedSamples failed;                   ///< the first failed samples
   std::optional<MainEffectSums> effects;  ///< main effects, at the poses where they are summed
@@ -59,10 +60,10 @@ struct PoseUnit {
   void state(Archive& archive, std::size_t errors, std::uint64_t first);
 };
 
-/// Reads or writes how the samples of a unit or a cell ended. first: number of the first sample.
+/// Reads or writes how the samples of a unit or a cell ended. first: number of the first one of these samples.
 void ends_state(Archive& archive, SolveCounts& solves, FailedSamples& failed, std::uint64_t first);
-/// Reads or writes how the solves of machines ended, at each pose. count: number of machines; their numbers are in
-/// [first, end).
+/// Reads or writes how the solves of `count` machines ended, at each pose. The numbers of the machines are in [first,
+/// end).
 void ends_state(Archive& archive, std::span<SolveCounts> solves, std::span<FailedSamples> failed, std::uint64_t count,
                 std::uint64_t first, std::uint64_t end);
 
@@ -71,25 +72,26 @@ void ends_state(Archive& archive, std::span<SolveCounts> solves, std::span<Faile
 /// with further numbers. Numbers above Plan::kUnitSamples are whole units. Empty if samples are adaptive.
 std::vector<std::size_t> history_points(const Plan& plan);
 
-/// The history points below unit.count, for the first unit of a cell; none for later units. Refers to `points`.
+/// The history points (numbers of samples, see history_points()) below unit.count, for the first unit of a cell; none
+/// for later units. Refers to `points`.
 std::span<const std::size_t> points_within(const WorkUnit& unit, std::span<const std::size_t> points);
 
 /// The largest number of poses at which a sensitivity study solves again to check an assumption, such as linearity.
 inline constexpr std::size_t kSomePoses = 32;
 
-/// The number of poses at which such a check (kSomePoses) solves, in a study with `poses` poses.
+/// The number of poses at which a check of an assumption (kSomePoses) solves again, in a study with `poses` poses.
 constexpr std::size_t some_poses(std::size_t poses) { return std::min(kSomePoses, poses); }
 
-/// The n-th pose of such a check (kSomePoses). These poses are evenly spaced over the order of the study's poses.
-/// Precondition: n < some_poses(poses).
+/// The n-th pose at which a check of an assumption (kSomePoses) solves again. The poses are evenly spaced over the
+/// order of the study's poses. Precondition: n < some_poses(poses).
 constexpr PoseIndex some_pose(std::size_t n, std::size_t poses) { return PoseIndex(n * poses / some_poses(poses)); }
 
 /// The outcomes of the samples of one work unit. Refers to the solver's scratch, and is valid until its next solve.
 struct UnitOutcomes {
-  std::span<const double> values;             ///< [V x B] errors that vary, SI
-  std::span<const double> responses;          ///< [R x B] responses, SI
-  std::span<const SolveStatus> status;        ///< [B] how each solve ended
-  std::span<const std::uint32_t> iterations;  ///< [B] iterations of each sample
+  std::span<const double> values;             ///< [varied errors x samples] errors that vary, SI
+  std::span<const double> responses;          ///< [responses x samples] responses, SI
+  std::span<const SolveStatus> status;        ///< [samples] how each solve ended
+  std::span<const std::uint32_t> iterations;  ///< [samples] iterations of each solve
 };
 
 /// The base class of the evaluators of work units. It owns the model's evaluator and the scratch memory of one thread.
@@ -99,18 +101,18 @@ class UnitSolver {
   /// varied: the number of errors that vary together.
   UnitSolver(const Plan& plan, const Model& model, std::size_t varied);
 
-  /// Fills a row with the uniform numbers from which the errors of this slot are computed.
+  /// Fills a row with the uniform numbers from which the errors of plan.factors()[slot] are computed.
   void draw_uniforms(const WorkUnit& unit, std::size_t slot, std::span<double> row) const;
-  /// Fills values_ with the uniforms of all factors, one row of samples for each factor, and returns the bins of the
-  /// uniforms.
+  /// Fills values_ with the uniform numbers of all factors, one row of samples for each factor. Returns the bins of
+  /// these numbers.
   EffectBins draw_in_bins(const WorkUnit& unit);
-  /// Replaces, in values_ [P x B], those errors that a machine draws anew at each pose by their draws at the unit's
-  /// pose.
+  /// For errors that a machine draws anew at each pose, replaces their rows in values_ [factors x samples] by the draws
+  /// at the unit's pose.
   void draw_per_pose(const WorkUnit& unit);
-  /// Uses this evaluator for all further solves, until the next call; the evaluator must outlive them. null: uses the
-  /// model's own evaluator again.
+  /// Uses the evaluator `other` for all further solves, until the next call of this function. It must outlive these
+  /// solves. null: uses the model's own evaluator again.
   void solve_by(Evaluator* other) { other_ = other; }
-  /// The present draws of all factors for this many samples; the pose is not set.
+  /// The first `count` samples of the present draws of all factors. Their pose is not set.
   SampleBlock drawn(std::size_t count) const;
   /// Solves the first [varied x count] values at a pose. details: memory for the model's additional outputs, see
   /// OutcomeBlock; empty if they are not wanted.
@@ -118,13 +120,13 @@ class UnitSolver {
                      std::span<double> details = {});
 
   const Plan* plan_;            ///< the plan whose units are solved
-  std::size_t responses_;       ///< number of responses, R
-  std::vector<double> values_;  ///< [V x B] values of the errors that vary, SI
+  std::size_t responses_;       ///< number of responses
+  std::vector<double> values_;  ///< [varied errors x samples] values of the errors that vary, SI
 
  private:
   std::unique_ptr<Evaluator> evaluator_;
   Evaluator* other_ = nullptr;
-  std::vector<double> outcome_;  ///< [R x B] responses, SI
+  std::vector<double> outcome_;  ///< [responses x samples] responses, SI
   std::vector<SolveStatus> status_;
   std::vector<std::uint32_t> iterations_;
 };
@@ -138,10 +140,10 @@ class UnitEvaluator : private UnitSolver {
 
   /// Solves the whole unit.
   CellUnit operator()(const WorkUnit& unit);
-  /// Solves any samples of a cell, at most Plan::kUnitSamples. The outcome of a sample is the same in any unit.
+  /// Solves samples of a cell, at most Plan::kUnitSamples. The outcome of a sample is the same in any unit.
   UnitOutcomes solve(const WorkUnit& unit);
-  /// Multiplies the unit's draws by each of these scales and solves them all: [scales x B], one scale after the other.
-  /// scales x B is at most Plan::kUnitSamples. Precondition: scales are between -1 and 1.
+  /// Multiplies the unit's draws by each of these scales, and solves the products: [scales x samples], one scale after
+  /// the other. Preconditions: scales are between -1 and 1; there are at most Plan::kUnitSamples products.
   UnitOutcomes solve(const WorkUnit& unit, std::span<const double> scales);
 
  private:
@@ -159,7 +161,7 @@ class PoseUnitEvaluator : private UnitSolver {
 
   /// Solves the whole unit.
   PoseUnit operator()(const WorkUnit& unit);
-  /// Solves any samples of a cell; see UnitEvaluator::solve().
+  /// Solves samples of a cell; see UnitEvaluator::solve().
   UnitOutcomes solve(const WorkUnit& unit);
 
  private:

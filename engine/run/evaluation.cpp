@@ -47,7 +47,7 @@ struct OutcomeBlocks {
   EvaluationResult* result = nullptr;
 
   std::size_t per_pose() const { return (result->samples() + kBlockRows - 1) / kBlockRows; }
-  /// The number of outcomes in the blocks before this one.
+  /// The number of outcomes in all blocks before this block.
   std::size_t before(std::size_t block) const {
     if (per_pose() == 0) return 0;
     return block / per_pose() * result->samples() + std::min(block % per_pose() * kBlockRows, result->samples());
@@ -102,7 +102,7 @@ struct TableJob {
   }
   OutcomeBlocks sums() const { return {&result}; }
 
-  // Called by the worker of one thread.
+  // The functions below do the work of a worker.
 
   OutcomeBlocks solve(Scratch& scratch, std::size_t n) const {
     const std::size_t pose = n / sums().per_pose();
@@ -142,12 +142,12 @@ struct TableJob {
   }
 };
 
-/// How one row of errors compares with one limit.
+/// How one row of errors (a machine) compares with one limit.
 struct JudgedRow {
   bool within = false;
   /// Number that is compared with the limit, from the poses whose solves count (counts()); NaN without such a pose.
   double value = kNaN;
-  std::optional<std::size_t> pose = std::nullopt;  ///< pose of this number, if the number belongs to one pose
+  std::optional<std::size_t> pose = std::nullopt;  ///< pose at which `value` occurs, if it is the value at one pose
 };
 
 JudgedRow judge_row(const ResponseLimit& limit, const EvaluationResult& found, Pairing pairing, NotConverged policy,

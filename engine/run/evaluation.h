@@ -50,9 +50,10 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
                                                const ErrorTable& errors, Pairing pairing, const RunOptions& options,
                                                Outcomes outcomes = Outcomes::with_details);
 
-/// Judges limits by an evaluation, row by row. A row of errors (a case) is a machine. It is within a limit if its
-/// deciding number (ValueLimit::deciding) is, and if each of its solves counts (see counts()). A limit is kept if every
-/// row is within it. Precondition: if rows are paired with poses, no limit is on several poses together.
+/// Judges each limit by an evaluation, row by row. A row of errors is a machine. The row is within a limit if the limit
+/// allows the deciding number of the row (ValueLimit::deciding), and if each solve of the row counts (see counts()). A
+/// limit is kept if every row is within it. Precondition: if rows are paired with poses, no limit is on several poses
+/// together.
 LimitVerdicts judge_rows(std::span<const ResponseLimit> limits, const EvaluationResult& found, Pairing pairing,
                          NotConverged policy);
 

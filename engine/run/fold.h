@@ -19,7 +19,7 @@
 namespace poesy {
 
 /// Calls work(worker, n) for n = 0 .. count - 1 on a pool of threads, where each thread has its own worker. Calls
-/// finish(n, output) in the order of n. At any time a few outputs per thread are in progress. Returns false when
+/// finish(n, output) in the order of n. At any time a few outputs for each thread are unfinished. Returns false when
 /// stopped. With a team, work is done on all ranks, and finish is called only on rank 0 (run_over_ranks);
 /// state(archive, n, output) writes an output on another rank, and reads it into an empty output on rank 0.
 template <class MakeWorker, class Work, class Finish, class State>
@@ -38,8 +38,8 @@ bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_
   return alone ? run_alone(count, options, in_slots) : run_over_ranks(count, options, in_slots);
 }
 
-/// Reads or writes the beginning of a state: the name of the job to which it belongs, and sizes. Throws BytesError if
-/// the state that is read has another name or another size.
+/// Reads or writes the beginning of a state: the name of the job to which the state belongs, and sizes. When reading,
+/// throws BytesError if the state has another name or another size.
 inline void head_state(Archive& archive, std::string_view name, std::span<const std::uint64_t> sizes) {
   constexpr const char* kOther = "is the state of another kind or size of study";
   std::string read(name);

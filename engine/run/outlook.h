@@ -17,8 +17,8 @@
 
 namespace poesy {
 
-/// The contributions, in bytes, to the memory that a run takes at its peak, while it writes its result. The program
-/// itself is not included.
+/// The parts of the memory that a run takes at its peak, while it writes its result, in bytes. The memory of the
+/// program itself is not included.
 struct MemoryOutlook {
   std::size_t accumulators = 0;  ///< the accumulators, which still exist when the result is computed
   /// The state in a checkpoint; at the end of a run, a state above kMostStateInMemory is only on disk.
@@ -48,8 +48,8 @@ struct Outlook {
   std::vector<WorkOutlook> shared;  ///< work that all threads share: the solves
   /// Work that only one thread does, such as separating errors or reading saved states.
   std::vector<WorkOutlook> by_one;
-  /// With adaptive samples: the least number of solves, as a share of the largest number. 1 if the number of samples is
-  /// fixed.
+  /// With adaptive samples: the least number of solves, as a fraction of the largest number; 1 if the number of samples
+  /// is fixed.
   double least = 1.0;
   /// Work that one thread at a time does while the other threads solve: merging the outcomes.
   std::vector<WorkOutlook> merging = {};
@@ -61,19 +61,20 @@ struct WorkSeconds {
   double merging = 0.0;  ///< work of one thread at a time
   double by_one = 0.0;   ///< work of one thread, afterwards
 
-  /// Seconds of the whole study with this many threads, which merge one at a time. share: the share of the solves that
-  /// are made.
+  /// Seconds for the whole study with these threads, of which one at a time merges. share: the part of all solves that
+  /// the study makes, below 1 if adaptive samples end early.
   double on(std::size_t threads, double share = 1.0) const;
 };
 
-/// Bytes in a state (base/bytes.h) of a whole number, of moments, and of counts of solves. Whole numbers up to two
-/// million take at most three bytes.
+/// Bytes that a whole number, moments, and counts of solves take in a state (base/bytes.h). A whole number up to two
+/// million takes at most three bytes.
 /// @{
 inline constexpr std::size_t kWholeNumber = 3;
 inline constexpr std::size_t kStoredMoments = kWholeNumber + 4 * sizeof(double);
 inline constexpr std::size_t kStoredSolves = (kStatusNames.size() + 2) * kWholeNumber;
 /// @}
-/// Bytes of a cell in /solver: failures, mean and largest number of iterations, samples by status.
+/// Bytes that the counts of one cell take in the group /solver of a result: failures, mean and largest number of
+/// iterations, samples by status.
 inline constexpr std::size_t kSolverColumns = (2 + kStatusNames.size()) * sizeof(double) + sizeof(std::uint32_t);
 
 /// The memory of `count` items, each of which takes `each`.
@@ -81,7 +82,7 @@ MemoryOutlook times(std::size_t count, const MemoryOutlook& each);
 /// Bytes of the outcomes of one row of errors at one pose.
 std::size_t outcome_bytes(const ModelDescription& model, Outcomes outcomes);
 
-/// A number of things as text, to be a factor of a product: "3 errors x ".
+/// A number of things as text that can be followed by another factor: "3 errors x ".
 std::string counted_things(std::size_t count, std::string_view things);
 /// The number of samples at each pose as text; for adaptive samples a range, such as "1000 to 100000".
 std::string samples_text(const Plan& plan);
@@ -93,7 +94,7 @@ double least_share(const Plan& plan);
 /// A shared pointer to a model that it does not own.
 inline std::shared_ptr<const Model> borrowed(const Model& model) { return {std::shared_ptr<const Model>(), &model}; }
 
-/// The work of solving all draws of the plan. A piece of it is a few samples of one unit.
+/// The work of solving all draws of the plan. A piece of this work is a few samples of one unit.
 template <class SolveUnit>
 WorkOutlook sampling(const std::shared_ptr<const Plan>& plan, const std::shared_ptr<const Model>& model, double times) {
   struct Sampler {

@@ -16,9 +16,10 @@
 
 namespace poesy {
 
-/// The work of fold() for the units of a plan. A unit is a block of samples of one cell; a cell is one slot at one
-/// pose. PoseFold manages the pending units, the rounds of adaptive samples, shards, and states. A job is a type with
-/// everything else:
+/// Does the work of fold() for the units of a plan. A slot is one error that varies alone, or all errors that vary
+/// together. A cell is one slot at one pose, and a unit is a block of samples of one cell. PoseFold manages the units
+/// that are still to be solved, the rounds of adaptive samples, shards, and states. A job is a type with everything
+/// else:
 ///
 ///     static constexpr std::string_view kName     name of its states, unique among all jobs
 ///     std::vector<std::uint64_t> sizes() const    sizes that a state must have to be read
@@ -30,11 +31,11 @@ namespace poesy {
 ///
 /// The sums have the interface of CellSums:
 ///
-///     static constexpr bool kOfRound              whether sums are of one round only and made anew for each
+///     static constexpr bool kOfRound              whether sums are of one round only, made anew for each round
 ///     void add(const WorkUnit&, const Unit&)      adds the next unit of its cell
 ///     std::size_t units_done(std::size_t cell) const
 ///     SolveCounts total() const
-///     void state(Archive&, std::size_t samples)   writes all cells, or reads and adds cells with other `samples`
+///     void state(Archive&, std::size_t samples)   writes all cells; or reads and adds sums of a plan with `samples`
 template <class Job>
 class PoseFold {
  public:
@@ -113,8 +114,8 @@ class PoseFold {
     if constexpr (Sums::kOfRound) part_.emplace(plan_.with_samples(rounds_.samples(0)));
     sums_.emplace(job_.sums(plan_of_sums(), shard_));
   }
-  /// Reads or writes the sums of all units that were added. When merged shards are read, each call reads the sums of
-  /// one shard.
+  /// Reads or writes the sums of all units that were added. A state that was merged from shards has the sums of one
+  /// shard after the other; each call reads those of one shard.
   void part_state(Archive& archive) {
     head_state(archive, Job::kName, job_.sizes());
     archive.known(plan_.cells(), "has other cells");
@@ -130,12 +131,12 @@ class PoseFold {
   Rounds rounds_;
   std::optional<Plan> part_;  ///< plan with the samples of the round, if sums are made anew for each round (kOfRound)
   std::optional<Sums> sums_;  ///< sums of the units; they refer to the plan part_ or plan_
-  std::optional<PendingUnits> pending_;  ///< units of the round
+  std::optional<PendingUnits> pending_;  ///< units to be solved in this round
 };
 
 /// The sums of the cells of a plan, or of a shard's cells. If the last unit of a cell has fewer than Plan::kUnitSamples
-/// samples, its sums are separate, because in a study with more samples another unit takes its place. A store is a type
-/// with values of R responses for each of some cells:
+/// samples, its sums are separate, because in a study with more samples another unit takes its place. The sums are in a
+/// store, a type with values of R responses for several cells:
 ///
 ///     Store(std::size_t responses, std::size_t cells)    without samples; also Store() without cells
 ///     std::vector<SolveCounts> solves                    [cells]
@@ -170,7 +171,7 @@ class CellSums {
     sum.merge(total_of(parts_.solves));
     return sum;
   }
-  /// The cells of one slot at all poses. Preconditions: the shard has all these cells; units were added.
+  /// The sums of the cells of one slot at all poses. Preconditions: the shard has all these cells; units were added.
   Store cells_of(std::size_t slot) const {
     const NumberRange range{slot * plan_->poses().size(), (slot + 1) * plan_->poses().size()};
     POESY_EXPECTS(cells_.first == 0 && range.end <= cells_.end && (!whole_.solves.empty() || !parts_.solves.empty()));
@@ -179,7 +180,7 @@ class CellSums {
     if (!parts_.solves.empty()) some.merge(parts_.part(range));
     return some;
   }
-  /// All cells. Preconditions: the shard has all cells of the plan; units were added.
+  /// The sums of all cells. Preconditions: the shard has all cells of the plan; units were added.
   Store cells() && {
     POESY_EXPECTS(cells_.first == 0 && cells_.end == plan_->cells());
     POESY_EXPECTS(!whole_.solves.empty() || !parts_.solves.empty());
@@ -188,8 +189,8 @@ class CellSums {
     return std::exchange(whole_, {});
   }
 
-  /// Writes all cells. Or reads the cells of a plan with this number of samples and adds them. Returns the number of
-  /// units of each cell in the state.
+  /// Writes the sums of all cells, or reads sums and adds them. samples: the number of samples of the plan that wrote
+  /// the sums. Returns the number of units of each cell in the state.
   std::vector<std::size_t> state(Archive& archive, std::size_t samples) {
     std::vector<std::size_t> units;
     units.reserve(plan_->cells());
@@ -200,7 +201,7 @@ class CellSums {
  protected:
   /// The position of the unit's cell in the plan.
   std::size_t cell_of(const WorkUnit& unit) const { return unit.slot * plan_->poses().size() + unit.pose.value; }
-  /// The store to which a unit of this size was added.
+  /// The store to which a unit of this size is added.
   const Store& store_of(const WorkUnit& unit) const { return unit.count == Plan::kUnitSamples ? whole_ : parts_; }
 
   const Plan* plan_;       ///< the plan of the cells
@@ -246,8 +247,8 @@ class CellSums {
     return Plan::units_for(samples);
   }
 
-  Store whole_;  ///< [cells of the shard] units of full size; empty before the first
-  Store parts_;  ///< [cells of the shard] last units of a smaller size; empty before the first
+  Store whole_;  ///< [cells of the shard] sums of the units of full size; without cells before the first one
+  Store parts_;  ///< [cells of the shard] sums of smaller last units; without cells before the first one
 };
 
 }  // namespace poesy

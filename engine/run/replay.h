@@ -13,15 +13,16 @@ namespace poesy {
 struct ReplayedSample {
   /// Errors that the study varies together; other errors have the value of the background.
   std::vector<FactorIndex> varied;
-  std::vector<double> values;                   ///< [varied] values of these errors, SI
-  std::vector<double> errors;                   ///< [F] all errors of the sample, SI
-  std::vector<double> responses;                ///< [R] SI; those of the last iterate if the solve did not converge
+  std::vector<double> values;     ///< [varied] values of these errors, SI
+  std::vector<double> errors;     ///< [all errors] all errors of the sample, SI
+  std::vector<double> responses;  ///< [responses] SI; those of the last iterate if the solve did not converge
   SolveStatus status = SolveStatus::converged;  ///< status of the solver that the run used
   std::uint32_t iterations = 0;                 ///< iterations of the solver that the run used
 };
 
-/// Draws and solves the sample with this address again. The result has the same bits as in a run of the study. slot:
-/// see Failure. Precondition: a sensitivity or Monte Carlo study, and a model that reaches the pose.
+/// Draws and solves one sample of the study again, with the same bits as in a run. slot: position among the study's
+/// factors; 0 if all errors vary together. Precondition: a sensitivity or Monte Carlo study, and a model that reaches
+/// the pose.
 ReplayedSample replay_sample(const Study& study, const Model& model, const PoseSet& poses, std::size_t slot,
                              PoseIndex pose, SampleIndex sample);
 

@@ -56,10 +56,10 @@ struct FailedSample {
   bool operator==(const FailedSample&) const = default;
 };
 
-/// The first samples of one cell, or of a unit of it, that were not solved. Memory is allocated only if a sample fails.
+/// The first unsolved samples of one cell, or of one unit of a cell. Memory is allocated only if a sample fails.
 class FailedSamples {
  public:
-  /// The largest number of failures that are kept of a cell. The first failures are kept, so they do not depend on how
+  /// The largest number of failures that are kept for a cell. The first failures are kept, so they do not depend on how
   /// the run was divided.
   static constexpr std::size_t kMost = 10;
 
@@ -83,13 +83,13 @@ class FailedSamples {
   std::vector<FailedSample> first_;
 };
 
-/// The address and the status of a sample that was not solved.
+/// Says which sample was not solved, and how its solve ended.
 struct Failure {
   std::size_t slot;     ///< position among the study's factors; 0 if all vary together
   PoseIndex pose;       ///< position among the study's poses
   FailedSample failed;  ///< the sample, and how it ended
 
-  /// Returns true if address and status are equal.
+  /// Returns true if both name the same sample with the same status.
   bool operator==(const Failure&) const = default;
 };
 
@@ -99,31 +99,34 @@ inline constexpr std::size_t kMostFailuresListed = 1000;
 /// Adds the failures of a cell to the list, up to kMostFailuresListed in all.
 void append_failures(std::size_t slot, PoseIndex pose, const FailedSamples& cell, std::vector<Failure>& list);
 
-/// Estimates of quantities, computed after different numbers of samples of each pose: R responses, P slots (the factors
-/// of a sensitivity study; one in a Monte Carlo study), K numbers of samples; SI. A quantity is a global index in a
-/// sensitivity study, and a mean over the samples of all poses in a Monte Carlo study. The uncertainty of a quantity
-/// has one of two forms: the two ends of an interval, or a half-width, which is the larger distance to an end. The
-/// members of the unused form are empty.
+/// Estimates of quantities after different numbers of samples at each pose, SI. There is a quantity for each response
+/// and each slot (one error that varies alone, or all errors that vary together). In a sensitivity study it is a global
+/// index; in a Monte Carlo study it is a mean over the samples of all poses. The uncertainty of a quantity has one of
+/// two forms: the two ends of an interval, or a half-width, which is the larger distance to an end. The members of the
+/// unused form are empty.
 struct EstimateCourse {
-  std::vector<std::uint64_t> samples;   ///< [K] samples at each pose, ascending
-  std::vector<double> value;            ///< [R x P x K] estimates; NaN if not known
-  std::vector<double> ci_low = {};      ///< [R x P x K] lower ends of the intervals, or empty
-  std::vector<double> ci_high = {};     ///< [R x P x K] upper ends of the intervals, or empty
-  std::vector<double> half_width = {};  ///< [R x P x K] half-widths of the intervals, or empty
+  std::vector<std::uint64_t> samples;   ///< [numbers of samples] samples at each pose, ascending
+  std::vector<double> value;            ///< [responses x slots x numbers of samples] estimates; NaN if not known
+  std::vector<double> ci_low = {};      ///< [like value] lower ends of the intervals, or empty
+  std::vector<double> ci_high = {};     ///< [like value] upper ends of the intervals, or empty
+  std::vector<double> half_width = {};  ///< [like value] half-widths of the intervals, or empty
   double conf_level = 0.95;             ///< level of the intervals
 };
 
-/// How the adaptive sampling of a study ended (engine/run/rounds.h), for R responses and P slots.
+/// How the adaptive sampling of a study ended (engine/run/rounds.h). A slot is one error that varies alone, or all
+/// errors that vary together.
 struct ConvergenceResult {
   std::size_t min = 0;          ///< least number of samples at each pose
   std::size_t max = 0;          ///< largest number of samples at each pose
   double relative_error = 0.0;  ///< wanted half-width, as a share of |quantity|
-  /// The estimates at the milestones, with half-widths. The last milestone may be `max`, where nothing has to be
-  /// decided. NaN for milestones after the end of a slot.
+  /// The estimates, with half-widths, after each number of samples at which it was decided whether to continue
+  /// (milestone). The last number may be `max`, where nothing has to be decided. NaN after the sampling of an error has
+  /// ended.
   EstimateCourse course;
-  std::vector<std::uint8_t> reached;        ///< [R x P] 1 if the half-width at the end is small enough, else 0
-  std::vector<double> relative_half_width;  ///< [R x P] half-width over |quantity| at the end; NaN for 0 / 0
-  std::vector<std::uint64_t> samples;       ///< [P] samples of each slot at each pose
+  std::vector<std::uint8_t> reached;  ///< [responses x slots] 1 if the half-width at the end is small enough, else 0
+  /// [responses x slots] half-width over |quantity| at the end; NaN for 0 / 0.
+  std::vector<double> relative_half_width;
+  std::vector<std::uint64_t> samples;  ///< [slots] samples at each pose while this error varies
 };
 
 /// The verdict on a limit of a response (engine/run/evaluation.h). SI.
@@ -133,11 +136,12 @@ struct LimitVerdict {
   /// Number that is compared with the limit: a magnitude for a limit on magnitudes, a spread for a limit on the spread,
   /// otherwise a value. Infinite or NaN if too few samples were solved.
   double value = 0.0;
-  bool passed = false;       ///< true if the limit is kept
-  std::uint64_t tried = 0;   ///< number of draws at all poses together; for an evaluation, number of rows
-  std::uint64_t within = 0;  ///< number of draws or rows within the limit; a row must be within it at each of its poses
-  std::optional<std::size_t> pose = std::nullopt;  ///< pose of `value`, if it belongs to one pose
-  std::optional<std::size_t> row = std::nullopt;   ///< row of `value`, for an evaluation
+  bool passed = false;      ///< true if the limit is kept
+  std::uint64_t tried = 0;  ///< number of draws at all poses together; for an evaluation, number of rows
+  /// Number of draws or rows within the limit; a row counts if it is within the limit at each of its poses.
+  std::uint64_t within = 0;
+  std::optional<std::size_t> pose = std::nullopt;  ///< pose at which `value` occurs, if it is the value at one pose
+  std::optional<std::size_t> row = std::nullopt;   ///< row to which `value` belongs, for an evaluation
 };
 
 /// The verdict on the yield, for Judge::yield: the share of machines that are within all limits at all poses. A machine
@@ -158,7 +162,7 @@ struct YieldVerdict {
   double ci_high = 0.0;                     ///< upper end of the two-sided interval of `value`
   std::uint64_t machines = 0;               ///< number of machines that were tried
   std::uint64_t rejects = 0;                ///< number of machines that are not within every limit at every pose
-  std::uint64_t unsolved = 0;               ///< number of machines rejected only because a pose was not solved
+  std::uint64_t unsolved = 0;  ///< number of machines that are rejects only because they are not solved at a pose
   /// If errors are drawn from measured parts: the interval that also includes the uncertainty from the small number of
   /// parts; NaN if not known.
   std::optional<Interval> with_parts = {};

@@ -19,55 +19,58 @@ namespace poesy {
 /// The numbers 0 .. count - 1.
 std::vector<std::size_t> all_positions(std::size_t count);
 
-/// The least number of samples of every slot at each pose.
+/// The least number of samples at each pose. It is the same for every varied error of the plan (slot).
 std::size_t least_samples(const Plan& plan);
 
-/// The rounds of a sampled study. A fixed number of samples takes a single round. Adaptive samples take a round for
-/// each milestone (engine/study/plan.h), and one more if Plan::samples() is above the last milestone. In a round, every
-/// slot that has not ended gets the milestone's samples at all poses. A slot ends at the first milestone at which the
-/// quantity of each deciding response is known well enough: half-width <= relative_error x |quantity|, see
-/// ConvergenceResult. Decisions depend only on the samples up to the milestone, so they are the same on any machine.
+/// The rounds of a sampled study. A slot is one error that varies alone, or all errors that vary together. A fixed
+/// number of samples takes a single round. Adaptive samples have milestones (engine/study/plan.h): numbers of samples
+/// after which it is decided which slots continue. They take a round for each milestone, and one more if
+/// Plan::samples() is above the last milestone. In a round, every slot that has not ended gets the milestone's samples
+/// at all poses. A slot ends at the first milestone at which the quantity of each deciding response is known well
+/// enough: half-width <= relative_error x |quantity|, see ConvergenceResult. Decisions depend only on the samples up to
+/// the milestone, so they are the same on any machine.
 class Rounds {
  public:
-  /// The rule that decides whether a slot continues.
+  /// The rule that decides after each round whether an error (slot) needs more samples.
   struct Rule {
-    std::size_t responses;              ///< number of responses, R
+    std::size_t responses;              ///< number of responses
     std::vector<std::size_t> deciding;  ///< positions of the responses that decide
     double conf_level;                  ///< level of the intervals of estimates
-    /// [R x P] Magnitude of rounding; a quantity below it counts as known well enough.
+    /// [responses x slots] Magnitude of rounding; a quantity below it counts as known well enough.
     std::vector<double> rounding;
   };
 
   /// Begins the first round. Refers to the plan.
   Rounds(const Plan& plan, Rule rule);
 
-  /// The number of samples of the slot at each pose at the end of this round.
+  /// The number of samples at each pose at the end of this round, for one varied error or for all errors together
+  /// (slot).
   std::size_t samples(std::size_t slot) const { return samples_[slot]; }
-  /// The number of units of each cell of the slot at the end of this round.
+  /// The number of work units of one error (slot) at each pose at the end of this round.
   std::size_t units(std::size_t slot) const;
-  /// Returns true if a cell of this slot may have this many units in this round.
+  /// Returns true if one error (slot) may have `units` work units at a pose in this round.
   bool may_hold(std::size_t slot, std::size_t units) const;
   /// The expected number of solves of the whole study. It is computed from the half-widths so far, which decrease with
   /// the square root of the number of samples. It is at least the number of solves of this round. Before the first
   /// decision it is the largest possible number.
   std::uint64_t expected_solves() const;
-  /// The expected number of further solves; with a fixed number of samples it is `pending`.
+  /// The expected number of solves that are still to be done. With a fixed number of samples it is `pending`.
   std::uint64_t expected_left(const SolveCounts& done, std::uint64_t pending) const {
     return adaptive_ ? expected_solves() - done.total() : pending;
   }
 
-  /// Ends the round, and begins the next one if there is a slot that has not ended. Returns true if a round began.
-  /// estimates(slot): [R] quantities of the slot.
+  /// Ends the round, and begins the next one if any varied error (slot) still needs samples. Returns true if a round
+  /// began. estimates(slot): the quantity of each response for this slot.
   bool go_on(const std::function<std::vector<Estimate>(std::size_t slot)>& estimates);
   /// Tells how the sampling ended; empty for a fixed number of samples. Precondition: no round follows.
   std::optional<ConvergenceResult> result() const;
 
-  /// Reads or writes the decisions so far; nothing for a fixed number of samples. The state that is read may come from
-  /// the same plan with fewer samples. Precondition of reading: this is the first round.
+  /// Reads or writes the decisions so far; nothing for a fixed number of samples. A state may be read that the same
+  /// plan with fewer samples wrote. Precondition of reading: this is the first round.
   void state(Archive& archive);
 
  private:
-  /// Quantities and half-widths at one milestone, [R x P].
+  /// Quantities and half-widths at the end of one round: [responses x slots], a slot for each varied error.
   struct Row {
     std::vector<double> quantity;
     std::vector<double> half_width;
@@ -75,11 +78,11 @@ class Rounds {
 
   bool last_round() const { return rows_.size() == milestones_.size(); }
   std::size_t cell(std::size_t response, std::size_t slot) const { return response * samples_.size() + slot; }
-  /// The half-width of an estimate's interval divided by the largest half-width that ends the sampling.
+  /// The half-width of an estimate's interval divided by the largest half-width with which the sampling ends.
   double excess(const Row& row, std::size_t cell) const;
   double largest_excess(const Row& row, std::size_t slot) const;
-  /// Ends the slots whose deciding responses are all known well enough, and begins the next round. Returns true if a
-  /// slot has not ended.
+  /// Ends the slots (varied errors) whose deciding responses are all known well enough, and begins the next round.
+  /// Returns true if a slot has not ended.
   bool decide(Row row);
   std::size_t expected_samples(std::size_t slot) const;
   const Row& row_at_end(std::size_t slot) const;
@@ -88,18 +91,18 @@ class Rounds {
   Rule rule_;
   std::size_t poses_;
   std::size_t max_;
-  std::vector<std::size_t> milestones_;  ///< milestones with a decision
+  std::vector<std::size_t> milestones_;  ///< numbers of samples after which the rounds decide
   std::vector<Row> rows_;                ///< estimates of the rounds that have ended
-  std::vector<std::size_t> samples_;     ///< [P] samples of each slot in this round
-  std::vector<bool> ended_;              ///< [P] true for each slot that has ended
+  std::vector<std::size_t> samples_;     ///< [slots] samples of each error at a pose in this round
+  std::vector<bool> ended_;              ///< [slots] true if the error needs no more samples
 };
 
-/// The pending units of a plan, in the order of the plan. The pending units of a cell are those after the units that
-/// are done, up to the wanted number.
+/// The units of a plan that are still to be solved, in the order of the plan. In each cell they are the units after
+/// those that are done, up to the wanted number.
 class PendingUnits {
  public:
-  /// done(cell), wanted(cell): numbers of units of the cell that are done and wanted, at most units_per_cell(). Refers
-  /// to the plan.
+  /// done(cell), wanted(cell): the numbers of the cell's units that are done and that are wanted, at most
+  /// units_per_cell(). Refers to the plan.
   template <class Done, class Wanted>
   PendingUnits(const Plan& plan, const Done& done, const Wanted& wanted) : plan_(&plan) {
     std::size_t end = 0;
@@ -114,13 +117,13 @@ class PendingUnits {
     }
   }
 
-  /// The number of pending units.
+  /// The number of units to be solved.
   std::size_t size() const { return ends_.empty() ? 0 : ends_.back().pending; }
 
-  /// The samples of all pending units.
+  /// The number of samples in all these units.
   std::uint64_t samples() const { return samples_; }
 
-  /// The n-th pending unit, in the order of the plan.
+  /// The n-th unit to be solved, in the order of the plan.
   WorkUnit operator[](std::size_t n) const {
     POESY_EXPECTS(n < size());
     const auto end = std::ranges::upper_bound(ends_, n, {}, &End::pending);
@@ -129,8 +132,8 @@ class PendingUnits {
   }
 
  private:
-  /// The end of a cell's pending units: the number of pending units in all cells up to this one, and the number of the
-  /// unit within the cell.
+  /// The end of a cell's units: how many units are to be solved in all cells up to this one, and the number of the
+  /// wanted units of this cell.
   struct End {
     std::size_t pending;
     std::size_t unit;

@@ -38,8 +38,8 @@ inline void publish() {}
 inline void receive() {}
 #endif
 
-/// The writes in one Block are visible to each Block that begins after its end. Used around objects of oneTBB, because
-/// their memory moves from thread to thread inside the allocator of oneTBB.
+/// Makes the writes in one Block visible to each Block that begins later, after its end. Used around objects of oneTBB,
+/// because their memory moves from thread to thread inside the allocator of oneTBB.
 class Block {
  public:
   Block() { receive(); }
@@ -48,7 +48,8 @@ class Block {
   Block& operator=(const Block&) = delete;
 };
 
-/// Its destructor, which runs on return or on an exception, comes after the end of every earlier Block.
+/// An object whose destructor tells the sanitizer that all earlier Blocks have ended. It runs on return or on an
+/// exception.
 class Waiting {
  public:
   Waiting() = default;
@@ -57,8 +58,8 @@ class Waiting {
   Waiting& operator=(const Waiting&) = delete;
 };
 
-/// A function that oneTBB copies and calls on any of its threads. Overlapping calls stay unordered for the sanitizer,
-/// so real races between them are still found.
+/// A function that oneTBB copies and calls on any of its threads. The thread sanitizer sees no order between
+/// overlapping calls, so it still finds real races between them.
 template <class Function>
 class Task {
  public:
@@ -82,7 +83,7 @@ class Task {
 
 }  // namespace handover
 
-/// An arena of oneTBB with this many threads.
+/// An arena of oneTBB with `threads` threads.
 struct Pool {
   explicit Pool(std::size_t threads)
       : limit(tbb::global_control::max_allowed_parallelism, threads),
@@ -157,8 +158,8 @@ void run_in_slots(const TicketSource& source, const RunOptions& options, const s
 }
 
 bool run_alone(std::size_t count, const RunOptions& options, const SlotWork& work) {
-  // The pipeline finishes in order, and at most `slots` units are in progress. So no two units in progress share a
-  // slot.
+  // The pipeline finishes in order, and at most `slots` pieces are in progress. So no two of them share a place for
+  // their output (slot).
   const std::size_t slots = pool_slots(options);
   std::size_t next = 0;
   std::size_t finished = 0;

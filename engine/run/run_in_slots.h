@@ -17,7 +17,7 @@ inline bool stopped(const RunOptions& options) {
   return options.stop != nullptr && options.stop->load(std::memory_order_relaxed);
 }
 
-/// The number of a piece of work, and a free slot for its output.
+/// The number of a piece of work, and a place (slot) for its output that is free.
 struct Ticket {
   std::size_t n;     ///< number of the piece of work
   std::size_t slot;  ///< place for its output
@@ -26,35 +26,36 @@ struct Ticket {
 /// A function that returns one ticket after another, then nothing. Never called from two threads at once.
 using TicketSource = std::function<std::optional<Ticket>()>;
 
-/// The number of slots that run_in_slots() uses: a few for each thread.
+/// The number of places for outputs (slots) that run_in_slots() uses: a few for each thread.
 std::size_t pool_slots(const RunOptions& options);
 
-/// Calls work(n, slot) for each ticket (n, slot) of the source on a pool of threads. Each thread has its own function
-/// `work`, which make_work() returned. Calls finish(n, slot) in the order of the source. At most pool_slots() tickets
-/// are in progress.
+/// Takes each ticket (n, slot) of the source, and calls work(n, slot) on a pool of threads. Each thread has its own
+/// function `work`, which make_work() returned. Calls finish(n, slot) in the order of the source. At most pool_slots()
+/// tickets are in progress.
 void run_in_slots(const TicketSource& source, const RunOptions& options, const std::function<SlotJob()>& make_work,
                   const SlotJob& finish);
 
-/// The functions that do the pieces of a stage. Outputs are kept in slots that the caller owns.
+/// The functions that do the pieces of a stage. The caller owns a place (slot) for the output of each piece in
+/// progress.
 struct SlotWork {
   std::function<SlotJob()> make_work;  ///< makes a function that does pieces of work, see run_in_slots()
   SlotJob finish;                      ///< called on rank 0 in the order of n; afterwards the slot is free
-  /// Reads or writes the output of piece n in its slot, as ranks send it. The slot is empty before reading.
+  /// Reads or writes the output of piece n in its place (slot), as ranks send it. The place is empty before reading.
   std::function<void(std::size_t n, std::size_t slot, Archive& archive)> state;
 };
 
-/// Calls work(n, slot) and finish(n, slot) for n = 0 .. count - 1 in this process alone, with pool_slots() slots.
-/// Returns false when stopped.
+/// Calls work(n, slot) and finish(n, slot) for each piece n = 0 .. count - 1 in this process alone, with pool_slots()
+/// places for outputs. Returns false when stopped.
 bool run_alone(std::size_t count, const RunOptions& options, const SlotWork& work);
 
-/// The number of slots that run_over_ranks() uses on this rank.
+/// The number of places for outputs (slots) that run_over_ranks() uses on this rank.
 std::size_t rank_slots(const RunOptions& options);
 
-/// Runs one stage on all ranks of options.team: work(n, slot) for n = 0 .. count - 1 on any rank, and finish(n, slot)
-/// on rank 0 in the order of n. Rank 0 hands out ranges of numbers as outputs return, and works on some of them itself.
-/// The calling thread exchanges messages and calls finish(), while a pool of threads works. On the other ranks the
-/// function returns when rank 0 has ended the stage. Returns true if the stage is complete; on rank 0 it is not
-/// complete if a rank has left. Throws exceptions of this rank, and Dismissed.
+/// Runs one stage on all ranks of options.team: work(n, slot) for each piece n = 0 .. count - 1 on any rank, and
+/// finish(n, slot) on rank 0 in the order of n. Rank 0 hands out ranges of pieces as outputs return, and works on some
+/// of them itself. The calling thread exchanges messages and calls finish(), while a pool of threads works. On the
+/// other ranks the function returns when rank 0 has ended the stage. Returns true if the stage is complete; on rank 0
+/// it is not complete if a rank has left. Throws exceptions of this rank, and Dismissed.
 bool run_over_ranks(std::size_t count, const RunOptions& options, const SlotWork& work);
 
 }  // namespace poesy

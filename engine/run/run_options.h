@@ -25,14 +25,14 @@ struct RunOptions {
   std::size_t threads = 0;  ///< number of threads; 0: one per processor
   /// A function that shows the progress. It is called from time to time, never from two threads at once. May be empty.
   std::function<void(const Progress&)> progress = {};
-  /// Another thread or a signal handler sets it to stop the run soon. May be null.
+  /// A flag that another thread or a signal handler sets to stop the run soon. May be null.
   const std::atomic<bool>* stop = nullptr;
   /// Where the run gets and saves its state. May be null. With checkpoints, a run function throws BytesError for a
   /// state that it did not write.
   Checkpoints* checkpoints = nullptr;
-  /// The shard to run instead of the whole study. It has no result; its state goes to the checkpoints.
+  /// The shard to run instead of the whole study. A shard gives no result; its state goes to the checkpoints.
   std::optional<Shard> shard = std::nullopt;
-  /// Whether a longer study may continue from the last checkpoint. If so, a study that draws all errors together keeps
+  /// True if a longer study may continue from the last checkpoint. A study that draws all errors together then keeps
   /// more data.
   bool keep_checkpoint = true;
   /// True if a study of machines records for each machine whether it is rejected (StudyResult::rejected).
@@ -46,7 +46,7 @@ struct RunOptions {
 /// The number of threads to use: `threads`, or the number of processors if that is 0.
 std::size_t resolved_threads(std::size_t threads);
 
-/// Starts this many threads of the pool, unless they exist. Call it early, while there is memory and no result that
+/// Starts `threads` threads of the pool, unless they exist. Call it early, while there is memory and no result that
 /// could be lost, because oneTBB ends the program if it cannot start a thread. Throws FileError if this process cannot
 /// have so many threads.
 void start_threads(std::size_t threads);

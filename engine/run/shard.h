@@ -14,8 +14,9 @@ struct NumberRange {
   bool holds(std::size_t number) const { return number >= first && number < end; }
 };
 
-/// One of several shards into which a study is divided. A shard takes consecutive cells of the plan. If the study has
-/// no cells, it takes consecutive blocks of machines or of rows. All shards are as equal in size as possible.
+/// One of several shards into which a study is divided. A shard has consecutive cells of the plan (a cell is a varied
+/// error at a pose). If the study has no cells, the shard has consecutive blocks of machines or of rows. All shards are
+/// as equal in size as possible.
 struct Shard {
   std::size_t index = 0;  ///< number of the shard, from 0
   std::size_t count = 1;  ///< number of all shards

@@ -14,8 +14,8 @@
 
 namespace poesy {
 
-/// Jobs whose units are blocks of samples. In such jobs rounds may add units, and a longer study can continue a shorter
-/// one.
+/// Jobs whose units are blocks of samples. Rounds of adaptive samples may add units to such jobs, and a longer study
+/// can continue a shorter one.
 template <class Job>
 concept SampledUnits = requires(const Job& job) {
   job.rounds();
@@ -143,8 +143,8 @@ class UnitFold {
     }
   }
 
-  /// Reads or writes the sums of all units that were merged. When merged shards are read, each call reads the sums of
-  /// one shard.
+  /// Reads or writes the sums of all units that were merged. A state that was merged from shards has the sums of one
+  /// shard after the other; each call reads those of one shard.
   void part_state(Archive& archive) {
     head_state(archive, Job::kName, job_.sizes());
     NumberRange units{archive.reads() ? next_ : units_.first, last_ ? next_ - 1 : next_};

@@ -41,8 +41,8 @@ class BucketCounts {
   void add(std::span<const double> values);
   /// Adds the counts of another object, exactly. Preconditions: the same scale; reach() made room.
   void merge(const BucketCounts& other);
-  /// Changes to the next coarser scale, and to the counts that this scale would have given from the beginning.
-  /// Precondition: there is a coarser scale.
+  /// Replaces the scale by the next coarser one, and the counts by those that this scale would have given from the
+  /// beginning. Precondition: there is a coarser scale.
   void coarsen();
   /// The counts of the magnitudes, with values of both signs together. extremes: the extremes of the magnitudes. Takes
   /// memory for each page between them.
@@ -57,7 +57,7 @@ class BucketCounts {
   static BucketCounts read(ByteReader& from, const Extremes& extremes);
 
  private:
-  /// The places in counts_ at which the counts of the values of one sign are stored.
+  /// The pages of the values of one sign: where counts_ has them.
   struct Side {
     std::uint64_t first = 0;  ///< number of the first page
     /// Places of the pages first, first + 1, ... in counts_; kNowhere for pages without counts.
@@ -70,7 +70,7 @@ class BucketCounts {
   std::size_t place(Side& side, std::uint64_t page);
   std::uint16_t new_page();  ///< Makes an empty page and returns its number among the stored pages.
   void add_at(std::size_t at, std::uint64_t count);
-  /// Records that the count at this position, of 16 bits, has overflowed this many times.
+  /// Records that the 16-bit count at this position has overflowed `times` times.
   void wrap(std::size_t at, std::uint64_t times);
   void merge_side(Side& side, const BucketCounts& other, const Side& others);
   std::vector<Filled> filled(std::size_t sign) const;

@@ -14,7 +14,7 @@ namespace {
 static_assert(std::numeric_limits<double>::is_iec559);
 
 constexpr int kFractionBits = 52;
-/// The number of leading bits of the fraction that tell buckets apart: kCoarseBits below the octave of the scale,
+/// The number of leading bits of the fraction by which buckets differ: kCoarseBits below the octave of the scale,
 /// kEvenBits in this octave.
 constexpr int kCoarseBits = 7;
 constexpr int kEvenBits = kCoarseBits + 1;
@@ -76,7 +76,8 @@ unsigned exponent_of(double magnitude) {
   return static_cast<unsigned>(std::bit_cast<std::uint64_t>(magnitude) >> kFractionBits);
 }
 
-/// The least octave for which keys() accepts the largest of these magnitudes. There a bucket contains a single double.
+/// The least octave with which keys() accepts the largest of these magnitudes. On this scale the bucket of this
+/// magnitude contains a single double.
 unsigned least_octave(const Extremes& extremes) {
   constexpr unsigned kMostBelow = kFractionBits - kEvenBits;
   unsigned exponent = 0;

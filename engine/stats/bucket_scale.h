@@ -83,12 +83,12 @@ struct PageRange {
   std::size_t count = 0;    ///< number of pages; 0 without values of this sign
 };
 
-/// The pages that the values above zero need, or if `below` is true, those of the values below zero.
+/// The pages that the values above zero need. If `below` is true: the pages that the values below zero need.
 PageRange pages_spanned(const Extremes& extremes, const BucketScale& scale, bool below);
 
 /// Whether a scale can be used for values with these extremes: both signs together span at most kMostPagesSpanned
-/// pages, and keys() accepts the values. If a scale fits, all coarser scales fit. If it does not fit some values, it
-/// does not fit these and further values either.
+/// pages, and keys() accepts the values. If a scale fits, all coarser scales fit. A scale that does not fit does not
+/// fit after more values were added either.
 bool fits(const BucketScale& scale, const Extremes& extremes);
 /// The finest scale that fits values with these extremes; the coarsest scale if none fits.
 BucketScale finest_fitting(const Extremes& extremes);

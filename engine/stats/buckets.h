@@ -38,16 +38,16 @@ RankInterval quantile_ranks(std::uint64_t n, double q, double conf_level);
 /// both ends without values.
 Interval quantile_interval(std::span<const Bucket> buckets, const RankInterval& ranks);
 
-/// A histogram with B bins. Bin k has the values from edges[k] to edges[k + 1].
+/// A histogram. Bin k has the values from edges[k] to edges[k + 1].
 struct Histogram {
-  std::vector<double> edges;          ///< [B + 1] ascending; the first and the last are the extremes
-  std::vector<std::uint64_t> counts;  ///< [B] number of values in each bin
+  std::vector<double> edges;          ///< [bins + 1] ascending; the first and the last are the extremes
+  std::vector<std::uint64_t> counts;  ///< [bins] number of values in each bin
 };
 
 /// A histogram of the values in these buckets, with exactly `bins` bins. The first and the last bin have the outermost
 /// 0.05 % of the values each; the others are about equally wide. Edges of bins are edges of buckets, so every count is
-/// exact. If buckets are wider than bins, some bins remain empty; these come last and have no width. Precondition: bins
-/// >= 3, and there is a bucket.
+/// exact. If buckets are wider than bins, some bins remain empty; they come last and have no width. Preconditions: bins
+/// >= 3; there is a bucket.
 Histogram histogram(std::span<const Bucket> buckets, std::size_t bins);
 
 }  // namespace poesy

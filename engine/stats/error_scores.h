@@ -13,7 +13,7 @@ namespace poesy {
 // (likelihood ratio; Rubinstein 1986, Math. Comput. Simul. 28, 365-379). The growth score is the counterpart for a
 // finite step, f(e; g t) / f(e; t) - 1: its mean over the event is the change of P if the error grows by a factor g.
 
-/// The factor by which an error grows where results state a change of the yield.
+/// Results state the change of the yield if one error grows by this factor g.
 inline constexpr double kErrorGrowth = 1.1;
 
 /// Means of powers of a score S over all machines. The mean of S itself is 0.
@@ -30,7 +30,7 @@ struct NormalScore {
   double half_width;    ///< largest possible distance w from the mean; infinite if the normal is not truncated
   double centre = 0.0;  ///< mean c, about which the error grows
 
-  double ends() const;  ///< The term that truncation adds to z^2 - 1.
+  double ends() const;  ///< The term (2 w/t) phi(w/t) / (2 Phi(w/t) - 1) of a truncated normal; 0 without truncation.
   /// The growth score at z = (e - c) / t is growth_factor() exp(growth_exponent() z^2) - 1. For a normal that is not
   /// truncated it is exp(z^2 (1 - 1/g^2) / 2) / g - 1, with g = kErrorGrowth.
   /// @{
@@ -39,10 +39,10 @@ struct NormalScore {
   /// @}
 };
 
-/// The score of an error of any distribution, whose size grows about its mean. It replaces the score in the strict
-/// sense, which does not exist if the ends of the range move with the size. It is valid for events whose probability,
-/// given the error, is a polynomial of degree kDegree. With the orthonormal polynomials p_k of the error's distribution
-/// and its mean c,
+/// The score of an error of any distribution, for a size that grows about the mean of the error. It replaces the score
+/// in the strict sense, which does not exist if the ends of the range move with the size. It is valid for an event if
+/// the probability of the event, given the error, is a polynomial of degree kDegree in the error. With the orthonormal
+/// polynomials p_k of the error's distribution and its mean c,
 ///
 ///     S(e) = sum over k = 1 .. kDegree of E[p_k'(e) (e - c)] p_k(e)
 ///
@@ -107,9 +107,9 @@ struct NormalBlock {
   void replace(std::span<double> z) const;
 };
 
-/// The scores of P errors that vary together.
+/// The scores of errors that vary together.
 struct ErrorScores {
-  std::vector<ErrorScore> each;          ///< [P] score of each error
+  std::vector<ErrorScore> each;          ///< [errors] score of each error
   std::vector<NormalBlock> blocks = {};  ///< blocks of correlated errors; no error is in two blocks
 };
 

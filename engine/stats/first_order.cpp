@@ -51,7 +51,7 @@ struct Strata {
   double slope(Eigen::Index b) const { return (mean[above(b)] - mean[below(b)]) * steps[b]; }
 };
 
-/// Halves the number of bins: each pair of neighbours becomes one bin.
+/// Replaces each pair of neighbouring bins by one bin, in the first half of `bins`.
 void halve(std::span<BinSums> bins) {
   for (std::size_t b = 0; b < bins.size() / 2; ++b) {
     const BinSums& first = bins[2 * b];
@@ -99,7 +99,7 @@ Strata strata_of(std::span<const BinSums> sums, const BinSpread& spread) {
   return strata;
 }
 
-/// The matrix F for which mean' F mean is the variance of the bins' means.
+/// The matrix F of the quadratic form mean' F mean that is the variance of the bins' means.
 Matrix form_of_steps(Eigen::Index bins) {
   const double share = 1.0 / static_cast<double>(bins);
   Matrix form = Matrix::Constant(bins, bins, -share * share);
@@ -150,10 +150,10 @@ void set_normal_parts(const Strata& strata, const Matrix& lines, const Matrix& s
   }
 }
 
-/// Sets the tails of a variance. The fourth moment of all samples is known, and hence the sum of E[k4(u)] and 4 E[d
-/// k3(u)], where d is the effect and k3, k4 are the third and fourth cumulants within the bin of u. The second term has
-/// two parts. One is that of the straight lines; the other, that of the deviations from the lines, is estimated as if
-/// their skewness were the same in all bins.
+/// Sets the tails of a variance. The fourth moment of all samples is known, and therefore also the sum of E[k4(u)] and
+/// 4 E[d k3(u)]. Here d is the effect, and k3 and k4 are the third and fourth cumulants within the bin of u. The second
+/// term has two parts: one of the straight lines, and one of the deviations from the lines. The part of the deviations
+/// is estimated as if their skewness were the same in all bins.
 void set_tails(const Strata& strata, const Moments& all, BinnedVariance& found) {
   const auto n = static_cast<double>(all.count());
   const double deviation = std::sqrt(all.variance() * (n - 1.0) / n);

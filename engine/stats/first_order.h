@@ -18,7 +18,7 @@ inline constexpr std::size_t kEffectBins = 32;
 /// The least number of samples for an index: at least four bins with sixteen samples on average.
 inline constexpr std::uint64_t kFewestIndexSamples = 64;
 
-/// Sums over the samples of a response in one bin.
+/// Sums over the responses of the samples in one bin.
 struct BinSums {
   double count = 0.0;   ///< number of samples
   double sum = 0.0;     ///< sum of y - c over the responses y in the bin, with the same constant c for all bins
@@ -47,16 +47,17 @@ struct BinnedVariance {
   double between = 0.0;  ///< estimate of Var(E[y | u]), the variance of the mean response y given the error's uniform
                          ///< number u, without the bias from noise within bins; may be negative
   double total = 0.0;    ///< estimate of Var(y)
-  std::array<double, 3> signal{};  ///< part from the product of the noise of the bins and the effect
+  std::array<double, 3> signal{};  ///< part from the product of the bins' noise and the effect
   std::array<double, 3> noise{};  ///< part from the noise of the means and variances of the bins, as for normal samples
   std::array<double, 3> tails{};  ///< part added by kurtosis and skewness within bins; used only if positive
 };
 
 /// Computes the variance from the sums of a response in the bins of an error. all: the moments of the same samples.
-/// Uses 16, 8 or 4 bins if there are fewer than 16 samples for each bin, or a bin has fewer than four; NaN below
-/// kFewestIndexSamples. The part of an effect within bins is estimated as that of a straight line over the error
-/// (spread) in each bin, with the slope between the neighbouring bins. Bins between which the error decreases, as in
-/// the middle of a shifted distribution, are not neighbours. Without a spread this part is left out.
+/// Uses 16, 8 or 4 bins if there are fewer than 16 samples for each bin, or a bin has fewer than four. With fewer than
+/// kFewestIndexSamples samples all numbers are NaN. The part of an effect within bins is estimated as that of a
+/// straight line over the error (spread) in each bin, with the slope between the neighbouring bins. Bins between which
+/// the error decreases, as in the middle of a shifted distribution, are not neighbours. Without a spread this part is
+/// left out.
 ///
 /// `between` is too small. The relative bias with 32 bins, without a spread and with one (z is a standard normal
 /// error):

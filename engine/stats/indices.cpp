@@ -52,8 +52,8 @@ struct PoseStatistics {
   double spread2_variance() const { return noise_variance + signal_variance * std::max(spread2(), 0.0); }
 };
 
-/// Corrects an index x with the sampling variance v for the bias of a sample standard deviation, which is too small by
-/// v / (2 x) on average (second order of the square root).
+/// The index x of a pose, corrected for the bias of a sample standard deviation. With the sampling variance v of x, the
+/// bias is -v / (2 x) on average (second order of the square root).
 double unbiased(const LocalIndex& pose) {
   return pose.value == 0.0 ? 0.0 : pose.value + 0.5 * square(pose.standard_error) / pose.value;
 }
@@ -98,8 +98,9 @@ PoseStatistics statistics_over(std::span<const LocalIndex> poses) {
           .covariance = 2.0 * vd_sum / (m * freedom)};
 }
 
-/// Whether noise alone would give at least this spread with a probability above `level`. Without true spread, seen2
-/// follows noise2 / f times a chi-square of f = 2 noise2^2 / noise_variance degrees of freedom (Satterthwaite).
+/// Whether noise alone would give at least this spread with a probability above `level`. Without true spread, seen2 is
+/// distributed as noise2 / f times a chi-square with f = 2 noise2^2 / noise_variance degrees of freedom
+/// (Satterthwaite).
 bool may_be_noise(const PoseStatistics& s, double level) {
   if (s.seen2 == 0.0) return true;
   const double noise4 = square(s.noise2);
@@ -117,8 +118,8 @@ Interval spread_interval(const PoseStatistics& s, double z) {
   return {std::sqrt(std::max(middle - half, 0.0)), std::sqrt(std::max(middle + half, 0.0))};
 }
 
-/// The distance from mean + spread to one end of its interval. of_mean, of_spread: the same distances for the mean and
-/// for the spread alone (Zou and Donner 2008, with a correlation).
+/// The distance from mean + spread to one end of the interval of this sum. of_mean, of_spread: the same distances for
+/// the mean alone and for the spread alone (Zou and Donner 2008, with a correlation).
 double recovered(double of_mean, double of_spread, double correlation) {
   const double sum = square(of_mean) + square(of_spread) + 2.0 * correlation * of_mean * of_spread;
   return std::sqrt(std::max(sum, 0.0));

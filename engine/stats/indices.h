@@ -15,7 +15,7 @@ Estimate local_index(const Moments& response, double error_sigma, double conf_le
 
 /// The local index at one pose, from which a global index is computed.
 struct LocalIndex {
-  double value;           ///< index (Eqs. 51-52)
+  double value;           ///< index (Du et al. 2022, Eqs. 51-52)
   double standard_error;  ///< standard error of the value, from sampling
 
   void state(Archive& archive) { archive.real(value, standard_error); }  ///< Reads or writes both.
@@ -67,17 +67,18 @@ inline constexpr double kIndexRounding = 1e-10;
 /// an index of 1, and still have a smaller effect.
 inline constexpr double kIndexOfInterest = 1e-6;
 
-/// The magnitude below which an index is rounding: response_rounding / sigma, because solves round for any size of the
-/// error, but at least kIndexRounding. response_rounding: see Model::rounding().
+/// The magnitude below which an index is rounding: response_rounding / sigma, because the rounding of solves does not
+/// depend on the size of the error, but at least kIndexRounding. response_rounding: see Model::rounding().
 double index_rounding(double response_rounding, double sigma);
 
 /// The magnitude up to which a response to errors is rounding: response_rounding, but at least kIndexRounding times the
 /// larger size. linear, angular: the sizes of the length errors (m) and angle errors (rad); NaN if there are none. SI.
 double size_rounding(double response_rounding, double linear, double angular);
 
-/// The standard deviation up to which a response is rounding while P errors vary together. It is the root of the sum of
-/// (index_rounding() sigma)^2 over the errors, because independent effects add in this way. So if no error alone has an
-/// effect on a response, the response does not count as varying with all of them. sigma: [errors]. All numbers are SI.
+/// While P errors vary together, a response does not count as varying if its standard deviation is at most this value,
+/// because rounding alone may cause that. The value is the root of the sum of (index_rounding() sigma)^2 over the
+/// errors, because independent effects add in this way. So if no error alone has an effect on a response, all together
+/// count as having none. sigma: [errors]. All numbers are SI.
 double joint_rounding(double response_rounding, std::span<const double> sigma);
 
 /// Whether a response does not vary: none of its standard deviations (for instance at several poses) is more than

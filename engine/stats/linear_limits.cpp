@@ -75,7 +75,8 @@ LinearLimits::Machines LinearLimits::machines(std::span<const double> errors, st
       add_ends(limit, errors, reach, found);
     }
   }
-  // So far a range contains changes of the error. Adding the error to both ends makes it a range of the error itself.
+  // So far the ranges are ranges of the change of an error. Adding the error to both ends gives the range of the error
+  // itself.
   for (std::size_t k = 0; k < errors.size(); ++k) {
     found.low[k] += errors[k];
     found.high[k] += errors[k];

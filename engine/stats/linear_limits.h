@@ -33,13 +33,14 @@ class ErrorRange {
   double centre_;
 };
 
-/// A limit at one pose on a vector that is linear in the errors e, offset + slope e: on its norm, or on its value if it
-/// has only one component.
+/// A limit at one pose on a vector offset + slope e, which is linear in the errors e. The limit is on the norm of the
+/// vector, or on its value if it has only one component.
 struct LinearLimit {
   std::size_t rows;  ///< components of the vector
-  ValueLimit limit;  ///< limit on the norm; if not a limit on magnitudes, limit on the value of the only component
-  std::vector<double> offset;  ///< [rows] the vector for zero errors, SI
-  std::vector<double> slope;   ///< [rows x errors] derivatives by the errors, SI
+  /// Limit on the norm if it is a limit on magnitudes; otherwise limit on the value of the only component.
+  ValueLimit limit;
+  std::vector<double> offset;  ///< [components] the vector for zero errors, SI
+  std::vector<double> slope;   ///< [components x errors] derivatives by the errors, SI
 };
 
 /// An equivalent limit on a vector with as few components as possible: the vector is rotated, and components below a
@@ -57,7 +58,7 @@ class LinearLimits {
   /// The results of several machines.
   struct Machines {
     std::vector<std::uint8_t> rejected;  ///< [machines] 1 if a limit is broken
-    /// [errors x machines] lower end of the range in which the machine is good; above `high` if there is none.
+    /// [errors x machines] Lower end of the range in which the machine is good; above `high` if the range is empty.
     std::vector<double> low;
     std::vector<double> high;  ///< [errors x machines] upper end of the range in which the machine is good
   };

@@ -22,18 +22,16 @@ void add(Array<Rejects, Axes...>& to, const Array<Rejects, Axes...>& rejects) {
   for (std::size_t k = 0; k < to.size(); ++k) add(to.all()[k], rejects.all()[k]);
 }
 
-/// Reads or writes rejects. Numbers that are read are checked against the rejects under any limit, `among`, and against
-/// the number of machines with an unsolved sample, because only such a machine can be rejected in the strict count
-/// alone.
+/// Reads or writes rejects. When reading, checks them against `among`, the rejects under any limit, and against the
+/// number of machines with an unsolved sample: only such a machine can be in the strict count alone.
 void rejects_state(Archive& archive, Rejects& rejects, const Rejects& among, std::uint64_t unsolved) {
   archive.number(rejects.strict, among.strict);
   archive.number(rejects.lenient, std::min(among.lenient, rejects.strict));
   archive.expect(rejects.strict - rejects.lenient <= unsolved, "has rejects without a reason");
 }
 
-/// A function that updates the results of some machines by the values of one response at one pose: whether they are
-/// within the limit, their largest magnitudes, and their sums of squares. Machines whose sample does not count are not
-/// changed.
+/// Updates the results of some machines by the values of one response at one pose: whether the machines are within the
+/// limit, their largest magnitudes, and their sums of squares. Machines whose sample does not count are not changed.
 struct ResponseAtPose {
   std::span<const double> values;
   std::span<const std::uint8_t> counts;

@@ -50,7 +50,7 @@ struct MachineCounts {
 /// is 0, out of distributions, and state their number (MachineCounts::unsolved).
 class MachineBlock {
  public:
-  /// limits: [responses] one for each response, infinite for none. machines: their number.
+  /// limits: one for each response; infinite for a response without a limit. machines: the number of machines.
   MachineBlock(std::span<const ValueLimit> limits, std::size_t machines);
 
   /// Adds the outcomes at the next pose. responses: [responses x machines], row-major as in OutcomeBlock. counts:
@@ -78,7 +78,8 @@ class MachineBlock {
   std::vector<double> values_of(std::size_t response, std::size_t machine) const;
   /// [machines] 1 if the limit is broken at the poses where the machine's sample counts, else 0.
   std::vector<std::uint8_t> beyond(std::size_t response) const;
-  /// The rejects of a response at a pose, for a limit over poses. beyond: see beyond().
+  /// The rejects of a response at a pose, for a limit over poses. beyond: what the function beyond() returns for this
+  /// response.
   Rejects rejects_over_poses(std::size_t response, std::size_t pose, std::span<const std::uint8_t> beyond) const;
 
   std::vector<ValueLimit> limits_;    ///< [responses] limit of each response

@@ -15,8 +15,8 @@
 /// while all others vary.
 namespace poesy {
 
-/// The bins of the samples of a block. If the same machines are used at all poses, the bins are the same at each pose,
-/// so make them once.
+/// The bin of each sample of a block, for each error. If the same machines are used at all poses, the bins are the same
+/// at each pose, so make them once.
 class EffectBins {
  public:
   /// uniforms: [errors x samples], row-major, the uniform numbers u from which the errors are drawn. Sample b belongs
@@ -34,8 +34,8 @@ class EffectBins {
   std::vector<std::uint32_t> filled_;
 };
 
-/// Four responses of a sample, or their sums: y - shift and its square, alternating. A row is aligned with a cache
-/// line, because a row in two lines takes twice the time.
+/// Numbers for four responses y of a sample: y - shift and its square, alternating; or the sums of these numbers over
+/// samples. A row is aligned with a cache line, because a row in two lines takes twice the time.
 struct alignas(64) EffectRow : std::array<double, 8> {};
 
 /// Sums over the samples of each bin, for each response and error. First-order indices and main-effect curves are
@@ -55,8 +55,8 @@ class MainEffectSums {
 
   std::uint64_t samples() const { return moments_.front().count(); }  ///< The number of samples that count.
 
-  /// The variance of a response, and the part of it by one error. spread: distribution of this error within bins, or
-  /// all zero (first_order.h).
+  /// The variance of a response, and the part of this variance that one error causes. spread: distribution of this
+  /// error within bins, or all zero (first_order.h).
   BinnedVariance variance(std::size_t response, std::size_t error, const BinSpread& spread) const;
 
   /// The main effect as a curve: E[y | u in bin] with Student's interval. The level holds for each interval alone, not

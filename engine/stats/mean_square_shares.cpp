@@ -9,7 +9,7 @@
 namespace poesy {
 namespace {
 
-/// The factor by which the least-squares variance of a slope is multiplied; see mean_square_shares.h.
+/// The factor by which the least-squares variance of a slope is multiplied; mean_square_shares() gives the reason.
 constexpr double kSquaredRest = 5.0;
 
 /// Sums over the rows of a vector.

@@ -27,7 +27,7 @@ class MergeTree {
     Sum sum;             ///< sum of these leaves
   };
 
-  /// The largest number of nodes of a tree with this many leaves from leaf 0 on.
+  /// The largest number of nodes of a tree whose leaves are 0 to `leaves` - 1.
   static constexpr std::size_t most_nodes(std::size_t leaves) {
     std::size_t digits = 0;
     for (; leaves > 0; leaves /= kBranches) ++digits;
@@ -50,7 +50,7 @@ class MergeTree {
 
   bool empty() const { return nodes_.empty(); }                             ///< Whether no leaf was added.
   std::size_t first() const { return empty() ? 0 : nodes_.front().first; }  ///< The first leaf; 0 if there are none.
-  /// The number of the leaf after the last.
+  /// The number of the last leaf plus 1; 0 if there are none.
   std::size_t end() const { return empty() ? 0 : nodes_.back().first + nodes_.back().leaves; }
 
   /// The sum of all leaves, merged from the last node, the smallest, to the first. Precondition: there is a leaf.
@@ -92,7 +92,7 @@ class MergeTree {
  private:
   static constexpr std::size_t kBranches = 8;
 
-  /// The leaves of the largest branch that divides this number of leaves. Precondition: leaves > 0.
+  /// The largest power of eight that divides `leaves`. Precondition: leaves > 0.
   static std::size_t branch_of(std::size_t leaves) {
     std::size_t branch = 1;
     for (; leaves % kBranches == 0; leaves /= kBranches) branch *= kBranches;

@@ -76,7 +76,7 @@ Moments Moments::of(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
   const double mean = sum_of(values) / n;
   const auto [m1, m2, m3, m4] = power_sums(values, mean);
-  // shift is the rounding error of the mean; it corrects the moments about the mean.
+  // Here `shift` is the rounding error of the mean; it corrects the moments about the mean.
   const double shift = m1 / n;
   moments.count_ = values.size();
   moments.mean_ = mean + shift;

@@ -86,11 +86,11 @@ class MeanIntervals {
   double quantile_ = 0.0;
 };
 
-/// Statistics of the samples in M groups.
+/// Statistics of samples in several groups.
 struct Groups {
-  std::span<const std::uint64_t> count;  ///< [M] number of samples in each group
-  std::span<const double> mean;          ///< [M] mean of the samples
-  std::span<const double> std;           ///< [M] sample standard deviation
+  std::span<const std::uint64_t> count;  ///< [groups] number of samples in each group
+  std::span<const double> mean;          ///< [groups] mean of the samples
+  std::span<const double> std;           ///< [groups] sample standard deviation
 };
 
 /// The mean of all samples of all groups together. The interval is that of stratified sampling, where the groups are

@@ -13,7 +13,7 @@ struct NumberBlock {
   NumberBlock() = default;
   explicit NumberBlock(std::span<const double> numbers);  ///< Precondition: all numbers are finite.
 
-  /// The numbers; if more than kMostExact, each may be replaced by another of the same bucket.
+  /// The numbers. If there are more than kMostExact, each may be replaced by another number of its bucket.
   std::vector<double> values;
   Extremes extremes;  ///< extremes of the numbers
 

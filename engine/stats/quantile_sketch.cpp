@@ -68,7 +68,7 @@ BucketScale scale_for(std::span<const double> values, const Extremes& extremes) 
   return pages.scale();
 }
 
-/// The extremes of the magnitudes of numbers. zeros: whether some are zero.
+/// The extremes of the magnitudes of numbers with these extremes. zeros: whether some numbers are zero.
 Extremes of_magnitudes(const Extremes& extremes, bool zeros) {
   Extremes folded{.count = extremes.count};
   folded.max = std::max(-extremes.min, extremes.max);

@@ -37,7 +37,7 @@ class QuantileSketch {
  public:
   /// The largest number of pages of buckets, unless the coarsest scale has more.
   static constexpr std::size_t kMostPages = BucketCounts::kMostPages;
-  /// The largest relative error of quantile() as an order statistic; the error is also at most half of the bucket's
+  /// The largest relative error of quantile() as an order statistic. The error is also at most half of the bucket's
   /// width (order_statistic_error()). Numbers below 2^-1022 in magnitude (subnormal) count as zero.
   static constexpr double kRelativeError = BucketScale::kRelativeError;
 

@@ -33,7 +33,7 @@ class RatioSums {
   std::uint64_t count() const { return count_; }  ///< The number of pairs.
   double mean_x() const;                          ///< The mean of x; NaN when empty.
   double mean_w() const;                          ///< The mean of w; NaN when empty.
-  /// The ratio; NaN if no w is above zero.
+  /// The ratio mean_x() / mean_w(); NaN if no w is above zero.
   double value() const;
   /// The ratio with Fieller's interval, by Student's quantile with count - 1 degrees of freedom. The interval is
   /// [value, value] if x and w do not scatter about the ratio; NaN at both ends below two pairs, or if w may be zero at

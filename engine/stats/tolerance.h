@@ -67,13 +67,13 @@ struct MeanSquare {
 MeanSquare mean_square(const ResponseStudy& study);
 
 /// [errors] The share of each error in the increase of the mean square by all errors with these standard deviations:
-/// effects_p sigma_p^2 over its sum. All NaN if an effect is not known or no error has one.
+/// effects_p sigma_p^2 over the sum of these products. All NaN if an effect is not known or no error has one.
 std::vector<double> mean_square_shares(const MeanSquare& response, std::span<const double> sigma);
 
-/// [errors] The multiple of `proportions` [errors] whose predicted mean square is limit^2. An infinite proportion gives
-/// an infinite tolerance. The tolerance of an error with an effect is at most largest [errors]. If this bound lowers a
-/// tolerance, the others grow until the limit is reached. NaN if the prediction is not known. Precondition: limit^2 >
-/// background.
+/// [errors] The proportions times a common factor. The factor makes the predicted mean square limit^2. An infinite
+/// proportion gives an infinite tolerance. The tolerance of an error with an effect is at most largest [errors]. If
+/// this bound lowers a tolerance, the others grow until the limit is reached. NaN if the prediction is not known.
+/// Precondition: limit^2 > response.background.
 std::vector<double> tolerances_within(const MeanSquare& response, std::span<const double> proportions, double limit,
                                       std::span<const double> largest);
 
@@ -104,8 +104,8 @@ struct LimitTolerances {
   std::vector<double> equal_tolerance;  ///< [errors] the same number for all lengths, and another for all angles
 };
 
-/// one_size: [errors] the proportions of equal_tolerance; largest: [errors] upper bounds of equal_effect. Precondition:
-/// limit^2 > response.background.
+/// The tolerances for this limit. one_size: [errors] the proportions of equal_tolerance. largest: [errors] upper bounds
+/// of equal_effect. Precondition: limit^2 > response.background.
 LimitTolerances limit_tolerances(const ResponseStudy& study, const MeanSquare& response,
                                  std::span<const double> one_size, double limit, std::span<const double> largest);
 

@@ -195,7 +195,7 @@ Estimate ScoreSums::mean_score(std::size_t error, double conf_level) const {
   const auto* const normal = std::get_if<NormalScore>(&scores_.each[error]);
   const double ends = normal == nullptr ? 0.0 : normal->ends();
   const auto [sum, square, cube] = slope_[error];
-  // the powers of the score, whose constant part is added here
+  // The powers of z^2 - 1 and the constant part `ends` together give the powers of the score.
   const PowerSums powers{sum + ends * rejects, square + ends * (2.0 * sum + ends * rejects),
                          cube + ends * (3.0 * square + ends * (3.0 * sum + ends * rejects))};
   ScoreMoments added{0.0, 0.0};

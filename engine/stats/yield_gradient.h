@@ -73,9 +73,9 @@ class ScoreSums {
   /// the gradient of a sum of normal errors with nine or more rejects, and 90 % with five (theory.md). Scores of
   /// correlated errors and of other distributions spread more, so their second and third moments include four more
   /// rejects (kAddedRejects). The interval does not include what a PolynomialScore leaves out. That part is large if
-  /// one error alone makes the rejects; the gradient by that error is then NaN. The criterion, by Student's test at 99
-  /// %, is that the mean of the score up to degree 2 is less than half or more than twice the mean of S. NaN for errors
-  /// without a score; NaN at both ends below two rejects. Precondition: 0 < conf_level < 1.
+  /// one error alone causes the rejects; the gradient by that error is then NaN. The criterion, by Student's test at 99
+  /// %, is that the mean of the score up to degree 2 is less than half or more than twice the mean of the whole score.
+  /// NaN for errors without a score; NaN at both ends below two rejects. Precondition: 0 < conf_level < 1.
   std::vector<Estimate> gradient(double conf_level) const;
 
   /// [errors] The change of Y, between -Y and 1 - Y, if the size of the error grows by the factor kErrorGrowth and the
@@ -88,7 +88,7 @@ class ScoreSums {
   /// The mean score of one error over all machines; good machines have the score 0.
   Estimate mean_score(std::size_t error, double conf_level) const;
   Estimate mean_growth(std::size_t error, double conf_level) const;
-  /// Whether this error alone makes the rejects, so that its PolynomialScore leaves out a large part.
+  /// Whether this error alone causes the rejects, so that its PolynomialScore leaves out a large part.
   bool dominates(std::size_t error, const Estimate& score) const;
   /// Adds to the sums the scores of a block of correlated errors for the rejected machines. errors: as in add(). count:
   /// number of machines. rejects: positions of the rejected machines.
@@ -107,7 +107,7 @@ class ScoreSums {
   std::vector<PowerSums> more_;    ///< [errors] sums of 2 S - parabola() of a PolynomialScore S over the rejects
 };
 
-/// The estimate and the ends of its interval, each moved to the nearest number between these bounds.
+/// The estimate and the ends of its interval, each limited to the range from `least` to `most`.
 Estimate within(const Estimate& estimate, double least, double most);
 
 }  // namespace poesy

@@ -64,12 +64,12 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
 ///     number   count of the stages; then each stage as blocks that follow each other, the last of which is empty
 ///     32 bytes SHA-256 of everything before
 ///
-/// The content of a state is known only to the version of the program that wrote it, which is part of the identity.
+/// Only the version of the program that wrote a state can read it. So the identity contains this version.
 std::vector<StoredState> write_checkpoint(const CheckpointIdentity& identity, const RunTime& time,
                                           std::span<const ByteSource> stages, const ByteWriter::Sink& sink);
 
-/// Returns true if the file begins like a checkpoint. None if it cannot be read, with the reason in errno.
-/// Precondition: file.is_open().
+/// Returns true if the file begins like a checkpoint. Returns none if the file cannot be read, with the reason in
+/// errno. Precondition: file.is_open().
 std::optional<bool> begins_as_checkpoint(const PlainFile& file);
 
 /// Reads a whole checkpoint file. Throws BytesError for content that write_checkpoint() does not write.
@@ -82,13 +82,15 @@ struct FoundCheckpoint {
   std::string passed_over;  ///< why the newer checkpoint was not used; empty if this is the newer checkpoint
 };
 
-/// The end of the older checkpoint's name, which is RESULT.h5 followed by this. No file of a run has a longer end.
+/// The text that is added to the path of a result to get that of the older checkpoint. No file of a run has a longer
+/// end.
 inline constexpr std::string_view kOlderEnd = ".part.1";
 
 /// The two checkpoints of an unfinished run, beside its result: the newer one is RESULT.h5.part, the older one
 /// RESULT.h5.part.1. Each has its own digest. A new checkpoint is written under a temporary name (FileWriter) and
-/// synced. Then RESULT.h5.part is linked as RESULT.h5.part.1, and the new file is renamed to RESULT.h5.part. So once
-/// RESULT.h5.part exists, it exists at any moment. Checkpoints have the permissions of an existing result.
+/// synced. RESULT.h5.part is then linked as RESULT.h5.part.1, and the new file is renamed to RESULT.h5.part. So from
+/// the first checkpoint on, there is a RESULT.h5.part at any moment. Checkpoints have the permissions of an existing
+/// result.
 class CheckpointFiles {
  public:
   explicit CheckpointFiles(const std::string& result_path);  ///< result_path: the path of the result.

@@ -40,7 +40,7 @@ void make_nans_equal(const h5::Value& head, std::span<std::byte> numbers) {
   }
 }
 
-/// Adds objects to a hash in the form that content_hash.h describes.
+/// Adds the objects of a file to a hash, in the form that content_hash.h describes.
 class ContentHasher {
  public:
   explicit ContentHasher(const h5::File& file) : file_(file) {}

@@ -33,8 +33,9 @@ Sha256::Digest sha256(std::span<const std::byte> bytes);  ///< The SHA-256 of th
 
 std::string hex(std::span<const std::byte> bytes);  ///< The bytes in lower-case hexadecimal.
 
-/// The SHA-256 (lower-case hexadecimal) of the content of a result file, except `/run` and its own attribute
-/// `content_sha256`. It depends on names, shapes, types and values, not on how HDF5 stores them.
+/// The SHA-256 (lower-case hexadecimal) of the content of a result file. The content leaves out `/run`, and the
+/// attribute `content_sha256` in which the file states this hash. The hash depends on names, shapes, types and values,
+/// not on how HDF5 stores them.
 ///
 /// What is hashed, in this order, so that any program can recompute it:
 ///

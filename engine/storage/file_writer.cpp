@@ -267,8 +267,8 @@ void FileWriter::commit() {
 
 std::uint64_t FileWriter::expected_size() const { return expected_ ? expected_() : length_; }
 
-/// The text "needs N bytes, M are free", as far as the numbers are known. Blocks of the unfinished file count as free,
-/// because they will be released.
+/// The text "needs N bytes, M are free", as far as the numbers are known. The blocks of the unfinished file count as
+/// free, because this file will be removed.
 std::string FileWriter::missing_space() const {
   const std::uint64_t size = expected_size();
   std::string text = size == 0 ? "" : "; needs " + std::to_string(size) + " bytes";

@@ -18,7 +18,7 @@ struct OutputKind {
   std::string_view name;  ///< name of the kind, such as "result"
   /// Returns true if the existing file at `path` is of this kind, or empty.
   bool (*may_be_replaced)(const std::string& path);
-  /// Longest end that is added to the file's name for further files, such as checkpoints.
+  /// Longest text that is added to the file's name for the names of further files, such as checkpoints.
   std::string_view longest_end = {};
 };
 
@@ -56,9 +56,9 @@ bool fill_randomly(std::span<std::byte> bytes);  ///< Fills bytes with random nu
 class FileWriter {
  public:
   /// Refuses a path at which there is something other than a plain file (a folder, a device). The new file gets the
-  /// permission bits of the file `like` if that exists. Otherwise it gets those of the file that it replaces, or of the
-  /// umask if it replaces none. fill: chooses the temporary name. If a file with the temporary name exists, it is not
-  /// changed, and FileError is thrown.
+  /// permission bits of the file `like` if that exists, otherwise those of the file that it replaces, otherwise those
+  /// that the umask allows. fill: gives the random bytes of the temporary name. If a file with the temporary name
+  /// exists, it is not changed, and FileError is thrown.
   explicit FileWriter(std::string path, const std::string& like = {}, FillRandomly fill = fill_randomly);
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
@@ -100,7 +100,7 @@ class FileWriter {
   std::string path_;
   std::string temporary_;
   ExpectedSize expected_;     // empty if not given
-  std::uint64_t length_ = 0;  // length by put() and end_at(), even after an error
+  std::uint64_t length_ = 0;  // length that put() and end_at() gave, even after an error
   int descriptor_ = -1;
   int error_ = 0;  // first error of put(), get() or end_at(), an errno
 };

@@ -117,7 +117,8 @@ Shape shape_of(hid_t space, const std::string& object) {
   return {lengths.begin(), lengths.end()};
 }
 
-/// The size of a slice in bytes: large enough for fast disk access, small compared with a result.
+/// The size in bytes of the slices in which a dataset is written or read: large enough for fast disk access, small
+/// compared with a result.
 constexpr std::size_t kSlice = std::size_t{1} << 22U;
 
 /// A rectangular range of a dataset, called a hyperslab in HDF5.
@@ -370,7 +371,8 @@ Handle group_properties(hid_t kind) {
   return properties;
 }
 
-/// Throws if there is little memory: HDF5 1.10 may then crash when it creates a file. It needs half of this.
+/// Throws if there is little memory. HDF5 1.10 may crash when it creates a file without enough memory; it needs half of
+/// kRoom.
 void expect_room_for_file() {
   constexpr std::size_t kRoom = std::size_t{8} << 20U;
   if (!has_address_space(kRoom)) throw std::bad_alloc();

@@ -27,8 +27,9 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The exception for a file whose structure poesy never writes: references to bytes outside the file, or links that do
-/// not form a tree. what() is a clause that names the object; the name comes from the file, so it is not trusted.
+/// The exception for a file with a structure that poesy never writes: references to bytes outside the file, or links
+/// that do not form a tree. what() is a clause that names the object. This name comes from the file, so do not trust
+/// it.
 class StrangeFile : public Error {
  public:
   using Error::Error;
@@ -65,8 +66,8 @@ class File {
  public:
   static File in_memory();  ///< An empty file in memory.
   /// An empty file whose bytes `disk` writes. `disk` must outlive the file and be committed after close(). FileWriter
-  /// keeps errors of the disk (FileWriter::check). HDF5 itself sees an error only if it reads back bytes that were not
-  /// written.
+  /// keeps errors of the disk until FileWriter::check(). HDF5 itself sees an error only if it reads bytes that could
+  /// not be written before.
   static File on_disk(FileWriter& disk);
   /// An existing plain file, read-only. Throws Error at once for a folder, a FIFO, a device or a socket.
   static File open(const std::string& path);

@@ -23,7 +23,7 @@ struct OpenFile : H5FD_t {
   haddr_t end = 0;        ///< end of the bytes that are written
 };
 
-/// The access properties that HDF5 passes to open_file(), as far as this driver defines them.
+/// The data of this driver that HDF5 stores in access properties, and passes to open_file().
 struct Properties {
   const std::shared_ptr<FileWriter*>* writer;
 };

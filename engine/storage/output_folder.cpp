@@ -129,7 +129,7 @@ void OutputFolder::remove(const std::set<std::string>& names) const {
   }
 }
 
-/// The end of the message after a failure: how many of the claimed files are new.
+/// The end of the message after a failure: how many of the claimed files have been written.
 std::string OutputFolder::what_is_there() const {
   const auto is_new = [&](const auto& claimed) { return file_at(file(claimed.first)) != claimed.second; };
   const auto written = static_cast<std::size_t>(std::ranges::count_if(claimed_, is_new));

@@ -92,7 +92,8 @@ rlim_t stored_bytes(const std::string& path) {
   return file.is_open() ? file.stored_bytes() : 0;
 }
 
-/// Messages of a child: that it succeeded, and that it had too little memory. Any other message is that of a FileError.
+/// Messages of a child to its parent: that it succeeded, and that it had too little memory. Any other message is the
+/// text of a FileError.
 constexpr std::string_view kEndedWell = "+";
 constexpr std::string_view kNoMemory = "-";
 

@@ -18,6 +18,7 @@ struct LibraryVersion {
   std::string_view version;  ///< version as the library states it
 };
 
-std::span<const LibraryVersion> build_versions();  ///< The compiler and the libraries this program was built with.
+/// The compiler and the libraries with which this program was built.
+std::span<const LibraryVersion> build_versions();
 
 }  // namespace poesy

@@ -19,17 +19,18 @@
 namespace poesy {
 namespace {
 
-/// The number of work units that are handed to a rank in advance for each of its threads: kAhead at first, kMostAhead
-/// at most. It grows if the rank solves units faster than messages are exchanged.
+/// The number of work units that a rank has in advance for each of its threads: kAhead at first, kMostAhead at most.
+/// The number grows if the rank solves units faster than messages are exchanged.
 constexpr std::size_t kAhead = 4;
 constexpr std::size_t kMostAhead = 128;
 constexpr std::chrono::milliseconds kQuick{3};
-/// The largest number of units that are handed out but not yet merged. If ranks could use more, merging on rank 0 would
-/// be the bottleneck anyway.
+/// The largest number of units that are handed out but not yet merged. If ranks could use more units, merging on rank 0
+/// would be the bottleneck anyway.
 constexpr std::size_t kMostSlots = 65536;
 /// The largest number of bytes of outputs that wait on rank 0 to be merged in order.
 constexpr std::size_t kMostWaitingBytes = std::size_t{256} << 20U;
-/// Outputs are collected in a message, which is sent when it has this many bytes or after this time.
+/// Outputs are collected in a message, which is sent when it has kSendBytes bytes, or kSendEvery after the last one was
+/// sent.
 constexpr std::size_t kSendBytes = std::size_t{16} << 10U;
 constexpr std::chrono::microseconds kSendEvery{500};
 
@@ -37,7 +38,7 @@ constexpr std::chrono::microseconds kSendEvery{500};
 /// the pieces of work range by range.
 class RankPool {
   /// Wraps a function that oneTBB calls, so that the pool closes if the function throws. Otherwise a thread that waits
-  /// for a number would wait forever, because oneTBB does not end it.
+  /// for the next piece of work would wait forever, because oneTBB does not end it.
   template <class Function>
   auto closing(Function function) {
     return [this, function = std::move(function)](auto... arguments) {
@@ -51,7 +52,8 @@ class RankPool {
   }
 
  public:
-  /// A function that returns the slot for the number n, which is the next one. Called from one thread at a time.
+  /// A function that gives the place (slot) for the output of piece n of the work. It is called in the order of n, from
+  /// one thread at a time.
   using SlotOf = std::function<std::size_t(std::size_t n)>;
 
   /// Calls deliver(n, slot) after each piece of work n, one at a time, on threads of the pool.
@@ -85,7 +87,7 @@ class RankPool {
     given_.notify_one();
   }
 
-  /// Waits until few numbers are left to work on, but at most this long.
+  /// Waits until the pool needs more work soon, but at most this long.
   void wait(std::chrono::microseconds at_most) {
     std::unique_lock lock(mutex_);
     hungry_.wait_for(lock, at_most, [&] { return hungry_now_; });
@@ -129,7 +131,7 @@ class RankPool {
   }
 
   SlotOf slot_of_;
-  std::size_t low_;  ///< the pool asks for more work if this many numbers or fewer wait
+  std::size_t low_;  ///< the pool asks for more work when no more than this number of pieces wait
   std::mutex mutex_;
   std::condition_variable given_;
   std::condition_variable hungry_;
@@ -289,8 +291,8 @@ class Leader {
   std::size_t threads_ = 0;  ///< threads of the ranks that are ready
   std::size_t next_to_give_ = 0;
   std::size_t next_to_merge_ = 0;
-  std::vector<std::uint8_t> done_;  ///< [slots] 1 if the slot has an output
-  std::vector<std::size_t> bytes_;  ///< [slots] bytes of an output that another rank sent
+  std::vector<std::uint8_t> done_;  ///< [slots] 1 if the place (slot) has an output that is not yet merged
+  std::vector<std::size_t> bytes_;  ///< [slots] bytes of the output in this place, if another rank sent it
   std::size_t waiting_bytes_ = 0;
   std::mutex mutex_;
   std::vector<std::size_t> delivered_;  ///< numbers that the pool delivered
@@ -382,7 +384,7 @@ class Follower {
   Team* team_;
   const RunOptions* options_;
   const SlotWork* work_;
-  std::size_t taken_ = 0;  ///< numbers that the pool has taken
+  std::size_t taken_ = 0;  ///< number of pieces of work that the pool has taken
   /// True if the stage is complete, as the end message says; none before that message.
   std::optional<bool> complete_;
   std::size_t given_ = 0;  ///< numbers received from rank 0

@@ -84,7 +84,7 @@ class Team {
 
   /// Returns true if this is rank 0.
   bool leads() const { return ranks_->rank() == 0; }
-  /// The connection to the other ranks.
+  /// The connection between the ranks.
   const Ranks& ranks() const { return *ranks_; }
   /// The threads of all ranks together; known to rank 0 after agree().
   std::size_t threads() const { return threads_; }
