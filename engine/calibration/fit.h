@@ -102,8 +102,8 @@ struct FitResult {
 
 /// Finds the minimum of the sum of squares by at most 30 Gauss-Newton steps. A step is halved until the sum does not
 /// grow. Directions that the measurements do not determine move theta only if there is a prior: without one, each step
-/// has the least norm of the scaled numbers. Residuals that both theta and the frame can explain are attributed to the
-/// frame.
+/// has the least norm, with each component of theta divided by its scale. Residuals that both theta and the frame can
+/// explain are attributed to the frame.
 FitResult fit(const FitProblem& problem);
 
 }  // namespace poesy::calibration
