@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/base/units.h"
 #include "engine/calibration/drive_correction.h"
 #include "engine/calibration/inference.h"
 #include "engine/calibration/left.h"
@@ -126,6 +127,7 @@ class Calibration {
         columns_(fitted_columns(machine.study, table_, exact_)),
         measurement_(exact_, measured_poses(), measured_values(machine, weights_.sd), frame(), target()) {
     check_count();
+    check_deviations();
   }
 
   Calibrated run() {
@@ -198,6 +200,22 @@ class Calibration {
     throw InputError({machine_.path},
                      fmt::format("{} fitted errors{} and {} measured values", table_.fit.size(), of_places, measured),
                      "measure at more poses, fit fewer, or take prior = \"tolerances\"");
+  }
+
+  /// Throws InputError if a deviation in the platform's own frame is a length above the mechanism's reach: its unit is
+  /// wrong, and no fit would end.
+  void check_deviations() const {
+    if (frame() != calibration::Frame::known) return;
+    for (const MachineValue& value : machine_.file.values) {
+      const bool is_length = value.column == MachineColumn::deviation && dimension_of(value) == Dimension::length;
+      if (!is_length || std::abs(value.value) <= exact_.reach()) continue;
+      throw InputError(
+          {machine_.path, value.row + 2, 1},
+          fmt::format("{} is {}, which is more than the mechanism's reach ({})", machine_.file.name_of(value),
+                      readable_text({value.value, Dimension::length}),
+                      readable_text({exact_.reach(), Dimension::length})),
+          fmt::format("name the unit of the column in the first line, e.g. '{} [mm]'", value.column_name()));
+    }
   }
 
   void set_fitted(CalibrationResult& result) const {
