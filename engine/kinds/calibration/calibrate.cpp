@@ -202,19 +202,20 @@ class Calibration {
                      "measure at more poses, fit fewer, or take prior = \"tolerances\"");
   }
 
-  /// Throws InputError if a deviation in the platform's own frame is a length above the mechanism's reach: its unit is
-  /// wrong, and no fit would end.
+  /// Throws InputError if a deviation in the platform's own frame is a length above a tenth of the mechanism's reach:
+  /// the unit of its column is wrong, and a fit to it takes minutes.
   void check_deviations() const {
+    constexpr double kMostOfReach = 0.1;
     if (frame() != calibration::Frame::known) return;
     for (const MachineValue& value : machine_.file.values) {
       const bool is_length = value.column == MachineColumn::deviation && dimension_of(value) == Dimension::length;
-      if (!is_length || std::abs(value.value) <= exact_.reach()) continue;
+      if (!is_length || std::abs(value.value) <= kMostOfReach * exact_.reach()) continue;
       throw InputError(
           {machine_.path, value.row + 2, 1},
-          fmt::format("{} is {}, which is more than the mechanism's reach ({})", machine_.file.name_of(value),
-                      readable_text({value.value, Dimension::length}),
-                      readable_text({exact_.reach(), Dimension::length})),
-          fmt::format("name the unit of the column in the first line, e.g. '{} [mm]'", value.column_name()));
+          fmt::format("{} is {}, which is more than a tenth of the mechanism's reach ({})",
+                      machine_.file.name_of(value), readable_text({value.value, Dimension::length}, 4),
+                      readable_text({exact_.reach(), Dimension::length}, 4)),
+          fmt::format("name the unit of the column in the first line, e.g. '{} [um]'", value.column_name()));
     }
   }
 
