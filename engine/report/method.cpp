@@ -29,7 +29,7 @@ std::string errors_sentence(const StoredResult& result, const StudyWords& words)
 }
 
 std::string poses_sentence(const StoredResult& result, const StudyWords& words) {
-  const std::string choice = words.from_tables ? std::string() : setting(result, "poses", "select");
+  const std::string choice = words.own_poses ? setting(result, "poses", "select") : std::string();
   std::string text = "The mechanism was solved at " + counted(result.poses.size(), "pose", "poses");
   if (!choice.empty()) text += fmt::format(" (selected: {})", choice);
   const std::string samples = setting(result, "analysis", "samples");

@@ -17,7 +17,8 @@ namespace poesy {
 /// Facts about the study of a result that its kind states, for the list of what was run.
 struct StudyWords {
   bool draws = false;                   ///< true if errors were drawn from distributions
-  bool from_tables = false;             ///< true if poses and errors came from tables instead of the study
+  bool from_tables = false;             ///< true if errors, or measurements of them, came from a table
+  bool own_poses = true;                ///< true if the poses are those of the study
   std::string samples = {};             ///< number of samples at each pose, as text; empty: that of the study
   std::vector<std::string> sizes = {};  ///< sizes of the errors, if they are not drawn
   /// Sizes with which errors are drawn, if the kind chose them itself; empty: those of [errors].

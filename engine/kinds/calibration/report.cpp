@@ -10,6 +10,7 @@
 #include "engine/kinds/calibration/result.h"
 #include "engine/kinds/calibration/words.h"
 #include "engine/report/display.h"
+#include "engine/report/drawn_errors.h"
 #include "engine/report/signs.h"
 #include "engine/report/tables.h"
 
@@ -31,6 +32,7 @@ Table fitted_table(const CalibrationResult& found) {
         value("sd", found.sd),
         {number_column("scale_over_sd", found.has_tolerances != 0 ? "tolerance/sd" : "scale/sd"),
          [&](std::size_t n) { return number_cell(found.scale(n) / found.sd(n), 2); }}});
+  for (std::string& warning : calibration_warnings(found)) table.notes.push_back(std::move(warning));
   if (const std::string typed = typed_text(found); !typed.empty()) table.notes.push_back(typed);
   for (std::string& note : estimate_notes(found)) table.notes.push_back(std::move(note));
   for (std::string& note : left_notes(found)) table.notes.push_back(std::move(note));
@@ -82,9 +84,17 @@ std::string sentence(std::string text) {
   return as_sentence(std::move(text));
 }
 
+StudyWords words(const StoredResult& result) {
+  StudyWords made{.from_tables = true, .samples = "measurements"};
+  made.sizes = drawn_sizes(result, made);
+  return made;
+}
+
+/// If the measurements contradict the fitted errors, the answer says so first, because all else rests on them.
 Answer answer(const StoredResult& result) {
   const CalibrationResult& found = calibration_of(result);
   Answer lines;
+  for (const std::string& warning : calibration_warnings(found)) lines.emplace_back("Caution", sentence(warning));
   if (const std::string kept = kept_text(found); !kept.empty()) lines.emplace_back("Limits", sentence(kept));
   lines.emplace_back("Answer", measured_text(found) + ".");
   lines.emplace_back("How sure", sentence(residual_text(found)));
@@ -128,7 +138,7 @@ const StudyKind kCalibrationStudy{.name = "calibration",
 constinit const ReportKind kCalibrationReport{
     .tally = tally,
     .tables = calibration_result_tables,
-    .words = [](const StoredResult&) { return StudyWords{.from_tables = true, .samples = "measurements"}; },
+    .words = words,
     .answer = answer,
     .shown_cells = [](const StoredResult& result) { return shown_cells(result, 1); },
     .page = add_page,

@@ -105,6 +105,11 @@ bool is_measured(const CalibrationResult& found, const std::string& component) {
   });
 }
 
+/// True if the chi-square test contradicts the fitted errors.
+bool is_contradicted(const CalibrationResult& found) {
+  return found.noise_is_known != 0 && found.sd_is_estimated == 0 && found.dof > 0 && found.p < kContradiction;
+}
+
 std::string unit_of_component(std::size_t component) { return component < kAngles ? "rad" : "m"; }
 
 }  // namespace
@@ -182,8 +187,9 @@ std::vector<std::string> left_notes(const CalibrationResult& found) {
 
 std::string kept_text(const CalibrationResult& found) {
   if (std::isnan(found.kept)) return {};
-  return fmt::format("the limits are kept at all poses by {} of the machines that this one may be",
-                     percent_text(found.kept));
+  return fmt::format("the limits are kept at all poses by {} of the machines that this one may be{}",
+                     percent_text(found.kept),
+                     is_contradicted(found) ? ", if the fitted errors explained its measurements" : "");
 }
 
 std::string typed_text(const CalibrationResult& found) {
@@ -214,7 +220,6 @@ std::vector<std::string> calibration_warnings(const CalibrationResult& found) {
   }
   std::ranges::stable_sort(outliers, std::ranges::greater(),
                            [&](std::size_t i) { return std::abs(found.standardised(i)); });
-  const bool is_contradicted = found.sd_is_estimated == 0 && found.dof > 0 && found.p < kContradiction;
   const std::string residual = fmt::format("residual {:.3g} of the noise, p = {:.1g}", found.rms, found.p);
   if (!outliers.empty()) {
     const std::size_t first = outliers.front();
@@ -226,7 +231,7 @@ std::vector<std::string> calibration_warnings(const CalibrationResult& found) {
     list.push_back(fmt::format("{}: {} is {:.1f} standard deviations off{}; {}", residual, found.values[first],
                                std::abs(found.standardised(first)), others, advice));
   }
-  if (is_contradicted && outliers.empty()) {
+  if (is_contradicted(found) && outliers.empty()) {
     list.push_back(
         found.has_prior != 0
             ? fmt::format("estimates are far outside their tolerances (S = {:.3g} of {}): are these the sigmas?",

@@ -273,7 +273,9 @@ SolveTally tally(const StoredResult& result) {
 StudyWords words(const StoredResult& result) {
   const Evaluation& found = evaluation_of(result);
   if (found.cases.empty()) {
-    return {.from_tables = true, .samples = counted(found.solves.samples(), "row of errors", "rows of errors")};
+    return {.from_tables = true,
+            .own_poses = false,
+            .samples = counted(found.solves.samples(), "row of errors", "rows of errors")};
   }
   return {.samples = counted(found.cases.size(), "case", "cases")};
 }

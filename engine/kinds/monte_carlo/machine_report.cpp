@@ -1,6 +1,7 @@
 #include "engine/kinds/monte_carlo/machine_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -112,6 +113,15 @@ std::string no_index_text(const StoredResult& result, std::size_t r) {
   return response + ": no error has an index, because it does not vary at the poses over which indices add up";
 }
 
+/// Over which poses the variances of first-order indices are added up: "added up over 1 of 13 poses (pose 0)".
+std::string added_up_text(const StoredResult& result) {
+  const std::vector<std::uint64_t>& poses = effects_of(result).s1_poses;
+  const std::size_t all = result.poses.size();
+  if (poses.size() == all) return "added up over " + counted(all, "pose", "poses");
+  return fmt::format("added up over {} of {} poses ({} {})", poses.size(), all, poses.size() == 1 ? "pose" : "poses",
+                     fmt::join(poses, ", "));
+}
+
 std::string indices_note(const StoredResult& result, std::size_t r) {
   double sum = 0.0;
   std::size_t without = 0;
@@ -120,11 +130,12 @@ std::string indices_note(const StoredResult& result, std::size_t r) {
     without += std::isnan(s1) ? 1 : 0;
   }
   if (without == result.factors.size()) return no_index_text(result, r);
+  const auto& machines = monte_carlo_of(result).machines;
+  const bool has_noise = machines && machines->calibration;
   return fmt::format(
-      "{}: the indices sum to {}; what is missing from 1 is what errors do together. A response without sign makes "
-      "such "
-      "interaction of its own, so an error with a small index is not one without effect",
-      result.responses[r].name, number_text(sum, 3));
+      "{}: the indices sum to {}; what is missing from 1 is what errors do together{}. A response without sign makes "
+      "such interaction of its own, so an error with a small index is not one without effect",
+      result.responses[r].name, number_text(sum, 3), has_noise ? ", and the noise of what was measured" : "");
 }
 
 /// Whether an error has one value in a machine at all poses. Otherwise, a mean over the poses does not depend on one
@@ -238,10 +249,10 @@ void add_effects_section(const StoredResult& result, std::span<const Table> tabl
   };
   section.paragraph(fmt::format(
       "The first-order index of an error is the part of a response's variance that goes when the error is known. "
-      "Variances are added up over {}. A response without sign is not additive although the mechanism is nearly "
+      "Variances are {}. A response without sign is not additive although the mechanism is nearly "
       "linear, "
       "so its indices sum to less than 1: read them with the shares of the mean square.",
-      counted(found.s1_poses.size(), "pose", "poses")));
+      added_up_text(result)));
   Bars bars{{{"response", names_of(result.responses, order)}},
             {quantity("first-order index S1", "S1", found.effects)},
             names_of(result.factors)};
@@ -275,8 +286,7 @@ Table effect_table(const StoredResult& result) {
   Table table{.name = "first_order",
               .caption = "First-order indices S1: the part of a response's variance that an error makes alone",
               .columns = {},
-              .notes = {fmt::format("added up over {}; low, high: {} interval",
-                                    counted(effects_of(result).s1_poses.size(), "pose", "poses"),
+              .notes = {fmt::format("{}; low, high: {} interval", added_up_text(result),
                                     percent_text(monte_carlo_of(result).conf_level)),
                         indices_note(result, ranking)},
               .ranked = true};

@@ -101,7 +101,7 @@ std::string setting(const StoredResult& result, std::string_view section, std::s
 
 std::string poses_text(const StoredResult& result, const StudyWords& words) {
   std::string text = count_text(result.poses.size());
-  if (words.from_tables) return text + ", from a table";
+  if (!words.own_poses) return text + ", from a table";
   const std::string choice = setting(result, "poses", "select");
   if (!choice.empty()) text += ", " + choice;
   return result.time.empty() ? text
@@ -243,15 +243,23 @@ void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& pa
   }
 }
 
+/// Where the settings of a study are that its report describes.
+std::string_view origin_text(const StudyWords& words) {
+  if (!words.from_tables) {
+    return "The study below holds every setting, those that its author left out among them. With the same program on "
+           "the same kind of processor it gives the same numbers for any number of threads.";
+  }
+  return words.own_poses
+             ? "The measurements came from a table, and are in the result file. The study below states all else: the "
+               "errors that were fitted, the tolerances of all errors, and the poses at which the rest is predicted."
+             : "Of the study below, mechanism and solver were used; poses and errors came from tables, and are in the "
+               "result file.";
+}
+
 void add_what_was_run(const ReportKind& kind, std::span<const ReportedResult> results, Page& page) {
   const StoredResult& first = results.front().stored;
   Section& section = page.add_section("what-was-run", "What was run");
-  section.paragraph(
-      kind.words(first).from_tables
-          ? "Of the study below, mechanism and solver were used; poses and errors came from tables, and are in the "
-            "result file."
-          : "The study below holds every setting, those that its author left out among them. With the same program on "
-            "the same kind of processor it gives the same numbers for any number of threads.");
+  section.paragraph(std::string(origin_text(kind.words(first))));
   section.table(facts_table(kind, results, false));
   if (results.size() > 1) section.folded("What is the same in all", facts_table(kind, results, true));
   for (std::size_t n = 0; n < results.size(); ++n) {
