@@ -35,7 +35,8 @@ poesy_test(assembly_oracle_test LABELS unit SOURCES models/assembly/closure_test
 poesy_test(assembly_properties_test LABELS property
            SOURCES models/assembly/balance_test.cpp models/assembly/block_solver_test.cpp
                    models/assembly/calibration_test.cpp
-                   models/assembly/closed_forms_test.cpp models/assembly/cuts_test.cpp
+                   models/assembly/closed_forms_test.cpp models/assembly/continuation_test.cpp
+                   models/assembly/cuts_test.cpp
                    models/assembly/loops_test.cpp
                    models/assembly/properties_test.cpp models/assembly/separation_test.cpp models/assembly/starts_test.cpp
                    models/assembly/unbranched_test.cpp
