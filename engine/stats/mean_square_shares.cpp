@@ -28,7 +28,7 @@ Sums sums_of(const LinearFit& fit, std::span<const std::size_t> rows, std::size_
   return sums;
 }
 
-/// The part of the mean square that belongs to two correlated errors together.
+/// The part of the scatter that belongs to two correlated errors together.
 double together(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t p, std::size_t q) {
   double sum = 0.0;
   for (const std::size_t k : rows) sum += fit.slope[k * fit.errors + p] * fit.slope[k * fit.errors + q];
@@ -37,6 +37,13 @@ double together(const LinearFit& fit, std::span<const std::size_t> rows, std::si
 
 double square_of(double value) { return value * value; }
 
+/// The sum over the rows of the squared means, less the bias from their noise.
+double squared_means(const LinearFit& fit, std::span<const std::size_t> rows) {
+  double sum = 0.0;
+  for (const std::size_t k : rows) sum += square_of(fit.offset[k]) - fit.rest[k] / static_cast<double>(fit.machines);
+  return std::max(0.0, sum);
+}
+
 }  // namespace
 
 MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t poses,
@@ -44,7 +51,8 @@ MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::s
   POESY_EXPECTS(errors.size() == fit.errors && poses > 0);
   const double z = two_sided_normal_quantile(conf_level);
   const auto unknown = Estimate{kNaN, {kNaN, kNaN}};
-  MeanSquareShares found{std::vector<Estimate>(fit.errors, unknown), kNaN};
+  const MeanSquareShares none{std::vector<Estimate>(fit.errors, unknown), kNaN, kNaN, kNaN};
+  MeanSquareShares found = none;
   double linear = 0.0;
   double rest = 0.0;
   bool varies = false;
@@ -53,7 +61,7 @@ MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::s
     const Sums sums = sums_of(fit, rows, p);
     const ErrorEffect& error = errors[p];
     const double own = std::max(0.0, sums.square - sums.noise);
-    linear += own * error.mean_square;
+    linear += own;
     if (error.block != 0) {
       for (std::size_t q = 0; q < p; ++q) {
         if (errors[q].block == error.block) linear += together(fit, rows, p, q);
@@ -63,18 +71,19 @@ MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::s
     varies = varies || has_effect;
     const double noise = z * std::sqrt(kSquaredRest * sums.noise);
     const double size = std::sqrt(sums.square);
-    found.each[p] = {
-        own * error.mean_square,
-        {square_of(std::max(0.0, size - noise)) * error.mean_square, square_of(size + noise) * error.mean_square}};
+    found.each[p] = {own, {square_of(std::max(0.0, size - noise)), square_of(size + noise)}};
     if (!has_effect) found.each[p] = {0.0, {0.0, 0.0}};
     if (error.block != 0) found.each[p] = unknown;
   }
   const double all = linear + rest;
-  if (!varies || !(all > 0.0)) return {std::vector<Estimate>(fit.errors, unknown), kNaN};
+  if (!varies || !(all > 0.0)) return none;
   for (Estimate& one : found.each) {
     one = {one.value / all, {one.interval.low / all, std::min(1.0, one.interval.high / all)}};
   }
   found.linear = linear / all;
+  const double means = squared_means(fit, rows);
+  found.offset = std::sqrt(means / static_cast<double>(poses));
+  found.offset_share = means / (means + all);
   return found;
 }
 

@@ -9,18 +9,20 @@
 
 namespace poesy {
 
-/// The share of each error in the mean square of a vector over all poses, to first order. The mean squares of
-/// independent errors add in a linear vector, whatever their distributions.
+/// The share of each error in the scatter of a vector, to first order. The scatter is the mean square of the vector
+/// about its mean over the machines, summed over all poses. The scatters of independent errors add in a linear vector,
+/// whatever their distributions. Means do not add so: those of several errors may cancel each other, so the square of
+/// the vector's mean is not divided among errors.
 struct MeanSquareShares {
-  std::vector<Estimate> each;  ///< [errors] share of each error; NaN if it is correlated with others
-  /// The share of the mean square that is linear in the errors. The rest of the mean square cannot be attributed to
-  /// single errors.
+  std::vector<Estimate> each;  ///< [errors] share of each error in the scatter; NaN if it is correlated with others
+  /// The share of the scatter that is linear in the errors. The rest of it cannot be attributed to single errors.
   double linear = 0.0;
+  double offset = 0.0;        ///< root mean square over the poses of the vector's mean, in the vector's unit
+  double offset_share = 0.0;  ///< share of the squared mean in the whole mean square, which is squared mean and scatter
 };
 
 /// Data of an error and of its effect on a vector.
 struct ErrorEffect {
-  double mean_square = 1.0;  ///< mean of e^2 over the variance of e; above 1 if the mean of e is not zero
   /// Number of the block of correlated errors to which the error belongs, from 1; 0: the error is independent.
   std::size_t block = 0;
   double rounding = 0.0;  ///< largest effect, as a root mean square over the poses, that rounding alone may give
@@ -32,7 +34,7 @@ struct ErrorEffect {
 /// all rows as fully correlated, because the same machines are used at all poses. It also takes five times the variance
 /// of a slope that least squares give. Residuals that are the square of a normal error z need this factor: E[(z^2 -
 /// 1)^2 z^2] = 5 E[(z^2 - 1)^2] E[z^2]. So the coverage is at least the level. poses: the number of poses in the rows.
-/// errors: [errors]. All shares are NaN if only rounding varies. Precondition: 0 < conf_level < 1.
+/// errors: [errors]. All numbers are NaN if only rounding varies. Precondition: 0 < conf_level < 1.
 MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t poses,
                                     std::span<const ErrorEffect> errors, double conf_level);
 

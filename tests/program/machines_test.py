@@ -114,7 +114,7 @@ class Machines(ResumptionTest):
         self.assertEqual([table["name"] for table in tables[:3]], ["yield", "mean_square_shares", "yield_gradient"])
         shares, changes = tables[1]["rows"], tables[2]["rows"]
         text = self.succeeds("show", "out.h5", "--width", 200)
-        self.assertLess(text.index("shares of the mean square of gap"), text.index("What the yield changes by"))
+        self.assertLess(text.index("shares of the scatter of gap"), text.index("What the yield changes by"))
         with h5py.File(self.folder / "out.h5") as file:
             names = list(file["factors/name"].asstr())
             sigma = file["factors/sigma"][:]

@@ -151,7 +151,7 @@ class Numbers(FolderTest):
             if row.name in changes:
                 self.assertAlmostEqual(row.change, changes[row.name]["change"] / 100.0, places=12)
         label = found.plot.ranking().get_xlabel()
-        self.assertEqual(label, f"share of the mean square of {limited[0]}")
+        self.assertEqual(label, f"share of the scatter of {limited[0]}")
         self.assertEqual(found.ranking("linear_deformation").value, "S1")  # has no limit
 
     def test_allocation(self):

@@ -68,10 +68,10 @@ bool has_any_share(const StoredResult& result, const YieldResult& yield, const M
 
 /// The errors on which the yield depends for certain: their effect is distinguished from zero, or "told".
 struct ToldErrors {
-  /// These errors: first those whose share of a mean square is certain, then by the loss of yield, largest first.
-  std::vector<std::size_t> told;
-  std::size_t tested = 0;  ///< number of errors whose change of the yield is known and whose share is not zero
-  std::size_t known = 0;   ///< number of errors whose change of the yield is known
+  std::vector<std::size_t> told;  ///< these errors: first those whose share of a scatter is certain, then by the
+                                  ///< loss of yield, largest first
+  std::size_t tested = 0;         ///< number of errors whose change of the yield is known and whose share is not zero
+  std::size_t known = 0;          ///< number of errors whose change of the yield is known
 };
 
 /// Tests all errors together, because among many single tests some would show an effect by chance.
@@ -98,9 +98,21 @@ ToldErrors told_errors(const StoredResult& result, const YieldResult& yield, con
 
 std::string linear_note(const StoredResult& result, const YieldResult& yield, std::size_t r) {
   return fmt::format(
-      "{}: {} of the mean square of its scatter is linear in the errors{}", result.responses[r].name,
-      percent_text(yield.linear_share(r)),
+      "{}: {} of its scatter is linear in the errors{}", result.responses[r].name, percent_text(yield.linear_share(r)),
       yield.linear_share(r) < 0.9 ? "; the rest belongs to no error alone, so these shares say little" : "");
+}
+
+/// The mean of a response over the machines, which no smaller scatter of an error changes. Empty if it is hardly a part
+/// of the mean square, or if the file does not have it.
+std::string offset_note(const StoredResult& result, const YieldResult& yield, std::size_t r) {
+  constexpr double kNoticeable = 0.001;  // least share of the whole mean square
+  if (!yield.has_offset() || !(yield.offset_share(r) >= kNoticeable)) return {};
+  return fmt::format(
+      "{}: not in these shares is its mean over the machines, {} as a root mean square over the poses: {} of the whole "
+      "mean square. Background and means of all errors make it together, with their signs; tighter tolerances leave it "
+      "as it is",
+      result.responses[r].name, response_text(result.responses[r], yield.offset(r)),
+      percent_text(yield.offset_share(r)));
 }
 
 Table share_table(const StoredResult& result, const YieldResult& yield, const std::vector<std::size_t>& responses) {
@@ -112,22 +124,20 @@ Table share_table(const StoredResult& result, const YieldResult& yield, const st
         {percent_column(name, heading, dispensable), [values](std::size_t p) { return percent_cell(values[p]); }});
   };
   Table table{.name = "mean_square_shares",
-              .caption = fmt::format("Which errors a limit is up against: shares of the mean square of {}, to first "
-                                     "order",
+              .caption = fmt::format("Which errors a limit is up against: shares of the scatter of {}, to first order",
                                      result.responses[first].name),
               .columns = {},
-              .notes = {fmt::format("over all poses, of a norm that of its vector; low, high: {} interval",
+              .notes = {fmt::format("scatter: mean square about the mean over the machines, over all poses, of a norm "
+                                    "that of its vector; low, high: {} interval",
                                     percent_text(yield.conf_level))},
               .ranked = true};
-  if (!result.factor_mean.empty()) {
-    table.notes.emplace_back("of the scatter about the means of the errors, which the study states");
-  }
   for (const std::size_t r : responses) {
     const std::string& response = result.responses[r].name;
     add("share_" + response, response, yield.mean_square_share.row(r), r == first ? 0 : 1);
     add("share_ci_low_" + response, "low", yield.mean_square_share_ci_low.row(r), r == first ? 0 : 2);
     add("share_ci_high_" + response, "high", yield.mean_square_share_ci_high.row(r), r == first ? 0 : 2);
     table.notes.push_back(linear_note(result, yield, r));
+    if (std::string note = offset_note(result, yield, r); !note.empty()) table.notes.push_back(std::move(note));
     if (const LimitVerdict* verdict = verdict_on(result, r); verdict != nullptr && verdict->limit.is_spread()) {
       table.notes.push_back(response +
                             ": with its sign, less its mean over the poses, which does not change its spread");
@@ -160,7 +170,7 @@ std::string needed_machines_note(const Changes& changes, const ToldErrors& found
   const auto middle = half_widths.begin() + static_cast<std::ptrdiff_t>(half_widths.size() / 2);
   std::ranges::nth_element(half_widths, middle);
   return fmt::format(
-      "{} tell a change of some {} from zero; one of a tenth of that takes {}. The shares of the mean square rank "
+      "{} tell a change of some {} from zero; one of a tenth of that takes {}. The shares of the scatter rank "
       "errors with far fewer",
       counted(yield.machines, "machine", "machines"), percent_text(*middle),
       counted(kFiner * kFiner * yield.machines, "machine", "machines"));
@@ -224,13 +234,13 @@ void add_share_figure(const StoredResult& result, const YieldResult& yield, Sect
   };
   Bars bars{
       {{"response", names_of(result.responses, responses)}},
-      {{"share of the mean square", std::vector(responses.size(), std::vector<std::string>{"%"}),
+      {{"share of the scatter", std::vector(responses.size(), std::vector<std::string>{"%"}),
         add("mean_square_share", yield.mean_square_share), add("mean_square_share_low", yield.mean_square_share_ci_low),
         add("mean_square_share_high", yield.mean_square_share_ci_high)}},
       names_of(result.factors)};
   add_figure(page, section, "mean-square-shares", std::move(bars),
-             "The errors that make a limited response large: shares of its mean square, to first order. Thin lines are "
-             "intervals.");
+             "The errors that make a limited response scatter: shares of its mean square about its mean, to first "
+             "order. Thin lines are intervals.");
 }
 
 /// Adds to the page the figure of errors whose effect is certain.

@@ -20,18 +20,17 @@ std::vector<std::size_t> largest_first(std::vector<std::size_t> order, const std
 /// The values of all errors, listed response by response in the order of `responses`.
 std::vector<double> in_order(const MainEffects::Indices& values, std::span<const std::size_t> responses);
 
-/// The shares of errors in the mean square of a response with a limit.
+/// The shares of errors in the scatter of a limited response.
 struct ResponseShares {
   std::size_t response;  ///< among the responses with a limit and known shares, the one that rejects most machines
   std::span<const double> each;  ///< [errors] share of each error; NaN for correlated errors; refers to the result
 };
 
-/// The shares of errors in the mean square of one response with a limit; none if the result has no yield or no known
-/// shares.
+/// The shares of errors in the scatter of one limited response; none if the result has no yield or no known shares.
 std::optional<ResponseShares> response_shares(const StoredResult& result);
 
-/// Tables of the errors' shares in the mean squares of the responses with limits, and of the change of the yield by
-/// each error. Empty if the result has no yield.
+/// Tables of the errors' shares in the scatter of the limited responses, and of the change of the yield by each
+/// error. Empty if the result has no yield.
 std::vector<Table> driver_tables(const StoredResult& result);
 
 /// Adds to the page the section of errors on which the yield depends, with figures and these tables. Precondition: the

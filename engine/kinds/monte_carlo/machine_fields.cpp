@@ -97,16 +97,23 @@ const Group<YieldResult> kYield{
      {"change_ci_high", &YieldResult::change_ci_high, "1", "Upper end of its interval (central limit theorem)",
       Presence::where_computed},
      {"mean_square_share", &YieldResult::mean_square_share, "1",
-      "Share of the mean square of the limited response, of a norm that of its vector, over all poses that the error "
-      "adds to first order; NaN for a response without a limit, for correlated errors, and where there are too few "
-      "machines for a fit",
+      "Share that the error adds, to first order, to the scatter of the limited response, of a norm to that of its "
+      "vector. The scatter is the mean square about the mean over the machines, summed over all poses. NaN for a "
+      "response without a limit, for correlated errors, and where there are too few machines for a fit",
       Presence::where_computed},
      {"mean_square_share_ci_low", &YieldResult::mean_square_share_ci_low, "1",
       "Lower end of its interval (least squares)", Presence::where_computed},
      {"mean_square_share_ci_high", &YieldResult::mean_square_share_ci_high, "1",
       "Upper end of its interval (least squares)", Presence::where_computed},
      {"linear_share", &YieldResult::linear_share, "1",
-      "The part of that mean square that is linear in the errors: the rest belongs to no error alone",
+      "The part of that scatter that is linear in the errors: the rest belongs to no error alone",
+      Presence::where_computed},
+     {"offset", &YieldResult::offset, kResponseUnit,
+      "Root mean square over the poses of the mean over the machines of the limited response, of a norm that of its "
+      "vector: background and means of errors together, with their signs. NaN as linear_share",
+      Presence::where_computed},
+     {"offset_share", &YieldResult::offset_share, "1",
+      "Share of the squared offset in the whole mean square, which is that and the scatter",
       Presence::where_computed}}};
 
 const Group<PartsYield> kPartsYield{
@@ -216,7 +223,7 @@ void append_error_columns(CsvTable& table, const std::string& name, const std::s
   table.columns.push_back(list_column(name + "_ci_high_" + response, high));
 }
 
-/// A table of each error's share in the mean square of each response with a limit.
+/// A table of each error's share in the scatter of each limited response.
 CsvTable share_table(const StoredResult& result, const YieldResult& found) {
   CsvTable table = lines_of_factors(result, "mean_square_share");
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
@@ -249,7 +256,11 @@ void append_yield_tables(CsvTables& tables, const StoredResult& result, const Yi
                 result.responses.size(),
                 {list_column("yield", found.by_response), list_column("yield_ci_low", found.by_response_ci_low),
                  list_column("yield_ci_high", found.by_response_ci_high)},
-                {}};
+                {"unit", [&](std::size_t r) { return result.responses[r].unit; }}};
+  if (found.has_offset()) {
+    each.columns.push_back(list_column("offset", found.offset));
+    each.columns.push_back(list_column("offset_share", found.offset_share));
+  }
   tables.push_back(std::move(each));
   if (found.has_shares()) tables.push_back(share_table(result, found));
   CsvTable gradient{"yield_gradient",

@@ -408,8 +408,8 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
                      text);
 }
 
-/// Advice such as "Make smaller first what adds most to the mean square of gap: flange_x (36 %), ...", for a response
-/// with a limit. Empty if the errors' shares are not known.
+/// Advice like "Make flange_x (36 %), ... smaller first", with the errors that add most to the scatter of a limited
+/// response. Empty if their shares are not known.
 std::string limit_drivers_text(const StoredResult& result) {
   constexpr std::size_t kMost = 3;
   const auto shares = response_shares(result);
@@ -423,7 +423,7 @@ std::string limit_drivers_text(const StoredResult& result) {
     text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", result.factors[p].name, percent_text(share(p)));
   }
   if (text.empty()) return {};
-  return fmt::format("Make smaller first what adds most to the mean square of {}: {}.",
+  return fmt::format("Make smaller first what adds most to the scatter of {}: {}.",
                      result.responses[shares->response].name, text);
 }
 
@@ -504,8 +504,8 @@ std::vector<double> rms_at_poses(const StoredResult& result, std::size_t respons
   return {values.begin(), values.end()};
 }
 
-/// The shares of errors in the mean square of a response with a limit, or first-order indices if there are none; and
-/// the root mean square at each pose.
+/// The shares of errors in the scatter of a limited response, or first-order indices if there are none; and the
+/// root mean square at each pose.
 ErrorShares error_shares(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.poses() == 0) return {};
@@ -514,7 +514,7 @@ ErrorShares error_shares(const StoredResult& result) {
   if (!shares && !varies(result, r)) return {};
   const std::string& response = result.responses[r].name;
   const std::span values = shares ? shares->each : found.effects.effects.s1.row(r);
-  return {.what = (shares ? "share of the mean square of " : "first-order index S1 of ") + response,
+  return {.what = (shares ? "share of the scatter of " : "first-order index S1 of ") + response,
           .values = {values.begin(), values.end()},
           .pose_what = "the root mean square of " + response,
           .at_poses = rms_at_poses(result, r)};

@@ -94,21 +94,26 @@ struct YieldResult {
   Array<double, axis::Factor> change = {};
   Array<double, axis::Factor> change_ci_low = {};   ///< lower ends of the intervals of change
   Array<double, axis::Factor> change_ci_high = {};  ///< upper ends of the intervals of change
-  /// Share of each error in the mean square of each response with a limit; NaN if not known.
+  /// Share of each error in the scatter of each limited response; NaN if not known.
   Array<double, axis::Response, axis::Factor> mean_square_share = {};
   /// Lower ends of the intervals of mean_square_share.
   Array<double, axis::Response, axis::Factor> mean_square_share_ci_low = {};
   /// Upper ends of the intervals of mean_square_share.
   Array<double, axis::Response, axis::Factor> mean_square_share_ci_high = {};
-  Array<double, axis::Response> linear_share = {};  ///< share of the scatter's mean square that is linear in the errors
+  Array<double, axis::Response> linear_share = {};  ///< share of the scatter that is linear in the errors
+  /// Root mean square over the poses of the mean of each limited response, of a norm that of its vector; NaN if not
+  /// known. Files of version 0.2 have neither this list nor the next.
+  Array<double, axis::Response> offset = {};
+  Array<double, axis::Response> offset_share = {};  ///< share of the squared mean in the whole mean square
 
-  /// Whether the result has the lists of changes, and those of shares.
+  /// Whether the result has the lists of changes, those of shares, and those of offsets.
   /// @{
   bool has_change() const { return !change.empty() && !change_ci_low.empty() && !change_ci_high.empty(); }
   bool has_shares() const {
     return !mean_square_share.empty() && !mean_square_share_ci_low.empty() && !mean_square_share_ci_high.empty() &&
            !linear_share.empty();
   }
+  bool has_offset() const { return !offset.empty() && !offset_share.empty(); }
   /// @}
   std::optional<PartsYield> parts = {};  ///< interval with the uncertainty from few parts; set if errors are measured
 };

@@ -31,10 +31,7 @@ std::vector<ErrorEffect> effects_on(const MachineTable& table, std::size_t respo
   std::vector<ErrorEffect> errors;
   for (const Distribution& error : plan.distributions()) {
     const double sigma = error.standard_deviation();
-    const double offset = (error.mean() - error.centre()) / sigma;  // a stated mean does not count as scatter
-    errors.push_back({.mean_square = 1.0 + offset * offset,
-                      .block = 0,
-                      .rounding = sigma * index_rounding(table.rounding()[response], sigma)});
+    errors.push_back({.block = 0, .rounding = sigma * index_rounding(table.rounding()[response], sigma)});
   }
   for (std::size_t n = 0; n < plan.correlated().size(); ++n) {
     for (const std::size_t p : plan.correlated()[n].slots) errors[p].block = n + 1;
@@ -104,6 +101,8 @@ void set_shares(const MachineTable& table, const LinearFit& fit, double conf_lev
     const MeanSquareShares shares = mean_square_shares(fit, rows_of(table, vector), table.plan().poses().size(),
                                                        effects_on(table, vector.response), conf_level);
     yield.linear_share(vector.response) = shares.linear;
+    yield.offset(vector.response) = shares.offset;
+    yield.offset_share(vector.response) = shares.offset_share;
     for (std::size_t p = 0; p < table.errors(); ++p) {
       set_estimate(shares.each[p], yield.mean_square_share, yield.mean_square_share_ci_low,
                    yield.mean_square_share_ci_high, vector.response, p);
@@ -144,7 +143,9 @@ void set_first_order(const MachineTable& table, const std::optional<LinearFit>& 
   for (auto* list : {&yield.mean_square_share, &yield.mean_square_share_ci_low, &yield.mean_square_share_ci_high}) {
     *list = decltype(yield.mean_square_share)({table.responses(), table.errors()}, kNaN);
   }
-  yield.linear_share = decltype(yield.linear_share)({table.responses()}, kNaN);
+  for (auto* list : {&yield.linear_share, &yield.offset, &yield.offset_share}) {
+    *list = decltype(yield.linear_share)({table.responses()}, kNaN);
+  }
   if (!fit) return;
   set_shares(table, *fit, conf_level, yield);
   if (!rejected.empty()) set_gradient(table, *fit, rejected, conf_level, yield);

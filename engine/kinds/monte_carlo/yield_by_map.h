@@ -10,12 +10,12 @@
 
 namespace poesy {
 
-/// Sets the numbers of the yield that follow from the linear map of the limited vectors (LimitedVector). fit: the map,
-/// fitted to the first machines of the study; it may be none. rejected: [first machines] 1 if rejected, otherwise 0;
-/// the function draws the errors of these machines again. The numbers are
-/// - the shares of all errors in the mean square of each response with a limit; NaN without a fit;
-/// - the gradient and the change of the yield by errors with a PolynomialScore. These replace the present numbers if
-/// the map judges only few machines wrongly.
+/// Sets the numbers of the yield that follow from the linear map of the limited vectors. fit: the map, fitted to the
+/// first machines of the study; it may be none. The numbers are
+/// - the shares of all errors in the scatter of each limited response; NaN without a fit;
+/// - the gradient and the change of the yield by errors whose score is a polynomial. These replace the present numbers
+/// if the map judges only few machines wrongly.
+/// rejected: [first machines] 1 if rejected, otherwise 0; the function draws the errors of these machines again.
 void set_first_order(const MachineTable& table, const std::optional<LinearFit>& fit,
                      std::span<const std::uint8_t> rejected, double conf_level, YieldResult& yield);
 

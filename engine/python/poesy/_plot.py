@@ -25,7 +25,7 @@ _RANKED = {
     "ST": "ST, share of the variance of {response}",
     "S1": "S1, share of the variance of {response}",
     "cost": "cost",
-    "mean_square_share": "share of the mean square of {response}",
+    "mean_square_share": "share of the scatter of {response}",
     "share": "share of the poses where the error deforms alone",
 }
 

@@ -76,7 +76,7 @@ class MonteCarloRow:
 
 @dataclass(frozen=True)
 class YieldRow:
-    """An error in a study of machines with limits, and its share of the limited response's mean square, to first order.
+    """An error in a study of machines with limits, and its share of the limited response's scatter, to first order.
     NaN if the error is correlated with others."""
 
     rank: int
@@ -288,8 +288,8 @@ def _sobol(result: Result, response: str | None) -> Ranking:
 
 
 def limited_response(result: Result, response: str | None) -> str | None:
-    """The limited response by whose mean square errors are ranked, or None. It must be one whose shares of the mean
-    square are known. By default it is the response that rejects most machines."""
+    """The limited response by whose scatter errors are ranked, or None. It must be one whose shares of the scatter
+    are known. By default it is the response that rejects most machines."""
     if result.kind != "monte-carlo" or "yield" not in result.groups:
         return None
     found = result.to_xarray("yield")
@@ -310,7 +310,7 @@ def _yield(result: Result, response: str) -> Ranking:
         YieldRow(rank, names[p], *shares[p], *changes[p], result.description("factor", names[p]))
         for rank, p in enumerate(_in_order([value for value, _, _ in shares]), start=1)
     )
-    title = f"Shares of the mean square of {response}, which is limited, to first order"
+    title = f"Shares of the scatter of {response}, which is limited, to first order"
     return Ranking(title, "mean_square_share", "error", rows)
 
 

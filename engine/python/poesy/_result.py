@@ -180,7 +180,7 @@ class Result:
         sensitivity     errors by effect, index x sigma, with intervals (`SensitivityRow`)
         sobol           errors or groups by total index ST, over the poses (`SobolRow`)
         monte-carlo     errors by first-order index S1 (`MonteCarloRow`); of a limited response with
-                        draws per machine by share of its mean square (`YieldRow`)
+                        draws per machine by share of its scatter (`YieldRow`)
         allocation      parts by cost, else by share of the mean square (`AllocationRow`)
         identification  errors by whether they deform the mechanism (`IdentificationRow`)
         ==============  ===================================================================

@@ -204,6 +204,8 @@ class Example {
       fill(*list, {2});
     }
     fill(yield.linear_share, {2});
+    fill(yield.offset, {2});
+    fill(yield.offset_share, {2});
     for (auto* list : {&yield.mean_square_share, &yield.mean_square_share_ci_low, &yield.mean_square_share_ci_high}) {
       fill(*list, {2, 2});
     }

@@ -35,11 +35,16 @@ TEST(MeanSquareShares, AddUpOverComponentsAndPoses) {
   EXPECT_NEAR(shares.linear, 1.0, 1e-15);
 }
 
-TEST(MeanSquareShares, OfAnErrorThatIsOffCountItsMean) {
-  std::vector<ErrorEffect> errors(3);
-  errors[0].mean_square = 2.0;
-  const MeanSquareShares shares = mean_square_shares(example(), kRows, 2, errors, 0.95);
-  EXPECT_NEAR(shares.each[0].value, 6.0 / 14.0, 1e-15);
+TEST(MeanSquareShares, LeaveOutTheMeanAndStateIt) {
+  LinearFit fit = example();
+  fit.offset = {0.5, -1.0, 0.0, 2.0};
+  MeanSquareShares shares = mean_square_shares(fit, kRows, 2, std::vector<ErrorEffect>(3), 0.95);
+  EXPECT_NEAR(shares.each[0].value, 3.0 / 11.0, 1e-15);
+  EXPECT_NEAR(shares.offset, std::sqrt(5.25 / 2.0), 1e-15);
+  EXPECT_NEAR(shares.offset_share, 5.25 / (5.25 + 11.0), 1e-15);
+  fit.rest = std::vector(4, 100.0);  // of 1000 machines: the squares of the means are 0.4 too large
+  shares = mean_square_shares(fit, kRows, 2, std::vector<ErrorEffect>(3), 0.95);
+  EXPECT_NEAR(shares.offset, std::sqrt(4.85 / 2.0), 1e-15);
 }
 
 TEST(MeanSquareShares, OfCorrelatedErrorsAreNotKnown) {

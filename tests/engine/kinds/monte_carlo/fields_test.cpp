@@ -166,7 +166,7 @@ void expect_same(const YieldResult& found, const YieldResult& expected) {
                       &YieldResult::gradient_ci_low, &YieldResult::gradient_ci_high, &YieldResult::change,
                       &YieldResult::change_ci_low, &YieldResult::change_ci_high, &YieldResult::linear_share,
                       &YieldResult::mean_square_share, &YieldResult::mean_square_share_ci_low,
-                      &YieldResult::mean_square_share_ci_high);
+                      &YieldResult::mean_square_share_ci_high, &YieldResult::offset, &YieldResult::offset_share);
 }
 
 TEST_F(MonteCarloFile, KeepsWhatMachinesDid) {

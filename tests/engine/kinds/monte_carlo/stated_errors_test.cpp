@@ -108,6 +108,40 @@ TEST(StatedMean, MovesTheYieldOfNormalMachines) {
   EXPECT_NEAR(found.machines->yield->linear_share(0), 1.0, 1e-9);
 }
 
+/// Twelve measured parts about a mean, with the standard deviation 1.
+std::vector<double> parts(double mean, double sigma) {
+  std::vector<double> values;
+  const double unit = std::sqrt(13.0);  // standard deviation (n - 1) of twelve consecutive numbers
+  for (int k = 0; k < 12; ++k) values.push_back(mean + sigma * (k - 5.5) / unit);
+  return values;
+}
+
+/// The means of measured errors partly cancel each other in the response. Shares are of its scatter, and its mean is
+/// stated: both against all 40 500 machines that the study draws.
+TEST(MeasuredErrors, ShareTheScatterWithoutTheirMeans) {
+  MachineCase one(1);
+  constexpr std::array kMean{0.3, -0.1, -0.05};
+  const std::array kSigma{0.1, 0.05, 0.1};
+  double mean = 0.0;
+  double variance = 0.0;
+  for (std::size_t p = 0; p < 3; ++p) {
+    one.study.errors.by_factor[p] = Distribution::measured(parts(kMean[p], kSigma[p]));
+    mean += kSlopes[p] * kMean[p];
+    variance += std::pow(kSlopes[p] * kSigma[p], 2);
+  }
+  const MonteCarloResult found = one.run();
+  const YieldResult& yield = *found.machines->yield;
+  for (std::size_t p = 0; p < 3; ++p) {
+    EXPECT_NEAR(yield.mean_square_share(0, p), std::pow(kSlopes[p] * kSigma[p], 2) / variance, 1e-6) << p;
+  }
+  EXPECT_NEAR(yield.offset(0), std::abs(mean), 1e-6);
+  EXPECT_NEAR(yield.offset_share(0), mean * mean / (mean * mean + variance), 1e-6);
+  const double standard_error = std::sqrt(variance / 40'500.0);
+  EXPECT_NEAR(found.mean(0, 0), mean, kErrors * standard_error);
+  const double square = std::pow(found.rms(0, 0), 2);
+  EXPECT_NEAR(yield.offset_share(0), std::pow(found.mean(0, 0), 2) / square, 0.02);
+}
+
 TEST(StatedMean, MovesCorrelatedErrors) {
   MachineCase one(1);
   constexpr std::array kMean{0.1, 0.03, -0.1};

@@ -241,16 +241,29 @@ TEST(MonteCarloTable, ShowsFirstWhatMakesTheLimitedResponse) {
   const std::vector<Table> tables = monte_carlo_tables(example_of_machines());
   ASSERT_GT(tables.size(), 2U);
   EXPECT_EQ(tables[0].caption,
-            "Which errors a limit is up against: shares of the mean square of linear_deformation, to first order");
+            "Which errors a limit is up against: shares of the scatter of linear_deformation, to first order");
   std::vector<std::string> shown;
   for (const std::vector<Cell>& row : tables[0].rows) shown.push_back(row[0].text + " " + row[1].text);
   EXPECT_EQ(shown, (std::vector<std::string>{"epsilon_1 70", "delta_3 12.5", "delta_1 10", "delta_2 5", "delta_4 -"}));
   EXPECT_EQ(tables[0].columns[4].name, "share_ratio");
-  EXPECT_EQ(tables[0].notes[1], "linear_deformation: 97.5 % of the mean square of its scatter is linear in the errors");
+  EXPECT_EQ(tables[0].notes[1], "linear_deformation: 97.5 % of its scatter is linear in the errors");
   EXPECT_EQ(
       tables[0].notes[2],
-      "ratio: 50 % of the mean square of its scatter is linear in the errors; the rest belongs to no error alone, "
-      "so these shares say little");
+      "ratio: 50 % of its scatter is linear in the errors; the rest belongs to no error alone, so these shares say "
+      "little");
+}
+
+TEST(MonteCarloTable, StatesTheMeanThatIsInNoShare) {
+  StoredResult result = example_of_machines();
+  YieldResult& yield = *monte_carlo_in(result).machines->yield;
+  yield.offset = {{2}, {25e-6, 0.5}};
+  yield.offset_share = {{2}, {0.42, 0.0009}};
+  const std::vector<std::string> notes = monte_carlo_tables(result)[0].notes;
+  ASSERT_EQ(notes.size(), 4U);  // none on the second response, whose mean is hardly a part of it
+  EXPECT_EQ(notes[2],
+            "linear_deformation: not in these shares is its mean over the machines, 0.025 mm as a root mean square "
+            "over the poses: 42 % of the whole mean square. Background and means of all errors make it together, with "
+            "their signs; tighter tolerances leave it as it is");
 }
 
 TEST(MonteCarloTable, PutsWhatIsNotCertainIntoOneLine) {
