@@ -26,6 +26,7 @@
 #include "engine/run/ranks/team.h"
 #include "engine/run/run_options.h"
 #include "engine/study/bare_numbers.h"
+#include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
 #include "engine/study/study_file.h"
 #include "models/registry.h"
@@ -168,7 +169,16 @@ int explained_interruption(const ResumableRun& resumable) {
   return kInterrupted;
 }
 
-/// Runs the study in one process, or as rank 0 of a team of ranks. team: null for one process.
+/// Says which poses of the workspace are not in the study: a warning if the mechanism does not reach some of them,
+/// otherwise a note, because the study's own limits reject them.
+void say_rejected(const SelectedPoses& poses, bool quiet) {
+  const std::string text = rejected_text(poses.rejected, poses.candidates);
+  if (text.empty()) return;
+  const bool is_warning = some_out_of_reach(poses.rejected);
+  if (is_warning || !quiet) say(is_warning ? Message::warning : Message::note, text);
+}
+
+/// Runs the study in one process, or as rank 0 of a team. team: null for one process.
 int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
@@ -194,6 +204,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   if (team != nullptr && !team->agree(text_of(identity), threads, &stop))
     return leave_before_the_start(*team, resumable);
   for (const std::string& doubt : doubts_of(study, *poses)) say(Message::warning, doubt);
+  say_rejected(*poses, options.quiet);
   for (const std::string& note : {calibration_text(study), held_errors_text(study)}) {
     if (!note.empty() && !options.quiet) say(Message::note, note);
   }

@@ -45,7 +45,8 @@ StoredStudy stored_study(const StoredShard& shard, const Catalog& catalog) {
 }
 
 StoredStudy stored_study(const StoredResult& result, const std::string& path, const Catalog& catalog) {
-  SelectedPoses poses{.poses = result.poses, .condition = result.condition, .rejected = {}, .time = result.time};
+  SelectedPoses poses{
+      .poses = result.poses, .condition = result.condition, .rejected = {}, .candidates = 0, .time = result.time};
   return stored_study(result.study_text, result.mechanism_text, std::move(poses), path, catalog);
 }
 

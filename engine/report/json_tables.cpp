@@ -21,6 +21,10 @@ static void to_json(Json& json, const NamedUnit& thing) {
   json = {{"name", thing.name}, {"unit", thing.unit}, {"description", thing.description}};
 }
 
+static void to_json(Json& json, const RejectedPoses& poses) {
+  json = {{"reason", poses.reason}, {"count", poses.count}};
+}
+
 static void to_json(Json& json, const Column& column) {
   json = {{"name", column.name},
           {"heading", column.heading},
@@ -77,6 +81,8 @@ Json summary_json(const StoredResult& result, const SolveCounts& solves) {
           {"content_sha256", result.content_sha256},
           {"seed", seed_of(result)},
           {"poses", result.poses.size()},
+          {"candidate_poses", result.candidates == 0 ? Json(nullptr) : Json(result.candidates)},
+          {"rejected_poses", result.rejected},
           {"errors", result.factors},
           {"responses", result.responses},
           {"solves", solves},

@@ -190,6 +190,9 @@ std::string summary_text(const StoredResult& result, const SolveTally& tally, st
   text += prose_of(fmt::format("{} of {}: {}, poesy {}", result.kind, result.model,
                                counted(result.poses.size(), "pose", "poses"), result.poesy_version),
                    width);
+  if (const std::string rejected = rejected_text(result.rejected, result.candidates); !rejected.empty()) {
+    text += prose_of(rejected, width);
+  }
   if (!result.metric.empty()) text += prose_of("metric: " + metric_text(result), width);
   text += prose_of(fmt::format("{}{} in {:.2f} s on {}: {} solves/s", counted(facts.solves, "solve", "solves"), each,
                                facts.wall_seconds, counted(facts.threads, "thread", "threads"),

@@ -42,6 +42,8 @@ StoredResult described(const Study& study, const Model& model, const SelectedPos
   result.poses = poses.poses;
   result.condition = poses.condition;
   result.time = poses.time;
+  result.rejected = poses.rejected;
+  result.candidates = poses.candidates;
   result.responses = named_responses(description);
   result.headline = chosen_or_all(description.headline, result.responses.size());
   result.signed_headline =

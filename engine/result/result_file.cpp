@@ -31,6 +31,8 @@ const Fields<RejectedPoses> kRejectedFields{
     {"reason", &RejectedPoses::reason, {"rejection"}, "1", "Why poses were rejected"},
     {"count", &RejectedPoses::count, {"rejection"}, "1", "Candidate poses rejected for this reason"}};
 
+const std::string kCandidates = "candidates";  ///< attribute: poses that were examined, rejected or not
+
 const Axes kScalar{};
 
 const Fields<RunFacts> kFactFields{
@@ -146,6 +148,7 @@ void add_poses(ResultBuilder& result, const ModelDescription& model, const Selec
   result.file().make_group("/poses/rejected");
   result.show_axes("/poses/rejected", {"rejection"});
   write_columns(result, "/poses/rejected", kRejectedFields, selected.rejected);
+  if (selected.candidates > 0) result.file().set_attribute("/poses/rejected", kCandidates, selected.candidates);
 }
 
 std::vector<NamedUnit> read_pose_coordinates(const h5::File& file) {
@@ -271,6 +274,8 @@ void read_header(const h5::File& file, StoredResult& result) {
   result.poses = std::move(poses.poses);
   result.condition = std::move(poses.condition);
   result.time = std::move(poses.time);
+  result.rejected = std::move(poses.rejected);
+  result.candidates = poses.candidates;
   result.factors = read_named(file, "factor");
   read_responses(file, result);
   read_metric(file, result);
@@ -289,7 +294,11 @@ SelectedPoses read_poses(const h5::File& file) {
   SelectedPoses selected;
   selected.poses = PoseSet(coordinates.size(), std::move(values));
   read_fields(file, "/poses", kPoseFields, selected);
-  if (file.exists("/poses/rejected")) selected.rejected = read_columns(file, "/poses/rejected", kRejectedFields);
+  if (!file.exists("/poses/rejected")) return selected;
+  selected.rejected = read_columns(file, "/poses/rejected", kRejectedFields);
+  if (file.has_attribute("/poses/rejected", kCandidates)) {
+    selected.candidates = file.attribute<std::uint64_t>("/poses/rejected", kCandidates).at(0);
+  }
   return selected;
 }
 

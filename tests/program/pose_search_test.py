@@ -1,5 +1,6 @@
 """A search for poses that takes long: it says how far it is, hears signals, leaves nothing behind, and gives up in time."""
 
+import json
 import re
 import signal
 import subprocess
@@ -19,6 +20,14 @@ limits = {{ q_1_1 = ["300 deg", "310 deg"] }}
 [analysis]
 factors = ["delta_1_1_x"]
 samples = 10
+"""
+# Nine points of a grid, of which four are out of reach.
+REACH = f"""\
+format = "poesy-study"
+version = 1
+mechanism.file = "{GALLERY / "3-rrr/3-rrr.toml"}"
+poses = {{ select = "grid", count = {{ x = 3, y = 3, phi = 1 }}, workspace = {{ x = ["-0.1 m", "0.1 m"], y = ["-0.1 m", "0.1 m"], phi = ["-1 deg", "1 deg"] }} }}
+analysis = {{ kind = "monte-carlo", factors = ["delta_1_1_x"], samples = 10 }}
 """
 # What no pose keeps.
 IN_VAIN = STUDY.replace("count = 6", 'select = "interior"\ncount = 20\nlimits = { q_1_3 = ["5 m", "6 m"] }')
@@ -63,6 +72,22 @@ class PoseSearch(ProgramTest):
                     found = re.search(r"the workspace is empty \(q_1_3 below 5000 mm: (\d+) of (\d+) candidates\), or so small", message)
                     self.assertTrue(found, message)
                     self.assertLess(int(found[2]), 60000)
+
+    def test_poses_out_of_reach_are_told(self):
+        said = "4 of 9 poses examined in the workspace are not in this study: 4 out of reach"
+        self.write("study.toml", REACH)
+        done = self.poesy("run", "study.toml", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(f"poesy: warning: {said}\n", done.stderr.decode())
+        self.assertIn(said, " ".join(self.succeeds("show", "study.h5").split()))
+        summary = json.loads(self.succeeds("show", "study.h5", "--json"))
+        self.assertEqual(summary["candidate_poses"], 9)
+        self.assertEqual(sum(one["count"] for one in summary["rejected_poses"]), 4)
+        self.succeeds("report", "study.h5", "-o", "study.html")
+        self.assertIn(f"{said}.", (self.folder / "study.html").read_text(encoding="utf-8"))
+        self.write("study.toml", REACH.replace("0.1 m", "0.02 m"))
+        self.assertEqual(self.poesy("run", "study.toml", "--quiet").stderr, b"")
+        self.assertNotIn("not in this study", self.succeeds("show", "study.h5"))
 
 
 main()

@@ -1,5 +1,8 @@
 #include "engine/study/poses/pose_selection.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <functional>
 #include <numeric>
@@ -82,13 +85,19 @@ SelectedPoses grid_poses(const PoseSelection& selection, const Model& model, con
   }
 }
 
+/// The candidates of a search for the boundary are no measure of the workspace.
+SelectedPoses without_candidates(SelectedPoses selected) {
+  selected.candidates = 0;
+  return selected;
+}
+
 SelectedPoses watched_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch) {
   using Select = PoseSelection::Select;
   switch (selection.select) {
     case Select::interior:
       return interior_poses(selection, model, watch);
     case Select::boundary:
-      return boundary_poses(selection, model, watch);
+      return without_candidates(boundary_poses(selection, model, watch));
     case Select::grid:
       return grid_poses(selection, model, watch);
     case Select::trajectory:
@@ -100,6 +109,33 @@ SelectedPoses watched_poses(const PoseSelection& selection, const Model& model, 
 }
 
 }  // namespace
+
+bool some_out_of_reach(std::span<const RejectedPoses> rejected) {
+  return std::ranges::any_of(rejected, [](const RejectedPoses& one) { return one.reason.starts_with(kOutOfReach); });
+}
+
+std::string rejected_text(std::span<const RejectedPoses> rejected, std::size_t candidates) {
+  constexpr std::size_t kMost = 3;  // reasons in words, besides reach
+  if (rejected.empty() || candidates == 0) return {};
+  std::size_t all = 0;
+  std::size_t out_of_reach = 0;  // why differs from pose to pose
+  std::size_t others = 0;
+  std::vector<std::string> reasons;
+  for (const RejectedPoses& one : rejected) {
+    all += one.count;
+    if (one.reason.starts_with(kOutOfReach)) {
+      out_of_reach += one.count;
+    } else if (reasons.size() < kMost) {
+      reasons.push_back(fmt::format("{} {}", one.count, one.reason));
+    } else {
+      others += one.count;
+    }
+  }
+  if (out_of_reach > 0) reasons.insert(reasons.begin(), fmt::format("{} out of reach", out_of_reach));
+  if (others > 0) reasons.push_back(fmt::format("{} for other reasons", others));
+  return fmt::format("{} of {} poses examined in the workspace {} not in this study: {}", all, candidates,
+                     all == 1 ? "is" : "are", fmt::join(reasons, "; "));
+}
 
 std::optional<SelectedPoses> select_poses(const PoseSelection& selection, const Model& model,
                                           const WatchSearch& watch) {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -126,12 +128,25 @@ struct RejectedPoses {
   std::size_t count;   ///< number of poses
 };
 
+/// What the reason of a pose begins with if the mechanism cannot reach it.
+inline constexpr std::string_view kOutOfReach = "out of reach: ";
+
+/// Whether some of these poses are out of reach of the mechanism, and not only refused by limits of the study.
+bool some_out_of_reach(std::span<const RejectedPoses> rejected);
+
+/// A sentence on the poses of a workspace that are not in a study: how many of how many, and why. Empty if there are
+/// none. candidates: number of poses that the search examined; 0 if it is not known, and the sentence is empty.
+std::string rejected_text(std::span<const RejectedPoses> rejected, std::size_t candidates);
+
 /// The poses of a selection, and the poses that it rejected.
 struct SelectedPoses {
   PoseSet poses;                        ///< selected poses
   std::vector<double> condition;        ///< condition number at each pose; see Model::condition
   std::vector<RejectedPoses> rejected;  ///< numbers of rejected poses by reason, most frequent first
-  std::vector<double> time;             ///< time of each pose of a trajectory, s, ascending; empty for other selections
+  /// Number of poses that an interior or grid search examined; 0 for other selections. A search for the boundary
+  /// rejects poses in any workspace, because it looks for those where reach ends.
+  std::uint64_t candidates = 0;
+  std::vector<double> time;  ///< [M] s, time of each pose of a trajectory, ascending; else empty
 };
 
 /// The progress of a search for poses.

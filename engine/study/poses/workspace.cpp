@@ -19,7 +19,7 @@ double Workspace::scaled(std::size_t coordinate, double value) const {
 
 Judgement Workspace::judge(std::span<const double> pose) const {
   if (const auto reason = model_->unreachable(pose)) {
-    return {0.0, "out of reach: " + *reason, &selection_->place, "move the workspace into reach"};
+    return {0.0, std::string(kOutOfReach) + *reason, &selection_->place, "move the workspace into reach"};
   }
   std::vector<double> displacements;
   if (!selection_->limits.empty()) displacements = model_->joint_displacements(pose);
@@ -97,6 +97,7 @@ SelectedPoses PoseCollector::result() && {
   SelectedPoses selected{.poses = PoseSet(workspace_->coordinates(), std::move(values_)),
                          .condition = std::move(condition_),
                          .rejected = {},
+                         .candidates = tested_,
                          .time = {}};
   for (const auto& [reason, rejected] : rejected_) selected.rejected.push_back({reason, rejected.count});
   std::ranges::stable_sort(selected.rejected, std::ranges::greater(), &RejectedPoses::count);

@@ -187,6 +187,30 @@ TEST(GridPoses, OfATableAreItsFeasiblePoints) {
   EXPECT_EQ(selected.poses.size() + test::total(selected.rejected), 210u);
 }
 
+TEST(RejectedPoses, AreToldByTheirNumberAndReason) {
+  const std::vector<RejectedPoses> rejected{{"out of reach: limb 1 is stretched", 6},
+                                            {"q_2 above 20 deg", 4},
+                                            {"out of reach: limb 2 is stretched", 1},
+                                            {"q_2 below 10 deg", 1},
+                                            {"q_3 above 20 deg", 1},
+                                            {"q_3 below 10 deg", 1}};
+  EXPECT_EQ(rejected_text(rejected, 30),
+            "14 of 30 poses examined in the workspace are not in this study: 7 out of reach; 4 q_2 above 20 deg; 1 q_2 "
+            "below 10 deg; 1 q_3 above 20 deg; 1 for other reasons");
+  EXPECT_TRUE(some_out_of_reach(rejected));
+  EXPECT_FALSE(some_out_of_reach(std::span(rejected).subspan(1, 1)));
+  EXPECT_EQ(rejected_text({}, 30), "");
+  EXPECT_EQ(rejected_text(rejected, 0), "");  // of a boundary
+}
+
+TEST(RejectedPoses, AreCountedAmongTheCandidates) {
+  for (const Select select : {Select::interior, Select::grid}) {
+    const SelectedPoses selected = select_poses(limited(select, 200), kModel);
+    EXPECT_GE(selected.candidates, 200 + test::total(selected.rejected));
+  }
+  EXPECT_EQ(select_poses(limited(Select::boundary, 20), kModel).candidates, 0u);
+}
+
 TEST(GridPoses, OfANumberThatIsAPowerAreTheFullGrid) {
   PoseSelection table = test::fake_box(Select::grid, 64);
   table.grid_counts = {4, 4, 4};
