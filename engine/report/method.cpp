@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <initializer_list>
 #include <vector>
 
 #include "engine/model/calibrated.h"
@@ -26,6 +28,66 @@ std::string errors_sentence(const StoredResult& result, const StudyWords& words)
   if (!words.draws) return fmt::format("{} given values.", text);
   const std::vector<std::string> sizes = drawn_sizes(result, words);
   return fmt::format("{} drawn{}.", text, sizes.empty() ? "" : fmt::format(" ({})", fmt::join(sizes, "; ")));
+}
+
+/// The readable values of these keys in the sections whose names begin so, each value once.
+std::vector<std::string> settings_of(const StoredResult& result, std::string_view section,
+                                     std::initializer_list<std::string_view> keys) {
+  std::vector<std::string> values;
+  for (const StudySetting& one : study_settings(result.study_text)) {
+    if (!one.section.starts_with(section) || std::ranges::find(keys, one.key) == keys.end()) continue;
+    std::string value = fmt::format("{} = {}", one.key, readable_setting(one.value));
+    if (std::ranges::find(values, value) == values.end()) values.push_back(std::move(value));
+  }
+  return values;
+}
+
+/// What a study states of the zones of a drawing and, for an allocation, of the tolerances of parts.
+std::string zones_sentence(const StoredResult& result) {
+  const std::string zones = setting(result, "errors", "zones");
+  const std::vector<std::string> parts = settings_of(result, "analysis.parts", {"sigmas", "cpk"});
+  std::string text;
+  if (!zones.empty()) text = fmt::format("Features of the drawing scatter in their zones ({}).", zones);
+  if (parts.empty()) return text;
+  return text + fmt::format("{}Tolerances are multiples of the standard deviation of an error ({}).",
+                            text.empty() ? "" : " ", fmt::join(parts, ", "));
+}
+
+constexpr std::size_t kMostNamed = 5;  // errors that a sentence names
+
+/// "Measured errors: leg_1 (11 parts, mean 0.01 mm)."
+std::string measured_sentence(const StoredResult& result) {
+  const MeasuredErrors& found = result.measured;
+  std::vector<std::string> errors;
+  for (std::size_t e = 0; e < found.names.size(); ++e) {
+    errors.push_back(fmt::format("{} ({}, mean {})", found.names[e], counted(found.parts[e], "part", "parts"),
+                                 response_text(result.factors[found.factors[e]], found.mean[e])));
+  }
+  return errors.empty() ? std::string() : fmt::format("Measured errors: {}.", some_names(errors, kMostNamed));
+}
+
+/// "Means that the study states: offset 0.05 mm."
+std::string means_sentence(const StoredResult& result) {
+  std::vector<std::string> errors;
+  for (std::size_t p = 0; p < result.factor_mean.size(); ++p) {
+    if (result.factor_mean[p] == 0.0) continue;
+    errors.push_back(result.factors[p].name + " " + response_text(result.factors[p], result.factor_mean[p]));
+  }
+  return errors.empty() ? std::string()
+                        : fmt::format("Means that the study states: {}.", some_names(errors, kMostNamed));
+}
+
+/// "Background, the same in all machines: 12 errors, linear = 0.1 mm, angular = 0.01 deg."
+std::string background_sentence(const StoredResult& result) {
+  const std::string factors = study_setting(result.study_text, "analysis.background", "factors");
+  if (factors.empty()) return {};
+  const bool is_list = factors.starts_with('[');
+  const auto named = static_cast<std::size_t>(std::ranges::count(factors, '"')) / 2;
+  std::vector<std::string> parts{is_list ? counted(named, "error", "errors") : "errors " + readable_setting(factors)};
+  for (std::string& size : settings_of(result, "analysis.background", {"linear", "angular", "relative"})) {
+    parts.push_back(std::move(size));
+  }
+  return fmt::format("Background, the same in all machines: {}.", fmt::join(parts, ", "));
 }
 
 std::string poses_sentence(const StoredResult& result, const StudyWords& words) {
@@ -85,6 +147,7 @@ std::string limits_sentence(const StoredResult& result) {
   text = text.empty() ? "" : "Limits: " + text + ".";
   const std::optional<YieldVerdict>& yield = result.verdicts->yield;
   if (!yield) return text;
+  if (yield->asked > 0.0) text += fmt::format(" The wanted yield is {}.", percent_text(yield->asked));
   return text + fmt::format(" The yield is {}, with a {} interval of {} to {} (Clopper and Pearson).",
                             percent_text(yield->value), percent_text(yield->conf_level), percent_text(yield->ci_low),
                             percent_text(yield->ci_high));
@@ -104,7 +167,8 @@ std::string method_text(const ReportKind& kind, const StoredResult& result) {
   std::string text = fmt::format("The study of kind {} of the mechanism {} was made with poesy {} ({}).", result.kind,
                                  result.model, result.poesy_version, result.git_commit);
   for (const std::string& sentence :
-       {errors_sentence(result, words), poses_sentence(result, words), calibration_sentence(result, words),
+       {errors_sentence(result, words), zones_sentence(result), means_sentence(result), measured_sentence(result),
+        background_sentence(result), poses_sentence(result, words), calibration_sentence(result, words),
         result.metric.empty() ? std::string() : "Mismatch is weighed by the metric " + metric_text(result) + ".",
         solves_sentence(kind.tally(result).total()), limits_sentence(result), repeat_sentence(result, words)}) {
     if (!sentence.empty()) text += " " + sentence;

@@ -5,7 +5,7 @@ import re
 import shutil
 import subprocess
 
-from poesy_program import GALLERY, MECHANISMS, ProgramTest, main
+from poesy_program import EACH_A_PART, GALLERY, MECHANISMS, ProgramTest, main
 
 MACHINES = """\
 format = "poesy-study"
@@ -194,6 +194,38 @@ leg_2 = { distribution = "uniform", half_width = "0.03 mm" }
                      "normal with a standard deviation of 0.02 mm", "normal with a standard deviation of 0.01 deg"):
             self.assertIn(said, words)
         self.assertNotIn("linear: ", words)
+
+    def test_the_method_states_means_background_and_wanted_yield(self):
+        study = (GALLERY / "tricept" / "yield.toml").read_text()
+        shutil.copyfile(GALLERY / "tricept" / "tricept.toml", self.folder / "tricept.toml")
+        self.write("parts.csv", "leg_1 [mm]\n" + "".join(f"{0.01 * k}\n" for k in range(-3, 8)))
+        self.write("study.toml", study.replace("samples = 5000", "samples = 200\nyield = 0.5").replace('factors = "all"', """\
+factors = ["leg_1", "leg_2", "leg_3"]
+background = { factors = ["skew_x", "offset_x"], angular = "0.02 deg" }""").replace("[analysis]", """[errors.override]
+leg_1 = { distribution = "measured", file = "parts.csv", column = "leg_1" }
+leg_2 = { distribution = "uniform", half_width = "0.03 mm", mean = "-0.05 mm" }
+
+[analysis]"""))
+        self.poesy("run", "study.toml", "-o", "study.h5")
+        words = " ".join(self.succeeds("show", "study.h5", "--method").split())
+        for said in ("Measured errors: leg_1 (11 parts, mean 0.02 mm).", "Means that the study states: leg_2 -0.05 mm.",
+                     "Background, the same in all machines: 2 errors, linear = 0.02 mm, angular = 0.02 deg.",
+                     "The wanted yield is 50 %. The yield is "):
+            self.assertIn(said, words)
+
+    def test_the_method_states_zones_and_sigmas(self):
+        self.write("linear-delta-drawing.toml", (MECHANISMS / "linear-delta-drawing.toml").read_text())
+        self.write("study.toml", DRAWING)
+        self.assertIn(self.poesy("run", "study.toml", "--quiet").returncode, (0, 6))
+        words = " ".join(self.succeeds("show", "study.h5", "--method").split())
+        for said in ("Features of the drawing scatter in their zones (distribution = normal, sigmas = 3).",
+                     "The wanted yield is 95 %."):
+            self.assertIn(said, words)
+        self.write("parts.toml", MACHINES.replace("monte-carlo", "allocation").replace('draws = "per machine"\n', "sigmas = 4\n")
+                   .replace("1500", "600\nyield = 0.95") + EACH_A_PART)
+        self.assertIn(self.poesy("run", "parts.toml", "--quiet").returncode, (0, 6))
+        words = " ".join(self.succeeds("show", "parts.h5", "--method").split())
+        self.assertIn("Tolerances are multiples of the standard deviation of an error (sigmas = 4).", words)
 
 
 if __name__ == "__main__":
