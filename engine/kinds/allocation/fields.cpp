@@ -76,6 +76,11 @@ const Group<Result> kAllocation{
       "What one unit more of the limit at this pose alone would save; NaN for a response without a limit"},
      {"limit_use", &Result::limit_use, "1",
       "Predicted root mean square over what the tightest limit allows it; NaN likewise"},
+     {"fixed_share", &Result::fixed_share, "1",
+      "Share of the mean square under the limit, at the pose where the limit is used most, that belongs to no part: "
+      "background, errors without a part, noise of measurements, interactions of errors; NaN for a response without a "
+      "limit",
+      Presence::where_computed},
      {"limit", &Result::limit, kResponseUnit, "Limit of the response; NaN for none"},
      {"saving", &Result::saving, kCostUnit,
       "What a limit wider by one percent at all poses would save, to first order; NaN for a response without a "
@@ -334,6 +339,7 @@ CsvTable limit_table(const StoredResult& result) {
                                return pose ? static_cast<std::int64_t>(*pose) : -1;
                              }});
   };
+  if (!found.fixed_share.empty()) table.columns.push_back(field_column("fixed_share", row("fixed_share"), found));
   add_largest("limit_use", found.limit_use);
   add_largest("multiplier", found.multiplier);
   return table;

@@ -191,6 +191,10 @@ struct AllocationResult {
   Array<double, axis::Response> limit_pose_share;
   Array<double, axis::Response> limit_is_spread;
   /// @}
+  /// Share of the mean square under the limit, at the pose where the limit is used most, that belongs to no
+  /// part: to the background, errors without a part, noise of measurements and interactions of errors. Empty in files
+  /// of version 0.2.
+  Array<double, axis::Response> fixed_share;
   Array<double, axis::Response> saving;  ///< cost saved if a limit is one percent wider at all poses, to first order
 
   Aim aim = Aim::least_cost;  ///< what the study optimised

@@ -186,7 +186,7 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
   const std::vector<double>& multiplier = candidate.chosen.multiplier;
   const std::size_t responses = problem.run.study.model().responses.size();
   const std::size_t poses = problem.run.poses.size();
-  found.limit = found.saving = Array<double, axis::Response>({responses}, kNaN);
+  found.limit = found.saving = found.fixed_share = Array<double, axis::Response>({responses}, kNaN);
   found.multiplier = found.limit_use = AllocationResult::AtPoses({responses, poses}, kNaN);
   if (!std::ranges::all_of(stated, [](const ResponseLimit& one) { return one.allowed.is_magnitude(); })) {
     found.limit_from = found.limit_to = found.limit;
@@ -208,11 +208,17 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
     const double limit_of_room = stated[k].allowed.is_spread() ? 2.0 : 1.0;
     found.limit(r) = limit_of_room * least;
     double sum = 0.0;
+    double most_used = 0.0;
     for (std::size_t m = 0; m < poses; ++m) {
       const std::size_t row = k * poses + m;
       const double allowed = candidate.share * rooms[m];
-      const double square = allowed * allowed - limits.room[row] + limits.need(row, candidate.point.tolerance);
+      const double fixed = allowed * allowed - limits.room[row];  // mean square of all that is in no part
+      const double square = fixed + limits.need(row, candidate.point.tolerance);
       found.limit_use(r, m) = std::sqrt(std::max(0.0, square)) / allowed;
+      if (found.limit_use(r, m) > most_used) {
+        most_used = found.limit_use(r, m);
+        found.fixed_share(r) = std::max(0.0, fixed) / square;
+      }
       if (multiplier.empty()) continue;
       // The multiplier of the programme is the cost saved per unit of room. The room is (share x limit)^2 minus the
       // effect of fixed errors, so the chain rule gives the cost saved per unit of the limit.

@@ -114,11 +114,20 @@ void add_details(const Result& found, std::vector<FilledColumn>& columns) {
   columns.push_back(words_column("errors", "errors", found.part_members, kFirstToGo + 1));
 }
 
+/// Whether the part adds nothing to any mean square and its tolerance ends where the search does, which says nothing
+/// about the part.
+bool has_no_effect(const Result& found, std::size_t n) {
+  constexpr double kRounding = 1e-12;  // share of the mean square
+  return found.mean_square_share(n) < kRounding && found.bound(n) == static_cast<std::uint8_t>(AtBound::upper);
+}
+
 /// Columns with the name and the tolerance of each part.
 std::vector<FilledColumn> part_columns(const Result& found) {
-  return {words_column("part", "part", found.part_names),
-          {text_column("drawing", "drawing"),
-           [&](std::size_t n) { return text_cell(drawing_text(found.tolerance(n), found.part_unit(n))); }}};
+  return {
+      words_column("part", "part", found.part_names),
+      {text_column("drawing", "drawing"), [&](std::size_t n) {
+         return text_cell(has_no_effect(found, n) ? "no effect" : drawing_text(found.tolerance(n), found.part_unit(n)));
+       }}};
 }
 
 std::vector<FilledColumn> drawing_columns(const Result& found, bool alike) {
@@ -149,6 +158,28 @@ std::vector<FilledColumn> drawing_columns(const Result& found, bool alike) {
   return columns;
 }
 
+/// The largest of these numbers; 0 if none is above zero.
+double largest(std::span<const double> at_poses) {
+  const std::optional<std::size_t> pose = worst_pose(at_poses);
+  return pose ? at_poses[*pose] : 0.0;
+}
+
+constexpr double kNoticeable = 0.001;  // least share of a mean square that is worth a line
+
+/// What is in no part, and its share of the mean square under the limit that is used most. Empty if that is hardly
+/// anything.
+std::string fixed_note(const Result& found) {
+  const std::vector<std::size_t> limited = limited_responses(found);
+  if (found.fixed_share.empty() || limited.empty()) return {};
+  const std::size_t r =
+      *std::ranges::max_element(limited, {}, [&](std::size_t one) { return largest(found.limit_use.row(one)); });
+  if (!(found.fixed_share(r) >= kNoticeable)) return {};
+  return fmt::format(
+      "in no part is {} of the mean square under the tightest limit: background, errors without a part, noise of "
+      "measurements, interactions of errors; the tolerances of this table do not reduce it",
+      percent_text(found.fixed_share(r)));
+}
+
 Table drawing_table(const Result& found, RowOrder order) {
   std::set<std::string> statements;
   for (std::size_t n = 0; n < found.parts(); ++n) {
@@ -168,6 +199,13 @@ Table drawing_table(const Result& found, RowOrder order) {
       "coarser: of the design's machines, predicted for this part alone with a T 5 % larger, or the next larger one "
       "that "
       "can be had");
+  const auto idle = [&](std::size_t n) { return has_no_effect(found, n); };
+  if (!found.has_zones() && std::ranges::any_of(positions(found.parts()), idle)) {
+    table.notes.emplace_back(
+        "no effect: a part that adds nothing to the mean square under the tightest limit; its T is where the search "
+        "ends, not what the part needs");
+  }
+  if (std::string note = fixed_note(found); !note.empty()) table.notes.push_back(std::move(note));
   add_bound_note(found, table);
   std::vector<std::size_t> parts = ordered_parts(found, order);
   if (found.has_zones()) parts = drawn_parts(found, parts);
@@ -187,12 +225,6 @@ std::vector<FilledColumn> pose_columns(const StoredResult& result, const std::st
              const std::optional<std::size_t> pose = worst_pose(values.row(r));
              return text_cell(pose ? coordinates_text(result, *pose) : std::string());
            }}};
-}
-
-/// The largest of these numbers; 0 if none is above zero.
-double largest(std::span<const double> at_poses) {
-  const std::optional<std::size_t> pose = worst_pose(at_poses);
-  return pose ? at_poses[*pose] : 0.0;
 }
 
 /// The limit on a response.
@@ -225,12 +257,19 @@ Table use_table(const StoredResult& result) {
                                        return percent_cell(std::round(1e4 * largest(found.limit_use.row(r))) / 1e4);
                                      }}};
   std::ranges::move(pose_columns(result, "used", found.limit_use, 0), std::back_inserter(columns));
+  const bool has_fixed = std::ranges::any_of(found.fixed_share, [](double share) { return share >= kNoticeable; });
+  if (has_fixed) columns.push_back(share_column("fixed_share", "in no part", found.fixed_share, 3));
   Table table{
       .name = "allocation_limits",
       .caption = "What each limit asks for, and where",
       .columns = {},
       .notes = {"used: the predicted root mean square over what the tightest limit allows it, at the pose where "
                 "it is largest"}};
+  if (has_fixed) {
+    table.notes.emplace_back(
+        "in no part: share of the mean square at this pose that belongs to no part (background, errors without a part, "
+        "noise of measurements, interactions of errors)");
+  }
   if (has_costs(found)) {
     columns.push_back(cost_column("saving", "1 % wider saves", found.saving));
     columns.push_back({number_column("price", "saved per unit", "", 1), [&](std::size_t r) {

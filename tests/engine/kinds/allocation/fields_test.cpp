@@ -88,7 +88,8 @@ TEST_F(AllocationFile, IsReadBackAsItWas) {
     expect_same(found.*member, written_.*member);
   }
   for (const auto member : {&Result::multiplier, &Result::limit_use}) expect_same(found.*member, written_.*member);
-  for (const auto member : {&Result::limit, &Result::saving}) expect_same(found.*member, written_.*member);
+  for (const auto member : {&Result::limit, &Result::saving, &Result::fixed_share})
+    expect_same(found.*member, written_.*member);
   for (const auto member : {&Result::curve_yield, &Result::curve_factor}) EXPECT_EQ(found.*member, written_.*member);
   EXPECT_EQ(found.error_mean_square_share, written_.error_mean_square_share);
   EXPECT_EQ(found.stage_tolerance, written_.stage_tolerance);
@@ -254,8 +255,8 @@ TEST_F(AllocationFile, IsExportedAsTheDrawingHasIt) {
       "plate,2.5e-05,0.025,7.5e-06,0.0075,2.5e-06,0.0025,3,0.5,0.05,0.125,3,NaN,m,IT7,delta_3\n");
   EXPECT_EQ(csv("allocation_errors"), "factor,mean_square_share\nepsilon_1,0.375\ndelta_1,0.45\n");
   EXPECT_EQ(csv("allocation_limits"),
-            "response,limit,saving,largest_limit_use,largest_limit_use_pose,largest_multiplier,"
-            "largest_multiplier_pose,unit\nlinear_deformation,3e-05,0.09,1,3,200000,2,m\n");
+            "response,limit,saving,fixed_share,largest_limit_use,largest_limit_use_pose,largest_multiplier,"
+            "largest_multiplier_pose,unit\nlinear_deformation,3e-05,0.09,0.25,1,3,200000,2,m\n");
   EXPECT_EQ(csv("allocation_poses"),
             "pose,limit_use_linear_deformation,multiplier_linear_deformation [cost/m]\n"
             "0,0.25,0\n1,0.5,0\n2,0.75,200000\n3,1,100000\n");

@@ -122,11 +122,42 @@ TEST_F(AllocationReport, PutsTheDrawingInATable) {
             "share of mean square: of what all parts add to the mean square under the tightest limit; rejects if\n"
             "coarser: of the design's machines, predicted for this part alone with a T 5 % larger, or the next\n"
             "larger one that can be had\n"
+            "in no part is 25 % of the mean square under the tightest limit: background, errors without a part,\n"
+            "noise of measurements, interactions of errors; the tolerances of this table do not reduce it\n"
             "under the last limits on root mean squares no tolerances cost less than 9.995, to within 0.005\n"
             "(no room for rejects if coarser, T, errors: a wider terminal shows more)\n");
   EXPECT_EQ(column(table("drawing"), "coarser_rejects"), (Texts{"58", "70", "-"}));
   EXPECT_EQ(column(table("drawing"), "tolerance"), (Texts{"0.1", "0.0123457", "0.025"}));
   EXPECT_EQ(column(table("drawing"), "errors"), (Texts{"epsilon_1", "delta_1 delta_2", "delta_3"}));
+}
+
+/// The first note of a table that begins so; empty if none does.
+std::string note_of(const Table& table, std::string_view begin) {
+  for (const std::string& note : table.notes) {
+    if (note.starts_with(begin)) return note;
+  }
+  return {};
+}
+
+TEST_F(AllocationReport, OffersNoToleranceOfAPartWithoutEffect) {
+  EXPECT_EQ(column(table("drawing"), "drawing").front(), "+-0.1 deg");
+  EXPECT_EQ(note_of(table("drawing"), "no effect"), "");
+  found().mean_square_share(1) = 0.0;  // of the hinge, at its upper bound
+  EXPECT_EQ(column(table("drawing"), "drawing").front(), "no effect");
+  EXPECT_NE(note_of(table("drawing"), "no effect: "), "");
+  found().bound(1) = 0;  // rejected machines hold it
+  EXPECT_EQ(column(table("drawing"), "drawing").front(), "+-0.1 deg");
+}
+
+TEST_F(AllocationReport, StatesWhatIsInNoPart) {
+  EXPECT_EQ(note_of(table("drawing"), "in no part"),
+            "in no part is 25 % of the mean square under the tightest limit: background, errors without a part, noise "
+            "of measurements, interactions of errors; the tolerances of this table do not reduce it");
+  EXPECT_EQ(column(table("allocation_limits"), "fixed_share"), Texts{"25"});
+  found().fixed_share(1) = 0.0;
+  EXPECT_EQ(note_of(table("drawing"), "in no part"), "");
+  found().fixed_share = {};  // as in files of version 0.2
+  EXPECT_EQ(note_of(table("drawing"), "in no part"), "");
 }
 
 TEST_F(AllocationReport, SaysWhatEachLimitAsksForAndWhere) {
@@ -138,9 +169,11 @@ TEST_F(AllocationReport, SaysWhatEachLimitAsksForAndWhere) {
             "linear_deformation   0.03  mm     100     3       0.09       200     2\n"
             "used: the predicted root mean square over what the tightest limit allows it, at the pose where it is\n"
             "largest\n"
+            "in no part: share of the mean square at this pose that belongs to no part (background, errors\n"
+            "without a part, noise of measurements, interactions of errors)\n"
             "1 % wider saves: of the cost, if this limit is wider by 1 % at all poses, to first order; saved per\n"
             "unit: if it is one unit wider at one pose alone, the one where that saves most\n"
-            "(no room for where: a wider terminal shows more)\n");
+            "(no room for where, in no part: a wider terminal shows more)\n");
   EXPECT_EQ(column(table("allocation_limits"), "used_place"), Texts{"z -203 mm, beta 21.5 deg, gamma -43 deg"});
   EXPECT_EQ(column(table("allocation_limits"), "price_place"), Texts{"z -219 mm, beta 14.3 deg, gamma -28.6 deg"});
   std::ranges::fill(found().multiplier, 0.0);

@@ -75,6 +75,21 @@ TEST(SharesWithinAPart, AreThoseOfItsErrors) {
   EXPECT_TRUE(std::isnan(shares(4)));
 }
 
+TEST(SharesWithinALimit, StateWhatIsInNoPart) {
+  const auto linear = [](std::span<const double> x, double, std::span<double> y) {
+    y[0] = 3.0 * x[0] + 4.0 * x[1] + 2.0 * x[2];
+  };
+  FunctionStudy study(3, linear, 0.05, 2000);
+  study.asked().parts = {part_of(0, reciprocal(0.0, 1.0)), part_of(1, reciprocal(0.0, 2.0))};
+  study.study.errors.by_factor[2] = Distribution::normal(2e-3);  // of no part
+  const AllocationResult found = study.find();
+  const double fixed = std::pow(2.0 * 2e-3, 2);
+  const double of_parts = std::pow(3.0 * found.sigma(0), 2) + std::pow(4.0 * found.sigma(1), 2);
+  EXPECT_NEAR(found.fixed_share(0), fixed / (fixed + of_parts), 1e-9);
+  study.study.errors.by_factor[2] = Distribution::normal(1e-12);
+  EXPECT_LT(study.find().fixed_share(0), 1e-12);
+}
+
 TEST(OverrunningClutch, HasTheLeastCostOfTheLiterature) {
   const AllocationResult found = clutch_study(148'000).find();
   const AllocationStage& linear = found.stages.front();
