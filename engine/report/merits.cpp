@@ -105,6 +105,31 @@ std::vector<Cell> row_of(const Merit& first, const Merit& merit, std::size_t res
   return row;
 }
 
+/// How many times as many samples tell this change from zero, if it is as large as found; an interval narrows with the
+/// square root of their number. NaN if the change is zero or exact.
+double times_as_many(const MeritChange& change) {
+  const double nearer = change.value > 0.0 ? change.value - change.low : change.high - change.value;
+  return change.value == 0.0 || change.low == change.high ? kNaN : std::pow(nearer / change.value, 2);
+}
+
+/// What would tell a result from the first one. Empty if they are told apart, or if more samples do not help.
+std::string remedy_text(const Merit& first, const Merit& merit, std::size_t result) {
+  constexpr double kTooMany = 1e4;
+  const MeritChange change = change_of(first, merit);
+  if (change.verdict != Change::not_told_apart || !first.narrows || !merit.narrows) return {};
+  const double times = times_as_many(change);
+  const std::string name = fmt::format("{}, A and {} not told apart: ", merit.what, letter_of(result));
+  std::string text = name + "they are equal";
+  if (!std::isnan(times)) {
+    text = name + (times > kTooMany ? std::string("the difference is too small for any number of samples")
+                                    : fmt::format("some {} times as many samples of each tell a difference as large "
+                                                  "as this one",
+                                                  number_text(times, 2)));
+  }
+  if (merit.what != kYieldMerit) return text;
+  return text + "; fewer do if the designs differ by keys of one study: poesy sweep gives them the same machines";
+}
+
 }  // namespace
 
 char letter_of(std::size_t result) {
@@ -132,7 +157,8 @@ Merit yield_merit(const YieldVerdict& yield) {
           .value = 100.0 * yield.value,
           .low = 100.0 * interval.low,
           .high = 100.0 * interval.high,
-          .most_best = true};
+          .most_best = true,
+          .narrows = !yield.with_parts.has_value()};
 }
 
 std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results) {
@@ -172,7 +198,13 @@ std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
                         "independently; common draws make it wider than it need be"}};
   for (const std::string& what : shared) {
     const Merit& first = *find(results.front(), what);
-    for (std::size_t n = 0; n < results.size(); ++n) table.rows.push_back(row_of(first, *find(results[n], what), n));
+    for (std::size_t n = 0; n < results.size(); ++n) {
+      const Merit& merit = *find(results[n], what);
+      table.rows.push_back(row_of(first, merit, n));
+      std::string remedy = n == 0 ? std::string() : remedy_text(first, merit, n);
+      if (!remedy.empty()) table.notes.push_back(std::move(remedy));
+    }
+    if (!first.note.empty()) table.notes.push_back(first.note);
   }
   return table;
 }

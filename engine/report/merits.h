@@ -24,6 +24,8 @@ struct Merit {
   double low = kNaN;       ///< lower end of the confidence interval; NaN if there is none
   double high = kNaN;      ///< upper end of the confidence interval; NaN if there is none
   bool most_best = false;  ///< true if a larger value is better, false if a smaller one is
+  bool narrows = true;     ///< true if more samples make its interval narrower
+  std::string note = {};   ///< a sentence on what its interval does not contain; empty: none
 };
 
 /// What the yield is called as a figure of merit.

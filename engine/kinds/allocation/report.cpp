@@ -288,13 +288,16 @@ Comparable comparable(const StoredResult& result, const StoredResult& other) {
   return all;
 }
 
-/// The merit by which results are compared: the cost, which has no uncertainty. The yield is not a merit, because both
-/// results certify it.
+/// The merit by which results are compared: the cost. The yield is not a merit, because both results certify it. The
+/// cost has no interval, because a result does not tell what other machines of the search would have given.
 std::vector<Merit> merits(const StoredResult& result, std::string_view) {
   const Result& found = allocation_of(result);
   if (!has_costs(found)) return {};
-  const double cost = found.total_cost;
-  return {{.what = "cost of all parts", .value = cost, .low = cost, .high = cost}};
+  return {{.what = "cost of all parts",
+           .value = found.total_cost,
+           .note =
+               "the cost has no interval: a search with another seed finds other tolerances at another cost; poesy run "
+               "--seed shows by how much"}};
 }
 
 }  // namespace

@@ -88,6 +88,34 @@ TEST(Merits, AreComparedWhereAllResultsHaveThem) {
   EXPECT_EQ(merit_sentences({exact(10.0)}, {exact(8.0)}), "B is better: the cost is 10 in A and 8 in B (-20 %).");
 }
 
+std::vector<std::string> notes_on(const Merit& a, const Merit& b) {
+  const Table table = merits_table(std::vector<std::vector<Merit>>{{a}, {b}}).value();
+  return {table.notes.begin() + 1, table.notes.end()};
+}
+
+/// The half-width of the change is sqrt(2) on either side of 0.5, so it must shrink by sqrt(8) = 2.83.
+TEST(Merits, SayHowManySamplesWouldTellThemApart) {
+  const Merit yield{"yield", "%", 90.0, 89.0, 91.0, true};
+  EXPECT_EQ(notes_on(yield, {"yield", "%", 90.5, 89.5, 91.5, true}),
+            std::vector<std::string>{
+                "yield, A and B not told apart: some 8 times as many samples of each tell a difference as large as "
+                "this one; fewer do if the designs differ by keys of one study: poesy sweep gives them the same "
+                "machines"});
+  EXPECT_TRUE(notes_on(yield, {"yield", "%", 95.0, 94.0, 96.0, true}).empty());
+  const Merit rms{.what = "rms", .value = 1.0, .low = 0.9, .high = 1.1};
+  EXPECT_EQ(
+      notes_on(rms, {.what = "rms", .value = 1.0001, .low = 0.9, .high = 1.1}),
+      std::vector<std::string>{"rms, A and B not told apart: the difference is too small for any number of samples"});
+  EXPECT_EQ(notes_on(rms, rms), std::vector<std::string>{"rms, A and B not told apart: they are equal"});
+  const Merit of_parts{.what = "yield", .value = 90.0, .low = 80.0, .high = 99.0, .most_best = true, .narrows = false};
+  EXPECT_TRUE(notes_on(of_parts, of_parts).empty());
+}
+
+TEST(Merits, SayWhatHasNoInterval) {
+  const Merit cost{.what = "cost", .value = 450.0, .note = "the cost has no interval"};
+  EXPECT_EQ(notes_on(cost, {.what = "cost", .value = 466.0}), std::vector<std::string>{"the cost has no interval"});
+}
+
 TEST(ComparedResponse, IsOneThatAllHave) {
   StoredResult a;
   a.responses = {{"gap", "m"}, {"x", "m"}};
