@@ -86,8 +86,21 @@ std::string row_heading(const PrintedNumber& cell, std::size_t longest_tail) {
   return element("th", cell.text, "scope=\"row\" " + number_attributes(cell, longest_tail));
 }
 
-/// Replaces "+-" at the beginning of a text, as in "+-0.1 mm", by the sign for plus or minus.
-std::string printed_text(std::string_view text) {
+/// Replaces the hyphen before each number of a text, as in "z -203 mm", by the sign of a negative number.
+std::string with_minus(std::string_view text) {
+  std::string printed;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const bool begins = at == 0 || text[at - 1] == ' ';
+    const bool before_digit = at + 1 < text.size() && text[at + 1] >= '0' && text[at + 1] <= '9';
+    printed += text[at] == '-' && begins && before_digit ? std::string("\u2212") : std::string(1, text[at]);
+  }
+  return printed;
+}
+
+/// Replaces "+-" at the beginning of a text, as in "+-0.1 mm", by the printed sign, and hyphens in the coordinates of a
+/// place by minus signs.
+std::string printed_text(const Column& column, std::string_view text) {
+  if (column.name.ends_with("place")) return with_minus(text);
   return text.starts_with("+-") ? "\u00b1" + std::string(text.substr(2)) : std::string(text);
 }
 
@@ -122,7 +135,7 @@ std::string body_html(const Table& table) {
               : c == naming             ? row_heading(cells[c])
               : !cells[c].boxes.empty() ? frame_element(cells[c])
               : number                  ? number_element(numbers[c].cells[n], numbers[c].longest_tail)
-                                        : element("td", printed_text(cells[c].text), width_class(table, c));
+                       : element("td", printed_text(table.columns[c], cells[c].text), width_class(table, c));
     }
     html += "</tr>\n";
   }

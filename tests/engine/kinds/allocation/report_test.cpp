@@ -180,6 +180,12 @@ TEST_F(AllocationReport, SaysWhatEachLimitAsksForAndWhere) {
   EXPECT_EQ(column(table("allocation_limits"), "price_pose"), Texts{"-"});
 }
 
+TEST_F(AllocationReport, PrintsPlacesWithMinusSigns) {
+  const std::string page = html();
+  EXPECT_NE(page.find(">z \u2212203 mm, beta 21.5 deg, gamma \u221243 deg<"), std::string::npos);
+  EXPECT_EQ(column(table("allocation_limits"), "used_place"), Texts{"z -203 mm, beta 21.5 deg, gamma -43 deg"});
+}
+
 TEST_F(AllocationReport, TellsTheWayAndWhatElseWouldCost) {
   EXPECT_EQ(text_of(table("stages"), kUnlimitedWidth),
             "How the tolerances were found, step by step\n"
