@@ -45,7 +45,7 @@ void read_kind(const StudyValue& value, Study& study, const Reading& reading) {
 }
 
 void read_studied_factors(const StudyValue& value, Study& study, const Reading&) {
-  study.analysis.factors = read_factors(value, study.model());
+  study.analysis.factors = read_factors(value, study);
 }
 
 std::string factors_line(const Study& study) {
@@ -185,7 +185,7 @@ void read_background(const StudyValue& value, Study& study, const Reading& readi
                         .angular = usual_distribution(reading, Dimension::angle).standard_deviation(),
                         .relative = usual_distribution(reading, Dimension::number).standard_deviation()};
   read_keys(background_keys(), section, background, Nothing());
-  background.factors = read_factors(section.require("factors"), study.model());
+  background.factors = read_factors(section.require("factors"), study);
   const auto is_number = [&](FactorIndex factor) {
     return study.model().factors[factor.value].dimension == Dimension::number;
   };
@@ -346,25 +346,32 @@ std::string usual_factors_text(std::span<const StudyKind* const> kinds) {
 
 namespace {
 
-/// Adds the factors with names that match the pattern to `factors`, unless they are in the list already.
-void add_matching(const StudyValue& pattern, const ModelDescription& model, std::vector<FactorIndex>& factors) {
+/// Adds to `factors` those whose names match the pattern and that are not in the list yet.
+void add_matching(const StudyValue& pattern, const Study& study, std::vector<FactorIndex>& factors) {
+  const ModelDescription& model = study.model();
   bool any = false;
   for (std::size_t f = 0; f < model.factors.size(); ++f) {
     if (!matches(pattern.text(), model.factors[f].name)) continue;
     any = true;
     if (std::ranges::find(factors, FactorIndex(f)) == factors.end()) factors.emplace_back(f);
   }
-  if (!any) pattern.fail("matches no error of the mechanism", "'poesy models " + model.name + "' lists them");
+  if (!any) pattern.fail("matches no error of the mechanism", listed_by_models(study));
 }
 
 }  // namespace
 
-std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescription& model) {
+std::string listed_by_models(const Study& study) {
+  const std::string& name = study.mechanism.file ? study.mechanism.file->name : study.model().name;
+  return "'poesy models " + printable(name) + "' lists them";
+}
+
+std::vector<FactorIndex> read_factors(const StudyValue& value, const Study& study) {
+  const ModelDescription& model = study.model();
   if (value.is_text()) return factors_of_set(value, model);
   std::vector<FactorIndex> factors;
   for (const StudyValue& element : value.list()) {
     if (element.is_text() && is_pattern(element.text())) {
-      add_matching(element, model, factors);
+      add_matching(element, study, factors);
       continue;
     }
     const FactorIndex factor(element.word(names(model.factors)));

@@ -154,7 +154,7 @@ CorrelatedErrors read_block(const StudyValue& value, const Study& study, const R
   CorrelatedErrors block;
   read_keys(block_keys(), section, block, Nothing());
   const StudyValue factors = section.require("factors");
-  block.factors = read_factors(factors, study.model());
+  block.factors = read_factors(factors, study);
   if (block.factors.size() < 2) factors.fail("names one error", "name at least two");
   for (const CorrelatedErrors& other : study.errors.correlated) {
     for (const FactorIndex factor : other.factors) {

@@ -376,15 +376,16 @@ std::optional<StudyValue> override_of(const StudySection& overrides, const std::
   return last;
 }
 
-/// Throws InputError for a key that is not the name of a factor, and for a pattern that matches no name.
-void check_override(const StudySection& overrides, const ModelDescription& model) {
+/// Throws InputError for a key that names no factor, and for a pattern that matches none.
+void check_override(const StudySection& overrides, const Study& study) {
+  const ModelDescription& model = study.model();
   const std::vector<std::string> keys = overrides.keys();
   std::vector<std::string_view> known = names(model.factors);
   for (const std::string& key : keys) {
     if (!is_pattern(key)) continue;
     known.push_back(key);
     if (std::ranges::any_of(model.factors, [&](const Factor& factor) { return matches(key, factor.name); })) continue;
-    overrides.require(key).fail("matches no error of the mechanism", "'poesy models " + model.name + "' lists them");
+    overrides.require(key).fail("matches no error of the mechanism", listed_by_models(study));
   }
   overrides.allow(known, "factor");
 }
@@ -403,7 +404,7 @@ StatedError read_own_error(const StudyValue& value, Dimension dimension, StudyUs
 
 void read_override(const StudyValue& value, Study& study, const Reading& reading) {
   const StudySection overrides = value.section();
-  check_override(overrides, study.model());
+  check_override(overrides, study);
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     const Factor& factor = study.model().factors[f];
     if (const auto own = override_of(overrides, factor.name)) {
@@ -810,8 +811,20 @@ void check_sizes_of_features(const Study& study, const Reading& reading) {
   }
 }
 
+/// The advice for an error that is too large: another unit if it is in m or rad, deviations if it is measured.
+static std::string smaller_remedy(const StudyValue& value, std::string_view key) {
+  std::string remedy(kTooLargeRemedy);
+  if (key == "column" || key == "values") return "give deviations from the nominal size, not sizes";
+  if (!value.is_text()) return remedy;
+  const std::string text = value.text();
+  const std::size_t number = text.find_last_of("0123456789. ") + 1;
+  const std::string unit = text.substr(std::min(number, text.size()));
+  if (unit != "m" && unit != "rad") return remedy;
+  return remedy + fmt::format(", such as \"{}m{}\"", printable(text.substr(0, number)), unit);
+}
+
 void refuse_error(const StudySection& section, std::string_view key, const std::string& problem) {
-  if (const auto value = section.find(key)) value->fail(problem, kTooLargeRemedy);
+  if (const auto value = section.find(key)) value->fail(problem, smaller_remedy(*value, key));
   throw InputError(section.place(), "the default of " + std::string(key) + " " + problem, kTooLargeRemedy);
 }
 

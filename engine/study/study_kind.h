@@ -219,8 +219,10 @@ std::string beside_study(const Place& place, const std::string& file);
 /// the file cannot be opened, InputError if it is a folder or a device.
 std::string named_file(const StudyValue& value);
 /// Reads a factor set, "all", or a list of names without repetition.
-std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescription& model);
-/// Reads the key `name`, or returns `usual` if the section lacks the key. Throws InputError if `taken` has the name.
+std::vector<FactorIndex> read_factors(const StudyValue& value, const Study& study);
+/// The advice "'poesy models MECHANISM' lists them": MECHANISM is the file of the study's mechanism, or its name.
+std::string listed_by_models(const Study& study);
+/// Reads the key `name`, or returns `usual` if the section has none. Throws InputError if the name is taken.
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual);
 /// The factors as TOML: the name of their set in quotes, or a list of names.
 std::string factors_text(std::span<const FactorIndex> factors, const ModelDescription& model);

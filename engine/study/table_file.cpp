@@ -361,9 +361,11 @@ ErrorTable read_errors(const std::string& path, const Model& model) {
   }
   const auto check = [&](const Place& place, std::size_t n, const TableColumn& column, double value) {
     if (const auto problem = beyond_bound(model, table.factors[n], value, "an error")) {
-      throw InputError(place, "this cell " + *problem,
-                       "write a smaller one, in SI units (m, rad) unless the first line names another: '" +
-                           column.with_unit() + "'");
+      throw InputError(
+          place, "this cell " + *problem,
+          "write a smaller one, a deviation from the nominal size in SI units (m, rad) unless the first line "
+          "names another: '" +
+              column.with_unit() + "'");
     }
   };
   Rows rows = read_rows(lines, columns, known, check);

@@ -1,5 +1,7 @@
 #include "models/file/feature_lines.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -15,6 +17,24 @@ void check_modifiers(const StudyValue& value, const std::string& text) {
     if (text.find(sign) == std::string::npos) continue;
     value.fail("has the modifier " + std::string(sign) + ", which depends on the actual size, which is not modelled",
                "remove it; the zone is then the smallest that it allows");
+  }
+}
+
+/// Refuses the signs that a drawing writes before a number, with what to write instead.
+void check_signs(std::string_view key, const StudyValue& value) {
+  if (!value.is_text()) return;
+  const std::string text = value.text();
+  for (const std::string_view sign : {"\u00d8", "\u00f8", "\u2300"}) {
+    if (text.find(sign) == std::string::npos) continue;
+    value.fail(fmt::format("is '{}', with the sign {}", printable(text), sign),
+               "write the number and its unit alone, e.g. \"0.05 mm\": around an axis or a point a zone is a diameter");
+  }
+  for (const std::string_view sign : {"+-", "+/-", "\u00b1"}) {
+    if (text.find(sign) == std::string::npos) continue;
+    value.fail(fmt::format("is '{}', with the sign {}", printable(text), sign),
+               key == "tolerance" ? "write the number and its unit alone: tolerance = \"0.02 mm\" of a distance is "
+                                    "+-0.02 mm"
+                                  : "write the whole width of the zone, \"0.1 mm\" for +-0.05 mm");
   }
 }
 
@@ -39,8 +59,10 @@ const Keys<WrittenZone, Nothing>& zone_keys() {
 void read_zone(std::string_view key, const StudyValue& value, FeatureLines& feature) {
   WrittenZone written;
   if (value.is_section()) {
+    if (const auto zone = value.section().find("zone")) check_signs(key, *zone);
     read_keys(zone_keys(), value.section(), written, Nothing{});
   } else {
+    check_signs(key, value);
     written.size = expression(value);
   }
   check_modifiers(value, written.size->text);

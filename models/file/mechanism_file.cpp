@@ -852,6 +852,20 @@ toml::table parsed(const std::string& text, const std::string& path) {
   return parse_toml(text, path, "correct this line; names of parameters and expressions stand in quotes");
 }
 
+/// Throws InputError if the file is a study. The advice names the mechanism of that study.
+void refuse_study(const toml::table& table, const std::string& path) {
+  if (table["format"].value_or(std::string()) != "poesy-study") return;
+  const auto beside = table.at_path("mechanism.file").value<std::string>();
+  const auto name = table.at_path("mechanism.model").value<std::string>();
+  std::string remedy = "give the file of the study's mechanism";
+  if (beside) {
+    const std::string folder = beside->starts_with('/') ? "" : path.substr(0, path.find_last_of('/') + 1);
+    remedy += " instead: " + printable(folder + *beside);
+  }
+  if (!beside && name) remedy = "give the study's mechanism instead: " + printable(*name);
+  throw InputError({path, 1, 1}, "is a study, not a mechanism", remedy);
+}
+
 }  // namespace
 
 std::vector<OwnResponse> read_own_responses(const std::string& text, const std::string& path,
@@ -864,6 +878,7 @@ std::vector<OwnResponse> read_own_responses(const std::string& text, const std::
 
 MechanismFile read_mechanism_file(const std::string& text, const std::string& path) {
   const toml::table table = parsed(text, path);
+  refuse_study(table, path);
   const StudySection root(table, "", {path, 1, 1}, mechanism_file_tables());
   MechanismFile file;
   file.path = path;

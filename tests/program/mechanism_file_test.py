@@ -366,6 +366,23 @@ class MechanismFile(ProgramTest):
         self.assertEqual(done.returncode, 2)
         self.assertIn("poesy template FILE", done.stderr.decode())
 
+    def test_a_study_in_place_of_a_mechanism(self):
+        self.take("rps3")
+        self.study("rps3")
+        done = self.poesy("models", self.folder / "study.toml")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(f"is a study, not a mechanism; give the file of the study's mechanism instead: {self.folder}/rps3.toml",
+                      done.stderr.decode())
+
+    def test_advice_names_the_file(self):
+        self.take("rps3")
+        self.study("rps3")
+        text = (self.folder / "study.toml").read_text()
+        self.write("study.toml", text + '\n[errors.override]\n"nothing_*" = { distribution = "normal", sigma = "1 mm" }\n')
+        done = self.poesy("check", "study.toml")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("'poesy models rps3.toml' lists them", done.stderr.decode())
+
 
 if __name__ == "__main__":
     main()

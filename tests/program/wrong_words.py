@@ -351,7 +351,7 @@ WRONG_PARTS = [
     ('rod_2', 'rail_x_1',
      "'rail_x_1' appears a second time; remove it"),
     ('8e-6', '8',
-     "from C to the platform's origin (60 mm); write a smaller one, in SI"),
+     "from C to the platform's origin (60 mm); write a smaller one, a deviation from the nominal size in SI"),
 ]
 
 WRONG_ALLOCATIONS = [

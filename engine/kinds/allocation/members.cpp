@@ -41,7 +41,7 @@ PartMembers members_by_word(const StudyValue& value, const Study& study) {
     const std::string_view word = error_kind(dimension);
     if (value.text() == word && model.find_set(word) == nullptr) return members_of(value, dimension, study);
   }
-  PartMembers members = read_factors(value, model);
+  PartMembers members = read_factors(value, study);
   for (const FactorIndex factor : members) {
     if (varies(study, factor)) continue;
     value.fail("has '" + factor_of(study, factor).name + "', which the study does not vary",
@@ -58,9 +58,8 @@ PartMembers members_by_word(const StudyValue& value, const Study& study) {
     value.fail(fmt::format("is '{}', but the study does not vary '{}'", printable(pattern), factor->name),
                "name it in analysis.factors, or leave it out here");
   }
-  value.fail(
-      "is '" + printable(pattern) + "', which is none of the model's errors",
-      is_pattern(pattern) ? "'poesy models " + model.name + "' lists them" : suggestion(pattern, names(model.factors)));
+  value.fail("is '" + printable(pattern) + "', which is none of the model's errors",
+             is_pattern(pattern) ? listed_by_models(study) : suggestion(pattern, names(model.factors)));
 }
 
 PartMembers members_by_pattern(const StudyValue& value, const Study& study) {

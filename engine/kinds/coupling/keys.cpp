@@ -75,7 +75,8 @@ void require_own_factors(const StudyValue& factors, const ErrorSource& source, s
 }
 
 ErrorSource read_source(const StudySection& section, std::span<const ErrorSource> others, const ErrorPattern& pattern,
-                        const ModelDescription& model) {
+                        const Study& study) {
+  const ModelDescription& model = study.model();
   section.allow();
   std::vector<std::string_view> taken;
   for (const ErrorSource& other : others) taken.push_back(other.name);
@@ -84,7 +85,7 @@ ErrorSource read_source(const StudySection& section, std::span<const ErrorSource
     section.find("name")->fail("is '" + printable(source.name) + "'", "write it without '+', which joins sources");
   }
   const StudyValue factors = section.require("factors");
-  source.factors = read_factors(factors, model);
+  source.factors = read_factors(factors, study);
   for (const FactorIndex factor : source.factors) {
     const Factor& error = model.factors[factor.value];
     if (error.dimension != Dimension::number) continue;
@@ -130,7 +131,7 @@ void read_sources(const StudyValue& value, Study& study, const Reading&) {
   }
   CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   for (const StudyValue& one : list) {
-    coupling.sources.push_back(read_source(one.section(), coupling.sources, coupling.pattern, study.model()));
+    coupling.sources.push_back(read_source(one.section(), coupling.sources, coupling.pattern, study));
   }
 }
 

@@ -151,7 +151,7 @@ void check_named_groups(const Study& study, const StudySection& section) {
       }
       if (!any) {
         value.fail("has '" + printable(pattern) + "', which is none of the errors that the study varies",
-                   "'poesy models " + study.model().name + "' lists them; see also analysis.factors");
+                   listed_by_models(study) + "; see also analysis.factors");
       }
     }
   }

@@ -59,6 +59,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadSize{"HalfWidth",
                 "[errors]\noverride = { epsilon_1 = { distribution = \"uniform\", half_width = ^\"6 rad\" } }\n",
                 {"errors.override.epsilon_1.half_width gives epsilon_1", "three radians (171.887338539 deg)"}},
+        BadSize{
+            "SizesForDeviations",
+            "[errors]\noverride = { delta_1 = { distribution = \"measured\", values = ^[\"250 mm\", \"251 mm\", \"252 "
+            "mm\", \"253 mm\", \"254 mm\", \"255 mm\", \"256 mm\", \"257 mm\"] } }\n",
+            {"give deviations from the nominal size, not sizes"}},
+        BadSize{"RadiansForMilliradians",
+                "[errors]\nangular = { distribution = \"normal\", sigma = ^\"20 rad\" }\n",
+                {"standard deviation of", "write a smaller one, such as \"20 mrad\""}},
         BadSize{"MonteCarlo",
                 "[errors]\nlinear = { distribution = \"normal\", sigma = ^\"1 m\" }\n[analysis]\nkind = "
                 "\"monte-carlo\"\ndraws = \"per pose\"\n",
