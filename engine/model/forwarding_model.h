@@ -55,13 +55,13 @@ class ForwardingModel : public Model {
   virtual std::unique_ptr<Evaluator> formed(std::unique_ptr<Evaluator> evaluator) const { return evaluator; }
 
  protected:
-  /// model: the model to wrap, not null.
-  explicit ForwardingModel(std::unique_ptr<Model> model) : model_(std::move(model)) {
+  /// Model: the other model, not null.
+  explicit ForwardingModel(std::shared_ptr<const Model> model) : model_(std::move(model)) {
     POESY_EXPECTS(model_ != nullptr);
   }
 
  private:
-  std::unique_ptr<Model> model_;
+  std::shared_ptr<const Model> model_;
 };
 
 /// The model that solves the mechanism: the innermost of the wrapped models, or `model` itself if it wraps none. Each

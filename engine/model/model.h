@@ -155,6 +155,8 @@ struct SolverOptions {
   /// ModelDescription::tolerance.
   double tolerance = 1e-15;
   int max_iterations = 50;  ///< Default 50, Du et al. 2022, Section 5.1.
+  /// True if a study of one error at a time may replace solves by certified series (engine/run/series_model.h).
+  bool series = true;
 };
 
 /// A factor set that the literature treats as one source of errors.

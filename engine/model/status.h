@@ -13,12 +13,13 @@ enum class SolveStatus : std::uint8_t {
   iteration_cap,  ///< the solution still changed after the allowed number of iterations
   singular,       ///< the matrix of the equations cannot be factored
   non_finite,     ///< a value overflowed or became undefined
-  not_assembled   ///< no solution exists: the loops of a machine with these errors cannot be closed
+  not_assembled,  ///< no solution exists: the loops of a machine with these errors cannot be closed
+  by_series       ///< not solved: the outcome follows from a certified series (engine/run/series_model.h)
 };
 
 /// The names of SolveStatus in result files, in the order of the enum.
-inline constexpr std::array<std::string_view, 6> kStatusNames{"converged", "stagnated",  "iteration_cap",
-                                                              "singular",  "non_finite", "not_assembled"};
+inline constexpr std::array<std::string_view, 7> kStatusNames{
+    "converged", "stagnated", "iteration_cap", "singular", "non_finite", "not_assembled", "by_series"};
 
 /// The meanings of SolveStatus in reports, in the order of the enum.
 inline constexpr std::array<std::string_view, kStatusNames.size()> kStatusMeanings{
@@ -27,11 +28,12 @@ inline constexpr std::array<std::string_view, kStatusNames.size()> kStatusMeanin
     "still changing after the most iterations allowed",
     "the equations have no unique solution",
     "a value overflowed or became undefined",
-    "cannot be assembled: no way to close its loops exists"};
+    "cannot be assembled: no way to close its loops exists",
+    "computed from a series through solves, which further solves certified"};
 
-/// Returns true if a solve converged, to the tolerance or to rounding level.
+/// Returns true if a solve converged, to the tolerance or to rounding level, or if a certified series replaces it.
 constexpr bool solved(SolveStatus status) {
-  return status == SolveStatus::converged || status == SolveStatus::stagnated;
+  return status == SolveStatus::converged || status == SolveStatus::stagnated || status == SolveStatus::by_series;
 }
 
 /// Returns true if the last iterate of a solve may be used as an approximate solution.

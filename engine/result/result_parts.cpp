@@ -334,14 +334,16 @@ std::vector<std::size_t> constant_responses(std::span<const std::uint8_t> varies
   return list;
 }
 
-std::vector<std::string> listed_statuses(std::uint64_t not_assembled) {
-  const std::size_t count = not_assembled > 0 ? kStatusNames.size() : kStatusNames.size() - 1;
+std::vector<std::string> listed_statuses(const SolveCounts& solves) {
+  std::size_t count = kStatusNames.size();
+  while (count > kLeastStatuses && solves.by_status[count - 1] == 0) --count;
   return texts(std::span(kStatusNames).first(count), std::identity());
 }
 
 std::size_t listed_statuses(const h5::File& file) {
   const auto names = file.read<std::string>("/status");
-  if (names != listed_statuses(names.size() == kStatusNames.size() ? 1 : 0)) {
+  const bool is_length = names.size() >= kLeastStatuses && names.size() <= kStatusNames.size();
+  if (!is_length || !std::ranges::equal(names, std::span(kStatusNames).first(names.size()))) {
     throw h5::Error("/status lists other endings of solves");
   }
   return names.size();
@@ -354,7 +356,7 @@ void add_solver(ResultBuilder& result, const Axes& axes, std::span<const SolveCo
     columns.iterations_mean.push_back(mean_iterations(cell));
     columns.iterations_max.push_back(cell.most_iterations);
   }
-  const std::vector<std::string> statuses = listed_statuses(total_of(solves).not_assembled());
+  const std::vector<std::string> statuses = listed_statuses(total_of(solves));
   for (std::size_t status = 0; status < statuses.size(); ++status) {
     for (const SolveCounts& cell : solves) columns.by_status.push_back(cell.by_status[status]);
   }
@@ -392,7 +394,7 @@ std::vector<SolveNumber> solve_numbers(std::span<const SolveCounts> solves) {
       {"not_converged", [](const SolveCounts& cell) { return to_number(cell.not_converged()); }},
       {"iterations_mean", mean_iterations},
       {"iterations_max", [](const SolveCounts& cell) { return to_number(cell.most_iterations); }}};
-  const std::vector<std::string> statuses = listed_statuses(total_of(solves).not_assembled());
+  const std::vector<std::string> statuses = listed_statuses(total_of(solves));
   for (std::size_t status = 0; status < statuses.size(); ++status) {
     list.push_back({"solves_" + statuses[status],
                     [status](const SolveCounts& cell) { return to_number(cell.by_status[status]); }});

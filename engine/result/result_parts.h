@@ -83,10 +83,11 @@ void append_sigma_tables(CsvTables& tables, const StoredResult& result);
 /// The indices of the responses that do not vary. varies: [responses] 0 or 1 for each response, or empty if all vary.
 std::vector<std::size_t> constant_responses(std::span<const std::uint8_t> varies);
 
-/// The statuses of solves that a result lists. They are kStatusNames, except that the last status, not_assembled, is
-/// listed only if a solve ended with it. So results without such solves have the same bits as before this status
-/// existed. not_assembled: number of such solves.
-std::vector<std::string> listed_statuses(std::uint64_t not_assembled);
+/// The number of statuses that every result lists, the first of kStatusNames.
+inline constexpr std::size_t kLeastStatuses = 5;
+/// The statuses that a result of these samples lists: kStatusNames without those at the end with which no sample ended,
+/// but at least kLeastStatuses. So results without such samples have the same bits as before these statuses existed.
+std::vector<std::string> listed_statuses(const SolveCounts& solves);
 /// The number of statuses on the axis /status. Throws h5::Error if their names differ from kStatusNames.
 std::size_t listed_statuses(const h5::File& file);
 

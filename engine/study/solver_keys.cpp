@@ -118,7 +118,14 @@ std::string shown_tolerance(const TemplateLines& lines, const Study& study) {
   return lines.explained("solver", "tolerance", "tolerance = " + shortest(study.model().tolerance));
 }
 
-/// Reads the key `not_converged`. The word "fail" means "exclude", with 0 as the allowed share of failed samples.
+/// The resolved text has the key only where it is not the default, so that other studies keep their text.
+std::string series_line(const Study& study) { return study.solver.series ? "" : "series = false\n"; }
+
+std::string shown_series(const TemplateLines& lines, const Study& study) {
+  return study.solver.series ? "" : lines.explained("solver", "series", "series = false");
+}
+
+/// Reads the key `not_converged`. "fail" means "exclude" with a limit of 0 on the share of failed samples.
 void read_not_converged(const StudyValue& value, Study& study, const Reading& reading) {
   const std::vector<std::string_view> known = names(row_of(solver_keys(), "not_converged").value.words);
   const std::string_view word = known[value.word(known)];
@@ -171,6 +178,15 @@ std::vector<StudyRow> solver_rows() {
       StudyRow{.name = "max_iterations",
                .value = whole_at(1, std::numeric_limits<int>::max(), &Study::solver, &SolverOptions::max_iterations),
                .meaning = "Iterations after which a sample counts as not converged."},
+      StudyRow{
+          .name = "series",
+          .value = value_at(
+              "true or false", "", [](const StudyValue& value) { return value.yes_or_no(); },
+              [](bool value) { return std::string(value ? "true" : "false"); }, &Study::solver, &SolverOptions::series),
+          .meaning = "A study of kind \"sensitivity\": whether certified series replace solves. Only at full "
+                     "fidelity, and not with metric = \"published\".",
+          .lines = series_line,
+          .shown = shown_series},
       StudyRow{.name = "not_converged",
                .value = {.type = "text",
                          .words = {{name(NotConverged::exclude), "they are left out of all statistics"},

@@ -20,6 +20,7 @@ poesy_test(fidelity_statistical_test LABELS statistical SOURCES engine/kinds/sen
 poesy_test(index_history_test LABELS property SOURCES engine/kinds/sensitivity/index_history_test.cpp LINKS poesy_kinds poesy_models)
 poesy_test(cell_stats_test LABELS determinism SOURCES engine/kinds/sensitivity/cell_stats_test.cpp LINKS poesy_kinds)
 poesy_test(linearity_test LABELS determinism SOURCES engine/kinds/sensitivity/linearity_test.cpp LINKS poesy_kinds)
+poesy_test(series_model_test LABELS property SOURCES engine/run/series_model_test.cpp LINKS poesy_kinds poesy_models)
 poesy_test(unit_order_test LABELS determinism SOURCES engine/run/unit_order_test.cpp LINKS poesy_kinds poesy_models)
 poesy_test(failures_test LABELS determinism SOURCES engine/run/failures_test.cpp LINKS poesy_kinds)
 poesy_test(continuation_test LABELS robustness SOURCES engine/run/checkpoints_test.cpp engine/run/continuation_test.cpp

@@ -1,5 +1,5 @@
 poesy_test(stats_test LABELS unit
-           SOURCES engine/stats/histogram_test.cpp engine/stats/mean_interval_test.cpp engine/stats/merge_tree_test.cpp engine/stats/moments_test.cpp
+           SOURCES engine/stats/chebyshev_series_test.cpp engine/stats/histogram_test.cpp engine/stats/mean_interval_test.cpp engine/stats/merge_tree_test.cpp engine/stats/moments_test.cpp
                    engine/stats/quantile_interval_test.cpp engine/stats/quantile_sketch_test.cpp engine/stats/rank_correlation_test.cpp
                    engine/stats/rounding_test.cpp engine/stats/indices_test.cpp engine/stats/sketch_offset_test.cpp
                    engine/stats/stored_stats_test.cpp engine/stats/tolerance_test.cpp engine/stats/proportion_test.cpp

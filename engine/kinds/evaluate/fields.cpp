@@ -167,7 +167,7 @@ void add_solves(ResultBuilder& result, const ModelDescription& model, const Eval
                        {unit_of(response), response.description});
   }
   add_details(result, found, layout);
-  const auto status_names = listed_statuses(solves.total().not_assembled());
+  const auto status_names = listed_statuses(solves.total());
   add_values<std::uint8_t>(result, "status", layout, [&](std::size_t m, std::size_t s) { return solves.status(m, s); },
                            {"1", "How the solve ended: a position in status_names, from 0"});
   result.file().set_attribute("/evaluate/status", "status_names", std::span(status_names));

@@ -81,7 +81,7 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   const auto& found = std::any_cast<const Identification&>(any);
   POESY_EXPECTS(found.factors() == study.analysis.factors.size());
   add_names(result, study, study.analysis.factors);
-  const std::vector<std::string> statuses = listed_statuses(found.solves.not_assembled());
+  const std::vector<std::string> statuses = listed_statuses(found.solves);
   result.add_axis("status", statuses, {"1", "How a solve ended"});
   result.add_axis("group", texts(found.sizes, &ErrorSize::name), {"1", "Name of the group of sizes"});
   result.add_axis("coupling", axis_numbers(found.couplings.size()), {"1", "Number of the coupling, from 0"});

@@ -17,6 +17,7 @@
 #include "engine/run/pose_fold.h"
 #include "engine/run/response_rounding.h"
 #include "engine/run/rounds.h"
+#include "engine/run/series_model.h"
 
 namespace poesy {
 namespace {
@@ -59,6 +60,17 @@ struct SensitivityJob {
   }
 };
 
+/// Returns true if certified series replace solves at this fidelity. A linear map costs no more than a series, and the
+/// published iteration must keep every bit.
+bool has_series(const Study& study, std::size_t fidelity) {
+  return study.solver.series && fidelity == 0 && study.model().metric != "published";
+}
+
+/// The model, with series where has_series().
+std::shared_ptr<const Model> by_series(const Study& study, std::shared_ptr<const Model> model, std::size_t fidelity) {
+  return has_series(study, fidelity) ? with_series(std::move(model)) : std::move(model);
+}
+
 std::vector<Dimension> response_dimensions(const ModelDescription& model) {
   std::vector<Dimension> dimensions;
   for (const Response& response : model.responses) dimensions.push_back(response.dimension);
@@ -79,20 +91,21 @@ std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const 
     before = half.before;
     report({half.solves, 2 * half.total, half.not_converged, half.before});
   };
-  auto first = run_sensitivity(plan, run.model, analysis.conf_level, options);
+  const MechanismChoice& choice = run.study.mechanism;
+  const auto model = by_series(run.study, borrowed(run.model), choice.fidelity);
+  auto first = run_sensitivity(plan, *model, analysis.conf_level, options);
   if (!run.checkpoints().complete()) return std::nullopt;
   const SolveCounts solves = run.checkpoints().solves();
   options.progress = [&](const Progress& half) {
     report({solves.total() + half.solves, solves.total() + half.total, solves.not_converged() + half.not_converged,
             before.value_or(solves.total()) + half.before});
   };
-  const std::unique_ptr<Model> other = build_model(at_compared_fidelity(run.study.mechanism));
+  const auto other = by_series(run.study, build_model(at_compared_fidelity(choice)), *choice.compared);
   const auto second = run_sensitivity(plan, *other, analysis.conf_level, options);
   if (!first || !second) return std::nullopt;
   first->fidelity =
       compare_fidelities(*first, *second, response_dimensions(run.study.model()), standard_deviations(run.study),
                          asked_of<SensitivityOptions>(analysis).linearity);
-  const MechanismChoice& choice = run.study.mechanism;
   for (const std::size_t fidelity : {choice.fidelity, choice.compared.value()}) {
     first->fidelity->fidelities.push_back(run.study.model().fidelities[fidelity]);
   }
@@ -104,7 +117,8 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const std::shared_ptr<const Model> model = studied_model(run.study, run.model, run.poses);
   auto result = run.study.mechanism.compared
                     ? run_both_fidelities(run, plan)
-                    : run_sensitivity(plan, *model, run.study.analysis.conf_level, run.options);
+                    : run_sensitivity(plan, *by_series(run.study, model, run.study.mechanism.fidelity),
+                                      run.study.analysis.conf_level, run.options);
   if (!result) return std::nullopt;
   auto changes = index_changes(plan, *model, run.options);
   if (!changes) {
@@ -157,17 +171,20 @@ Outlook sensitivity_outlook(const Study& study, const Model& model, const PoseSe
   const std::size_t fidelities = study.mechanism.compared ? 2 : 1;
   const auto calibration = machine_calibration(study, model, poses);
   const double with_changes = 1.0 + index_change_solves(*plan) / static_cast<double>(plan->solves());
-  Outlook expected{.solves = counted_things(plan->factors().size(), "errors x ") +
-                             counted_things(poses.size(), "poses x ") + samples_text(*plan) + " samples" +
-                             (fidelities == 2 ? " x 2 fidelities" : "") + " = " + solves_text(*plan, fidelities) +
-                             (calibration ? calibration_cost_text(*calibration, "sample") : ""),
-                   .memory = sensitivity_memory(study, *plan, fidelities),
-                   .shared = {sampling<UnitEvaluator>(plan, studied_model(study, model, poses), with_changes)},
-                   .by_one = {},
-                   .least = least_share(*plan)};
+  Outlook expected{
+      .solves = counted_things(plan->factors().size(), "errors x ") + counted_things(poses.size(), "poses x ") +
+                samples_text(*plan) + " samples" + (fidelities == 2 ? " x 2 fidelities" : "") + " = " +
+                solves_text(*plan, fidelities) +
+                (has_series(study, study.mechanism.fidelity) ? ", fewer where series replace them" : "") +
+                (calibration ? calibration_cost_text(*calibration, "sample") : ""),
+      .memory = sensitivity_memory(study, *plan, fidelities),
+      .shared = {sampling<UnitEvaluator>(
+          plan, by_series(study, studied_model(study, model, poses), study.mechanism.fidelity), with_changes)},
+      .by_one = {},
+      .least = least_share(*plan)};
   if (model.description().separation) expected.by_one.push_back(separating(study, model, poses));
   if (fidelities == 2) {
-    const std::shared_ptr<const Model> other = build_model(at_compared_fidelity(study.mechanism));
+    const auto other = by_series(study, build_model(at_compared_fidelity(study.mechanism)), *study.mechanism.compared);
     expected.shared.push_back(sampling<UnitEvaluator>(plan, other, 1.0));
   }
   return expected;

@@ -152,7 +152,8 @@ py::object solve_many(const ArraySolver& solver, const py::object& poses, const 
 
 void add_status(py::module_& module) {
   py::dict values;
-  for (std::size_t s = 0; s < kStatusNames.size(); ++s) values[std::string(kStatusNames[s]).c_str()] = s;
+  constexpr auto kOfSolves = static_cast<std::size_t>(SolveStatus::by_series);  // this module solves each sample
+  for (std::size_t s = 0; s < kOfSolves; ++s) values[std::string(kStatusNames[s]).c_str()] = s;
   py::object status = py::module_::import("enum").attr("IntEnum")("Status", values);
   status.attr("__module__") = module.attr("__name__");
   status.attr("__doc__") = kStatusText;

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace poesy {
+
+/// A polynomial on [-1, 1] as a series of Chebyshev polynomials, c_0 T_0(x) + c_1 T_1(x) + ... (Trefethen 2013,
+/// Approximation Theory and Approximation Practice, chapters 3 and 4).
+class ChebyshevSeries {
+ public:
+  static constexpr std::size_t kNodes = 16;  ///< Number of nodes, which is also the largest number of terms.
+
+  /// The nodes, which are the zeros of T_16: cos(pi (k + 1/2) / 16). None of them is 0.
+  static const std::array<double, kNodes>& nodes();
+
+  ChebyshevSeries() = default;  ///< The series without terms, which is 0.
+  /// The polynomial through these values [kNodes] at the nodes. Terms at the end are left out if their coefficients
+  /// are below the rounding of the largest.
+  explicit ChebyshevSeries(std::span<const double> values);
+
+  /// The largest of the last coefficients before terms were left out: how far the series has not converged.
+  double tail() const { return tail_; }
+  /// The values at the positions x [B] in [-1, 1]. A value does not depend on the other positions.
+  void evaluate(std::span<const double> x, std::span<double> values) const;
+
+ private:
+  std::vector<double> terms_;
+  double tail_ = 0.0;
+};
+
+}  // namespace poesy
