@@ -43,7 +43,7 @@ double share_done(const Progress& progress) {
 /// The percentage of solves that are done, rounded down so that 100 % appears only at the end.
 double percent_done(const Progress& progress) { return std::floor(1000.0 * share_done(progress)) / 10.0; }
 
-/// A rate with its unit: "720 solves/s", "7.21 M solves/s".
+/// A rate with its unit: "720 samples/s", "7.21 M samples/s".
 std::string rate_text(double rate) {
   constexpr std::array kPrefixes{"", "k ", "M ", "G "};
   std::size_t prefix = 0;
@@ -51,7 +51,7 @@ std::string rate_text(double rate) {
     rate /= 1000.0;
     ++prefix;
   }
-  return fmt::format("{:.3g} {}solves/s", rate, kPrefixes[prefix]);
+  return fmt::format("{:.3g} {}samples/s", rate, kPrefixes[prefix]);
 }
 
 /// The rate followed by a comma; empty as long as the rate is not known.

@@ -49,11 +49,11 @@ class RecentRate {
 /// What a line of progress shows.
 struct ProgressFacts {
   Progress progress;
-  double rate = 0.0;      ///< present rate, solves per second; 0 as long as it is not known
-  std::size_t stage = 1;  ///< number of the present part of the study, from 1; some studies solve in several parts
+  double rate = 0.0;      ///< present rate, samples per second; 0 as long as it is not known
+  std::size_t stage = 1;  ///< number of the present stage, from 1; its size is known when it begins
 };
 
-/// A line of progress as text: "43.2 % done, 7.21 M solves/s, 12 not converged (0.0012 %), 1 min 20 s left".
+/// A line of progress as text: "43.2 % done, 7.21 M samples/s, 12 not converged (0.0012 %), 1 min 20 s left".
 std::string plain_line(const ProgressFacts& facts);
 
 /// A line of progress with a bar, in at most `width` columns of one byte each. If there is too little room, the bar is

@@ -156,7 +156,8 @@ ExitCode judge_limits(const Study& study, const StoredResult& result, const std:
 RunOutcome outcome_of(const Job& job) {
   const RunTime time = job.time();
   const SolveCounts solves = job.checkpoints().solves();
-  RunOutcome outcome{solves, run_facts(time.wall, job.threads, solves.total())};
+  RunOutcome outcome{solves, run_facts(time.wall, job.threads, solves.total() - solves.by_series())};
+  outcome.facts.by_series = solves.by_series();
   outcome.facts.checkpoint_seconds = time.checkpoints;
   outcome.facts.ranks = job.ranks;
   return outcome;
@@ -173,6 +174,11 @@ RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solve
   facts.wall_seconds = wall_seconds;
   facts.solves = solves;
   return facts;
+}
+
+std::string samples_text(const RunFacts& facts) {
+  if (facts.by_series == 0) return fmt::format("{} solves", facts.solves);
+  return fmt::format("{} samples ({} solved, the others by series)", facts.samples(), facts.solves);
 }
 
 std::optional<SelectedPoses> find_poses(const Study& study, const Model& model, const SearchOptions& options) {
@@ -298,7 +304,7 @@ std::optional<RunOutcome> run_to_file(const Job& job) {
 
 int report_outcome(const Job& job, const std::string& study_path, const RunOutcome& outcome) {
   const std::string ranks = outcome.facts.ranks > 1 ? fmt::format(" of {} ranks", outcome.facts.ranks) : std::string();
-  print(fmt::format("{}: {} solves in {:.2f} s on {} {}{}, {}\n", printable_line(job.path), outcome.facts.solves,
+  print(fmt::format("{}: {} in {:.2f} s on {} {}{}, {}\n", printable_line(job.path), samples_text(outcome.facts),
                     outcome.facts.wall_seconds, outcome.facts.threads,
                     outcome.facts.threads == 1 ? "thread" : "threads", ranks, unsolved_in_short(outcome.solves)));
   if (!outcome.confirming.empty()) {

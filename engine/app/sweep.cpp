@@ -150,11 +150,12 @@ std::optional<SweepResult> run_with_progress(const SweepOptions& options, std::s
     if (!found) return std::nullopt;
     const SolveCounts solves = total_of(found->solves);
     const RunTime time = resumable.time();
-    RunFacts facts = run_facts(time.wall, run.threads, solves.total());
+    RunFacts facts = run_facts(time.wall, run.threads, solves.total() - solves.by_series());
+    facts.by_series = solves.by_series();
     facts.checkpoint_seconds = time.checkpoints;
     write_result(path, kSweepKind.study.name, kSweepFile, designs.front().study, designs.front().poses, *found, facts);
-    print(fmt::format("{}: {} designs, {} solves in {:.2f} s on {} {}, {}\n", printable_line(path), designs.size(),
-                      facts.solves, facts.wall_seconds, facts.threads, facts.threads == 1 ? "thread" : "threads",
+    print(fmt::format("{}: {} designs, {} in {:.2f} s on {} {}, {}\n", printable_line(path), designs.size(),
+                      samples_text(facts), facts.wall_seconds, facts.threads, facts.threads == 1 ? "thread" : "threads",
                       unsolved_in_short(solves)));
     print(
         fmt::format("Written: {}, with what the tables below show. The whole results of the designs are not written.\n",

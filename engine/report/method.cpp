@@ -123,7 +123,7 @@ std::string calibration_sentence(const StoredResult& result, const StudyWords& w
 }
 
 std::string solves_sentence(const SolveCounts& solves) {
-  const std::string all = counted(solves.total(), "solve", "solves");
+  const std::string all = counted_samples(solves.total(), solves.by_series());
   if (solves.total() == 0) return {};
   if (solves.not_converged() == 0) return fmt::format("All {} converged.", all);
   return fmt::format("{} of {} {} ({}).", count_text(solves.not_converged()), all, why_unsolved(solves),

@@ -45,10 +45,10 @@ std::string largest_shares_text(const StoredResult& result, const SolveTally& ta
   return places.empty() ? std::string() : fmt::format(" The largest shares: {}.", fmt::join(places, "; "));
 }
 
-std::string count_line(std::uint64_t failed, std::uint64_t solves, const std::string& why) {
-  const double share = solves == 0 ? 0.0 : share_of(failed, solves);
-  return fmt::format("{} of {} ({}) {}", count_text(failed), counted(solves, "solve", "solves"), percent_text(share),
-                     why);
+std::string count_line(std::uint64_t failed, std::uint64_t samples, const SolveCounts& first) {
+  const double share = samples == 0 ? 0.0 : share_of(failed, samples);
+  return fmt::format("{} of {} ({}) {}", count_text(failed), counted_samples(samples, first.by_series()),
+                     percent_text(share), why_unsolved(first));
 }
 
 /// Sentences on what it means that the share of unsolved samples is above kManyNotConverged, and advice if machines
@@ -65,10 +65,9 @@ std::string consequences_text(const SolveCounts& solves) {
 
 /// The line with the numbers of solves that did not converge at each of two fidelities.
 std::string line_of_both(const SolveCounts& first, const SecondFidelity& second) {
-  return fmt::format(
-      "{}: {} at fidelity \"{}\", {} at \"{}\"",
-      count_line(first.not_converged() + second.not_converged, first.total() + second.total, why_unsolved(first)),
-      count_text(first.not_converged()), second.first, count_text(second.not_converged), second.second);
+  return fmt::format("{}: {} at fidelity \"{}\", {} at \"{}\"",
+                     count_line(first.not_converged() + second.not_converged, first.total() + second.total, first),
+                     count_text(first.not_converged()), second.first, count_text(second.not_converged), second.second);
 }
 
 /// Says how many of the failed solves the result lists one by one.
@@ -111,10 +110,19 @@ std::string unsolved_in_short(const SolveCounts& solves) {
   return text;
 }
 
+std::string counted_samples(std::uint64_t count, std::uint64_t by_series) {
+  return by_series > 0 ? counted(count, "sample", "samples") : counted(count, "solve", "solves");
+}
+
 SolveCounts SolveTally::total() const {
   SolveCounts sum;
   for (const SolveCounts& cell : cells) sum.merge(cell);
   return sum;
+}
+
+std::size_t SolveTally::cells_by_series() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(cells, [](const SolveCounts& cell) { return cell.by_series() > 0; }));
 }
 
 std::vector<double> SolveTally::shares() const { return shares_of(cells); }
@@ -137,18 +145,19 @@ std::string at_first_fidelity(const SolveTally& tally) {
 
 std::string unsolved_text(const StoredResult& result, const SolveTally& tally) {
   const SolveCounts total = tally.total();
-  return fmt::format("{} of {} solves{} ({}) {}.{}{}", count_text(total.not_converged()), count_text(total.total()),
-                     at_first_fidelity(tally), percent_text(share_not_converged(total)), why_unsolved(total),
-                     consequences_text(total), largest_shares_text(result, tally));
+  return fmt::format("{} of {}{} ({}) {}.{}{}", count_text(total.not_converged()),
+                     counted_samples(total.total(), total.by_series()), at_first_fidelity(tally),
+                     percent_text(share_not_converged(total)), why_unsolved(total), consequences_text(total),
+                     largest_shares_text(result, tally));
 }
 
 std::string failures_text(const StoredResult& result, const SolveTally& tally, const std::string& path,
                           std::size_t width) {
   const SolveCounts solves = tally.total();
   if (solves.total() == 0) return {};
-  std::string text = prose_of(tally.second ? line_of_both(solves, *tally.second)
-                                           : count_line(solves.not_converged(), solves.total(), why_unsolved(solves)),
-                              width);
+  std::string text = prose_of(
+      tally.second ? line_of_both(solves, *tally.second) : count_line(solves.not_converged(), solves.total(), solves),
+      width);
   if (result.failures.empty()) return text;
   const Failure& first = result.failures.front();
   const std::string name = printable_line(result.varied[first.slot]);

@@ -56,6 +56,9 @@ struct SecondFidelity {
   std::size_t errors = 0;           ///< number of all errors
 };
 
+/// A number of samples as text: "2 000 samples" if some of them are by series, otherwise "2 000 solves".
+std::string counted_samples(std::uint64_t count, std::uint64_t by_series);
+
 /// Counts of how solves ended, by row and pose. A row is an error, a case or a size; there is only one row if the
 /// result does not distinguish them.
 struct SolveTally {
@@ -66,9 +69,10 @@ struct SolveTally {
   std::optional<SecondFidelity> second = std::nullopt;  ///< set if the result compares two fidelities
 
   SolveCounts total() const;                   ///< The counts of all solves; with two fidelities, those of the first.
-  std::vector<double> shares() const;          ///< [rows x poses] Shares that did not converge; NaN without solves.
-  std::vector<double> shares_by_row() const;   ///< [rows] Shares that did not converge; NaN without solves.
-  std::vector<double> shares_by_pose() const;  ///< [poses] Shares that did not converge; NaN without solves.
+  std::size_t cells_by_series() const;         ///< The number of rows at a pose with samples by series.
+  std::vector<double> shares() const;          ///< [rows x M] The share that did not converge; NaN without solves.
+  std::vector<double> shares_by_row() const;   ///< [rows] The share that did not converge; NaN without solves.
+  std::vector<double> shares_by_pose() const;  ///< [M] The share that did not converge; NaN without solves.
 };
 
 /// The share of solves that did not converge; NaN without solves.

@@ -183,9 +183,9 @@ std::string unsolved_note(const YieldVerdict& yield) {
 std::string summary_text(const StoredResult& result, const SolveTally& tally, std::size_t width) {
   const RunFacts& facts = result.facts;
   const double per_second =
-      static_cast<double>(facts.solves) / std::max(facts.wall_seconds, std::numeric_limits<double>::min());
+      static_cast<double>(facts.samples()) / std::max(facts.wall_seconds, std::numeric_limits<double>::min());
   const std::string each =
-      tally.second ? fmt::format(", {} at each of two fidelities,", count_text(facts.solves / 2)) : "";
+      tally.second ? fmt::format(", {} at each of two fidelities,", count_text(facts.samples() / 2)) : "";
   std::string text = prose_of(result.title, width);
   text += prose_of(fmt::format("{} of {}: {}, poesy {}", result.kind, result.model,
                                counted(result.poses.size(), "pose", "poses"), result.poesy_version),
@@ -194,10 +194,17 @@ std::string summary_text(const StoredResult& result, const SolveTally& tally, st
     text += prose_of(rejected, width);
   }
   if (!result.metric.empty()) text += prose_of("metric: " + metric_text(result), width);
-  text += prose_of(fmt::format("{}{} in {:.2f} s on {}: {} solves/s", counted(facts.solves, "solve", "solves"), each,
+  text += prose_of(fmt::format("{}{} in {:.2f} s on {}: {}/s", counted_samples(facts.samples(), facts.by_series), each,
                                facts.wall_seconds, counted(facts.threads, "thread", "threads"),
-                               count_text(static_cast<std::uint64_t>(std::llround(per_second)))),
+                               counted_samples(static_cast<std::uint64_t>(std::llround(per_second)), facts.by_series)),
                    width);
+  if (facts.by_series > 0) {
+    text += prose_of(
+        fmt::format("by certified series: {} of the samples, in {} of {}",
+                    percent_text(share_of(facts.by_series, facts.samples())), count_text(tally.cells_by_series()),
+                    counted(tally.cells.size(), "pair of an error and a pose", "pairs of an error and a pose")),
+        width);
+  }
   return text;
 }
 
@@ -470,7 +477,8 @@ std::string ranked_text(char letter, const RankedResult& ranked, std::string_vie
                                           : fmt::format("{}: {} ({})", letter, result.title, ranked.path);
   if (!result.metric.empty()) text += "; metric: " + metric_text(result);
   return text + fmt::format("; {} {}; {} of {} {}", role, ranked.response, count_text(ranked.solves.not_converged()),
-                            counted(ranked.solves.total(), "solve", "solves"), why_unsolved(ranked.solves));
+                            counted_samples(ranked.solves.total(), ranked.solves.by_series()),
+                            why_unsolved(ranked.solves));
 }
 
 }  // namespace poesy

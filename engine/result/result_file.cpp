@@ -43,7 +43,7 @@ const Fields<RunFacts> kFactFields{
     {"ranks", &RunFacts::ranks, kScalar, "1", "MPI ranks"},
     {"wall_seconds", &RunFacts::wall_seconds, kScalar, "s", "Time the solves took"},
     {"checkpoint_seconds", &RunFacts::checkpoint_seconds, kScalar, "s", "Of that time, spent on checkpoints"},
-    {"solves", &RunFacts::solves, kScalar, "1", "Solves of the mechanism"}};
+    {"solves", &RunFacts::solves, kScalar, "1", "Samples that were solved, not computed from certified series"}};
 
 /// Describes the datasets of a list of things: their names, units and descriptions. what: the word for a thing in these
 /// descriptions, such as "error" for the axis "factor".
@@ -192,8 +192,9 @@ void add_facts(ResultBuilder& result, const RunFacts& facts) {
     file.set_attribute("/run", "version_" + std::string(library.name), std::string(library.version));
   }
   write_fields(result, "/run", kFactFields, facts);
-  const double rate = facts.wall_seconds > 0.0 ? static_cast<double>(facts.solves) / facts.wall_seconds : 0.0;
-  result.add_scalar("/run/solves_per_second", rate, {"1/s", "Solves a second, all threads and ranks together"});
+  result.add_scalar("/run/samples", facts.samples(), {"1", "Samples, solved or by series"});
+  const double rate = facts.wall_seconds > 0.0 ? static_cast<double>(facts.samples()) / facts.wall_seconds : 0.0;
+  result.add_scalar("/run/samples_per_second", rate, {"1/s", "Samples a second, all threads and ranks together"});
 }
 
 /// Writes a whole file into `result`. compose(result) adds the parts between the header and the facts of the run.
@@ -305,6 +306,10 @@ SelectedPoses read_poses(const h5::File& file) {
 RunFacts read_facts(const h5::File& file) {
   RunFacts facts;
   read_fields(file, "/run", kFactFields, facts);
+  if (!file.exists("/run/samples")) return facts;  // of a version that solved every sample
+  const auto samples = file.read<std::uint64_t>("/run/samples");
+  if (samples.size() != 1 || samples[0] < facts.solves) throw h5::Error("/run/samples does not fit /run/solves");
+  facts.by_series = samples[0] - facts.solves;
   return facts;
 }
 

@@ -23,7 +23,7 @@ constexpr bool counts(SolveStatus status, NotConverged policy) {
   return solved(status) || (policy == NotConverged::include && usable(status));
 }
 
-/// How solves ended and their iterations, summed over samples.
+/// How samples ended and the iterations of their solves, summed over samples.
 struct SolveCounts {
   /// The number of samples for each SolveStatus, in the order of the enum.
   std::array<std::uint64_t, kStatusNames.size()> by_status{};
@@ -36,6 +36,8 @@ struct SolveCounts {
   std::uint64_t not_converged() const;
   /// The number of samples without a fixed point, because the machine cannot be assembled.
   std::uint64_t not_assembled() const { return by_status[static_cast<std::size_t>(SolveStatus::not_assembled)]; }
+  /// The number of samples that were computed from certified series instead of solved.
+  std::uint64_t by_series() const { return by_status[static_cast<std::size_t>(SolveStatus::by_series)]; }
   /// Adds one sample.
   void add(SolveStatus status, std::uint32_t sample_iterations);
   /// Adds other counts; the order does not matter.
@@ -193,7 +195,11 @@ struct RunFacts {
   std::size_t ranks = 1;            ///< processes that shared the run
   double wall_seconds = 0.0;        ///< wall time of the whole run, including the earlier runs that it continues
   double checkpoint_seconds = 0.0;  ///< part of the wall time that checkpoints took
-  std::uint64_t solves = 0;         ///< solves of the whole run, including those of the earlier runs that it continues
+  /// Samples that the whole run solved, including those of the earlier runs that it continues.
+  std::uint64_t solves = 0;
+  std::uint64_t by_series = 0;  ///< samples that it computed from certified series instead
+
+  std::uint64_t samples() const { return solves + by_series; }  ///< All samples.
 };
 
 }  // namespace poesy

@@ -28,13 +28,13 @@ TEST(SearchLine, SaysWhatIsFound) {
 }
 
 TEST(PlainLine, SaysEverything) {
-  EXPECT_EQ(plain_line(facts()), "43.2 % done, 7.1 k solves/s, 12 not converged (0.0028 %), 1 min 20 s left");
+  EXPECT_EQ(plain_line(facts()), "43.2 % done, 7.1 k samples/s, 12 not converged (0.0028 %), 1 min 20 s left");
 }
 
 TEST(PlainLine, HasNoShareOfNoFailures) {
   ProgressFacts none = facts();
   none.progress.not_converged = 0;
-  EXPECT_EQ(plain_line(none), "43.2 % done, 7.1 k solves/s, 0 not converged, 1 min 20 s left");
+  EXPECT_EQ(plain_line(none), "43.2 % done, 7.1 k samples/s, 0 not converged, 1 min 20 s left");
 }
 
 TEST(PlainLine, NamesTheStage) {
@@ -57,17 +57,17 @@ TEST(ProgressLines, SayNoRateAndNoTimeUntilThereIsARate) {
   begun.rate = 0.0;
   EXPECT_EQ(plain_line(begun), "43.2 % done, 12 not converged (0.0028 %), time left unknown");
   for (std::size_t width = 20; width <= 120; ++width) {
-    EXPECT_EQ(live_line(begun, width).find("solves/s"), std::string::npos) << width;
+    EXPECT_EQ(live_line(begun, width).find("samples/s"), std::string::npos) << width;
   }
 }
 
 TEST(PlainLine, WritesRatesShort) {
   ProgressFacts fast = facts();
-  for (const auto& [rate, text] : {std::pair{0.5, ", 0.5 solves/s"},
-                                   {999.4, ", 999 solves/s"},
-                                   {999.6, ", 1 k solves/s"},
-                                   {7.213e6, ", 7.21 M solves/s"},
-                                   {2e9, ", 2 G solves/s"}}) {
+  for (const auto& [rate, text] : {std::pair{0.5, ", 0.5 samples/s"},
+                                   {999.4, ", 999 samples/s"},
+                                   {999.6, ", 1 k samples/s"},
+                                   {7.213e6, ", 7.21 M samples/s"},
+                                   {2e9, ", 2 G samples/s"}}) {
     fast.rate = rate;
     EXPECT_NE(plain_line(fast).find(text), std::string::npos) << plain_line(fast);
   }
@@ -85,10 +85,10 @@ TEST(LiveLine, FitsAnyWidth) {
 
 TEST(LiveLine, SaysLessWhereThereIsLessRoom) {
   const std::array<std::pair<std::size_t, std::string>, 6> expected{{
-      {100, " 43.2 % [###########................]   7.1 k solves/s  12 not converged (0.0028 %)  1 min 20 s left"},
-      {79, " 43.2 % [##....]   7.1 k solves/s  12 not converged (0.0028 %)  1 min 20 s left"},
-      {74, "43.2 % done, 7.1 k solves/s, 12 not converged (0.0028 %), 1 min 20 s left"},
-      {52, " 43.2 % [###.....]   7.1 k solves/s  1 min 20 s left"},
+      {101, " 43.2 % [###########................]   7.1 k samples/s  12 not converged (0.0028 %)  1 min 20 s left"},
+      {80, " 43.2 % [##....]   7.1 k samples/s  12 not converged (0.0028 %)  1 min 20 s left"},
+      {75, "43.2 % done, 7.1 k samples/s, 12 not converged (0.0028 %), 1 min 20 s left"},
+      {53, " 43.2 % [###.....]   7.1 k samples/s  1 min 20 s left"},
       {39, " 43.2 % [#####.......]  1 min 20 s left"},
       {24, "43.2 %, 1 min 20 s left"},
   }};

@@ -85,6 +85,30 @@ class Metric(ProgramTest):
             self.assertTrue(np.all(low[other] <= 1.02 * high[0]) and np.all(high[other] >= 0.98 * low[0]))
             np.testing.assert_allclose(index[other], index[0], rtol=0.02)  # the draws are the same
 
+    def test_series_are_solves_but_for_rounding(self):
+        for size in (0.01, 0.1, 1):
+            text = study(SENSITIVITY.format(400), size, 10, BACKGROUND)
+            each = text.replace("[run]", "series = false\n[run]")
+            with self.result("series", text) as series, self.result("solved", each) as solved:
+                for name in ("mean", "std", "local", "global"):
+                    found, truth = series[f"sensitivity/{name}"], solved[f"sensitivity/{name}"]
+                    np.testing.assert_allclose(found, truth, rtol=1e-9, atol=1e-13)
+                self.assertNotIn(b"by_series", solved["status"][:])
+                self.assertEqual(solved["run/solves"][()], 25 * 10 * 400)
+                ends = dict(zip(series["status"].asstr()[:], series["solver/solves_by_status"][:]))
+                self.assertGreater(np.mean(ends["by_series"] > 0), 0.95)
+                self.assertEqual(series["run/samples"][()], 25 * 10 * 400)
+                self.assertEqual(series["run/solves"][()], 25 * 10 * 400 - np.sum(ends["by_series"]))
+        pairs = r"by certified series: [\d.]+ % of the samples, in 2\d\d of 250 pairs"
+        self.assertRegex(self.succeeds("show", "series.h5"), pairs)
+
+    def test_more_samples_keep_the_series_of_the_first(self):
+        few, more = (study(SENSITIVITY.format(samples), 1, 5) for samples in (300, 500))
+        with self.result("few", few) as few, self.result("more", more) as more:
+            for name in ("global", "global_ci_low", "global_ci_high"):
+                path = f"sensitivity/history/{name}"
+                np.testing.assert_array_equal(few[path][..., :2], more[path][..., :2])
+
     def test_mean_squares_add(self):
         with self.result("each", study(SENSITIVITY.format(2000), 0.3, 30, BACKGROUND)) as file:
             mean, std = file["sensitivity/mean"][0], file["sensitivity/std"][0]

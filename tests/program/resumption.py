@@ -34,6 +34,8 @@ kind = "sensitivity"
 factors = ["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]
 samples = 12300
 """
+BY_SERIES = SENSITIVITY.replace('method = "gauss-newton"', 'metric = "platform"').replace(
+    'factors = ["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]\nsamples = 12300', 'factors = "deforming"\nsamples = 62300')
 MONTE_CARLO = HEAD + f"""\
 [poses]
 count = {POSES * 3 // 4}
@@ -213,7 +215,7 @@ draws = "per pose"
 samples = 300
 limits = {{ position = "0.6 mm", strain_energy = "5 mJ" }}
 """
-STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "machines": MACHINES, "uniform errors": UNIFORM,
+STUDIES = {"sensitivity": SENSITIVITY, "by series": BY_SERIES, "monte-carlo": MONTE_CARLO, "machines": MACHINES, "uniform errors": UNIFORM,
            "repeated machines": REPEATED, "relative responses": RELATIVE, "sobol": SOBOL,
            "designer's words": DESIGNED, "given machines": GIVEN, "forces": FORCES,
            "allocation": ALLOCATION, "allocation of zones": ZONES, "evaluate": CASES, "identification": IDENTIFICATION,

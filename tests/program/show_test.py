@@ -157,8 +157,8 @@ class Show(ProgramTest):
         self.write("both.toml", template.replace("count = 158", "count = 2").replace("samples = 1000", "samples = 200"))
         self.succeeds("run", "both.toml", "-o", "both.h5", "--quiet")
         text = self.succeeds("show", "both.h5")
-        self.assertRegex(text, r"40 800 solves, 20 400 at each of two fidelities, in")
-        self.assertIn('0 of 40 800 solves (0 %) did not converge: 0 at fidelity "exact", 0 at "first-order"', text)
+        self.assertRegex(text, r"40 800 samples, 20 400 at each of two fidelities, in")
+        self.assertIn('0 of 40 800 samples (0 %) did not converge: 0 at fidelity "exact", 0 at "first-order"', text)
 
     def test_failures_are_said_once(self):
         self.write("study.toml", STUDY.replace("[solver]\n", "[solver]\nmax_iterations = 4\n"))

@@ -13,7 +13,7 @@ STUDY = "".join(line for line in WITH_BACKGROUND.splitlines(True) if not line.st
 LONG = STUDY.replace("samples = 1500", "samples = 1000000000")
 ESCAPE = b"\x1b"
 SHARE = r"(?P<share>\d+\.\d) % "
-RATE = r"(?P<rate>[\d.]+ [kMG]?)\s?solves/s"
+RATE = r"(?P<rate>[\d.]+ [kMG]?)\s?samples/s"
 FAILED = r"(?P<failed>\d+) not converged( \([\d.e+-]+ %\))?"
 LEFT = r"(time left unknown|(\d+ (s|min|h|d) ?){1,2} ?left)"
 LIVE = re.compile(rf" *{SHARE}\[#*\.*\]  +{RATE}  {FAILED}  {LEFT}")
@@ -66,7 +66,7 @@ class Terminal(ProgramTest):
                 # The line is gone before anything else is said.
                 self.assertEqual(frames(terminal.raw)[-1], "")
                 self.assertTrue(terminal.rows()[0].startswith("poesy: interrupted"), terminal.rows())
-                self.assertNotIn("solves/s", "\n".join(terminal.rows()))
+                self.assertNotIn("samples/s", "\n".join(terminal.rows()))
 
     def test_few_columns(self):
         for columns in (40, 20, 5):

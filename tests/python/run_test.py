@@ -184,8 +184,8 @@ class Programs(FolderTest):
 
     def test_progress(self):
         lines = [
-            "12.5 % done, 7.21 M solves/s, 0 not converged, 4 s left",
-            "stage 2: 50.0 % done, 720 solves/s, 3 not converged (0.1 %), 1 min left",
+            "12.5 % done, 7.21 M samples/s, 0 not converged, 4 s left",
+            "stage 2: 50.0 % done, 720 samples/s, 3 not converged (0.1 %), 1 min left",
         ]
         said = "".join(f"echo '{line}' >&2; " for line in lines)
         poesy.program = self.fake(f"{said} echo 'poesy: warning: take care' >&2; cp {result('sensitivity').path} $4")
@@ -277,7 +277,7 @@ class Interruption(FolderTest):
             poesy.run(LONG, output="out.h5", progress=listen, yes=True)
         self.assertEqual(len(heard), 1)
         self.assertTrue(0.0 <= heard[0].share < 0.5 and heard[0].stage == 1, heard)
-        self.assertRegex(str(heard[0]), r"^[\d.]+ % done, (.* solves/s, )?\d+ not converged.*, .* left$")
+        self.assertRegex(str(heard[0]), r"^[\d.]+ % done, (.* samples/s, )?\d+ not converged.*, .* left$")
         self.assertTrue(Path("out.h5.part").exists())
         self.assertIn("--resume", raised.exception.__notes__[0])
 

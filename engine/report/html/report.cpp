@@ -106,7 +106,8 @@ std::string subtitle(const StoredResult& result) {
   std::string text = fmt::format("{} of {}: ", result.kind, result.model);
   if (!result.factors.empty()) text += counted(result.factors.size(), "error", "errors") + ", ";
   text += counted(result.poses.size(), "pose", "poses");
-  text += fmt::format(", {}", counted(result.facts.solves, "solve", "solves"));
+  const RunFacts& run = result.facts;
+  text += fmt::format(", {}", counted_samples(run.samples(), run.by_series));
   return result.metric.empty() ? text : text + "; metric: " + metric_text(result);
 }
 
@@ -119,7 +120,7 @@ Answer answer(const ReportKind& kind, const StoredResult& result) {
   if (sure == lines.end()) return lines;
   const SolveCounts solves = kind.tally(result).total();
   if (solves.total() == 0) return lines;
-  const std::string all = counted(solves.total(), "solve", "solves");
+  const std::string all = counted_samples(solves.total(), solves.by_series());
   sure->second += solves.not_converged() == 0
                       ? fmt::format(" All {} converged.", all)
                       : fmt::format(" {} of {} {} ({}).", count_text(solves.not_converged()), all, why_unsolved(solves),

@@ -31,8 +31,8 @@ Table table_of(std::string name, std::string word, std::string caption, const st
 
 Table status_table(const SolveCounts& solves, std::string_view at_fidelity) {
   Table table{.name = "solves",
-              .caption = fmt::format("How the solves{} ended", at_fidelity),
-              .columns = {text_column("status", "status"), number_column("solves", "solves"),
+              .caption = fmt::format("How samples{} ended", at_fidelity),
+              .columns = {text_column("status", "status"), number_column("solves", "samples"),
                           percent_column("share", "share"), text_column("meaning", "meaning")}};
   for (std::size_t status = 0; status < kStatusNames.size(); ++status) {
     const std::uint64_t count = solves.by_status[status];
@@ -120,7 +120,7 @@ std::string samples_text(const StoredResult& result, const StudyWords& words) {
 
 std::string speed_text(const RunFacts& run) {
   if (!(run.wall_seconds > 0.0)) return {};
-  const double speed = static_cast<double>(run.solves) / run.wall_seconds;
+  const double speed = static_cast<double>(run.samples()) / run.wall_seconds;
   return count_text(static_cast<std::uint64_t>(std::llround(speed)));
 }
 
@@ -159,7 +159,8 @@ std::vector<RunFact> run_facts(const ReportKind& kind, const ReportedResult& rep
       {"ranks", std::to_string(run.ranks)},
       {"wall time [s]", fmt::format("{:.2f}", run.wall_seconds)},
       {"solves", count_text(run.solves)},
-      {"solves per second", speed_text(run)},
+      {"samples", count_text(run.samples())},
+      {"samples per second", speed_text(run)},
       {"content hash (SHA-256)",
        result.content_sha256 + (result.changed ? " (the content no longer has this hash)" : "")},
   };
@@ -220,7 +221,7 @@ void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& pa
   const std::string at_first = at_first_fidelity(outcomes);
   Section& section = page.add_section("not-solved", "What was not solved");
   if (total.not_converged() == 0) {
-    section.paragraph(fmt::format("All {} solves{} converged.", count_text(total.total()), at_first));
+    section.paragraph(fmt::format("All {}{} converged.", counted_samples(total.total(), total.by_series()), at_first));
   } else {
     section.paragraph(unsolved_text(stored, outcomes) +
                       " Each is counted where it happened. Whether the numbers above leave such solves out is the "

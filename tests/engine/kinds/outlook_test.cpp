@@ -25,7 +25,7 @@ std::vector<double> first_pieces(const std::vector<WorkOutlook>& all) {
 TEST(Outlook, CountsTheSolvesOfASensitivityStudy) {
   const Prepared prepared(study_of(&kSensitivityStudy, 400));
   const Outlook expected = outlook(prepared.study, *prepared.model, prepared.plan.poses());
-  EXPECT_EQ(expected.solves, "2 errors x 3 poses x 400 samples = 2400 solves");
+  EXPECT_EQ(expected.solves, "2 errors x 3 poses x 400 samples = 2400 solves, fewer where series replace them");
   EXPECT_EQ(expected.least, 1.0);
   // A piece is 200 samples; the solves at a tenth of the size come to the study's own.
   EXPECT_EQ(first_pieces(expected.shared), std::vector{200.0 / 2400.0});
