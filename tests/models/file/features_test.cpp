@@ -214,10 +214,12 @@ TEST(Features, AreRefusedWithPlaceAndRemedy) {
            "m.toml:19:103: limb[0].features[1].position has the modifier (M), which depends on the actual size, which "
            "is not modelled; remove it; the zone is then the smallest that it allows"},
           {"position = { zone = \"0.05 mm\"", "position = { zone = \"\u00d80.05 mm\"",
-           "m.toml:19:112: limb[0].features[1].position.zone is '\u00d80.05 mm', with the sign \u00d8; write the number "
+           "m.toml:19:112: limb[0].features[1].position.zone is '\u00d80.05 mm', with the sign \u00d8; write the "
+           "number "
            "and its unit alone, e.g. \"0.05 mm\": around an axis or a point a zone is a diameter"},
           {"position = { zone = \"0.05 mm\"", "position = { zone = \"+-0.05 mm\"",
-           "m.toml:19:112: limb[0].features[1].position.zone is '+-0.05 mm', with the sign +-; write the whole width of "
+           "m.toml:19:112: limb[0].features[1].position.zone is '+-0.05 mm', with the sign +-; write the whole width "
+           "of "
            "the zone, \"0.1 mm\" for +-0.05 mm"},
           {"direction = \"z\", tolerance = \"0.02 mm\"", "direction = \"z\", tolerance = \"\u00b10.02 mm\"",
            "m.toml:20:81: limb[0].features[2].tolerance is '\u00b10.02 mm', with the sign \u00b1; write the number and "
