@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/array.h"
+
 namespace poesy {
 namespace {
 
@@ -52,10 +54,11 @@ bool ResponseSeries::is_norm(std::size_t r, std::span<const double> solved) cons
   const std::vector<std::size_t>& components = responses_[r].components;
   const auto has_sign = [&](std::size_t c) { return c < r && rows_[c].form == Form::itself; };
   if (components.empty() || !std::ranges::all_of(components, has_sign)) return false;
+  const ArrayView<const double, axis::Response, axis::Sample> all(solved, {rows_.size(), kSolves});
   for (std::size_t k = 0; k < kSolves; ++k) {
     double sum = 0.0;
-    for (const std::size_t c : components) sum += square(solved[c * kSolves + k]);
-    if (!(std::abs(std::sqrt(sum) - solved[r * kSolves + k]) <= rows_[r].precise)) return false;
+    for (const std::size_t c : components) sum += square(all(c, k));
+    if (!(std::abs(std::sqrt(sum) - all(r, k)) <= rows_[r].precise)) return false;
   }
   return true;
 }
@@ -92,10 +95,12 @@ bool ResponseSeries::is_certified(std::span<const double> solved) {
   std::vector<std::size_t> left;
   const std::array<double, kSolves> solved_errors = errors(range_);
   evaluate(std::span(solved_errors).last(kChecks), values, left);
+  const ArrayView<const double, axis::Response, axis::Sample> series(values, {rows_.size(), kChecks});
   for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const std::span<const double> solves = solved.subspan(r * kSolves, kSolves).last(kChecks);
     for (std::size_t k = 0; k < kChecks; ++k) {
       if (is_left_[k] != 0) continue;
-      const double difference = values[r * kChecks + k] - solved[r * kSolves + kNodes + k];
+      const double difference = series(r, k) - solves[k];
       if (!(std::abs(difference) <= rows_[r].precise)) return false;
     }
   }
@@ -105,10 +110,12 @@ bool ResponseSeries::is_certified(std::span<const double> solved) {
 /// Computes a response that is the norm of others, in all rows `responses` [R x B].
 void ResponseSeries::take_norm(std::size_t r, std::span<double> responses) const {
   const std::size_t count = x_.size();
-  const std::span<double> values = responses.subspan(r * count, count);
+  const ArrayView<double, axis::Response, axis::Sample> all(responses, {rows_.size(), count});
+  const std::span<double> values = all.row(r);
   std::ranges::fill(values, 0.0);
   for (const std::size_t c : responses_[r].components) {
-    for (std::size_t b = 0; b < count; ++b) values[b] += square(responses[c * count + b]);
+    const std::span<const double> component = all.row(c);
+    for (std::size_t b = 0; b < count; ++b) values[b] += square(component[b]);
   }
   for (double& value : values) value = std::sqrt(value);
 }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/array.h"
 #include "engine/model/forwarding_model.h"
 #include "engine/run/response_series.h"
 
@@ -83,12 +84,12 @@ class SeriesEvaluator final : public Evaluator {
     std::vector<double> errors;
     for (const std::size_t b : left_) errors.push_back(samples.values[b]);
     const Solved found = solve(samples, errors);
+    const ArrayView<const double, axis::Response, axis::Sample> solved(found.responses, {responses_, left_.size()});
+    const ArrayView<double, axis::Response, axis::Sample> all(outcomes.responses, {responses_, samples.count});
     for (std::size_t k = 0; k < left_.size(); ++k) {
       outcomes.status[left_[k]] = found.status[k];
       outcomes.iterations[left_[k]] = found.iterations[k];
-      for (std::size_t r = 0; r < responses_; ++r) {
-        outcomes.responses[r * samples.count + left_[k]] = found.responses[r * left_.size() + k];
-      }
+      for (std::size_t r = 0; r < responses_; ++r) all(r, left_[k]) = solved(r, k);
     }
   }
 
