@@ -854,7 +854,7 @@ toml::table parsed(const std::string& text, const std::string& path) {
 
 /// Throws InputError if the file is a study. The advice names the mechanism of that study.
 void refuse_study(const toml::table& table, const std::string& path) {
-  if (table["format"].value_or(std::string()) != "poesy-study") return;
+  if (table["format"].value_or(std::string()) != "poesy-study" || !table.contains("mechanism")) return;
   const auto beside = table.at_path("mechanism.file").value<std::string>();
   const auto name = table.at_path("mechanism.model").value<std::string>();
   std::string remedy = "give the file of the study's mechanism";
