@@ -192,7 +192,7 @@ void add_facts(ResultBuilder& result, const RunFacts& facts) {
     file.set_attribute("/run", "version_" + std::string(library.name), std::string(library.version));
   }
   write_fields(result, "/run", kFactFields, facts);
-  result.add_scalar("/run/samples", facts.samples(), {"1", "Samples, solved or by series"});
+  result.add_scalar("/run/all_samples", facts.samples(), {"1", "Samples, solved or by series"});
   const double rate = facts.wall_seconds > 0.0 ? static_cast<double>(facts.samples()) / facts.wall_seconds : 0.0;
   result.add_scalar("/run/samples_per_second", rate, {"1/s", "Samples a second, all threads and ranks together"});
 }
@@ -306,9 +306,9 @@ SelectedPoses read_poses(const h5::File& file) {
 RunFacts read_facts(const h5::File& file) {
   RunFacts facts;
   read_fields(file, "/run", kFactFields, facts);
-  if (!file.exists("/run/samples")) return facts;  // of a version that solved every sample
-  const auto samples = file.read<std::uint64_t>("/run/samples");
-  if (samples.size() != 1 || samples[0] < facts.solves) throw h5::Error("/run/samples does not fit /run/solves");
+  if (!file.exists("/run/all_samples")) return facts;  // of a version that solved every sample
+  const auto samples = file.read<std::uint64_t>("/run/all_samples");
+  if (samples.size() != 1 || samples[0] < facts.solves) throw h5::Error("/run/all_samples does not fit /run/solves");
   facts.by_series = samples[0] - facts.solves;
   return facts;
 }

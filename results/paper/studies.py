@@ -137,8 +137,8 @@ def other_numbers(studies):
     certificate = drawing["allocation/certificate"]
     return {
         "errors": str(len(study["factors/name"])), "poses": str(len(study["poses/z"])),
-        "samples": str(int(study["run/samples"][()] / len(study["factors/name"]) / len(study["poses/z"]))),
-        "solves": f"{study['run/samples'][()] / 1e6:.2f}",
+        "samples": str(int(study["run/all_samples"][()] / len(study["factors/name"]) / len(study["poses/z"]))),
+        "solves": f"{study['run/all_samples'][()] / 1e6:.2f}",
         "table_10_margin": f"{100 * MARGIN:.0f}", "together_size": f"{studies.own('alone', 'platform')['factors/sigma'][0] * 1000:.1g}",
         "printed": str(printed), "within": str(within),
         "millimetre_unsolved": f"{float(from_file('2upr-rpu-sensitivity/dependence.txt', r'^not converged, % +[0-9.]+ +[0-9.]+ +([0-9.]+)')):.0f}",

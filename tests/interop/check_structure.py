@@ -115,7 +115,7 @@ def main(path):
         for name in ("poesy_version", "git_commit", "kind", "model", "title"):
             assert isinstance(file.attrs[name], str) and file.attrs[name], name
         assert file["study/text"].asstr()[()].startswith(("#", "format"))
-        for name in ("created", "host", "cpu", "threads", "ranks", "wall_seconds", "checkpoint_seconds", "samples", "samples_per_second", "solves"):
+        for name in ("created", "host", "cpu", "threads", "ranks", "wall_seconds", "checkpoint_seconds", "all_samples", "samples_per_second", "solves"):
             assert file["run"][name].shape == (), name
         for name in ("hdf5", "tbb", "eigen", "boost", "openssl", "compiler"):
             assert file["run"].attrs["version_" + name], name

@@ -35,7 +35,7 @@ class Fidelity(ProgramTest):
         result, output = self.run_study("both", "0.01 mm", "0.01 deg", '"all"')
         self.assertIn(f"{2 * 51 * 12 * 400} samples", output)
         with result:
-            self.assertEqual(result["run/samples"][()], 2 * 51 * 12 * 400)
+            self.assertEqual(result["run/all_samples"][()], 2 * 51 * 12 * 400)
             self.assertEqual(list(result["fidelity"].attrs["fidelities"]), ["exact", "first-order"])
             self.assertEqual(result["fidelity/linear"].shape, (51,))
             self.assertTrue(result["fidelity/linear"][:].all())

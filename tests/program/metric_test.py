@@ -97,7 +97,7 @@ class Metric(ProgramTest):
                 self.assertEqual(solved["run/solves"][()], 25 * 10 * 400)
                 ends = dict(zip(series["status"].asstr()[:], series["solver/solves_by_status"][:]))
                 self.assertGreater(np.mean(ends["by_series"] > 0), 0.95)
-                self.assertEqual(series["run/samples"][()], 25 * 10 * 400)
+                self.assertEqual(series["run/all_samples"][()], 25 * 10 * 400)
                 self.assertEqual(series["run/solves"][()], 25 * 10 * 400 - np.sum(ends["by_series"]))
         pairs = r"by certified series: [\d.]+ % of the samples, in 2\d\d of 250 pairs"
         self.assertRegex(self.succeeds("show", "series.h5"), pairs)
