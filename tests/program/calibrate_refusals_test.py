@@ -56,7 +56,7 @@ TABLES = [
     (HEADER.replace(",", ";") + "\n", "1:5", "semicolons"),
     ("", "1:1", "the file is empty"),
     (HEADER + "\n", "2:1", "there is no data below the column names"),
-    (titled("deviation_z [um]", "deviation_z"), "2:1", "deviation_z of p0 is -240 m, which is more than a tenth of the mechanism's reach"),
+    (titled("deviation_z [um]", "deviation_z"), "2:1", "deviation_z of p0 is -2.4e+05 mm, which is more than a tenth of the mechanism's reach"),
     (titled("deviation_z [um]", "deviation_z [mm]"), "2:1", "'deviation_z [um]'"),
     (replaced(0, "p0,0,0,,-240,,"), "2:8", "z is missing"),
     (replaced(1, "p1,60,0,,-528.5,p4,119.92"), "3:9", "z is missing, and 'to' needs a pose"),
