@@ -20,7 +20,7 @@ class ResponseSeries {
  public:
   static constexpr std::size_t kNodes = ChebyshevSeries::kNodes;  ///< solves from which the series are formed
   static constexpr std::size_t kChecks = 8;                       ///< solves that certify them
-  static constexpr std::size_t kSolves = kNodes + kChecks;
+  static constexpr std::size_t kSolves = kNodes + kChecks;        ///< all solves of a cell
 
   /// Copies what it needs of the model.
   explicit ResponseSeries(const Model& model);

@@ -36,7 +36,7 @@ inline AssemblyModel made(const std::string& text, Metric metric) {
   const file::MechanismFile read = file::read_mechanism_file(text, "m.toml");
   const file::Checked found =
       file::checked(file::mechanism(read, file::default_geometry(read)), file::Workspace::as_it_is);
-  return file::assembly_model(found.mechanism, std::make_shared<const file::Tracker>(found.mechanism), found.home,
+  return file::assembly_model(found.mechanism, std::make_shared<const file::PoseTracker>(found.mechanism), found.home,
                               metric);
 }
 
