@@ -122,7 +122,7 @@ std::string shown_tolerance(const TemplateLines& lines, const Study& study) {
 std::string series_line(const Study& study) { return study.solver.series ? "" : "series = false\n"; }
 
 std::string shown_series(const TemplateLines& lines, const Study& study) {
-  return study.solver.series ? "" : lines.explained("solver", "series", "series = false");
+  return lines.explained("solver", "series", study.solver.series ? "series = true" : "series = false");
 }
 
 /// Reads the key `not_converged`. "fail" means "exclude" with a limit of 0 on the share of failed samples.

@@ -116,7 +116,7 @@ std::string no_index_text(const StoredResult& result, std::size_t r) {
 /// Over which poses the variances of first-order indices are added up: "added up over 1 of 13 poses (pose 0)".
 std::string added_up_text(const StoredResult& result) {
   const std::vector<std::uint64_t>& poses = effects_of(result).s1_poses;
-  const std::size_t all = result.poses.size();
+  const std::size_t all = monte_carlo_of(result).mean.length<axis::Pose>();
   if (poses.size() == all) return "added up over " + counted(all, "pose", "poses");
   return fmt::format("added up over {} of {} poses ({} {})", poses.size(), all, poses.size() == 1 ? "pose" : "poses",
                      fmt::join(poses, ", "));

@@ -97,6 +97,7 @@ metric = "published"
 method = "newton"
 tolerance = 1e-12
 max_iterations = 40
+series = false
 not_converged = "include"
 max_not_converged = 0.5
 [run]
