@@ -85,10 +85,10 @@ TEST(LiveLine, FitsAnyWidth) {
 
 TEST(LiveLine, SaysLessWhereThereIsLessRoom) {
   const std::array<std::pair<std::size_t, std::string>, 6> expected{{
-      {101, " 43.2 % [###########................]   7.1 k samples/s  12 not converged (0.0028 %)  1 min 20 s left"},
-      {80, " 43.2 % [##....]   7.1 k samples/s  12 not converged (0.0028 %)  1 min 20 s left"},
+      {101, " 43.2 % [############................]  7.1 k samples/s  12 not converged (0.0028 %)  1 min 20 s left"},
+      {80, " 43.2 % [###....]  7.1 k samples/s  12 not converged (0.0028 %)  1 min 20 s left"},
       {75, "43.2 % done, 7.1 k samples/s, 12 not converged (0.0028 %), 1 min 20 s left"},
-      {53, " 43.2 % [###.....]   7.1 k samples/s  1 min 20 s left"},
+      {53, " 43.2 % [###......]  7.1 k samples/s  1 min 20 s left"},
       {39, " 43.2 % [#####.......]  1 min 20 s left"},
       {24, "43.2 %, 1 min 20 s left"},
   }};

@@ -62,7 +62,7 @@ TEST(Fidelity, StandsInTheTemplate) {
   const std::string text = template_text(kCatalog[0], kSensitivityStudy);
   EXPECT_NE(text.find("\nfidelity = \"exact\"\n"), std::string::npos) << text;
   EXPECT_EQ(study_of(text).mechanism.fidelity, 0u);
-  EXPECT_EQ(template_text(test::fake_catalog()[0], kSensitivityStudy).find("fidelity"), std::string::npos);
+  EXPECT_EQ(template_text(test::fake_catalog()[0], kSensitivityStudy).find("\nfidelity"), std::string::npos);
 }
 
 TEST(Fidelity, UnknownOneIsRefusedWithASuggestion) {

@@ -32,7 +32,7 @@ TEST(Continuation, FollowsThePlatformOfThreeRods) {
   }
 }
 
-TEST(Continuation, TakesShorterStridesWhereTheErrorsBendTheEquations) {
+TEST(Continuation, ShortensItsStrides) {
   const Solution near = with_rods(1e-6);
   EXPECT_LE(near.iterations, 8U);  // one stride, then the last solve
   EXPECT_EQ(near.steps.size(), near.iterations);
