@@ -191,6 +191,20 @@ Table facts_table(const ReportKind& kind, std::span<const ReportedResult> result
   return table;
 }
 
+/// Says which settings the text of the study holds, and which numbers came from tables.
+std::string_view origin_text(const StudyWords& words) {
+  if (!words.from_tables) {
+    return "The study below holds every setting, those that its author left out among them. With the same program on "
+           "the same kind of processor it gives the same numbers for any number of threads.";
+  }
+  return words.own_poses
+             ? "The measurements came from a table, and are in the result file. The study below states all else: the "
+               "errors that were fitted, the tolerances of all errors, and the poses at which the "
+               "remaining displacement is predicted."
+             : "Of the study below, mechanism and solver were used; poses and errors came from tables, and are in the "
+               "result file.";
+}
+
 }  // namespace
 
 void add_responses(const StoredResult& result, Page& page) {
@@ -242,19 +256,6 @@ void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& pa
   if (!stored.failures.empty()) {
     section.folded("Samples that did not converge, and how to replay them", failures_table(result));
   }
-}
-
-/// Where the settings of a study are that its report describes.
-std::string_view origin_text(const StudyWords& words) {
-  if (!words.from_tables) {
-    return "The study below holds every setting, those that its author left out among them. With the same program on "
-           "the same kind of processor it gives the same numbers for any number of threads.";
-  }
-  return words.own_poses
-             ? "The measurements came from a table, and are in the result file. The study below states all else: the "
-               "errors that were fitted, the tolerances of all errors, and the poses at which the rest is predicted."
-             : "Of the study below, mechanism and solver were used; poses and errors came from tables, and are in the "
-               "result file.";
 }
 
 void add_what_was_run(const ReportKind& kind, std::span<const ReportedResult> results, Page& page) {
