@@ -230,6 +230,12 @@ std::vector<std::string> rounding_remarks(const Mechanism& mechanism, double mis
                   small_length_text(mismatch))};
 }
 
+bool has_sliding_joint(const Mechanism& mechanism) {
+  return std::ranges::any_of(mechanism.limbs, [](const Limb& limb) {
+    return std::ranges::any_of(limb.joints, [](const Joint& joint) { return joint.motion == Motion::prismatic; });
+  });
+}
+
 std::string structure_text(const Mechanism& mechanism) {
   std::string text =
       fmt::format("  {:<8} {:<10} {:<12} {:<32} {:<32} {}\n", "frame", "joint", "type", "point (mm)", "z", "x");
@@ -263,6 +269,11 @@ std::string structure_text(const Mechanism& mechanism) {
                       mechanism.about == ErrorsAbout::joint ? "points of its first and last joint"
                       : mechanism.is_branched()             ? "origins of the bodies there"
                                                             : "origins of base and platform");
+  if (has_sliding_joint(mechanism)) {
+    text +=
+        "  The point of a P joint does not change how it slides, but errors of its frame turn about it, and its "
+        "features\n  are there: give the joint or the feature the point (at) of the part that is meant.\n";
+  }
   for (const EachLimb& each : mechanism.each) text += "  " + each.text + ".\n";
   return text;
 }

@@ -229,6 +229,13 @@ TEST(ErrorsAbout, IsSaidOfTheFactors) {
   EXPECT_NE(models.frame.description.structure.find("turn about the origins of base and platform."), std::string::npos);
 }
 
+TEST(ErrorsAbout, PointOfASlidingJointIsExplained) {
+  const auto structure = [](const std::string& file) { return catalog_entry(file, "m.toml").description.structure; };
+  const std::string words = "The point of a P joint does not change how it slides";
+  EXPECT_NE(structure(tricept()).find(words), std::string::npos);
+  EXPECT_EQ(structure(planar()).find(words), std::string::npos);
+}
+
 // ---- limbs of named errors
 
 std::vector<std::string> factors_with(const std::string& error) {
