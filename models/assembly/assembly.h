@@ -15,12 +15,12 @@
 namespace poesy::assembly {
 
 using Vector3 = lie::Vector3<double>;  ///< A point or a direction.
-/// A [6 x 6] matrix, such as a compliance (twist from wrench) or a metric.
+/// A [6 x 6] matrix, such as a compliance (from a wrench to a twist) or a metric.
 using Matrix6 = lie::Matrix6<double>;
 using Screw = lie::Screw<double>;          ///< A twist or a wrench.
 using Transform = lie::Transform<double>;  ///< A rigid motion, or the pose of a frame.
 
-/// Positions of the two bodies that every assembly has.
+/// Indices of the two bodies that every assembly has.
 /// @{
 inline constexpr std::size_t kBase = 0;      ///< the fixed body
 inline constexpr std::size_t kPlatform = 1;  ///< the body whose place follows from the pose coordinates
@@ -36,10 +36,11 @@ struct Body {
 
 /// The compliance of a joint's bearing and drive, in the joint's frame before the joint moves.
 struct Bearing {
-  /// Position of the joint in the limb. A joint with several freedoms is a series of joints with one freedom each; the
-  /// position is that of the first of them.
+  /// Index of the joint in the limb. A joint with several freedoms is a series of joints with one freedom each; the
+  /// index is that of the first of them.
   std::size_t joint;
-  Matrix6 compliance;  ///< [6 x 6] twist from wrench (SI); 0 in rigid directions and along passive freedoms
+  /// [6 x 6] Matrix from a wrench to a twist (SI); 0 in rigid directions and along passive freedoms.
+  Matrix6 compliance;
 };
 
 /// An end of a link: at the point of a joint before the joint moves, or at a body's origin.
@@ -47,7 +48,7 @@ struct LinkEnd {
   /// The body at which the limb begins, a joint of the limb, or the body at which it ends.
   enum class At { from, joint, to };
   At at;                  ///< kind of end
-  std::size_t joint = 0;  ///< position in the limb of the joint (of one freedom), if the end is at one
+  std::size_t joint = 0;  ///< index in the limb of the joint (of one freedom), if the end is at one
 };
 
 /// The cross-section of a straight beam along x.
@@ -56,7 +57,8 @@ struct BeamSection {
   double GJ = 0.0;   ///< torsion stiffness, N m^2
   double EIy = 0.0;  ///< bending stiffness about y, N m^2
   double EIz = 0.0;  ///< bending stiffness about z, N m^2
-  /// Shear modulus times the part of the cross-section's area that carries shear, N; none: shear is neglected.
+  /// Shear modulus times the part of the cross-section's area that carries shear (N). Without a value, shear is
+  /// neglected.
   std::optional<double> shear_stiffness = {};
 };
 
@@ -65,10 +67,11 @@ struct Link {
   LinkEnd from;  ///< end at which the x axis begins
   LinkEnd to;    ///< end to which the x axis points
   /// The y axis of the link. It is given in the frame of the body at `to`, or in that of the joint at `to` before the
-  /// joint moves. A component along the x axis is removed. Without a value, any direction is taken.
+  /// joint moves. A component along the x axis is removed. Without a value, the solver takes any direction
+  /// perpendicular to x.
   std::optional<Vector3> y;
-  /// Stiffness of the link as a beam; or the compliance matrix of the link in a frame at the end `to`; the x axis of
-  /// this frame is along the link, and `y` gives its y axis.
+  /// The stiffness of the link as a beam, or its compliance matrix in a frame at the end `to`. The x axis of this frame
+  /// is along the link, and the member `y` gives its y axis.
   std::variant<BeamSection, Matrix6> stiffness;
 };
 
@@ -76,8 +79,8 @@ struct Link {
 struct Limb {
   /// Joints between fixed frames, from the frame of body `from` to that of body `to`.
   chain::Limb chain;
-  std::size_t from = kBase;            ///< position of the body at which the limb begins
-  std::size_t to = kPlatform;          ///< position of the body at which the limb ends
+  std::size_t from = kBase;            ///< index of the body at which the limb begins
+  std::size_t to = kPlatform;          ///< index of the body at which the limb ends
   std::string label = {};              ///< label in messages and names, such as "2" or "rod_1"
   std::vector<Bearing> bearings = {};  ///< joint bearings with compliance
   std::vector<Link> links = {};        ///< links with compliance
@@ -88,7 +91,7 @@ struct Limb {
   bool is_elastic() const { return !bearings.empty() || !links.empty() || end; }
 };
 
-/// Loads with constant magnitudes and directions. They act at the nominal places of their points.
+/// Loads with constant magnitudes and directions. They act at the nominal positions of their points of application.
 struct Load {
   Vector3 gravity = Vector3::Zero();  ///< gravity, m/s^2, which acts on every mass
   std::size_t body = kPlatform;       ///< body on which force and moment act
@@ -122,11 +125,11 @@ struct Assembly {
   std::size_t loops() const { return limbs.size() - (bodies.size() - 1); }
   /// The number of joints of all limbs, including those that are fixed.
   std::size_t joints() const;
-  /// The position of a limb's first joint among the joints of all limbs.
+  /// The index of a limb's first joint among the joints of all limbs.
   std::size_t first_joint(std::size_t limb) const;
 };
 
-/// The positions of limbs by which bodies can be placed one after the other: for each body except the base, a limb that
+/// The indices of limbs by which bodies can be placed one after the other: for each body except the base, a limb that
 /// ends there and begins at a body placed before. The list is shorter if no limbs lead from the base to some bodies.
 /// AnyLimb is a type with the members `from` and `to`.
 template <class AnyLimb>

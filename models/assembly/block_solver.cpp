@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t kTerms = KernelStart::kTerms;
 
-/// If one of the last coefficients of a series is larger than this (in rad, or in units of the reach), the states do
-/// not vary smoothly with the error, and the series is not used.
+/// If one of the last three coefficients of a series is larger than this (in rad, or in units of the reach), the states
+/// do not vary smoothly with the error, and the series is not used.
 constexpr double kTrustedTail = 1e-6;
 
 double chebyshev(std::size_t n, std::size_t node) {
@@ -62,8 +62,8 @@ void put_details(std::span<const double> values, std::size_t sample, const Outco
   for (std::size_t d = 0; d < values.size(); ++d) outcomes.details[d * count + sample] = values[d];
 }
 
-/// Calls a kernel for these samples. It computes responses, iterations and how each sample ended, and the mismatch of
-/// limbs if the caller wants additional outputs.
+/// Calls a kernel for these samples. The kernel computes responses, iterations and how each sample ended, and the
+/// mismatch of limbs if the caller wants additional outputs.
 void BlockSolver::run(KernelWork work, PoseProblem& problem, const SampleBlock& samples, const OutcomeBlock& outcomes) {
   const KernelProblem& solved = problem.with(samples, values_);
   const std::size_t stride = padded(samples.count);
@@ -135,7 +135,7 @@ void BlockSolver::solve_one(PoseProblem& problem, std::span<const double> errors
     return put(problem, found, sample, outcomes);
   }
   const std::vector<std::vector<Transform>>& frames = frames_.with(errors, problem.pose().displacements);
-  // Solver takes hundreds of steps where no loop closes, so Closure decides before it.
+  // Solver takes hundreds of steps if the loops cannot close, so Closure decides first.
   if (problem.closure().opens(nearing_[sample], frames)) {
     outcomes.status[sample] = SolveStatus::not_assembled;
   } else if (ends_[sample] == KernelEnd::left) {

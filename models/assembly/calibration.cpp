@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 
-/// A drive corrects nothing if it moves the platform by less than this share of the largest motion by a drive.
+/// A drive corrects nothing if it moves the platform by less than this share of the largest motion that a drive causes.
 constexpr double kNothing = 1e-9;
 
 Index index(std::size_t value) { return static_cast<Index>(value); }
@@ -59,10 +59,10 @@ Matrix taken_by_drives(const AssemblyModel& model, const Nominal& at) {
 /// The nominal state and the correction at one pose.
 struct Correction {
   Nominal at;
-  Matrix taken;  ///< matrix from a displacement to the part that the best correction by the drives takes away
+  Matrix taken;  ///< matrix of taken_by_drives()
 };
 
-/// The rows of a sample's responses that state the displacement of one body.
+/// Access to those responses of one sample that state the displacement of one body.
 class Rows {
  public:
   /// first: row of the displacement of the body's origin along x.

@@ -44,7 +44,7 @@ class Descent {
   double tried_sum_of_squares() const { return tried_.open.squaredNorm(); }
   void take_step() { here_ = tried_; }
 
-  /// Returns true if N - 2 C(r) is not positive definite at this configuration (N, C and r: see Closure).
+  /// Returns true if the machine cannot be assembled, by the rule of Closure applied to the present configuration.
   bool bends_away(const Loops& loops) const {
     const Eigen::VectorXd part = loops.taken_away(here_.open);
     std::vector<Screw> r;

@@ -20,8 +20,8 @@ Matrix6 beam_compliance(const BeamSection& section, double length) {
   return diagonal.asDiagonal();
 }
 
-/// A unit vector perpendicular to the unit vector `direction`. It points along the perpendicular part of `wanted`; any
-/// perpendicular direction is returned if there is no such part.
+/// A unit vector perpendicular to the unit vector `direction`. It points along the perpendicular part of `wanted`.
+/// Without `wanted`, it has any perpendicular direction.
 Vector3 across(const Vector3& direction, const std::optional<Vector3>& wanted) {
   if (wanted) return (*wanted - wanted->dot(direction) * direction).normalized();
   Eigen::Index smallest = 0;

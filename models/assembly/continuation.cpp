@@ -12,10 +12,10 @@ namespace {
 /// Tolerance of solves on the way; the error after Newton's last step is about its square.
 constexpr double kTolerance = 1e-9;
 constexpr int kMostIterations = 12;  ///< largest number of iterations of a solve on the way
-/// Shortest stride, as a share of the errors: the path ends if it would have to be shorter.
+/// Shortest stride, as a share of the errors. If a stride had to be shorter, the path ends.
 constexpr double kShortest = 1e-8;
 
-constexpr std::uint32_t kMostOnTheWay = 1000;  ///< iterations of all strides together
+constexpr std::uint32_t kMostOnTheWay = 1000;  ///< largest number of iterations of all strides together
 
 /// Puts the iterations and steps of a solution before those of the next one.
 void add_iterations(const Solution& before, Solution& next) {
@@ -42,8 +42,8 @@ const std::vector<std::vector<Transform>>& Continuation::frames(const Nominal& p
   return frames_.with(grown_, pose.displacements);
 }
 
-/// Moves `here` along the path, as far as it leads. Status: iteration_cap, non_finite or not_assembled; converged where
-/// it arrives.
+/// Moves `here` along the path, as far as the path leads. Status: converged if `here` arrives at the full errors;
+/// otherwise iteration_cap, non_finite or not_assembled.
 SolveStatus Continuation::follow(const Nominal& pose, std::span<const double> errors, Solution& here) {
   if (!std::ranges::all_of(errors, [](double error) { return std::isfinite(error); })) return SolveStatus::non_finite;
   double share = 0.0;

@@ -12,20 +12,21 @@ namespace poesy::assembly {
 /// Solves machines whose limbs do not deform each other by following them from the perfect machine, while all their
 /// errors grow in proportion. A solution of the equations may belong to another way to assemble the machine (another
 /// assembly mode), and large errors may lead a solver there. Here the machine stays in the mode that contains the
-/// nominal pose. If it comes to a singularity, no machine near the nominal one has these errors, and it is
-/// not_assembled.
+/// nominal pose. If the path comes to a singularity, no machine near the nominal one has these errors, and the status
+/// is not_assembled.
 ///
-/// Each stride of the errors is one solve by Solver::approach(), and is halved if that is not sure to have stayed in
-/// the mode (Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 5.1.3). No load acts on the way, because
-/// it does not decide whether loops close. Plain double arithmetic; owns the scratch of one thread.
+/// Each stride (growth of the errors) is one solve by Solver::approach(). The stride is halved if the solution may have
+/// left the mode (Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 5.1.3). No load acts on the way,
+/// because loads have no influence on whether loops close. Plain double arithmetic; owns the scratch of one thread.
 class Continuation {
  public:
   /// The model must outlive this object.
   Continuation(const AssemblyModel& model, const SolverOptions& options);
 
   /// The machine with these errors [F] at this pose, which must be regular. Status: not_assembled, see above;
-  /// iteration_cap if a stride took more iterations than the options allow, or if all of them took 1000; non_finite if
-  /// errors are no numbers; else that of the last solve, with the load. iterations and steps: of all strides.
+  /// iteration_cap if a stride took more iterations than the options allow, or all strides together more than 1000;
+  /// non_finite if an error is not finite; else the status of the last solve, with the load. iterations and steps: of
+  /// all strides.
   Solution solve(const Nominal& pose, std::span<const double> errors);
 
  private:

@@ -7,8 +7,8 @@
 namespace poesy::assembly {
 namespace {
 
-/// What a response measures of a pair of limbs is the norm of M x (mismatch of the pair). This function returns the
-/// matrix M, which has six columns.
+/// The contribution of a pair of limbs to a response is the norm of M x (mismatch of the pair). Returns the matrix M,
+/// which has six columns.
 Eigen::MatrixXd judged_of_pair(const Nominal& pose, std::size_t response) {
   if (response == 0) return linalg::cholesky_root(pose.W);  // response `gap`
   if (response == 1) return Eigen::MatrixXd::Identity(3, 6);

@@ -14,7 +14,7 @@ struct Balance {
   Eigen::MatrixXd twists;    ///< [6 bodies x k] V: twist of each body; 0 for the base
 };
 
-/// The linear equations of an assembly in one state. Unknown are the wrenches p of the limbs and a vector x, which
+/// The linear equations of an assembly in one state. The unknowns are the wrenches p of the limbs and a vector x, which
 /// contains the displacements dq of passive joints and the twists V of bodies. C are the compliances of the limbs, xi
 /// is their mismatch, and J are the columns of their passive joints.
 ///
@@ -55,7 +55,7 @@ class Equilibrium {
   /// The scaled matrix of the equations. Its rows and columns are all lambda, then six for each body except the base. A
   /// null vector is a set of wrenches by which rigid limbs load each other, or a motion of loose bodies.
   const Eigen::MatrixXd& matrix() const { return matrix_; }
-  /// [limbs + 1] The position of each limb's first lambda among all lambda, then the number of all lambda.
+  /// [limbs + 1] The index of each limb's first lambda among all lambda, then the number of all lambda.
   std::span<const Eigen::Index> first_wrenches() const { return first_; }
   /// [6 x (6 - rank)] The matrix N of a limb, scaled. Its columns are the wrenches that the limb can carry.
   const Eigen::MatrixXd& carry(std::size_t limb) const { return carry_[limb]; }
@@ -81,7 +81,7 @@ class Equilibrium {
   std::vector<Matrix6> compliance_;     ///< [limbs] scaled compliance C
   std::vector<Eigen::MatrixXd> carry_;  ///< [limbs] matrix N, see carry()
   std::vector<Eigen::MatrixXd> give_;   ///< [limbs] matrix from a twist to dq, see give()
-  std::vector<Eigen::Index> first_;     ///< [limbs + 1] position of each limb's first lambda, see first_wrenches()
+  std::vector<Eigen::Index> first_;     ///< [limbs + 1] index of each limb's first lambda, see first_wrenches()
   Eigen::MatrixXd matrix_;
 };
 

@@ -7,7 +7,7 @@
 
 namespace poesy::assembly {
 
-/// The first-order effects of errors in fixed frames at a pose, and separately those of the load.
+/// The first-order effects of errors in fixed frames at a pose and, separately, the effects of the load.
 class FirstOrder {
  public:
   /// Sets up the equations at the pose. ranks: [limbs] rank of each limb's passive columns. All arguments must outlive

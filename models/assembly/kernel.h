@@ -9,10 +9,10 @@
 namespace poesy::assembly {
 
 /// Solves the equations of Solver for batches of samples of an assembly. A sample starts at the first-order solution,
-/// or at the series of KernelStart. The wrenches p are unknowns of their own. If they were replaced by C^-1 xi,
-/// rounding would appear as force, and only samples with small errors would converge. Step is ConstantStep, MeetStep or
-/// OwnStep. A lane depends only on its own sample. A lane has settled when the next round (iteration) would change
-/// nothing; after that it no longer moves.
+/// or at the state that the series of KernelStart gives. The wrenches p are unknowns of their own. If they were
+/// replaced by C^-1 xi, rounding would appear as force, and only samples with small errors would converge. The type
+/// `Step` is ConstantStep, MeetStep or OwnStep; a round is one iteration. A lane depends only on its own sample, and
+/// does not change any more after has_settled() is true for it.
 template <class T, class Step>
 class AssemblyKernel {
  public:
@@ -48,20 +48,22 @@ class AssemblyKernel {
       left = left & !settled;
       active = active & !(settled | change.refused);
     }
-    left = left | !state_.is_finite();  // the largest change may hide a change that is not a number
+    left = left | !state_.is_finite();  // the largest of several changes may hide one that is NaN
     if (block_.states != nullptr) state_.store(block_.states + at);
     state_.report(outcome_);
     reporter_.write(outcome_, at);
     end(at, left, doubtful, iterations);
   }
 
-  /// The lanes in which this round moved bodies or joints by more than three quarters of the round before.
+  /// The lanes in which the largest move of bodies and joints in this round is more than three quarters of that in the
+  /// round before, and is not rounding.
   Mask is_slow(const LaneChange<T>& change) const {
     return (change.places > T(kMoves)) & (change.places > T(kSlow) * before_.places);
   }
 
-  /// The lanes in which the next round would change no more than rounding. In such a lane this round changed no more
-  /// than rounding, or its change is small and the changes shrink fast enough.
+  /// The lanes that need no further round. In such a lane this round moved bodies and joints by at most the tolerance,
+  /// and changed wrenches by no more than rounding; or the changes are small and shrink so fast that the next round
+  /// would do so.
   Mask has_settled(const LaneChange<T>& change) const {
     const T tolerance(problem_.tolerance * problem_.tolerance);
     const auto rests = [](T now, T before, T limit, T small) {
@@ -86,18 +88,19 @@ class AssemblyKernel {
     }
   }
 
-  /// The square of the relative change of all wrenches that counts as rounding.
+  /// The change of the wrenches counts as rounding if the square of the relative change is at most this.
   static constexpr double kWrenches = 1e-24;
-  /// The square of the relative change of all wrenches below which the change of the next round is predicted.
+  /// If the square of the relative change of the wrenches is below this, the change of the next round is predicted.
   static constexpr double kShortWrenches = 1e-14;
-  /// A lane settles if the predicted change of the next round is below this share of the tolerance; squared.
+  /// The predicted change of the next round must be below a share of the limit (tolerance or rounding); square of this
+  /// share.
   static constexpr double kNext = 1e-2;
-  /// The change of the next round is predicted if that of this round, divided by the tolerance, is below this; squared.
+  /// If the square of (move of this round / tolerance) is below this, the move of the next round is predicted.
   static constexpr double kShort = 1e12;
-  static constexpr double kFarStart = 0.25;   ///< a lane is doubtful if its start is farther from nominal; squared
-  static constexpr double kMoves = 1e-20;     ///< a smaller change is close to rounding and never slow; squared
-  static constexpr double kSlow = 0.5625;     ///< a change above this share of the one before is slow; squared
-  static constexpr double kFarthest = 100.0;  ///< a larger change means that a lane has diverged; squared
+  static constexpr double kFarStart = 0.25;   ///< a lane is doubtful if its start_move() is above this
+  static constexpr double kMoves = 1e-20;     ///< a move whose square is below this is close to rounding and never slow
+  static constexpr double kSlow = 0.5625;     ///< square of the share of the previous move above which a move is slow
+  static constexpr double kFarthest = 100.0;  ///< a lane has not settled if the square of its move is above this
 
   const KernelProblem& problem_;
   const KernelBlock& block_;

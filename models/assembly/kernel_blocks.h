@@ -64,7 +64,7 @@ class BodyMatrix {
     for (T& entry : blocks_) entry = T(0.0);
   }
 
-  /// Adds sign x block [6 x 6] to the rows of one body and the columns of another.
+  /// Adds sign x block [6 x 6] to the matrix, in the rows of one body and the columns of another.
   void add(std::size_t row, std::size_t column, const T* block, double sign) {
     T* to = at(place(row), place(column));
     for (int k = 0; k < 36; ++k) to[k] = madd(T(sign), block[k], to[k]);

@@ -23,7 +23,7 @@ class KernelMapper {
         block_(block),
         coordinates_(std::min(rows, first_joint() + problem.joints)) {}
 
-  /// The coordinates for the lanes from sample `at` on. They are valid until the next call.
+  /// The coordinates of the samples from `at` on, one sample in each lane. They are valid until the next call.
   const T* coordinates(std::size_t at) {
     for (std::size_t row = 0; row < coordinates_.size(); row += kRows) {
       multiply_some(row, at, std::make_index_sequence<kRows>());
@@ -42,16 +42,16 @@ class KernelMapper {
     }
   }
 
-  /// Position of the first stress (coordinate of the wrenches by which limbs load each other) among the coordinates of
+  /// Index of the first stress (coordinate of the wrenches by which limbs load each other) among the coordinates of
   /// KernelMap.
   std::size_t first_stress() const { return 6 * (problem_.bodies.size() - 1); }
-  /// Position of the first joint displacement among the coordinates of KernelMap.
+  /// Index of the first joint displacement among the coordinates of KernelMap.
   std::size_t first_joint() const { return first_stress() + map_.stresses; }
 
  private:
   static constexpr std::size_t kRows = KernelMap::kRows;
 
-  /// Computes kRows coordinates from position `row` on, or the remaining ones if there are fewer.
+  /// Computes kRows coordinates from index `row` on, or the remaining ones if there are fewer.
   template <std::size_t... n>
   void multiply_some(std::size_t row, std::size_t at, std::index_sequence<n...>) {
     const std::size_t count = std::min(kRows, coordinates_.size() - row);

@@ -86,7 +86,7 @@ class MeetStep {
   }
 
   /// Computes the mismatch of limb e, and adds the limb's contribution to the right side of the bodies' equations. In a
-  /// round with new projections, also computes that of the limb.
+  /// round with new projections, also computes the limb's projection.
   template <std::size_t n>
   void visit(const LaneAssembly<T>& state, std::size_t e, bool is_new) {
     const KernelLimb& limb = problem_.limbs[e];
@@ -166,7 +166,7 @@ class MeetStep {
   }
 
   /// Moves the joints of limb e in the active lanes. The mismatch that remains after the step counts as a change,
-  /// because limbs that do not reach their bodies have not settled.
+  /// because the iteration must not end before limbs reach their bodies.
   template <std::size_t n>
   void step(LaneAssembly<T>& state, std::size_t e, Mask active, LaneChange<T>& change) {
     const KernelLimb& limb = problem_.limbs[e];

@@ -37,7 +37,7 @@ template <class T>
   return c;
 }
 
-/// Moves a frame g by a translation t along its own axes: g := g x translation.
+/// Moves a frame g by a translation t along the axes of g: g := g x translation.
 template <class T>
 [[gnu::always_inline]] inline void shift(LaneMotion<T>& g, const T* t) {
   for (int row = 0; row < 3; ++row) {
@@ -160,12 +160,11 @@ template <class T>
   }
 }
 
-/// The errors of a block of samples as motions. The first lane holds the sample at a given position; the next samples
-/// follow.
+/// The errors of consecutive samples as motions, one sample in each lane.
 template <class T>
 class LaneErrors {
  public:
-  /// at: position of the sample in the first lane.
+  /// at: index of the sample in the first lane.
   LaneErrors(const KernelBlock& block, std::size_t at) : values_(block.values + at), stride_(block.stride) {}
 
   /// The motion of a segment between two joints, with errors.

@@ -162,7 +162,7 @@ class OwnStep {
     for (int k = 0; k < 6; ++k) of.xi[k] = now.open[k];
     for (std::size_t k = 0; k < 6 * n; ++k) of.columns[k] = now.columns[k];
     T stiff[6 * kMostOwnJoints];  // C^-1 S: wrench per unit displacement of each joint
-    // The vector h (see bracket_transposed()) of each column, for the rotation of the columns.
+    // The vector h of bracket_transposed() for each column and the wrench p.
     T turning[6 * kMostOwnJoints];
     for (std::size_t j = 0; j < n; ++j) {
       const T* column = now.columns + 6 * j;

@@ -50,8 +50,8 @@ struct KernelSegment {
 struct KernelJoint {
   bool slides;          ///< true: it slides along z; false: it rotates about z
   double advance;       ///< displacement along z per rad of a rotating joint
-  int passive;          ///< position among the limb's passive joints; -1 if it does not move
-  int mark;             ///< position among the reported joint frames; -1 if this frame is not reported
+  int passive;          ///< index among the limb's passive joints; -1 if it does not move
+  int mark;             ///< index among the reported joint frames; -1 if this frame is not reported
   double displacement;  ///< nominal displacement
 };
 
@@ -60,15 +60,15 @@ inline constexpr std::size_t kMostOwnJoints = 6;
 
 /// A limb from one body to another, with the data of its linear equations; see Equilibrium for carry, give and lambda.
 struct KernelLimb {
-  std::size_t from;                 ///< position of the body at which the limb begins
-  std::size_t to;                   ///< position of the body at which the limb ends
+  std::size_t from;                 ///< index of the body at which the limb begins
+  std::size_t to;                   ///< index of the body at which the limb ends
   std::vector<KernelJoint> joints;  ///< joints that move or are reported
   /// Motions before, between and behind these joints. The first one includes the place of the base if the limb begins
   /// at the base.
   std::vector<KernelSegment> segments;
   std::size_t passive;       ///< number of passive joints
-  std::size_t first_joint;   ///< position of the limb's first passive joint among those of all limbs
-  std::size_t first_wrench;  ///< position of the limb's first lambda (wrench coordinate) among all
+  std::size_t first_joint;   ///< index of the limb's first passive joint among those of all limbs
+  std::size_t first_wrench;  ///< index of the limb's first lambda (wrench coordinate) among all
   std::size_t carried;       ///< number of wrenches that the limb can carry (its lambda)
   /// [6 x carried] Basis of the wrenches that the limb can carry (N of Equilibrium), row by row.
   std::vector<double> carry;
@@ -83,8 +83,8 @@ struct KernelLimb {
 
 /// A joint whose frame is reported.
 struct KernelMark {
-  std::size_t limb;   ///< position of the limb whose wrench acts on the joint
-  std::size_t mark;   ///< position among the reported joint frames
+  std::size_t limb;   ///< index of the limb whose wrench acts on the joint
+  std::size_t mark;   ///< index among the reported joint frames
   KernelJoint joint;  ///< the joint itself
 };
 
@@ -94,9 +94,9 @@ struct KernelReport {
   bool has_motions;                         ///< true if displacements of bodies are reported
   bool has_tool;                            ///< true if the displacement of the tool point is reported
   bool has_forces;                          ///< true if energy, forces and moments are reported
-  double metric[6];                         ///< diagonal of the metric, which gives the square (m^2) of a twist
+  double metric[6];                         ///< diagonal of the metric; in its norm, the square of a twist is in m^2
   double origin[3];                         ///< nominal origin of the platform
-  double share;                             ///< 2 / number of independent loops
+  double share;                             ///< factor 2 / (number of independent loops) of mean squares
   double axes[9];                           ///< rotation from the kernel's axes to the base's axes
   double arm[3];                            ///< nominal vector from the platform's origin to the tool point
   double length;                            ///< unit of lengths (m)
@@ -104,7 +104,7 @@ struct KernelReport {
   double moment;                            ///< unit of moments (N m) and of energy (J)
   std::size_t marks;                        ///< number of joint frames that are reported
   std::vector<KernelMotion> nominal_marks;  ///< [marks] nominal joint frames
-  std::vector<std::size_t> moments;         ///< [limbs] position of the frame at whose origin a limb's moment is taken
+  std::vector<std::size_t> moments;         ///< [limbs] index of the frame at whose origin a limb's moment is taken
   std::vector<KernelMark> drives;           ///< driven joints, in the order of the responses
   std::vector<KernelMark> reactions;        ///< joints whose reactions are reported
 
@@ -129,7 +129,7 @@ struct KernelMap {
   /// [coordinates / kRows, padded][entries][kRows] coordinates per unit of each varied value.
   std::vector<double> matrix;
   std::vector<double> wrenches;  ///< [6 limbs x stresses] wrenches per unit of each stress, row by row
-  std::vector<double> by_load;   ///< [6 limbs] wrenches of the machine without errors, as by the load
+  std::vector<double> by_load;   ///< [6 limbs] wrenches without errors, by load and rounded numbers
 };
 
 /// Starting points of solves with one varied error: Chebyshev series of the state in t = scale (value - centre), for
@@ -176,14 +176,15 @@ struct KernelProblem {
 };
 
 /// How the kernel ended a sample. doubtful: it converged, but may have gone to another solution than the one that grows
-/// from the nominal pose, because it started far away or was slow at one time. left: another solver must solve it.
+/// from the nominal pose, because it started far from the nominal pose, or its steps once shrank slowly. left: another
+/// solver must solve it.
 enum class KernelEnd : std::uint8_t { converged, doubtful, left };
 
 /// A block of samples. The stride is at least count, and a multiple of the number of lanes of every instruction set.
 struct KernelBlock {
   std::size_t count;     ///< number of samples
   std::size_t stride;    ///< distance between rows, in numbers
-  const double* values;  ///< [entries x stride] values of the varied errors
+  const double* values;  ///< [KernelMap::entries x stride] varied values
   /// [responses x stride] Responses, SI; arbitrary for samples with KernelEnd::left, which another solver must solve.
   double* responses;
   /// [stride] How each sample ended. To first order, `left` means that the result is not finite.

@@ -34,7 +34,7 @@ class KernelReporter {
   KernelReporter(const KernelProblem& problem, const KernelBlock& block)
       : problem_(problem), report_(problem.report), block_(block) {}
 
-  /// Writes the responses of the lanes from sample `at` on.
+  /// Writes the responses of the samples from `at` on, one sample in each lane.
   void write(const LaneOutcome<T>& outcome, std::size_t at) {
     row_ = block_.responses + at;
     if (report_.deforms) put_deformation(outcome);

@@ -30,8 +30,8 @@ class LaneAssembly {
     bodies[0] = in_lanes<T>(problem.bodies[0]);
   }
 
-  /// Sets the errors of the lanes from sample `at` on, and their starting points: from the series of KernelStart if it
-  /// is used, else from the first-order solution.
+  /// Sets the errors of the samples from `at` on, one sample in each lane, and their starting points: from the series
+  /// of KernelStart if it is used, else from the first-order solution.
   void begin(std::size_t at) {
     const LaneErrors<T> errors(block_, at);
     std::size_t segment = 0;
@@ -46,7 +46,8 @@ class LaneAssembly {
     start_by_series(t, !outside);
   }
 
-  /// The square of the largest move of a body from the nominal pose to the start by first order.
+  /// The square of the largest move of a body from the nominal pose to the first-order solution at which the sample
+  /// starts.
   const T& start_move() const { return start_move_; }
 
   /// Writes the state of the lanes (see KernelStart). row: where its first number is written; the others follow, one
@@ -126,7 +127,7 @@ class LaneAssembly {
   std::vector<T> wrenches;       ///< [6 x limbs] wrench of each limb on the body at its end
 
  private:
-  /// Calls visit(joint, position) for each passive joint, with its position among those of all limbs.
+  /// Calls visit(joint, index) for each passive joint, with its index among those of all limbs.
   template <class Visit>
   void for_each_joint(Visit visit) const {
     std::size_t joint = 0;
@@ -210,7 +211,7 @@ class LaneAssembly {
   const KernelProblem& problem_;
   const KernelBlock& block_;
   KernelMapper<T> mapper_;
-  std::vector<std::size_t> first_segment_;  ///< [limbs] position of each limb's first segment among all
+  std::vector<std::size_t> first_segment_;  ///< [limbs] index of each limb's first segment among all
   std::vector<Motion> segments_;            ///< motions between the joints of all limbs, with errors
   T start_move_{0.0};                       ///< see start_move()
 };

@@ -13,7 +13,7 @@ struct LimbState {
 
   std::vector<Transform> before;  ///< [joints] base_T_joint before the joint moves
   std::vector<Transform> after;   ///< [joints] base_T_joint after the joint has moved
-  Transform end;                  ///< pose of the limb's end, which is that of its body if no force acts
+  Transform end;                  ///< pose of the limb's end; equal to the pose of the body there if no force acts
   Columns passive;                ///< J: twists of the end by the passive joints, one in each column
 
   /// The twist of the limb's end by joint j, passive or driven.
@@ -37,7 +37,7 @@ Eigen::MatrixXd motion_columns(const Assembly& assembly, std::span<const LimbSta
 
 /// The first-order twist of the limb's end per unit of a component of a frame's error. Let F be the frame before the
 /// error. The twist is a column of Ad(F), or of -Ad(F) in the limb's last frame, to which the inverse of the error is
-/// applied. component: position in [omega; v].
+/// applied. component: index in [omega; v].
 Screw error_twist(const Limb& limb, const Transform& from, const LimbState& state, std::size_t frame,
                   std::size_t component);
 

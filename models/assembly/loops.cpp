@@ -14,7 +14,7 @@ using Vector = Eigen::VectorXd;
 
 Index index(std::size_t value) { return static_cast<Index>(value); }
 
-/// [limbs + 1] The position of each limb's first passive joint among all passive joints, then the number of all passive
+/// [limbs + 1] The index of each limb's first passive joint among all passive joints, then the number of all passive
 /// joints.
 std::vector<Index> first_passive(std::span<const LimbState> limbs) {
   std::vector<Index> first{0};
@@ -22,11 +22,11 @@ std::vector<Index> first_passive(std::span<const LimbState> limbs) {
   return first;
 }
 
-/// A motion that moves an end of a limb: a column of the matrix B, and the position of its unknown in x.
+/// A motion that moves an end of a limb: a column of the matrix B, and the index of its unknown in x.
 struct Mover {
   enum class What { from, joint, to };
   What what;
-  Index at;     ///< position in x
+  Index at;     ///< index in x
   Screw twist;  ///< twist; it enters the matrix B (see Loops) with a minus sign unless it is that of the body at which
                 ///< the limb ends
 };
@@ -46,8 +46,9 @@ std::vector<Mover> movers(const Limb& limb, const LimbState& state, Index first_
   return list;
 }
 
-/// The slopes of ln det N by the errors of one limb's frames, as far as errors turn and shift the limb's columns c: a
-/// motion m in front of a column changes it by [m, c]. pulls: [6 x passive joints], with d ln det N = sum of pull . dc.
+/// The slopes of ln det N with respect to the errors of one limb's frames, if bodies and joints do not follow the
+/// errors. A motion m in front of a joint changes the joint's column c by [m, c]. pulls: [6 x passive joints]; the
+/// change of ln det N is the sum of the products of `pulls` with the changes of the columns.
 std::vector<Screw> slopes_in_front(const Limb& limb, const LimbState& state, const Matrix& pulls) {
   std::vector<Screw> slopes(limb.chain.frames(), Screw::Zero());
   Index k = state.passive.cols();
@@ -84,7 +85,7 @@ std::vector<std::vector<Screw>> Loops::determinant_slopes() const {
   const std::vector<Index> first = first_passive(pose_->limbs);
   const Matrix pull = -2.0 * weighed_ * motions_.topRows(first.back()).transpose();  // [6 limbs x passive joints]
   std::vector<std::vector<Screw>> slopes;
-  Vector by_motion = Vector::Zero(motions_.rows());  // slope of ln det N by each unknown in x
+  Vector by_motion = Vector::Zero(motions_.rows());  // slope of ln det N with respect to each unknown in x
   for (std::size_t e = 0; e < limbs; ++e) {
     const Limb& limb = assembly_->limbs[e];
     const LimbState& state = pose_->limbs[e];

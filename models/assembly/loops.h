@@ -7,7 +7,7 @@
 
 namespace poesy::assembly {
 
-/// The loops of a perfect assembly at a pose, weighed by the metric W of the platform's points. A vector x has the
+/// The loops of a perfect assembly at a pose, weighed by the metric W of the platform's points. A vector x contains the
 /// twists V of the bodies and the displacements dq of the passive joints. To first order, x takes B x = V_b - V_a - J
 /// dq away from the mismatch of each limb from body a to body b, with the columns J of the limb's passive joints
 /// (motion_columns()). N is B^T W B, without the idle motions of passive joints.
@@ -26,9 +26,9 @@ class Loops {
   /// mismatch xi of each limb is multiplied by W^(1/2).
   Eigen::VectorXd taken_away(const Eigen::VectorXd& mismatch) const;
 
-  /// The slopes of ln det N by the errors of each limb's frames: a vector for each limb, with a slope for each frame.
-  /// The product of a slope with error_twist() is the first-order change per unit of an error, if bodies and joints
-  /// follow the error.
+  /// The slopes of ln det N with respect to the errors of each limb's frames: a vector for each limb, with a slope (a
+  /// wrench) for each frame. The product of a slope with error_twist() is the first-order change per unit of an error,
+  /// if bodies and joints follow the error.
   std::vector<std::vector<Screw>> determinant_slopes() const;
 
  private:
@@ -40,8 +40,8 @@ class Loops {
   bool is_regular_;
 };
 
-/// The symmetric matrix C(r) for limbs in these states, with mismatches r [limbs]. N + C(r) is minus the derivative of
-/// B^T W xi, where xi is the mismatch (see Loops for B, W and N).
+/// The symmetric part of the matrix C(r) for limbs in these states, with mismatches r [limbs]. N + C(r) is minus the
+/// derivative of B^T W xi, where xi is the mismatch (see Loops for B, W and N).
 Eigen::MatrixXd bend(const Assembly& assembly, std::span<const LimbState> limbs, std::span<const Screw> r,
                      const Matrix6& W);
 

@@ -25,11 +25,12 @@ struct AssemblyModel {
   /// Pairs of limbs whose mismatch is an additional output (Detail in engine/model/model.h). All these limbs lead from
   /// the base to the platform. Empty if there are no additional outputs.
   std::vector<chain::LimbPair> pairs = {};
-  double stiffness = 0.0;  ///< largest force by a unit motion of a limb's end at the home pose, N/m
+  double stiffness = 0.0;  ///< largest force in a limb per unit motion of a limb's end, at the home pose (N/m)
   /// Gives the nominal displacements of all joints at a reachable pose, limb by limb (rad, m).
   std::function<std::vector<double>(std::span<const double> pose)> joint_displacements;
 
-  /// The perfect assembly at a reachable pose. If the file's numbers are rounded, it is the state of equilibrium.
+  /// The perfect assembly at a reachable pose. If the file's numbers are rounded, this is the state in which the
+  /// perfect limbs are in equilibrium.
   Nominal at(std::span<const double> pose) const;
 };
 

@@ -13,7 +13,7 @@ using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 using Shape = KernelConstant::Shape;
 
-/// The largest number of rounds of the kernel. Solver solves the samples that need more.
+/// The largest number of rounds (iterations) of the kernel. Other solvers solve the samples that need more.
 constexpr int kMostRounds = 30;
 
 /// A limb counts as rigid in a direction if its smallest compliance is below this share of its largest, because such a
@@ -44,7 +44,7 @@ void copy_rows(const Matrix& matrix, std::vector<double>& to) {
   }
 }
 
-/// The elementary joints whose frames are reported, limb by limb.
+/// The joints (of one freedom each) whose frames are reported, limb by limb.
 std::vector<JointPlace> reported_joints(const AssemblyModel& model) {
   if (model.assembly.metric != Metric::stiffness) return {};
   std::vector<JointPlace> joints;
@@ -122,7 +122,7 @@ void PoseProblem::find_entries() {
   }
 }
 
-/// The position of a joint's frame among the reported frames; -1 if it is not reported.
+/// The index of a joint's frame among the reported frames; -1 if it is not reported.
 int PoseProblem::mark_of(const JointPlace& place) const {
   const auto at = std::ranges::find(marks_, place);
   return at == marks_.end() ? -1 : static_cast<int>(at - marks_.begin());
@@ -168,7 +168,7 @@ void PoseProblem::set_limb(const Equilibrium& equations, std::size_t e) {
 }
 
 /// Chooses the matrix of the steps (KernelStep). Each sample has matrices of its own, for which the data are set here,
-/// unless a limb has too many passive joints, or limbs have wrenches and one of them is rigid in some direction.
+/// unless a limb has too many passive joints, or limbs have wrenches and one of the limbs is rigid in some direction.
 void PoseProblem::set_own_matrices(const Equilibrium& equations) {
   problem_.step = KernelStep::constant;
   for (const KernelLimb& limb : problem_.limbs) {
@@ -313,7 +313,7 @@ void PoseProblem::solve_first_order(const Equilibrium& equations) {
   }
 }
 
-/// A pointer to the first value of a component that varies.
+/// A pointer to the first of a component's varied values in `values`.
 double* PoseProblem::row_of(const Entry& entry, std::size_t stride, std::vector<double>& values) {
   return values.data() + static_cast<std::size_t>(entry.row) * stride;
 }

@@ -11,10 +11,10 @@
 
 namespace poesy::assembly {
 
-/// The position of a joint of one freedom.
+/// The indices that identify a joint of one freedom.
 struct JointPlace {
-  std::size_t limb;   ///< position of the limb
-  std::size_t joint;  ///< position of the joint in the limb
+  std::size_t limb;   ///< index of the limb
+  std::size_t joint;  ///< index of the joint in the limb
 
   /// The order limb by limb, then joint by joint.
   auto operator<=>(const JointPlace&) const = default;
@@ -57,7 +57,7 @@ class PoseProblem {
   struct Entry {
     std::size_t limb;
     std::size_t frame;
-    std::size_t component;  ///< position in [omega; v]
+    std::size_t component;  ///< index in [omega; v]
     double constant = 0.0;  ///< part of the component that does not vary
     int row = -1;           ///< row of the component's values; -1 if it does not vary
     double unit = 1.0;      ///< factor of the component's values
@@ -70,9 +70,9 @@ class PoseProblem {
     std::vector<double> errors;  ///< constant errors of the samples
   };
 
-  /// What an error of the model adds to a component of a frame's error.
+  /// The contribution of an error of the model to a component of a frame's error.
   struct Addition {
-    std::size_t entry;  ///< position of the component in entries_
+    std::size_t entry;  ///< index of the component in entries_
     double scale;       ///< change of the component, in its unit, per unit of the model's error
   };
 
@@ -105,8 +105,8 @@ class PoseProblem {
   std::vector<JointPlace> marks_;    ///< joints whose frames are reported
   std::vector<Entry> entries_;       ///< components of frames' errors that errors of the model change
   std::vector<Addition> additions_;  ///< additions of all errors, error by error
-  std::vector<std::size_t> added_;   ///< [errors + 1] position of each error's first addition in additions_
-  std::vector<std::size_t> first_;   ///< [limbs + 1] position of each limb's first frame among all frames
+  std::vector<std::size_t> added_;   ///< [errors + 1] index of each error's first addition in additions_
+  std::vector<std::size_t> first_;   ///< [limbs + 1] index of each limb's first frame among all frames
   std::vector<KernelError> errors_;  ///< [frames of all limbs] error of each frame
   /// First-order coordinates (KernelMap), a row for each. Columns: change per unit of each of entries_, then the
   /// coordinates without errors.

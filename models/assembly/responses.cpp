@@ -20,7 +20,7 @@ class Rows {
     list.push_back({std::move(name), dimension, std::move(description)});
   }
 
-  /// Adds a response that has no sign.
+  /// Adds a response that is never negative.
   void add_magnitude(std::string name, Dimension dimension, std::string description) {
     add(std::move(name), dimension, std::move(description));
     list.back().has_no_sign = true;

@@ -12,9 +12,9 @@ namespace poesy::assembly {
 
 /// A joint whose reaction, or whose drive force, is a response.
 struct ReportedJoint {
-  std::size_t limb;  ///< position of the limb
-  /// Position of the joint in the limb. A joint with several freedoms is a series of joints with one freedom each: for
-  /// a reaction the position is that of the first of them, for a drive that of the driven one.
+  std::size_t limb;  ///< index of the limb
+  /// Index of the joint in the limb. A joint with several freedoms is a series of joints with one freedom each: for
+  /// a reaction the index is that of the first of them, for a drive that of the driven one.
   std::size_t joint;
   std::string name;  ///< name of the joint in the file
 };
@@ -22,7 +22,7 @@ struct ReportedJoint {
 /// The number of responses that state mismatch. They are the first responses of an assembly that deforms.
 inline constexpr std::size_t kDeformations = 3;
 
-/// What is reported of an assembly, in addition to the responses that every assembly has.
+/// The responses of an assembly in addition to those that every assembly has.
 struct Report {
   std::vector<ReportedJoint> drives;     ///< actuated joints whose drive forces are responses
   std::vector<ReportedJoint> reactions;  ///< joints whose reactions are responses
@@ -43,7 +43,7 @@ struct Outcome {
   std::span<const LimbState> limbs = {};  ///< [limbs] states at which forces are evaluated
 };
 
-/// The position of the limb's last joint that is not fixed, or of the last joint if all are fixed. The moment of the
+/// The index of the limb's last joint that is not fixed, or of the last joint if all are fixed. The moment of the
 /// limb is taken about the point of this joint.
 std::size_t last_moving(const Limb& limb);
 
@@ -53,10 +53,10 @@ Outcome outcome_of(const Assembly& assembly, const Nominal& pose, const Solution
 /// The outcome of one column of a first-order result.
 Outcome outcome_of(const Assembly& assembly, const Nominal& pose, const Balance& balance, Eigen::Index column);
 
-/// Names, dimensions and meanings of the responses, in the order of response_values(). First comes the deformation
-/// (gap, angular_deformation, linear_deformation), if the assembly can deform. Then come the displacements of the
-/// platform and of the other bodies. With stiffness follow strain_energy, the forces and moments of limbs, the forces
-/// of drives, and the reactions.
+/// Names, dimensions and meanings of the responses, in the order of response_values(). If the assembly can deform,
+/// `gap`, `angular_deformation` and `linear_deformation` come first. Then come the displacements of the platform and of
+/// the other bodies. If limbs have stiffness, `strain_energy`, the forces and moments of limbs, the forces of drives,
+/// and the reactions follow.
 std::vector<Response> responses_of(const Assembly& assembly, const Report& report, bool deforms);
 
 /// The values of the responses in the order of responses_of(), SI.

@@ -8,8 +8,8 @@
 namespace poesy::assembly {
 
 /// The separation of errors as in chain::separation(): the part of an error's effect on the platform that the drives of
-/// its limb can remove, and what remains after the best correction of all drives. All numbers are NaN if the equations
-/// have no unique solution.
+/// the error's limb can remove, and the part that remains after the best correction of all drives. All numbers are NaN
+/// if the equations have no unique solution.
 Separation separation(const AssemblyModel& model, std::span<const double> pose);
 
 /// The description of separation() for this model.

@@ -7,7 +7,7 @@ namespace {
 
 SketchVector sketched(const Vector3& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
-/// The motions in a column of effects: those of all limbs' ends if limbs are paired, else that of the platform alone.
+/// The motions in a column of `effects`: those of all limbs' ends if limbs are paired, else only that of the platform.
 std::vector<Screw> ends_of(const AssemblyModel& model, const Nominal& pose, const Balance& effects,
                            Eigen::Index column) {
   const Screw platform = effects.twists.block<6, 1>(6 * static_cast<Eigen::Index>(kPlatform), column);

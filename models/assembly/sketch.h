@@ -8,8 +8,8 @@
 namespace poesy::assembly {
 
 /// Completes a sketch whose joints and bodies are named, at nominal displacements [all joints] (rad, m), as
-/// chain::place() does. An error has the motions of all limbs' ends if limbs are paired (AssemblyModel::pairs).
-/// Otherwise it has one motion, that of the platform in equilibrium.
+/// chain::place() does. The sketch of an error contains the motions of all limbs' ends if limbs are paired
+/// (AssemblyModel::pairs), else only the motion of the platform in equilibrium.
 void place(Sketch& sketch, const AssemblyModel& model, std::span<const double> displacements);
 
 }  // namespace poesy::assembly

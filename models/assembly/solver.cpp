@@ -6,7 +6,7 @@
 namespace poesy::assembly {
 namespace {
 
-/// A step up to this share of the reach counts as rounding if it is not smaller than half of the step before.
+/// A step up to this share of the reach counts as rounding if it is not shorter than half of the step before.
 constexpr double kRounding = 1e-11;
 constexpr double kDamped = 0.25;
 constexpr double kLong = 0.5;   ///< a first step above this share of the reach is long
@@ -56,7 +56,7 @@ Solution Solver::attempt(std::span<const std::vector<Transform>> frames, const S
     equations.set(at.limbs, ranks_);
     const Balance step = equations.solve(stacked(at.mismatch), load);
     double moved = 0.0;
-    const auto note = [&moved](double length) {  // once the length is not a number, it stays so
+    const auto note = [&moved](double length) {  // once `moved` is NaN, it stays NaN
       if (!std::isnan(moved) && !(length <= moved)) moved = length;
     };
     for (std::size_t b = kPlatform; b < at.bodies.size(); ++b) {

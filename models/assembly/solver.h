@@ -10,18 +10,18 @@ namespace poesy::assembly {
 
 /// The equilibrium of an assembly with errors.
 struct Solution {
-  std::vector<Transform> bodies;                ///< [bodies] base_T_body
-  std::vector<double> displacements;            ///< [joints] displacements (rad, m)
-  std::vector<LimbState> limbs;                 ///< [limbs] states of the limbs
-  std::vector<Screw> mismatch;                  ///< [limbs] mismatch xi = log(T_a g_e T_b^-1)
-  std::vector<Screw> wrenches;                  ///< [limbs] wrench p of each limb on the body at its end
+  std::vector<Transform> bodies;      ///< [bodies] base_T_body
+  std::vector<double> displacements;  ///< [joints] displacements (rad, m)
+  std::vector<LimbState> limbs;       ///< [limbs] states of the limbs
+  std::vector<Screw> mismatch;  ///< [limbs] mismatch xi = log(g T^-1); g: pose of the end, T: pose of the body there
+  std::vector<Screw> wrenches;  ///< [limbs] wrench p of each limb on the body at its end
   SolveStatus status = SolveStatus::converged;  ///< how the solve ended
   std::uint32_t iterations = 0;                 ///< number of iterations
   /// [iterations] Largest move of a body or joint in each iteration, divided by the reach.
   std::vector<double> steps;
 };
 
-/// Where a solve begins.
+/// The places of bodies and joints at which a solve begins.
 struct SolverStart {
   std::span<const Transform> bodies;      ///< [bodies] base_T_body
   std::span<const double> displacements;  ///< [joints] (rad, m)
@@ -31,8 +31,9 @@ struct SolverStart {
 ///
 ///     C_e p_e = xi_e,     sum of wrenches on each body + load = 0,     J_e^T p_e = 0,
 ///
-/// with C and load of the nominal pose, and J in the present state. Each step solves the linear equations (Equilibrium)
-/// in the present state and sets T_b <- exp(V_b) T_b, q <- q + dq. Uses plain double arithmetic: the reference for the
+/// for each limb e, with the symbols of Equilibrium, C and load of the nominal pose, and J in the present state. Each
+/// step solves the linear equations (Equilibrium) in the present state. Then it changes the pose T_b of each body b to
+/// exp(V_b) T_b, and the displacements q of the joints to q + dq. Uses plain double arithmetic: the reference for the
 /// kernels.
 class Solver {
  public:
@@ -55,11 +56,11 @@ class Solver {
   Solution approach(std::span<const std::vector<Transform>> frames, const SolverStart& start) const;
 
  private:
-  /// How an attempt proceeds.
+  /// The steps of an attempt.
   struct Manner {
     double damping = 1.0;      ///< factor of each step
-    bool is_loaded = true;     ///< whether the load acts
-    bool must_shrink = false;  ///< whether to give up where approach() does, at long steps
+    bool is_loaded = true;     ///< true if the load acts
+    bool must_shrink = false;  ///< true if the attempt gives up at long steps, as approach() does
   };
 
   Solution attempt(std::span<const std::vector<Transform>> frames, const SolverStart& start,

@@ -10,7 +10,8 @@ using Screw = Eigen::Matrix<T, 6, 1>;
 template <class T>
 using Matrix6 = Eigen::Matrix<T, 6, 6>;
 
-/// A rigid motion x -> R x + p. base_T_platform maps platform coordinates to base coordinates.
+/// A rigid motion x -> R x + p. A transform with a name such as base_T_platform maps platform coordinates to base
+/// coordinates.
 template <class T>
 struct Transform {
   /// The rotation matrix.
@@ -32,8 +33,8 @@ Transform<T> exp(const Screw<T>& screw) {
   return {exp(w), left_jacobian(w) * v};
 }
 
-/// The screw of a motion g, with a rotation angle of at most pi: exp(log(g)) = g. It equals Eq. A6 of Du et al. 2022,
-/// except at small angles, where the printed equation is 0/0.
+/// The screw of a motion g, with a rotation angle of at most pi: exp(log(g)) = g. The function equals Eq. A6 of Du et
+/// al. 2022, except at small angles, where the printed equation is 0/0.
 template <class T>
 Screw<T> log(const Transform<T>& g) {
   const Vector3<T> w = log(g.R);

@@ -27,8 +27,7 @@ Vector3<T> vee(const Matrix3<T>& m) {
   return T(0.5) * Vector3<T>(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
 }
 
-/// Coefficients of exp and of its left Jacobian at angle theta, to rounding at every angle:
-/// sin(theta)/theta, (1 - cos(theta))/theta^2, (theta - sin(theta))/theta^3.
+/// Coefficients of exp and of its left Jacobian at the angle theta, accurate to rounding at every angle.
 template <class T>
 struct ExpCoefficients {
   T a;  ///< sin(theta)/theta

@@ -103,8 +103,8 @@ inline LeftJacobianCoefficients<T> left_jacobian_coefficients(T theta_squared) {
   return coefficients;
 }
 
-/// Sets r to the rotation matrix exp(w), with theta_squared = |w|^2. If `c.a` has the opposite sign, r becomes the
-/// inverse matrix.
+/// Sets r to the rotation matrix exp(w). theta_squared: |w|^2. c: exp_coefficients(theta_squared); if the sign of `c.a`
+/// is reversed, r becomes the inverse matrix.
 template <class T>
 inline void rotation_matrix(const T* w, T theta_squared, const ExpCoefficients<T>& c, T* r) {
   // R = (1 - b theta^2) I + a hat(w) + b w w^T
@@ -131,7 +131,7 @@ struct RotationLog {
 
 /// The logarithm of rotations by less than 180 deg. The angle theta is computed from tan(theta/2) = s / (1 + c), with s
 /// = sin(theta) and c = cos(theta), which is exact at the small angles of residuals. Beyond 37 deg it is computed from
-/// tan(theta/8). Digits are lost close to 180 deg.
+/// tan(theta/8). The result loses digits close to 180 deg.
 template <class T>
 inline RotationLog<T> rotation_log(const T* r) {
   const T half(0.5);
