@@ -14,15 +14,15 @@
 
 namespace poesy::chain {
 
-/// A bound on the change of ln det(J^T W J) by the errors of a machine, to first order. If the change is below this
-/// negative number, the loops of the machine may open; they open at a change of about -1. J: columns of the passive
+/// A bound on the first-order change of ln det(J^T W J) that the errors of a machine cause. If the change is below this
+/// negative number, the loops of the machine may open. They open at a change of about -1. J: columns of the passive
 /// joints; W: metric; see Assembly::nearing().
 inline constexpr double kNearing = -0.5;
 
 /// Decides whether the loops of a machine with errors can be closed at all. If limbs over-constrain the platform, the
-/// published equation J^T delta_mu = 0 has a solution even for a machine that nobody can assemble: its passive joints
-/// rest where the mismatch is least. Here a metric W weighs the mismatch, and the joints descend to the least sum of
-/// |delta_mu|_W^2.
+/// published equation J^T delta_mu = 0 (J: columns of the passive joints) has a solution even for a machine that nobody
+/// can assemble: the displacements with the least mismatch. Here a metric W weighs the mismatch, and the joints descend
+/// to the least sum of |delta_mu|_W^2.
 ///
 /// Passive joints of the perfect mechanism can remove only a part of the mismatch; the limbs may keep the remainder. Of
 /// the mismatch delta_mu at which the joints come to rest, the removable part is
@@ -33,11 +33,11 @@ inline constexpr double kNearing = -0.5;
 /// r does not vanish. Newton's matrix is M = N + C(r) (BlockKernel); C(r) is the part of minus the derivative of J^T W
 /// delta_mu that a residual r causes. A machine cannot be assembled if
 ///     N - 2 C(r)
-/// is not positive definite. This criterion does not depend on units or on size. Its boundary is where the loops just
-/// close (theory.md, "Machines that cannot be assembled").
+/// is not positive definite. This criterion does not depend on units or on the size of the machine. At its boundary the
+/// loops just close (theory.md, "Machines that cannot be assembled").
 ///
-/// Uses plain double arithmetic. It is meant for two sorts of samples: those that a solver did not solve, and those
-/// with errors for which the loops may open (nearing()). Owns the scratch memory of one thread.
+/// Uses plain double arithmetic. The class is meant for two sorts of samples: those that a solver did not solve, and
+/// those with errors for which the loops may open (nearing()). Owns the scratch memory of one thread.
 class Assembly {
  public:
   /// The chain must outlive this object.
@@ -76,8 +76,8 @@ class Assembly {
   FirstOrder first_order_;
   NormalEquations equations_;
   Loops loops_;
-  std::vector<std::size_t> passive_;        ///< position of each passive joint among all joints
-  std::vector<double> delta_mu_;            ///< [6 x pairs] mismatch where the joints rest
+  std::vector<std::size_t> passive_;        ///< index of each passive joint among all joints
+  std::vector<double> delta_mu_;            ///< [6 x pairs] mismatch at the displacements at which the joints rest
   std::vector<double> part_;                ///< [6 x pairs] part r of the mismatch, see the class's comment
   std::vector<lie::Screw<double>> pull_;    ///< [limbs] scratch
   std::vector<lie::Screw<double>> slopes_;  ///< [frames] gradient of ln det(J^T W J) by the errors of each frame

@@ -123,7 +123,7 @@ class BlockKernel {
     if constexpr (Shape::kFixed) return Shape::kLimbs * Shape::kJoints;
     if constexpr (!Shape::kFixed) return chain_.joints;
   }
-  /// The position of the first passive joint of limb i among the passive joints of all limbs; for i = limbs(), the
+  /// The index of the first passive joint of limb i among the passive joints of all limbs; for i = limbs(), the
   /// number of all passive joints.
   std::size_t first_joint(std::size_t i) const {
     if constexpr (Shape::kFixed) return i * Shape::kJoints;
@@ -138,7 +138,8 @@ class BlockKernel {
     T w[3];
     T v[3];
   };
-  /// What a round (one iteration of a batch of samples) decided about each sample: bit n is that of lane n.
+  /// The decisions of a round (one iteration of a batch of samples). Bit n of each member belongs to the sample in lane
+  /// n.
   struct Verdict {
     unsigned converged = 0;
     unsigned stagnated = 0;
@@ -159,7 +160,7 @@ class BlockKernel {
     }
   };
 
-  // In block_kernel_passes.h: the loop over samples.
+  // Defined in block_kernel_passes.h: the loop over samples.
   void judge(std::size_t at);
   template <KernelPass pass>
   std::size_t run(std::size_t count, std::uint32_t rounds);
@@ -185,12 +186,12 @@ class BlockKernel {
   template <KernelPass pass>
   void move(std::size_t from, std::size_t to);
 
-  // In block_kernel_platform.h: the motion of the platform.
+  // Defined in block_kernel_platform.h: the motion of the platform.
   Screw platform_motion(const KernelPlatform& platform, std::size_t at);
   void displace(const Screw& motion, const double* point, bool is_linear, double* rows, double* length) const;
   void finish_platform(const KernelPlatform& platform, const Screw& motion, std::size_t at) const;
 
-  // In block_kernel_geometry.h: residuals and columns.
+  // Defined in block_kernel_geometry.h: residuals and columns.
   Motion error_motion(const KernelPiece& piece, std::size_t at) const;
   T varied(const KernelPiece& piece, int entry, std::size_t at) const;
   void load_constant_segments();
@@ -204,7 +205,7 @@ class BlockKernel {
   // Inlined, because residuals take a tenth of the time of a solve, and a call would cost a third of that tenth.
   [[gnu::always_inline]] static inline Screw log(const Motion& g);
 
-  // In block_kernel_equations.h: matrices and steps.
+  // Defined in block_kernel_equations.h: matrices and steps.
   void gradient();
   void gauss_newton_matrix();
   void newton_matrix();
@@ -224,14 +225,14 @@ class BlockKernel {
   const std::size_t capacity_;
 
   // Rows of length capacity_, with a value for each sample.
-  double* value_;  ///< values of varied errors, a row for each error, except for the first in_place_ samples
+  double* value_;  ///< values of varied errors, a row for each error; not set for the first in_place_ samples
   double* q_;
   /// The content depends on the pass. published: residual of the last round; follow: displacements of an earlier round;
   /// computation to first order: coordinates y (KernelMap).
   double* memory_;
-  double* smallest_;      ///< in the pass published: smallest change of the residual in all rounds so far
-  double* flat_;          ///< published: rounds since that smallest change; direct: -1 if a fit gave the start
-  std::uint32_t* index_;  ///< position of each sample in the block
+  double* smallest_;  ///< in the pass published: smallest change of the residual in all rounds so far
+  double* flat_;  ///< in the pass published: rounds since that smallest change; in direct: -1 if a fit gave the start
+  std::uint32_t* index_;  ///< index of each sample in the block
   std::uint32_t* left_;   ///< samples to solve; after a pass, the samples that it did not solve
 
   // Values of the lanes that are being solved.

@@ -5,7 +5,7 @@
 namespace poesy::chain {
 
 /// Computes f = J^T delta_mu. The residuals delta_mu of the pairs that contain a limb are first summed for each limb,
-/// with the sign + where it is limb i of the pair and - where it is limb k.
+/// with the sign + if the limb is limb i of the pair, and - if it is limb k.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::gradient() {
   for (std::size_t i = 0; i < limbs(); ++i) {

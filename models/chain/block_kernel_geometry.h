@@ -76,7 +76,7 @@ inline Motion divide(const Motion& a, const Motion& b) {
 
 }  // namespace kernel
 
-/// Component number `entry` of a frame's error [omega; v], in the lanes from sample `at` on.
+/// Component number `entry` of a frame's error [omega; v], for the samples from `at` on, one in each lane.
 template <class T, class Shape>
 T BlockKernel<T, Shape>::varied(const KernelPiece& piece, int entry, std::size_t at) const {
   const int row = piece.varied_row[entry];
@@ -108,7 +108,7 @@ auto BlockKernel<T, Shape>::constant_motion(const KernelPiece& piece) -> Motion 
 }
 
 /// Computes the motion of a segment, which is the product of its pieces. An error without a rotation needs no matrix
-/// product: its translation is added to the position.
+/// product: its translation is added to that of the product.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::vary_segment(const KernelSegment& segment, std::size_t at, Motion& product) const {
   T shift[3] = {T(0.0), T(0.0), T(0.0)};
@@ -175,7 +175,7 @@ void BlockKernel<T, Shape>::set_column(const KernelJoint& joint, const T* axis, 
 }
 
 /// Computes the platform pose of a limb by Eq. 28 of Du et al. 2022, and its spatial Jacobian columns. A revolute joint
-/// changes two columns of the rotation matrix, a prismatic joint the position.
+/// changes two columns of the rotation matrix; a prismatic joint changes the translation.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::limb_pose(std::size_t i, Motion& pose) {
   // Each limb has one more segment than joints, so the segments of limb i begin at first_joint(i) + i.

@@ -207,7 +207,7 @@ void BlockKernel<T, Shape>::load_all() {
   for (std::size_t b = 0; b < count; ++b) index_[b] = static_cast<std::uint32_t>(b);
 }
 
-/// The values of the v-th varied error in the lanes from `at` on.
+/// The values of the v-th varied error in the samples from `at` on, one in each lane.
 template <class T, class Shape>
 T BlockKernel<T, Shape>::value(std::size_t v, std::size_t at) const {
   return at < in_place_ ? T::load(samples_.values + v * samples_.stride + at) : T::load(value_ + v * capacity_ + at);
@@ -344,7 +344,7 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
     verdict.stagnated = bits(size < T(kRestingStep));
     near = size < T(kNearStep);
     if (!any(near)) {
-      // Far from a root a Newton step would not be used, so it is not computed.
+      // Far from a root the Newton step is not computed, because it would not be used.
       take_step(at, gauss_newton_);
       return verdict;
     }
@@ -352,8 +352,8 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
   newton_matrix();
   auto safe = near & finite;
   if constexpr (pass == KernelPass::direct) {
-    // If a fit gave the start, the first step is small. It stays on the branch of solutions of the fit's nodes, where
-    // all steps were safe.
+    // If a fit gave the start, the first step is small. The step stays on the branch of solutions of the fit's nodes,
+    // at which all steps were safe.
     const auto fitted = T::load(flat_ + at) * T(round == 0 ? 1.0 : 0.0) < T(0.0);
     if (any(!fitted)) safe = safe & (fitted | contracts());
   } else if constexpr (pass == KernelPass::follow) {
@@ -416,7 +416,8 @@ void BlockKernel<T, Shape>::finish(std::size_t at, std::size_t lane, SolveStatus
   outcome_.iterations[sample] = iterations;
 }
 
-/// Moves an unfinished sample to another position, so that all unfinished samples are contiguous.
+/// Moves the data of an unfinished sample from column `from` to column `to` of all rows, so that all unfinished samples
+/// are contiguous.
 template <class T, class Shape>
 template <KernelPass pass>
 void BlockKernel<T, Shape>::move(std::size_t from, std::size_t to) {

@@ -17,8 +17,8 @@ void BlockKernel<T, Shape>::move_platform(const KernelPlatform& platform) {
   }
 }
 
-/// The motion xi of the platform for one batch of samples. To first order it is what map_rows() stored in memory_,
-/// otherwise the mean motion of the limbs at their solved displacements.
+/// The motion xi of the platform for one batch of samples. To first order, map_rows() has stored xi in memory_;
+/// otherwise xi is the mean motion of the limbs at their solved displacements.
 template <class T, class Shape>
 auto BlockKernel<T, Shape>::platform_motion(const KernelPlatform& platform, std::size_t at) -> Screw {
   Screw sum;

@@ -12,8 +12,8 @@
 
 namespace poesy::chain {
 
-/// A passive joint. Joints are ordered limb by limb, from base to platform. The displacement is counted from the
-/// joint's position in the perfect mechanism; the segment before the joint contains the motion to this position.
+/// A passive joint. Joints are ordered limb by limb, from base to platform. The displacement is counted from that in
+/// the perfect mechanism; the segment before the joint contains the motion of the joint in the perfect mechanism.
 struct KernelJoint {
   bool revolute;   ///< revolute or helical if true, else prismatic
   double advance;  ///< advance along the axis of a helical joint (which has revolute = true), m per rad; else 0
@@ -35,18 +35,18 @@ struct KernelPiece {
 /// The motion from one passive joint to the next, before the first joint of a limb, or behind its last joint. It is a
 /// product of consecutive pieces.
 struct KernelSegment {
-  std::size_t first_piece;  ///< position of the segment's first piece among all pieces
+  std::size_t first_piece;  ///< index of the segment's first piece among all pieces
   std::size_t pieces;       ///< number of pieces
 };
 
 /// The joints and segments of a limb.
 struct KernelLimb {
-  std::size_t first_joint;  ///< position of the limb's first passive joint among those of all limbs
+  std::size_t first_joint;  ///< index of the limb's first passive joint among those of all limbs
   std::size_t joints;       ///< number of passive joints; the limb has joints + 1 segments
   double meetings;          ///< number of pairs that contain the limb
 };
 
-/// Two limbs whose platform poses are compared. Positions count from 0.
+/// Two limbs whose platform poses are compared. Indices count from 0.
 struct KernelPair {
   std::size_t k;  ///< limb k of delta_mu_ki = log(g_k g_i^-1)
   std::size_t i;  ///< limb i
@@ -95,7 +95,7 @@ struct KernelStart {
 /// The number of coordinates of a KernelMap is a multiple of this; those that are added to reach it are zero.
 inline constexpr std::size_t kMapRows = 3;
 
-/// A linear map from errors to residuals (first order). It computes a few coordinates y of the residuals (see
+/// A linear map from errors to residuals (first order). The map computes a few coordinates y of the residuals (see
 /// ResidualSpace): y = constant + sum over the varied errors v of effects[v] x (value of v).
 struct KernelMap {
   std::size_t rows;        ///< number of components of y
@@ -104,10 +104,11 @@ struct KernelMap {
   const double* delta_mu;  ///< [6 pairs x rows] delta_mu per unit of each component of y
 };
 
-/// The motion of the platform in the base frame (m, rad). Limb i alone moves it by xi_i = log(g_i g_nominal^-1). The
-/// platform moves by the mean xi of all limbs and is displaced by D = exp(xi).
+/// The motion of the platform in the base frame (m, rad). Let xi_i = log(g_i g_nominal^-1) be the motion of limb i's
+/// platform, which has the pose g_i. The mean xi of all xi_i is the motion of the platform, which is displaced by D =
+/// exp(xi).
 struct KernelPlatform {
-  double nominal[12];  ///< platform pose without errors: rotation matrix row by row, then position
+  double nominal[12];  ///< platform pose without errors: rotation matrix row by row, then translation
   double tool[3];      ///< tool point, the second reported point; valid if has_tool
   bool has_tool;       ///< true if a tool point is reported
   /// [joints x stride] Solved displacements of the passive joints; unused if there is a map.
@@ -117,8 +118,8 @@ struct KernelPlatform {
 };
 
 /// The number of rows of KernelPlatform::responses: x, y, z of D p - p, where D is the platform's displacement and p
-/// its nominal origin; theta_x, theta_y, theta_z of D's rotation vector; the lengths of these two vectors, position and
-/// rotation; with a tool also x, y, z and length of the tool's displacement.
+/// its nominal origin; theta_x, theta_y, theta_z of D's rotation vector; the lengths of these two vectors; with a tool
+/// also x, y, z and length of the tool's displacement.
 static constexpr std::size_t platform_rows(bool has_tool) { return has_tool ? 12 : 8; }
 
 enum class KernelMethod {

@@ -21,7 +21,7 @@ constexpr double kLargestStep = 0.15;
 /// fit is used only if its roots lie on one smooth branch.
 constexpr double kLargestNodeStep = 0.4;
 /// If the last coefficients (rad, m) of a fit are below this, nearly every starting point is so good that one step
-/// leads to its root.
+/// leads to the root.
 constexpr double kGoodTail = 1e-6;
 /// A fit whose last coefficients (rad, m) are above this is not used, because displacements are not smooth over its
 /// range.
@@ -115,8 +115,8 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   }
 }
 
-/// Computes the motions between the passive joints. Displacements are counted from the joints' positions without
-/// errors, so they are small, and their sines and cosines are fast.
+/// Computes the motions between the passive joints. Displacements are counted from the displacements without errors, so
+/// they are small, and their sines and cosines are fast.
 void BlockSolver::find_segments(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                                 std::span<const FrameEntry> varied) {
   joints_.clear();
@@ -231,8 +231,8 @@ void BlockSolver::find_map(std::span<const double> displacements, std::span<cons
   copy(residual_space_.delta_mu(), map_delta_mu_, 0);
 }
 
-/// Adds to xi [6] the first-order motion of the platform by an error of this size (rad, m): the mean of the motions of
-/// the limbs' ends.
+/// Adds to xi [6] the first-order motion of the platform by an error (rad, m) of the component `entry`: the mean of the
+/// motions of the limbs' ends.
 void BlockSolver::add_platform_motion(const FrameEntry& entry, double error, std::span<double> xi) {
   first_order_.effect(entry, effect_, slope_);
   lie::Screw<double> sum = first_order_.motion(entry);
@@ -331,8 +331,8 @@ void BlockSolver::add_up_nearing(std::span<const double> values) {
   }
 }
 
-/// Finds the samples that cannot be assembled. Only samples are examined that are not solved, or with errors for which
-/// the loops may open.
+/// Finds the samples that cannot be assembled. Examines the samples without a solution, unless their residual is not
+/// finite, and the samples with errors for which the loops may open.
 void BlockSolver::review(std::span<const double> values) {
   add_up_nearing(values);
   for (std::size_t b = 0; b < count_; ++b) {

@@ -21,19 +21,19 @@ enum class Fidelity : std::size_t {
 };
 
 /// Solves blocks of samples with the fastest kernel that this machine supports. BlockKernel states the methods and
-/// their guarantees; gauss_newton is Scheme I as in DeformationSolver. Of the samples that the kernel does not solve,
-/// or with errors for which loops may open, Assembly decides which are not_assembled. Owns the scratch memory of one
-/// thread.
+/// their guarantees; the method gauss_newton is Scheme I as in DeformationSolver. Assembly decides which samples are
+/// not_assembled, among those that the kernel does not solve and those with errors for which loops may open. Owns the
+/// scratch memory of one thread.
 class BlockSolver {
  public:
   /// The chain must outlive the solver.
   BlockSolver(const ParallelChain& chain, const SolverOptions& options, Fidelity fidelity = Fidelity::exact);
 
-  /// Sets what the samples of the next calls share. displacements: nominal displacements of all joints (rad, m).
-  /// errors: [frames] constant errors. varied: the components of frames' errors that vary. range: if only one component
-  /// varies, its range, over which starting points of Newton's method are predicted. platform: reported points of the
-  /// platform (null: none). held: the metric by which machines that cannot be assembled are found (null: 1 rad weighs
-  /// as much as 1 m, as published). All pointers must outlive the solves.
+  /// Sets the data that the samples of the next calls share. displacements: nominal displacements of all joints (rad,
+  /// m). errors: [frames] constant errors. varied: the components of frames' errors that vary. range: if only one
+  /// component varies, starting points of Newton's method are predicted for values from -range to range. platform:
+  /// reported points of the platform (null: none). held: the metric by which machines that cannot be assembled are
+  /// found (null: 1 rad weighs as much as 1 m, as published). All pointers must outlive the solves.
   void prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                std::span<const FrameEntry> varied, double range, const PlatformPoints* platform = nullptr,
                const Metric* held = nullptr);
@@ -46,7 +46,7 @@ class BlockSolver {
   std::span<const double> delta_mu(std::size_t row) const { return row_of(delta_mu_, row); }
   /// [count] A response of the last block. row: 0 angular, 1 linear, 2 largest deformation.
   std::span<const double> response(std::size_t row) const { return row_of(responses_, row); }
-  /// [count] A number of the platform's motion in the last block. row: position in the list of platform_rows().
+  /// [count] A displacement of the platform in the last block. row: index in the list of platform_rows().
   std::span<const double> platform(std::size_t row) const { return row_of(platform_responses_, row); }
   /// [count] The status of each sample of the last block.
   std::span<const SolveStatus> status() const { return std::span(status_).first(count_); }
@@ -95,8 +95,8 @@ class BlockSolver {
   double nearing_constant_ = 0.0;               ///< sum of Assembly::nearing() x error over the constant errors
   std::vector<double> nearing_of_;  ///< [count] sum of Assembly::nearing() x error over all errors of each sample
   bool is_singular_ = false;        ///< true if the passive joints are singular: no first order exists
-  std::vector<double> effect_;      ///< [6 x pairs] delta_mu by a unit of one error
-  std::vector<double> slope_;       ///< [joints] displacements of the passive joints by a unit of one error
+  std::vector<double> effect_;      ///< [6 x pairs] delta_mu per unit of one error
+  std::vector<double> slope_;       ///< [joints] displacements of the passive joints per unit of one error
   const PlatformPoints* platform_ = nullptr;
   /// [varied x 6] First-order motion of the platform per unit of each varied component.
   std::vector<double> platform_effects_;

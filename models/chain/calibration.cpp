@@ -60,7 +60,7 @@ class CalibratedEvaluator final : public Evaluator {
   const DeformationModel& model_;
   Fidelity fidelity_;
   std::unique_ptr<Evaluator> uncorrected_;
-  Eigen::Index first_row_;  ///< position of the platform's first response
+  Eigen::Index first_row_;  ///< index of the platform's first response
 };
 
 }  // namespace

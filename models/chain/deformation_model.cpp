@@ -35,8 +35,8 @@ struct Prepared {
 
 /// The contribution of a varied error to a varied component of a frame's error.
 struct Addition {
-  std::size_t value;  ///< position of the error among the varied errors
-  std::size_t row;    ///< position of the component among the varied components
+  std::size_t value;  ///< index of the error among the varied errors
+  std::size_t row;    ///< index of the component among the varied components
   double scale;       ///< change of the component per unit of the error
 };
 
@@ -93,8 +93,8 @@ class DeformationEvaluator final : public Evaluator {
     }
   }
 
-  /// Finds the components of frames' errors that vary, and what each error adds to them. Returns true if no sums are
-  /// needed: each varied component then has the values of exactly one varied error.
+  /// Finds the components of frames' errors that vary, and the contributions of each error to them. Returns true if no
+  /// sums are needed: each varied component then has the values of exactly one varied error.
   bool find_varied(const Nominal& nominal, const SampleBlock& samples) {
     varied_.clear();
     additions_.clear();
@@ -155,8 +155,8 @@ class DeformationEvaluator final : public Evaluator {
   std::vector<double> values_;  ///< [varied components x samples] values of the varied components
 };
 
-/// The number that a response takes from a pair of limbs is the norm of M x (mismatch [omega; v] of the pair). This
-/// function returns the matrix M, which has six columns.
+/// The contribution of a pair of limbs to a response is the norm of M x (mismatch [omega; v] of the pair). Returns the
+/// matrix M, which has six columns.
 Eigen::MatrixXd judged_of_pair(std::size_t response) {
   const Eigen::MatrixXd all = lie::Matrix6<double>::Identity();
   if (response == 0) return all.topRows(3);  // angular deformation

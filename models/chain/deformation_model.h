@@ -44,21 +44,22 @@ struct DeformationModel {
   std::optional<Metric> held(std::span<const double> displacements) const;
 };
 
-/// The published responses, in the order in which they are evaluated: angular_deformation (Du et al. 2022, Eq. 49;
-/// rad), linear_deformation (Eq. 50; m), deformation_max (Eq. 45). The bounds Response::mean_square_bound hold for
+/// The published responses, in the order in which they are evaluated: `angular_deformation` (Du et al. 2022, Eq. 49;
+/// rad), `linear_deformation` (Eq. 50; m), `deformation_max` (Eq. 45). The bounds Response::mean_square_bound hold for
 /// three limbs paired in a cycle: to first order delta_mu_21 + delta_mu_32 + delta_mu_13 = 0, so the norms of these
 /// vectors are the sides of a triangle.
 std::vector<Response> deformation_responses();
 
 /// The responses for the displacement D of the platform under errors, in the base frame and in the order of
-/// platform_rows(): x, y, z and position of its origin (m); theta_x, theta_y, theta_z and rotation (rad); tip_x, tip_y,
-/// tip_z and tip_position of the tool (m). first: position of x among the responses of the model.
+/// platform_rows(): `x`, `y`, `z` and `position` of its origin (m); `theta_x`, `theta_y`, `theta_z` and `rotation`
+/// (rad); `tip_x`, `tip_y`, `tip_z` and `tip_position` of the tool (m). first: index of `x` among the responses of the
+/// model.
 std::vector<Response> platform_responses(const PlatformReport& report, std::size_t first);
 
 /// All responses of a model: first those of the deformation, then those of the platform.
 std::vector<Response> responses_of(const DeformationModel& model);
 
-/// The position of the response deformation_max, and the largest value that rounding alone may give it
+/// The index of the response `deformation_max`, and the largest value that rounding alone may give it
 /// (rounding_level()).
 DeformationMeasure deformation_measure(const DeformationModel& model);
 

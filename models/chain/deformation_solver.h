@@ -30,7 +30,7 @@ struct DeformationIteration {
 using DeformationObserver = std::function<void(const DeformationIteration&)>;
 
 /// The level below which a change of the residual (rad, m) may be rounding: 64 eps x max(1, reach in m). Rounding
-/// errors of positions scale with the reach.
+/// errors of positions are proportional to the reach.
 double rounding_level(const ParallelChain& chain);
 
 /// Scheme I of Du et al. 2022 (Eqs. 40-44). Moves the passive joints until the poses of the limbs agree as well as
@@ -39,7 +39,7 @@ double rounding_level(const ParallelChain& chain);
 /// Stopping rule: let c_j be the largest absolute component of delta_mu^j - delta_mu^(j-1). Iteration j ends the solve
 /// as
 ///     converged      when c_j is below the tolerance;
-///     stagnated      when c_j is at rounding_level(chain), and three iterations in a row did not lower the smallest
+///     stagnated      when c_j is at most rounding_level(chain), and three iterations in a row did not lower the smallest
 ///                    c so far: only rounding moves the iterate;
 ///     iteration_cap  when j is the allowed number of iterations;
 ///     singular       when a pivot of J^T J falls to rounding relative to its diagonal entry;
@@ -69,7 +69,7 @@ class DeformationSolver {
   const ParallelChain* chain_;
   SolverOptions options_;
   double rounding_level_;
-  std::vector<std::size_t> passive_;  ///< position of each passive joint among all joints
+  std::vector<std::size_t> passive_;  ///< index of each passive joint among all joints
   Loops loops_;
   std::vector<double> previous_;
   NormalEquations equations_;

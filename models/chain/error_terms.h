@@ -7,18 +7,18 @@
 
 namespace poesy::chain {
 
-/// The displacement of a joint to which an error is proportional, such as the error of a slide that grows with its
-/// travel.
+/// The displacement of a joint to which an error is proportional, such as the travel of a slide whose error grows with
+/// the travel.
 struct JointWay {
-  std::size_t joint;  ///< position among the joints of all limbs
+  std::size_t joint;  ///< index among the joints of all limbs
   double from;        ///< displacement of the joint at which the error is zero (rad, m)
 };
 
 /// The contribution of an error to a component of a fixed frame's error: component += at(displacements) x error.
 struct ErrorTerm {
-  std::size_t limb;       ///< position of the limb
-  std::size_t frame;      ///< position of the frame in the limb, from 0 to the number of its joints
-  std::size_t component;  ///< position in [omega; v]: 0-2 angular, 3-5 linear
+  std::size_t limb;       ///< index of the limb
+  std::size_t frame;      ///< index of the frame in the limb, from 0 to the number of its joints
+  std::size_t component;  ///< index in [omega; v]: 0-2 angular, 3-5 linear
   /// Factor in rad or m per unit of the error; if the error grows with a displacement, also per unit of that
   /// displacement.
   double scale = 1.0;

@@ -31,9 +31,9 @@ struct Joint {
 struct Limb {
   std::vector<Joint> joints;                 ///< [n] joints from base to platform
   std::vector<lie::Transform<double>> home;  ///< [n + 1] fixed frames without errors
-  /// The centre about which an angular error of the first or last frame rotates. If true, it is the point of the first
-  /// or last joint. If false, as published, it is the origin of base or platform. The axes of rotation are those of
-  /// base and platform in either case.
+  /// The centre about which an angular error of the first or last frame rotates. If true, the centre is the point of
+  /// the first or last joint. If false, as published, the centre is the origin of base or platform. The axes of
+  /// rotation are those of base and platform in either case.
   bool errors_at_joints = false;
 
   /// The number of fixed frames: one more than the number of joints.
@@ -48,7 +48,7 @@ struct Limb {
   /// @}
 };
 
-/// Two limbs whose platform poses are compared by the residual log(g_k g_i^-1) (Du et al. 2022, Eq. 30). Positions
+/// Two limbs whose platform poses are compared by the residual log(g_k g_i^-1) (Du et al. 2022, Eq. 30). Indices
 /// count from 0.
 struct LimbPair {
   std::size_t k;  ///< limb with pose g_k
@@ -75,7 +75,7 @@ struct ParallelChain {
   std::size_t passive_joints() const;
   std::size_t frames() const;
   /// @}
-  /// The position of the limb's first frame among the frames of all limbs.
+  /// The index of the limb's first frame among the frames of all limbs.
   std::size_t first_frame(std::size_t limb) const;
   /// The length of the longest limb (m), summed over its fixed frames.
   double reach() const;
@@ -88,8 +88,8 @@ using FrameError = lie::Screw<T>;
 
 /// A component of a fixed frame's error.
 struct FrameEntry {
-  std::size_t frame;      ///< position among all frames, limb by limb
-  std::size_t component;  ///< position in [omega; v], 0 to 5
+  std::size_t frame;      ///< index among all frames, limb by limb
+  std::size_t component;  ///< index in [omega; v], 0 to 5
 
   /// Returns true if both name the same component of the same frame.
   bool operator==(const FrameEntry&) const = default;

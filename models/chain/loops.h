@@ -28,7 +28,7 @@ class Loops {
   std::vector<lie::Screw<double>> columns_;
 };
 
-/// [passive joints] The position of each passive joint among all joints.
+/// [passive joints] The index of each passive joint among the joints of all limbs.
 std::vector<std::size_t> passive_positions(const ParallelChain& chain);
 
 }  // namespace poesy::chain

@@ -11,10 +11,12 @@ namespace {
 
 using Transform = lie::Transform<double>;
 
-/// Number of solves. The second solve begins at the end of the first, so that it ends at rounding.
+/// Number of solves. The second solve begins at the result of the first, so that its own result is accurate to
+/// rounding.
 constexpr int kSolves = 2;
 constexpr double kTolerance = 1e-14;  ///< tolerance of a solve (rad, m)
-/// Number of Newton steps for the pose of the platform. Each step multiplies the error by about the mismatch.
+/// Number of Newton steps for the pose of the platform. Each step multiplies the remaining error by a number about as
+/// large as the mismatch (rad).
 constexpr int kSteps = 8;
 
 std::vector<Transform> frames_of(const ParallelChain& chain) {

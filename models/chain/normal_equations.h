@@ -53,7 +53,8 @@ class NormalEquations {
 
   std::vector<LimbPair> pairs_;
   std::vector<std::size_t> limb_of_;  ///< limb of each passive joint
-  std::vector<double> coupling_;      ///< [limbs x limbs] pairs of each limb (diagonal); minus the pairs of two limbs
+  std::vector<double> coupling_;  ///< [limbs x limbs] diagonal: number of pairs with this limb; else: minus number of
+                                  ///< pairs of the two limbs
   std::size_t limbs_;
   std::size_t size_;
   std::size_t idle_freedoms_;

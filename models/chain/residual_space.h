@@ -38,7 +38,7 @@ class ResidualSpace {
   /// For L limbs, the matrix N [L - 1, L] with N^T N = incidence^T incidence. The incidence matrix has a row for each
   /// pair of limbs, with 1 for limb k and -1 for limb i.
   Eigen::MatrixXd independent_;
-  Eigen::MatrixXd of_pairs_;              ///< [pairs, L - 1] matrix with incidence matrix = of_pairs N
+  Eigen::MatrixXd of_pairs_;              ///< [pairs, L - 1] matrix P with incidence matrix = P N
   std::size_t dimensions_ = 0;            ///< number D of dimensions of the residual space
   Eigen::MatrixXd columns_;               ///< [6 (L - 1), passive joints] columns of the joints
   Eigen::MatrixXd basis_;                 ///< orthonormal basis of the complement of columns_

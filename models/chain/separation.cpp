@@ -52,7 +52,8 @@ Matrix6 beyond(const Columns& columns) {
   return rest * rest.transpose();
 }
 
-/// The projection of x. If the projection or the removed part is only rounding, it is set to exactly zero.
+/// The projection of x. If the projection is only rounding, zero is returned; if the removed part is only rounding, x
+/// is returned.
 Screw left_of(const Screw& x, const Matrix6& projection) {
   const Screw left = projection * x;
   if (left.norm() <= kRounding * x.norm()) return Screw::Zero();
@@ -157,7 +158,7 @@ std::vector<LimbSeparation> separations(const std::vector<LimbMotions>& limbs, c
 /// The motions of drives that several limbs share, as columns like those of LimbSeparation::motions().
 class SharedDrives {
  public:
-  /// Adds the motion of the platform by a shared drive through one limb. column: position of the drive among the drives
+  /// Adds the motion of the platform by a shared drive through one limb. column: index of the drive among the drives
   /// of this limb. Returns true if the drive was not known before.
   bool add(const LimbSeparation& limb, Eigen::Index column) {
     const auto [place, is_new] = sums_.try_emplace(limb.drives()[static_cast<std::size_t>(column)]);
@@ -168,7 +169,8 @@ class SharedDrives {
   }
 
   /// The motion of the platform by the drive: the sum of B_k A_k over the limbs k that the drive moves, divided by the
-  /// square root of the sum of |A_k|_k^2 (symbols as for separation()). Zero if the limbs cancel each other.
+  /// square root of the sum of |A_k|_k^2 (symbols as for separation()). Zero if the motions through these limbs cancel
+  /// each other.
   Screw motion(std::size_t drive) const {
     const Sum& sum = sums_.at(drive);
     const Screw motion = sum.motion / std::sqrt(sum.square);
@@ -183,11 +185,11 @@ class SharedDrives {
   std::map<std::size_t, Sum> sums_;
 };
 
-/// The projection of a displacement onto what corrections of all drives cannot remove.
+/// The projection of a displacement onto the part that corrections of all drives cannot remove.
 Matrix6 beyond_all_drives(const std::vector<LimbSeparation>& limbs) {
   Columns motions;
   SharedDrives shared;
-  std::vector<std::pair<std::size_t, Eigen::Index>> places;  // positions of shared drives among the columns
+  std::vector<std::pair<std::size_t, Eigen::Index>> places;  // indices of shared drives among the columns
   for (const LimbSeparation& limb : limbs) {
     for (Eigen::Index c = 0; c < limb.motions().cols(); ++c) {
       const std::size_t drive = limb.drives()[static_cast<std::size_t>(c)];
@@ -200,7 +202,8 @@ Matrix6 beyond_all_drives(const std::vector<LimbSeparation>& limbs) {
   return beyond(motions);
 }
 
-/// Returns true if the limb's drives move no other limb. They can then correct the whole drive part of its errors.
+/// Returns true if the limb's drives move no other limb. The drives can then correct the whole drive part of the limb's
+/// errors.
 bool drives_are_its_own(const std::vector<LimbSeparation>& limbs, std::size_t limb) {
   for (std::size_t i = 0; i < limbs.size(); ++i) {
     for (const std::size_t drive : limbs[i].drives()) {

@@ -32,10 +32,10 @@ namespace poesy::chain {
 /// correction. Precondition: platform->points are at least three, not all on a line.
 Separation separation(const DeformationModel& model, std::span<const double> pose);
 
-/// The projection [6 x 6] of a displacement of the platform onto what remains after the best correction of all drives.
-/// The displacement is [theta; displacement of the platform's origin] (rad, m) in the base frame. The remainder is the
-/// least in the norm of separation(): for the effect of an error, its norm is the residual of separation(). None at a
-/// pose at which passive joints are singular. Precondition as for separation().
+/// The projection [6 x 6] of a displacement of the platform onto the part that remains after the best correction of all
+/// drives. The displacement is [theta; displacement of the platform's origin] (rad, m) in the base frame. The remainder
+/// is the least in the norm of separation(): for the effect of an error, the norm of the remainder is the residual of
+/// separation(). Returns no value at a pose at which passive joints are singular. Precondition as for separation().
 std::optional<lie::Matrix6<double>> left_by_drives(const DeformationModel& model, std::span<const double> pose);
 
 /// The motions of a limb that separation_of() needs, at a pose of the perfect mechanism.
@@ -54,7 +54,7 @@ struct LimbMotions {
 
 /// The twist of a limb's end per unit of an error, if no joint moves. An error may twist the ends of several limbs.
 struct EndTwist {
-  std::size_t limb;          ///< position of the limb
+  std::size_t limb;          ///< index of the limb
   lie::Screw<double> twist;  ///< twist of the limb's end
 };
 
@@ -68,7 +68,7 @@ void add_twist(std::size_t limb, const lie::Screw<double>& twist, std::vector<En
 Separation separation_of(const std::vector<LimbMotions>& limbs, const lie::Matrix6<double>& root, double radius,
                          std::span<const std::vector<EndTwist>> errors);
 
-/// The description of separation(), without classes of the literature; none if the model has no platform->points.
+/// The description of separation(), without classes of the literature; no value if the model has no platform->points.
 std::optional<SeparationDescription> separation_description(const DeformationModel& model);
 
 }  // namespace poesy::chain

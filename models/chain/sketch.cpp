@@ -11,7 +11,7 @@ namespace {
 using Vector3 = lie::Vector3<double>;
 using Transform = lie::Transform<double>;
 
-/// Motions of limbs count as equal if they differ by less than this share of the largest.
+/// Motions of limbs count as equal if they differ by at most this share of the largest motion (see sketched_motions()).
 constexpr double kAlike = 1e-9;
 
 SketchVector sketched(const Vector3& vector) { return {vector.x(), vector.y(), vector.z()}; }
@@ -107,7 +107,7 @@ std::vector<SketchTwist> sketched_motions(std::vector<lie::Screw<double>> motion
 
 SketchedError sketched_error(const Sketch& sketch, const ErrorTerm& term) {
   const std::vector<SketchedJoint>& joints = sketch.limbs[term.limb];
-  const std::size_t end = sketch.frames[term.limb].size() - 1;  // position of the frame of the limb's last body
+  const std::size_t end = sketch.frames[term.limb].size() - 1;  // index of the frame of the limb's last body
   return {.limb = term.limb,
           .frame = term.frame + 1 == end ? end : term.frame,
           .axis = term.component % 3,
