@@ -131,7 +131,8 @@ class BalancedModel final : public TrackedModel {
   }
 
  private:
-  /// The largest gap that rounded numbers may cause: twice the largest gap without errors, over poses of the workspace.
+  /// The largest response `gap` that rounded numbers may cause: twice the largest one without errors, over poses of the
+  /// workspace.
   double nominal_gap() const {
     if (!model_.rounded) return 0.0;
     const std::vector<double> no_errors(model_.terms.size(), 0.0);

@@ -14,8 +14,8 @@ namespace {
 /// Displacements count as equal if they differ by less than this (rad, or shares of the reach). Tracking is accurate to
 /// a millionth of this.
 constexpr double kSame = 1e-6;
-/// The tolerance kSame for a mechanism with rounded numbers, in units of Precision::closed. It is larger, because with
-/// rounded numbers limbs share a mismatch, and the shares depend on which joints are given.
+/// The tolerance kSame for a mechanism with rounded numbers, in units of Precision::closed. It is larger than kSame,
+/// because with rounded numbers limbs share a mismatch, and the shares depend on which joints are given.
 constexpr double kSameOfRounded = 100.0;
 
 /// The mechanism with another frame of its platform.
@@ -58,7 +58,7 @@ Chart actuators_chart(const Mechanism& mechanism) {
   return {std::move(description), mechanism, mechanism, Given::drives, Transform()};
 }
 
-/// Returns true if the chart's names differ from those of other coordinates of the mechanism.
+/// Returns true unless one of the chart's names belongs to another coordinate of the mechanism.
 bool names_are_new(const Chart& chart, const Mechanism& mechanism) {
   return std::ranges::none_of(chart.description().coordinates, [&](const PoseCoordinate& own) {
     const auto other = std::ranges::find(mechanism.coordinates, own.name, &Coordinate::name);

@@ -61,7 +61,7 @@ PlacedLimb placed(const Limb& limb, std::span<const double> displacements, const
   return made;
 }
 
-/// All limbs, for these displacements of the joints that move.
+/// The geometry of all limbs for these displacements of the joints that move.
 std::vector<PlacedLimb> placed(const Mechanism& unit, std::span<const double> displacements) {
   std::vector<std::span<const double>> of_limb;
   for (const Limb& limb : unit.limbs) {
@@ -82,7 +82,7 @@ std::vector<PlacedLimb> placed(const Mechanism& unit, std::span<const double> di
 }
 
 /// For each limb, the matrix from a twist of the limb's end to its first-order effects while the drives are held. The
-/// effects are motions of bodies and the gap that remains in the loops.
+/// effects are motions of bodies, and the mismatch of the limbs that remains.
 std::vector<Matrix> effects_of_ends(const Mechanism& unit, const std::vector<PlacedLimb>& limbs) {
   const auto rows = 6 * static_cast<Index>(limbs.size());
   Index passive = 0;
@@ -114,7 +114,7 @@ std::vector<Matrix> effects_of_ends(const Mechanism& unit, const std::vector<Pla
   return effects;
 }
 
-/// For each limb and each of its parts (one for each frame), an upper triangular matrix R. |R e| is the size of all
+/// For each limb and each of its parts (one for each frame), an upper triangular matrix R. |R e| is the norm of all
 /// effects of an error e = [omega; v] of the part, at all poses together.
 using PartEffects = std::vector<std::vector<Matrix>>;
 
@@ -142,7 +142,7 @@ PartEffects part_effects(const Mechanism& mechanism) {
   return effects;
 }
 
-/// For each error, true if a zone limits it or the file states it.
+/// For each error, false if it is an error of a feature and no zone limits it; else true.
 std::vector<bool> stated_errors(const Mechanism& mechanism) {
   std::vector<bool> is_stated(mechanism.factors.size(), true);
   const auto remove = [&](const std::vector<FactorIndex>& errors) {
@@ -155,7 +155,7 @@ std::vector<bool> stated_errors(const Mechanism& mechanism) {
   return is_stated;
 }
 
-/// The stated errors of a part, as columns of length 1 with lengths in units of the reach.
+/// The errors of a part for which stated_errors() is true, as columns of length 1 with lengths in units of the reach.
 Matrix stated_columns(const Mechanism& mechanism, const std::vector<bool>& is_stated, std::size_t limb,
                       std::size_t frame) {
   Matrix columns(6, 0);

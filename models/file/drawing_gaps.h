@@ -5,7 +5,8 @@
 
 #include "models/file/mechanism.h"
 
-/// Gaps in the tolerances of a drawing, as clauses for people.
+/// Directions of errors that the tolerances of a drawing do not limit, and zones that limit nothing, as clauses for
+/// people.
 namespace poesy::file {
 
 /// Finds, for each part, directions of its error twist that matter but that no error of the part covers. A direction
@@ -17,7 +18,7 @@ namespace poesy::file {
 std::vector<std::string> uncovered_directions(const Mechanism& mechanism);
 
 /// Clauses about zones that say less than they seem to: a location or an orientation without datums, and an orientation
-/// zone that is as wide as its location zone allows.
+/// zone that is not narrower than the location zone of the feature already demands.
 std::vector<std::string> doubtful_zones(const Mechanism& mechanism);
 
 }  // namespace poesy::file

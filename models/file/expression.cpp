@@ -32,8 +32,8 @@ bool is_unit_of_geometry(std::string_view name) {
   return unit != nullptr && (unit->dimension == Dimension::length || unit->dimension == Dimension::angle);
 }
 
-/// A recursive descent parser. Each function reads the construct that it is named after, from position at_ of the text
-/// on.
+/// A recursive descent parser. Each function reads the construct that it is named after, from character number `at_` of
+/// the text on.
 class Parser {
  public:
   /// due: the dimension (powers of units) that the value must have, if it is known, for messages.

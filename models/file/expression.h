@@ -19,8 +19,8 @@
 /// a parameter. "5 mm^2" is five square millimetres, "(5 mm)^2" is 25. An exponent is a whole number; -a^2 is -(a^2).
 ///
 /// poesy has its own parser because muparser (Debian) computes only with doubles. A second evaluation with other units
-/// of length and angle cannot find the dimension of zero ("offset + 1 deg" with offset = 0 mm). Operators on encoded
-/// dimensions would take as much code and could not name the place of a mistake.
+/// of length and angle would show the dimension of a value, but not of zero ("offset + 1 deg" with offset = 0 mm).
+/// Operators on encoded dimensions would take as much code and could not name the place of a mistake.
 namespace poesy::file {
 
 /// A quantity as written in a mechanism file. It has no value yet, because a study may change the geometry.
@@ -34,7 +34,7 @@ struct Expression {
 /// A value with its dimension.
 struct Value {
   double si = 0.0;     ///< value in m, rad, kg, s and their powers
-  Powers powers = {};  ///< its dimension
+  Powers powers = {};  ///< dimension of the value
   bool any = false;    ///< true if it is the bare number 0, which fits every dimension
 
   /// Returns true if the two values may be added, because their dimensions agree.

@@ -108,7 +108,7 @@ FrameErrors frame_errors(const Mechanism& mechanism) {
   return all;
 }
 
-/// The positions of the factors whose names match a pattern, ascending. Throws if there are none.
+/// The indices of the factors whose names match a pattern, ascending. Throws if there are none.
 std::vector<std::size_t> fitting(const Reference& pattern, const std::vector<Factor>& factors) {
   std::vector<std::size_t> found;
   for (std::size_t f = 0; f < factors.size(); ++f) {
@@ -156,7 +156,7 @@ struct Growth {
   }
 };
 
-/// Throws unless the joint of the limb has exactly one displacement. j: position of its first elementary joint.
+/// Throws unless the joint of the limb has exactly one displacement. j: index of its first elementary joint.
 void check_has_displacement(const Reference& name, const Limb& limb, std::size_t j) {
   const Joint& joint = limb.joints[j];
   const auto fail = [&](const std::string& problem, const std::string& remedy) {
@@ -190,8 +190,8 @@ Growth growth(const ErrorLines& error, std::size_t i, const Numbers& numbers, co
   return {chain::JointWay{at, from}, slides ? 1 : 0, ", grows with " + name.name + ", from " + start};
 }
 
-/// The scale of a component of an error, which must be a number. An error that grows is itself a number, so its scale
-/// has the dimension of the component per displacement.
+/// The scale of a component of an error. It is a number, but if the error grows with a displacement, it has the
+/// dimension of the component divided by that of the displacement.
 double scale_of(const Expression& scale, std::size_t component, const Growth& growth, const Numbers& numbers) {
   const int wanted = growth.way ? (component < 3 ? 0 : 1) - growth.length : 0;
   const Value value = numbers.value(scale);

@@ -20,7 +20,7 @@ void check_modifiers(const StudyValue& value, const std::string& text) {
   }
 }
 
-/// Refuses the signs that a drawing writes before a number, with what to write instead.
+/// Throws if a number has a sign before it as in drawings. The message says what to write instead.
 void check_signs(std::string_view key, const StudyValue& value) {
   if (!value.is_text()) return;
   const std::string text = value.text();
@@ -215,7 +215,7 @@ void check_zones(const FeatureLines& feature) {
   }
 }
 
-/// Throws if the keys of a feature's size and shape do not fit together.
+/// Throws if a key for a feature's size or shape is missing, or contradicts another key.
 void check_shape(const FeatureLines& feature) {
   const auto fail = [&](const std::string& problem, std::string_view remedy) {
     throw InputError(feature.place, feature.key + " '" + feature.name + "' " + problem, remedy);

@@ -27,7 +27,7 @@ std::string_view name(ZoneShape shape);  ///< "usual" or "planes".
 
 /// A tolerance of a feature, as written.
 struct ZoneLines {
-  std::string_view key;  ///< its key in the file: "position"
+  std::string_view key;  ///< key of the tolerance in the file: "position"
   Expression size;       ///< width or diameter of the zone
   std::string datums;    ///< datums: "A|B"; empty if there are none
 

@@ -35,7 +35,7 @@ struct FeatureFrame {
 
 /// The frame of a limb that the errors of a feature displace.
 struct FeaturePart {
-  std::size_t frame;  ///< position of the frame in the limb
+  std::size_t frame;  ///< index of the frame in the limb
   Transform datum;    ///< base_T_part of the feature's part at home
   bool inverse;       ///< true if the error of the frame is the inverse of the feature's displacement
 };
@@ -122,7 +122,7 @@ class FeatureBuilder {
   FeatureBuilder(const Numbers& numbers, const LimbLines& limb, Mechanism& mechanism)
       : numbers_(numbers), limb_(limb), mechanism_(mechanism) {}
 
-  /// Adds to the mechanism the features of all copies of the limb. first: position of the first copy among the
+  /// Adds to the mechanism the features of all copies of the limb. first: index of the first copy among the
   /// mechanism's limbs.
   void add(std::size_t first) {
     for (std::size_t copy = 0; copy < limb_.copies.count; ++copy) {
@@ -132,7 +132,7 @@ class FeatureBuilder {
   }
 
  private:
-  /// The position in the limb of the elementary joint to which a feature belongs, counted from 0.
+  /// The index in the limb of the elementary joint to which a feature belongs, counted from 0.
   std::size_t joint_of(const FeatureLines& lines) const {
     std::size_t first = 0;
     for (const JointLines& joint : limb_.joints) {
@@ -264,8 +264,8 @@ class FeatureBuilder {
     return {most, mean * mean + sigma * sigma};
   }
 
-  /// The axis of a joint with clearance. Sizes of parts are normally distributed, and half a zone is three standard
-  /// deviations.
+  /// The feature for the axis of a joint with clearance. Sizes of parts are normally distributed, and half a zone is
+  /// three standard deviations.
   Feature loose(const ClearanceLines& lines) const {
     Feature feature = described(lines.axis);
     feature.clearance = lines.fit.empty() ? by_ends(lines) : by_fit(lines);

@@ -17,7 +17,8 @@ constexpr std::string_view kLengthClasses = "fmcv";
 constexpr std::string_view kZoneClasses = "HKL";
 constexpr std::string_view kStateIt = "write the length that is meant, because nothing is assumed in silence";
 
-/// The position in `classes` of the class that ends a text such as "ISO 2768-1:1989 m"; none if there is no such class.
+/// The index in `classes` of the letter at the end of a text such as "ISO 2768-1:1989 m"; none if the letter is not
+/// among them.
 std::optional<std::size_t> class_in(std::string_view text, std::string_view standard, std::string_view classes) {
   if (text.size() != standard.size() + 1 || !text.starts_with(standard)) return std::nullopt;
   const std::size_t at = classes.find(text.back());

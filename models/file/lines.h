@@ -27,7 +27,7 @@ struct Triple {
 /// A point that has a name.
 struct NamedPoint {
   std::string name;  ///< name by which references refer to it
-  Triple point;      ///< position in the base frame at home, or in the platform's frame
+  Triple point;      ///< coordinates in the base frame at home, or in the platform's frame
 };
 
 /// Copies of a limb or a body, rotated about an axis of the base.

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Index;
 using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// The position in a state at which the pose of a body begins.
+/// The index in a State of the first number of a body's pose.
 Index place_of(const Mechanism& unit, std::size_t body) { return static_cast<Index>(unit.moving() + 6 * (body - 1)); }
 
 }  // namespace
