@@ -19,7 +19,7 @@ namespace {
 /// An elementary joint of a limb before its frame is known.
 struct Element {
   const JointLines* lines;
-  std::size_t position;  ///< position of this elementary joint in the joint as written
+  std::size_t position;  ///< index of this elementary joint among those of the joint as written
   Motion motion;
   Vector3 point;
   Vector3 z = Vector3::Zero();  ///< axis; for S it follows from the preceding joints
@@ -50,8 +50,8 @@ std::string of_copy(const std::string& drive, std::size_t n) {
   return name;
 }
 
-/// Throws if a drive rotates one joint and slides another, or if its name, which is a column of pose files, is also the
-/// name of another column.
+/// Throws if a drive rotates one joint and moves another one along its axis, or if its name, which is a column of pose
+/// files, is also the name of another column.
 void check_drives(const Mechanism& mechanism) {
   const std::vector<const Joint*> joints = moving_joints(mechanism);
   const std::vector<JointDisplacement> displacements = displacement_names(mechanism);
@@ -137,7 +137,8 @@ class Builder {
                      suggestion(reference.name, known));
   }
 
-  /// The point of a joint (m): `at`, or for P, H and C `from`. depth: number of references followed so far.
+  /// The point of a joint (m): the value of `at`, or for joints P, H and C of `from`. depth: number of references
+  /// followed so far.
   Vector3 joint_point(const LimbLines& limb, const JointLines& joint, std::size_t depth = 0) const {
     if (depth > limb.joints.size()) {
       throw InputError(joint.place, joint.key + " '" + joint.name + "' takes its point from itself",

@@ -29,11 +29,11 @@ enum class Motion { fixed, revolute, prismatic, helical };
 /// An elementary joint (a joint with one freedom), or a fixed frame. A joint of the file that has several freedoms
 /// becomes several elementary joints.
 struct Joint {
-  std::string name;        ///< name of the file's joint to which it belongs
-  Place place;             ///< place of that joint in the file
-  JointKind kind;          ///< type of that joint
+  std::string name;        ///< name of the joint in the file
+  Place place;             ///< place of the joint in the file
+  JointKind kind;          ///< type of the joint in the file
   Motion motion;           ///< motion; fixed: a frame with errors but without a displacement
-  bool actuated;           ///< true if a drive holds it
+  bool actuated;           ///< true if a drive holds the joint
   double pitch;            ///< pitch of a helical joint (m/rad); positive if right-handed
   Transform at_home;       ///< base_T_joint at home
   std::string drive = {};  ///< name of the drive, if the file gives one; joints of the same name move together
@@ -45,7 +45,7 @@ struct Joint {
   chain::Joint of_chain() const;
 };
 
-/// Positions of the two bodies that every mechanism has.
+/// Indices of the two bodies that every mechanism has.
 /// @{
 using assembly::kBase;
 using assembly::kPlatform;
@@ -55,8 +55,8 @@ using assembly::kPlatform;
 struct Limb {
   std::vector<Joint> joints;    ///< joints, from the first body to the last
   std::vector<Transform> home;  ///< frames at home: body to first joint, joint to joint, last joint to body
-  std::size_t from = kBase;     ///< position of the first body
-  std::size_t to = kPlatform;   ///< position of the last body
+  std::size_t from = kBase;     ///< index of the first body
+  std::size_t to = kPlatform;   ///< index of the last body
   /// Label: the number of the limb, counted from 1, or its name and the number of the copy.
   std::string label = {};
   std::vector<assembly::Bearing> bearings = {};      ///< bearings with compliance
@@ -70,7 +70,7 @@ struct Limb {
 /// A drive of one actuated joint, or of several joints that it moves by the same displacement from home (rad or m).
 struct Drive {
   std::string name;                 ///< name in the file, or the name of its joint's displacement
-  std::vector<std::size_t> joints;  ///< positions among all joints that move, ascending
+  std::vector<std::size_t> joints;  ///< indices among all joints that move, ascending
 
   /// Returns true if the drive moves several joints.
   bool is_shared() const { return joints.size() > 1; }
@@ -83,7 +83,7 @@ using PlatformPose = std::array<double, 6>;
 /// A coordinate of poses.
 struct Coordinate {
   std::string name;       ///< name in the file
-  std::size_t component;  ///< position in PlatformPose
+  std::size_t component;  ///< index in PlatformPose
   double lower;           ///< lower limit of the workspace, SI
   double upper;           ///< upper limit of the workspace, SI
 
@@ -94,16 +94,16 @@ struct Coordinate {
 /// The precision of a mechanism whose numbers are exact.
 /// @{
 inline constexpr double kRankThreshold = 1e-6;  ///< a singular value below this share of the largest counts as zero
-/// A loop counts as closed if it is open by less than this: rad, and shares of the reach.
+/// The largest opening (rad, or share of the reach) of a loop that counts as closed.
 inline constexpr double kClosed = 1e-12;
 /// @}
 
 /// The precision of a mechanism's numbers, which rounding.h finds.
 struct Precision {
   double rank_threshold = kRankThreshold;  ///< a singular value below this share of the largest counts as zero
-  /// The largest opening at which a loop counts as closed: rad, and shares of the reach. If numbers are rounded, it is
-  /// a bound on the gap; a pose is then where the mismatch of the limbs, in the metric of the mechanism's points, is
-  /// least, and this mismatch remains.
+  /// The largest opening (rad, or share of the reach) of a loop that counts as closed. If numbers are rounded, this is
+  /// a bound on the response `gap`; a pose is then the configuration with the least mismatch of the limbs, in the
+  /// metric of the mechanism's points, and this mismatch remains.
   double closed = kClosed;
 
   /// Returns true if loops that stay open by more than kClosed count as closed.
@@ -169,11 +169,11 @@ Mechanism mechanism(const MechanismFile& file, std::span<const double> geometry)
 /// The mechanism with lengths in units of its reach. The reach of the result is 1.
 Mechanism in_reaches(Mechanism mechanism);
 
-/// The names q_i_j of the displacements of all moving joints, limb by limb. The limb i is counted from 1. j is the
-/// position, counted from 1, among all joints and fixed frames of the limb.
+/// The names q_i_j of the displacements of all moving joints, limb by limb. The number i of the limb is counted from 1.
+/// j is the number of the joint, counted from 1, among all joints and fixed frames of the limb.
 std::vector<JointDisplacement> displacement_names(const Mechanism& mechanism);
 
-/// A limb as text for messages: "limb 4", or with a name "limb 4 (left_1)". limb: position, counted from 0.
+/// A limb as text for messages: "limb 4", or with a name "limb 4 (left_1)". limb: index, counted from 0.
 std::string limb_text(const Mechanism& mechanism, std::size_t limb);
 
 /// The joints that have a displacement, limb by limb.
@@ -195,7 +195,7 @@ lie::Matrix6<double> body_columns(const Mechanism& mechanism, std::size_t body, 
 /// The pose of a body at home: its origin, and no rotation.
 PlatformPose home_pose(const Mechanism& mechanism, std::size_t body);
 
-/// For each body except the base, the position of a limb that ends there. In the order of this list the bodies can be
+/// For each body except the base, the index of a limb that ends there. In the order of this list the bodies can be
 /// placed one after the other.
 std::vector<std::size_t> placing_limbs(const Mechanism& mechanism);
 

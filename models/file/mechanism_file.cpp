@@ -13,8 +13,8 @@
 namespace poesy::file {
 namespace {
 
-/// The limits for all limbs of a mechanism together. The time of rank computations grows with the cube of the moving
-/// axes, the size of descriptions with the square of the frames.
+/// The limits for all limbs of a mechanism together. The time of rank computations grows with the cube of the number of
+/// moving axes, and the length of descriptions grows with the square of the number of frames.
 /// @{
 constexpr std::size_t kMostMovingAxes = 120;
 constexpr std::size_t kMostFrames = 1000;
@@ -143,7 +143,7 @@ std::vector<JointLines> joints(const StudyValue& value) {
   return list;
 }
 
-/// The word that means all limbs in [[error]].
+/// The value of the key `limb` of [[error]] that means all limbs.
 constexpr std::string_view kEach = "each";
 
 std::string read_limb_name(const StudyValue& value) {
@@ -460,7 +460,7 @@ struct NamedLimb {
   const LimbLines* lines;
   std::size_t copy;  ///< number of the copy, counted from 1
 
-  /// The position in the limb of the frame behind the joint of this name. Behind means towards the end of the limb.
+  /// The index in the limb of the frame behind the joint of this name. Behind means towards the end of the limb.
   /// None if there is no such joint.
   std::optional<std::size_t> frame_behind(std::string_view joint) const {
     std::size_t frame = 0;
@@ -476,14 +476,14 @@ struct NamedLimb {
     return lines->name.empty() || lines->copies.count == 1 ? lines->name : lines->name + "_" + std::to_string(copy);
   }
 
-  /// The limb as text for messages: "limb 4", or with a name "limb 4 (left_1)". position: that of the limb, counted
+  /// The limb as text for messages: "limb 4", or with a name "limb 4 (left_1)". position: index of the limb, counted
   /// from 0.
   std::string text(std::size_t position) const {
     const std::string number = "limb " + std::to_string(position + 1);
     return lines->name.empty() ? number : number + " (" + label() + ")";
   }
 
-  /// The position of the last frame, before the body where the limb ends.
+  /// The index of the last frame, before the body where the limb ends.
   std::size_t last_frame() const { return *frame_behind(lines->joints.back().name); }
 };
 
@@ -601,8 +601,8 @@ PlaceLines read_place(const StudySection& section, const std::vector<NamedLimb>&
   return place;
 }
 
-/// Reads where an error acts and which components it changes: either one place in each limb, or several places
-/// together.
+/// Reads the places in which an error acts and the components that it changes: either one place in each limb, or
+/// several places together.
 void read_where(const StudySection& section, const std::vector<NamedLimb>& known, ErrorLines& error) {
   const std::optional<StudyValue> places = section.find("places");
   if (!places) {

@@ -40,7 +40,7 @@ struct JointLines {
   std::optional<Reference> at_point;        ///< point of the joint, as a named point
   std::optional<Reference> from;            ///< point at which the axis begins
   std::optional<Reference> to;              ///< point at which the axis ends
-  std::optional<Triple> axis;               ///< direction of the axis, if from and to are absent
+  std::optional<Triple> axis;               ///< direction of the axis, if `from` and `to` are absent
   std::optional<Triple> axis2;              ///< second axis of a joint U
   std::optional<Triple> x;                  ///< x axis of the joint's first frame
   std::optional<Expression> pitch;          ///< pitch of a joint H, length per turn
@@ -86,7 +86,7 @@ std::string_view name(Rotation rotation);
 struct PlatformLines {
   std::optional<Triple> origin;              ///< P at home
   std::optional<Triple> x;                   ///< x axis at home; none: the base's x axis
-  std::optional<Triple> z;                   ///< z axis at home, given if x is
+  std::optional<Triple> z;                   ///< z axis at home; given if and only if `x` is given
   Rotation rotation = Rotation::vector;      ///< meaning of rx, ry, rz
   std::vector<CoordinateLines> coordinates;  ///< pose coordinates, in the order of a pose's numbers
   Place coordinates_place;                   ///< place of the list of coordinates
@@ -108,18 +108,19 @@ enum class ErrorsAbout {
 /// The name in files: "joint" or "frame".
 std::string_view name(ErrorsAbout about);
 
-/// Where an error acts: one or more limbs, and one frame in each of them, as the keys `limb` and `frame` state them.
+/// The frames on which an error acts: one or more limbs, and one frame in each of them, as the keys `limb` and `frame`
+/// state them.
 struct SlotLines {
-  std::vector<std::size_t> limbs;  ///< positions of the limbs, counted from 0
+  std::vector<std::size_t> limbs;  ///< indices of the limbs, counted from 0
   bool each = false;               ///< true if the limbs are written as "each"
   /// [limbs] Suffix of the error's name: the number of the limb or of its copy; 0 if there is none.
   std::vector<std::size_t> numbers;
-  std::vector<std::size_t> frames;  ///< [limbs] position of the frame in each limb, counted from 0
+  std::vector<std::size_t> frames;  ///< [limbs] index of the frame in each limb, counted from 0
 };
 
-/// A component of a frame's error, and its change by an error.
+/// A component of a frame's error, and the change of the component by an error of the file.
 struct ComponentLines {
-  std::size_t component;  ///< position in [epsilon; delta]
+  std::size_t component;  ///< index in [epsilon; delta]
   Expression scale;       ///< change of the component per unit of the error
 };
 
@@ -135,13 +136,12 @@ struct ErrorLines {
   /// Limbs and frames in which the error acts. Each of these limbs has an error of its own. Empty if `places` are
   /// given.
   SlotLines slot;
-  /// Positions in [epsilon; delta] of components, each of which is an error of its own; none if `combination` is given.
+  /// Indices in [epsilon; delta] of components, each of which is an error of its own; none if `combination` is given.
   std::vector<std::size_t> components;
   Expression scale{"1", "scale", {}, true};  ///< factor from the error to the component of the frame's error
   std::vector<ComponentLines> combination;   ///< components that form one error together
-  std::vector<PlaceLines> places;            ///< places of an error that acts in several
-  /// Joint of the limb. What the error changes is proportional to the displacement of this joint; none if it is
-  /// constant.
+  std::vector<PlaceLines> places;            ///< the places, if the error acts in several places at once
+  /// Joint of the limb to whose displacement the effect of the error is proportional; none if the effect is constant.
   std::optional<Reference> grows_with;
   std::optional<Expression> from;  ///< displacement from home at which the error is zero; none: 0
   std::string description;         ///< description; empty: the description of the frame

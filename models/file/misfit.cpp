@@ -26,7 +26,7 @@ constexpr double kMillimetres = 1e3;
 /// A joint whose point or axis may be wrong, in a limb and its copies.
 struct Suspect {
   std::vector<std::size_t> limbs;
-  std::size_t first;  ///< position of its first elementary joint
+  std::size_t first;  ///< index of its first elementary joint
   std::size_t count;  ///< number of its elementary joints
   bool point;         ///< true: its point is suspected; false: its axis
 };
@@ -36,8 +36,8 @@ struct Suspect {
 struct PoseEquations {
   State state;
   lie::Matrix6<double> root;
-  /// [6 limbs x D] Orthonormal basis of the D-dimensional space of this mismatch. It is perpendicular to the effects of
-  /// the joints' motions and of the pose components that are not given.
+  /// [6 limbs x D] Orthonormal basis of the D-dimensional space of this mismatch. This space is perpendicular to the
+  /// effects of the joints' motions and of the pose components that are not given.
   Matrix rest;
   Vector mismatch;  ///< [D] mismatch in this basis
 };
@@ -138,7 +138,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> twists_of(const Suspect& suspect, const
 /// A correction of a suspect, and the mismatch that would remain.
 struct Correction {
   Suspect suspect;
-  Vector by;       ///< correction along the suspect's twists, rad or shares of the reach
+  Vector by;       ///< correction along the suspect's twists (rad, or share of the reach)
   Vector is_left;  ///< [poses] remaining |mismatch| at each pose
 };
 
@@ -197,8 +197,8 @@ InputError misfit(const Mechanism& mechanism, std::span<const PoseMobility> pose
     Correction correction = correction_of(unit, equations, suspect);
     if (!best || correction.is_left.norm() < best->is_left.norm()) best = std::move(correction);
   }
-  // The gap is a mean over pairs of limbs, but the remaining mismatch is a sum over limbs: sum over pairs of |r_k -
-  // r_i|^2 = limbs x sum of |r_i|^2.
+  // The response `gap` is a mean over pairs of limbs, but the remaining mismatch is a sum over limbs i: the sum of |r_k
+  // - r_i|^2 over pairs is (number of limbs) x (sum of |r_i|^2).
   const double is_left =
       mechanism.reach * best->is_left.maxCoeff() * std::sqrt(2.0 / static_cast<double>(unit.loops()));
   const std::size_t first = best->suspect.limbs.front();

@@ -93,7 +93,7 @@ Jacobians jacobians(const Mechanism& unit, std::span<const double> q) {
   return made;
 }
 
-/// Replaces the columns of all joints of a drive by their sum, at the position of the first joint.
+/// Replaces the columns of all joints of a drive by one column, their sum. It is the column of the drive's first joint.
 Jacobians with_one_column_a_drive(Jacobians all, const std::vector<Drive>& drives) {
   std::vector<Index> kept;
   std::vector<bool> follows(all.joints.size(), false);

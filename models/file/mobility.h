@@ -25,7 +25,7 @@ struct Mobility {
   std::size_t over_constraints = 0;   ///< number of over-constraints: loop_equations - rank
   std::size_t platform_freedoms = 0;  ///< rank of the platform's twists
   std::size_t platform_rotates = 0;   ///< rank of the platform's angular velocities
-  std::size_t idle = 0;               ///< freedoms that do not move the platform
+  std::size_t idle = 0;               ///< number of freedoms that do not move the platform
   /// Rank of the passive joints' columns; if it is below loop_equations, limbs deform each other.
   std::size_t passive_rank = 0;
   std::size_t left_when_locked = 0;  ///< number of freedoms of the passive joints while all drives are held

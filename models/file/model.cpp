@@ -26,8 +26,8 @@ struct Read {
   }
 };
 
-/// How a model measures what limbs do to each other: by forces from stiffness, by mismatch in the platform's metric, or
-/// by mismatch as published (1 rad weighs as much as 1 m).
+/// The measure by which a model states how limbs deform each other: forces from stiffness, mismatch in the platform's
+/// metric, or mismatch as published (1 rad weighs as much as 1 m).
 enum class By { stiffness, platform, published };
 
 /// Throws if a named point of the platform gives a response the name of another one.
@@ -137,7 +137,7 @@ std::vector<OwnResponse> by_names(const std::vector<OwnResponse>& own, const Mod
 }
 
 /// The catalog entry, extended for each of its metrics by the responses `own` that the file defines. `own` refers to
-/// other responses by their positions in the model `from`.
+/// other responses by their indices in the model `from`.
 CatalogEntry with_own(CatalogEntry entry, const std::vector<OwnResponse>& own, const ModelDescription& from) {
   if (entry.other_metric != nullptr) {
     entry.other_metric = std::make_shared<const CatalogEntry>(with_own(*entry.other_metric, own, from));
@@ -165,7 +165,7 @@ CatalogEntry entry_of(MechanismFile file, const std::string& path, const std::st
   }
   const std::vector<OwnResponse> own = read_own_responses(text, path, other->description);
   if (own.empty()) return *other;
-  // Throws for a pose that the model does not have.
+  // Throws if a response is relative to a pose that the model does not reach.
   static_cast<void>(with_responses(other->build(defaults, 0), own));
   return with_own(*other, own, other->description);
 }

@@ -18,7 +18,7 @@ struct BodyLines {
   Place place;                     ///< place of its table
   std::optional<Triple> at;        ///< origin at home
   std::optional<Triple> x;         ///< x axis at home; none: the base's x axis
-  std::optional<Triple> z;         ///< z axis at home, given if x is
+  std::optional<Triple> z;         ///< z axis at home; given if and only if `x` is given
   Copies copies;                   ///< number of copies
   std::optional<Expression> mass;  ///< mass; none: 0
   std::optional<Triple> centre;    ///< centre of mass, in the body's frame; none: its origin

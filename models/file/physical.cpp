@@ -36,7 +36,7 @@ struct KnownUnit {
 };
 
 /// The dimensions whose units in studies (engine/base/units.h) are also units in expressions. Time is missing, because
-/// h could not be distinguished from a parameter.
+/// its unit "h" (hour) could not be distinguished from a parameter with the name h.
 constexpr std::array<Dimension, 4> kOfStudies{Dimension::length, Dimension::angle, Dimension::force, Dimension::moment};
 
 constexpr std::array<KnownUnit, 22> kOthers{{{"N/m", 1.0, kStiffness.powers},

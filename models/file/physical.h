@@ -69,9 +69,9 @@ std::string dimension_text(const Powers& powers);
 
 /// A unit that was found at the beginning of a text.
 struct WrittenUnit {
-  double si;           ///< size of the unit in SI
+  double si;           ///< value of the unit in SI
   Powers powers;       ///< its dimension
-  std::size_t length;  ///< number of bytes of its name in the text
+  std::size_t length;  ///< number of bytes of the unit's name in the text
 };
 
 /// Finds the unit with the longest name at the beginning of a text: "N m/rad", not "N". In the text a micro sign

@@ -7,7 +7,8 @@
 namespace poesy::file {
 namespace {
 
-/// Tells 0 and -0 apart, from which the signs of zeros in a result may follow.
+/// Returns true if two numbers are equal in every bit. 0 and -0 differ, because the signs of zeros in a result may
+/// depend on them.
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 }  // namespace

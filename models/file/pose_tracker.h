@@ -11,8 +11,8 @@
 
 namespace poesy::file {
 
-/// Tracks poses, and remembers the last ones: reachability, solves and pictures of one pose ask for the same path in
-/// turn. A result depends only on the mechanism and the pose. Several threads may call track() at once.
+/// Tracks poses, and remembers the last ones: reachability, solves and pictures of one pose need the same path, one
+/// after the other. A result depends only on the mechanism and the pose. Several threads may call track() at once.
 class PoseTracker {
  public:
   /// Copies the mechanism.

@@ -13,10 +13,11 @@ namespace {
 using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 
-/// A limb counts as strained by a wrench only if the strain is at least this share of the limb's largest compliance.
+/// A limb counts as strained by wrenches of norm 1 only if the strain is more than this share of the limb's largest
+/// compliance.
 constexpr double kRigid = 1e-12;
-/// Two limbs load each other if |A B^T| exceeds this, where A and B are the rows of the two limbs in a basis of the
-/// wrenches.
+/// Two limbs load each other if |A B^T| exceeds this, where A and B are the rows of the two limbs in an orthonormal
+/// basis of the wrenches.
 constexpr double kNothing = 1e-6;
 
 /// An orthonormal basis of a matrix's null space.
@@ -46,7 +47,7 @@ Matrix unstrained(const assembly::Equilibrium& equations, double rank_threshold)
   return balanced * svd.V.rightCols(balanced.cols() - strained);
 }
 
-/// The limbs that load each other by these wrenches: the first such limb, and all limbs that are connected with it.
+/// The first limb that these wrenches load, and all limbs whose loads in these wrenches depend on its load.
 std::vector<std::size_t> loaded_together(const Matrix& wrenches, const assembly::Equilibrium& equations) {
   const std::span<const Index> first = equations.first_wrenches();
   const auto rows = [&](std::size_t e) { return wrenches.middleRows(first[e], first[e + 1] - first[e]); };

@@ -13,7 +13,7 @@ namespace {
 /// A singular value (as a share of the largest) up to this may be zero in the exact mechanism and differ from zero only
 /// because numbers are rounded.
 constexpr double kLargestZero = 1e-2;
-/// The largest number of gaps between singular values that are tried.
+/// The largest number of gaps between consecutive singular values at which the rank is tried.
 constexpr std::size_t kMostGaps = 4;
 /// Singular values that would be zero without rounding may be larger at other poses, by at most this factor. The second
 /// factor is tried if the mechanism does not pass with the first one.
@@ -30,7 +30,7 @@ std::optional<InputError> problem_of(Check check) {
   return std::nullopt;
 }
 
-/// A rank, and the singular values just above and below its threshold, as shares of the largest.
+/// A rank, and the singular values (as shares of the largest) just above and below the threshold that gives this rank.
 struct Gap {
   std::size_t rank;
   double above;

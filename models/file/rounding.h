@@ -8,21 +8,21 @@
 /// approximately.
 namespace poesy::file {
 
-/// The largest gap of the limbs that counts as rounding, as a share of the reach.
+/// The largest response `gap` of perfect limbs that counts as rounding, as a share of the reach.
 inline constexpr double kRoundedGap = 1e-4;
-/// If the gap of the limbs is at most this share of the reach, the message names the joint whose numbers would close
-/// the loops.
+/// If the response `gap` of perfect limbs is above kRoundedGap but at most this share of the reach, the error message
+/// names the joint whose corrected numbers would close the loops.
 inline constexpr double kNamedGap = 1e-2;
 
 /// A mechanism that passed its check: it moves as its coordinates say.
 struct Checked {
   Mechanism mechanism;  ///< the mechanism, with the precision of its numbers
   Mobility home;        ///< mobility at home, with this precision
-  /// Largest gap of the perfect limbs at home and at the tested poses, m; 0 if the numbers are exact.
+  /// Largest response `gap` of the perfect limbs at home and at the tested poses (m); 0 if the numbers are exact.
   double mismatch = 0.0;
 };
 
-/// Whether the check requires that some pose of the workspace is reached (in_reach) or not (as_it_is).
+/// in_reach: the check requires that some pose of the workspace is reached. as_it_is: it does not.
 enum class Workspace { as_it_is, in_reach };
 
 /// Checks a mechanism. The numbers count as exact if it passes check_mobility(), and if no path to the poses of

@@ -10,7 +10,7 @@
 namespace poesy::file {
 namespace {
 
-/// A component of a direction or a position that is smaller than this counts as rounding.
+/// A number (component of a direction, or a length in mm, or an angle in deg) below this is shown as 0.
 constexpr double kNothing = 5e-7;
 constexpr double kMillimetres = 1e3;
 

@@ -13,10 +13,10 @@ namespace poesy::file {
 namespace {
 
 /// The shortest distance between joints that counts as a link, as a share of the reach. Joints that are closer belong
-/// to one part, whose errors may be as large as their distance.
+/// to one part, whose errors may be as large as the distance of the joints.
 constexpr double kShortestLink = 0.02;
 
-/// The positions of the responses with these names, without names that no response has.
+/// The indices of the responses with these names, without names that no response has.
 std::vector<std::size_t> positions(const std::vector<Response>& responses, std::span<const std::string_view> names) {
   std::vector<std::size_t> list;
   for (const std::string_view name : names) {

@@ -36,8 +36,8 @@ class TrackedModel : public Model {
   /// Completes the description, except for responses and the data that follow from them.
   TrackedModel(const MechanismFile& file, Checked found);
 
-  /// Sets the responses, and those that summaries show. deforms: true if the gap may be among those that summaries
-  /// show.
+  /// Sets the responses, and those that summaries show. deforms: true if the response `gap` may be among those that
+  /// summaries show.
   void set_responses(std::vector<Response> responses, bool deforms = true);
 
   /// The mechanism and its tracker, for derived classes that solve the mechanism.

@@ -18,16 +18,16 @@ using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 constexpr double kFirstStep = 0.25;           ///< first step along the path, as a share of the path
 constexpr double kSmallestStep = 1.0 / 2048;  ///< smallest step along the path, as a share of the path
-/// Largest change of a joint in Newton's first step, rad or shares of the reach.
+/// The first step of Newton's method must not change any unknown by more than this (rad, or share of the reach).
 constexpr double kLargestMove = 0.5;
 constexpr double kContraction = 0.25;  ///< largest ratio of a Newton step to the previous one
-constexpr double kRest = 1e-12;        ///< a smaller Newton step ends the iteration
-/// A smaller residual also ends the iteration, rad or shares of the reach.
+constexpr double kRest = 1e-12;        ///< the iteration ends if Newton's step changes no unknown by more than this
+/// Newton's iteration also ends if the largest component of the residual (rad, or share of the reach) is at most this.
 constexpr double kRounding = 1e-13;
 /// Smallest pivot with which columns count as independent, as a share of the largest pivot.
 constexpr double kDependent = 1e-12;
-constexpr int kMostSteps = 12;
-constexpr int kMostSettlings = 60;
+constexpr int kMostSteps = 12;      ///< largest number of steps of Tracker::close()
+constexpr int kMostSettlings = 60;  ///< largest number of steps of settle_limb()
 
 Index index(std::size_t value) { return static_cast<Index>(value); }
 
@@ -100,8 +100,8 @@ Matrix Tracker::matrix_of(const LoopEquations& equations) const {
   return all(Eigen::all, free_);
 }
 
-/// A Newton step. For rounded numbers it minimises the residual in the metric, among the steps that leave the idle
-/// freedoms at rest.
+/// A step of Newton's method. For rounded numbers, the step minimises the residual in the metric, among the steps that
+/// do not move the idle freedoms.
 Vector Tracker::step(const LoopEquations& equations, const State& state) const {
   const Matrix matrix = matrix_of(equations);
   if (!unit_.precision.rounded()) return linalg::least_squares(matrix, equations.residual, kRankThreshold);
@@ -132,8 +132,8 @@ void Tracker::move_together(State& state) const {
   }
 }
 
-/// Newton's method. It continues only as long as every step is smaller than a fixed fraction of the previous one, so it
-/// finds the root that continues the path.
+/// Solves the loop equations by Newton's method. The method gives up if a step is larger than kContraction times the
+/// previous one, so it finds the root that continues the path.
 Tracker::Ending Tracker::close(State& state) const {
   double most = kLargestMove;
   for (int n = 0; n < kMostSteps; ++n) {
@@ -153,10 +153,11 @@ Tracker::Ending Tracker::close(State& state) const {
 
 namespace {
 
-/// Minimises the sum of squares of the displacements q of those joints of a limb that can move while its end is fixed.
-/// This is Newton's method on min |q|^2 / 2 with fixed g(q). To second order the constraint log(g(q) g^-1) is sum xi_j
-/// dq_j + sum_{i<j} [xi_i, xi_j] dq_i dq_j / 2. free: positions of the joints that may move. rank: rank of the columns
-/// of these joints. end: pose of the limb's end in the body at which the limb begins.
+/// Moves joints of a limb such that the sum of squares of their displacements q is least while the limb's end stays at
+/// its pose g. This is Newton's method on min |q|^2 / 2 with fixed g(q). To second order the constraint log(g(q) g^-1)
+/// is sum xi_j dq_j + sum_{i<j} [xi_i, xi_j] dq_i dq_j / 2, with the twists xi_j of the joints. free: indices of the
+/// joints that may move. rank: rank of the columns of these joints. end: pose of the limb's end in the body at which
+/// the limb begins.
 bool settle_limb(const Limb& limb, const std::vector<std::size_t>& free, Index rank, const Transform& end,
                  Eigen::Ref<Vector> q) {
   const Index joints = index(free.size());

@@ -21,24 +21,24 @@ struct Tracked {
   Transform platform;       ///< frame base_T_platform at the end of the path
   double share;             ///< share of the path that was tracked; 1 if the pose is reached
   std::string unreachable;  ///< reason why the path ended; empty if the pose is reached
-  /// True if the path ended because the loops stay open beyond its end, although no pose on the path is singular.
+  /// True if the path ended because the loops stay open beyond its end, although the pose at its end is not singular.
   bool open = false;
-  double mismatch = 0.0;  ///< gap of the limbs at the end of the path if numbers are rounded, m; else 0
+  double mismatch = 0.0;  ///< response `gap` of perfect limbs at the end of the path if numbers are rounded (m); else 0
   State state = {};       ///< state at the end of the path, with lengths in units of the reach
 };
 
-/// Which numbers define the configuration: the coordinates of the platform (inverse kinematics), or the displacements
-/// of the drives from home, in the order of drives_of() (forward kinematics).
+/// The numbers that define the configuration: the coordinates of the platform (inverse kinematics), or the
+/// displacements of the drives from home, in the order of drives_of() (forward kinematics).
 enum class Given { coordinates, drives };
 
-/// Computes nominal joint displacements at a pose. The tracker follows the straight line in the given numbers from
-/// home, and solves for all other joint displacements and body poses by Newton's method. It halves the steps along the
-/// line until Newton converges at once, so the limbs stay in the working mode of home. Each Newton step is the
-/// least-squares solution with the least norm, so redundant loop equations do no harm. The joints of one drive are one
-/// unknown. If several displacements give the pose, the tracker chooses among those nearby the ones with the least sum
-/// of squares (rad, and lengths in units of the reach), so that idle freedoms do not depend on the path. With rounded
-/// numbers (Precision) a pose is the least-squares one in the metric. A result depends only on the mechanism and the
-/// pose.
+/// Computes nominal joint displacements at a pose. From home, the tracker changes the given numbers (Given) in
+/// proportion, step by step, to their values at the pose. After each step Newton's method solves for all other joint
+/// displacements and body poses. The tracker halves a step until Newton's method converges at once, so that the limbs
+/// stay in the working mode that they have at home. Each Newton step is the least-squares solution with the least norm,
+/// so redundant loop equations do no harm. The joints of one drive are one unknown. If several displacements give the
+/// pose, the tracker chooses among those nearby the ones with the least sum of squares (rad, and lengths in units of
+/// the reach), so that idle freedoms do not depend on the path. With rounded numbers (Precision) a pose is the
+/// least-squares one in the metric. A result depends only on the mechanism and the pose.
 class Tracker {
  public:
   /// Copies the mechanism. Precondition for Given::drives: if all drives are held, the platform has no freedom.
@@ -61,12 +61,12 @@ class Tracker {
 
   Mechanism unit_;                  ///< mechanism with lengths in units of the reach
   double reach_;                    ///< reach, m
-  Given by_;                        ///< which numbers are given
-  std::vector<std::size_t> given_;  ///< positions of the given numbers in a state
-  std::vector<double> units_;       ///< [given] unit of each number, SI
-  std::vector<std::size_t> free_;   ///< positions of all other numbers in a state, ascending
+  Given by_;                        ///< kind of the given numbers
+  std::vector<std::size_t> given_;  ///< indices of the given numbers in a state
+  std::vector<double> units_;       ///< [given] SI value of the unit of each given number
+  std::vector<std::size_t> free_;   ///< indices of all other numbers in a state, ascending
   std::vector<Drive> shared_;       ///< drives of several joints, each of which is one unknown at its first joint
-  /// For each limb, the joints that are not given and share no drive with others, by their positions among the limb's
+  /// For each limb, the joints that are not given and share no drive with others, by their indices among the limb's
   /// joints that move.
   std::vector<std::vector<std::size_t>> limb_joints_;
   std::vector<std::size_t> limb_ranks_;  ///< [limbs] rank of the columns of these joints at home
