@@ -146,7 +146,8 @@ void describe_limb(const Configuration& nominal, std::size_t i, ClosureLimb& lim
   limb.q = nominal.limbs[i].q;
 }
 
-/// Sets the constant errors of a pose, and for each varied error the row of `values` that has its numbers.
+/// Sets the constant errors of a pose, and for each varied error the row of SampleBlock::values that contains its
+/// values.
 void vary(ClosurePose& pose, std::span<const double> errors, std::span<const FactorIndex> varied) {
   for (std::size_t i = 0; i < kLimbs; ++i) {
     ClosureLimb& limb = pose.limb[i];

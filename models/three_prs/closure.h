@@ -39,22 +39,22 @@ struct Closing {
   std::uint32_t iterations;  ///< number of iterations
 };
 
-/// Computes the starting point of solves at a nominal configuration. It is the first-order motion by the errors: one
-/// Newton step from zero displacement with the nominal Jacobian. At a singular pose solves start from zero
-/// displacement.
+/// Computes the starting point of solves at a nominal configuration. This point is the first-order motion that the
+/// errors cause: one Newton step from zero displacement with the nominal Jacobian. At a singular pose solves start from
+/// zero displacement.
 class ClosureStart {
  public:
   /// Inverts the nominal Jacobian at a configuration.
   ClosureStart(const Geometry& geometry, const Configuration& nominal);
 
-  /// The first-order motion of the platform for limbs with errors, where a solve starts.
+  /// The first-order motion of the platform for limbs with errors, at which a solve starts.
   PlatformMotion operator()(const std::array<LimbWithErrors, kLimbs>& limbs) const;
 
   /// The matrix that maps the values of the six equations at zero displacement to [delta; dr] (rad, m); zero at a
   /// singular pose.
   const lie::Matrix6<double>& from_residual() const { return from_residual_; }
-  /// The order in which partial pivoting eliminates the six equations for [dr; delta]: entry n is the position of
-  /// equation n in this order.
+  /// The order in which partial pivoting eliminates the six equations, if the columns of the Jacobian are in the order
+  /// [dr; delta]: entry n is the place (from 0) of equation n in this order.
   const std::array<std::size_t, 6>& elimination_order() const { return order_; }
   /// The sign of the Jacobian's determinant without errors and motion: 1.0 or -1.0, or 0 at a singular pose.
   double orientation() const { return orientation_; }
@@ -82,7 +82,8 @@ struct ClosureIteration {
 /// Called after each iteration.
 using ClosureObserver = std::function<void(const ClosureIteration&)>;
 
-/// Finds the motion at which all limbs close, for errors of finite size. The nine equations are
+/// Finds the motion (E, dr) of the platform at which all limbs close, for errors of finite size. In the symbols of San
+/// et al. 2023 (d: error or displacement; tA, tB, tB': attitude errors; E(t): their rotations), the nine equations are
 ///     r + dr + E R R_i (c0 + dc_i) = R_i (a0 + da_i) + R_i E(tA_i) e3 (q_i + dq_i) + R_i E(tA_i) E(tB_i) db_i
 ///                                    + R_i E(tA_i) E(tB_i) Ry(th_i + dphi_i) E(tB'_i) e3 (l + dl_i),  i = 1, 2, 3
 /// of which Eq. 14 of San et al. 2023 is the first order. The swings dphi_i are eliminated exactly: a rod that turns
@@ -92,7 +93,7 @@ using ClosureObserver = std::function<void(const ClosureIteration&)>;
 ///
 /// Stopping rule: let c_j be the largest component of step j (rad, m). Step j ends the solve as
 ///     converged      when c_j is below the tolerance;
-///     stagnated      when c_j is at rounding level, 64 eps x max(1, |r|), and not below the smallest c so far;
+///     stagnated      when c_j is at most the rounding level, 64 eps x max(1, |r|), and not below the smallest c so far;
 ///     iteration_cap  when j is the allowed number of iterations;
 ///     singular       when a pivot of the Jacobian falls to rounding, or when the solve has converged where the
 ///                    determinant of the Jacobian has the other sign: as errors grow from zero, every path from the

@@ -126,7 +126,7 @@ Separation separation(const Geometry& geometry, const Configuration& nominal) {
 Corrections corrections(const Geometry& geometry, const Configuration& nominal) {
   const Effects effects = first_order_effects(geometry, nominal);
   Corrections found;
-  // The correction of a carriage has the effect of an error of its initial position.
+  // The correction of a carriage has the same effect as an error of the carriage's initial position.
   for (std::size_t i = 0; i < kLimbs; ++i) {
     found.motions.col(static_cast<Eigen::Index>(i)) = effects.col(static_cast<Eigen::Index>(factor_of(i, Source::q)));
   }

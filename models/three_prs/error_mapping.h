@@ -33,7 +33,7 @@ Effects first_order_effects(const Geometry& geometry, const Configuration& nomin
 /// The first-order effect of each error on the platform, and its residual after the best correction of the carriages
 /// (San et al. 2023, Section 4.2). The rows of J (velocity_jacobian()) and G (error_mapping()) are the three drive rows
 /// and the three constraint rows. So an error has a drive part J^-1 [G_drive; 0] and a constraint part J^-1 [0;
-/// G_constraint], and its effect is their sum. The residual is the minimum of effect + J^-1 [dq; 0] over all
+/// G_constraint], and its effect is their sum. The residual is the least norm of effect + J^-1 [dq; 0] over all
 /// corrections dq of the three carriages.
 ///
 /// The norm of a twist [theta; dr] is the root mean square displacement of the three spherical joints on the platform,
@@ -43,7 +43,7 @@ Separation separation(const Geometry& geometry, const Configuration& nominal);
 
 /// The first-order motions of the platform by its carriages, and the best correction of a displacement.
 struct Corrections {
-  /// [12 x 3] Motion per unit of each carriage's position, rows as in Effects.
+  /// [12 x 3] Motion per unit displacement of each carriage, rows as in Effects.
   Eigen::Matrix<double, kMotions, static_cast<int>(kLimbs)> motions;
   /// [3 x 6] The matrix that maps a displacement x = [theta; dr] to the correction dq that minimises the norm of x -
   /// motions.topRows<6>() dq. The norm is that of separation().

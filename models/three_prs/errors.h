@@ -14,9 +14,9 @@ inline constexpr std::size_t kFrames = 8;  ///< number of error sources of a lim
 /// source.
 std::vector<Factor> factors();
 
-/// The sets of errors, after San et al. 2023: all (the 51 with an effect); compensable (30: the paper's 24, with its
-/// scalar c as three components) and non-compensable (21), Section 4.2; platform-hinges (FS), initial-position (T),
-/// revolute-gap (R), rod-length (L), Section 5.2.
+/// The sets of errors, after San et al. 2023: "all" (the 51 with an effect); "compensable" (30: the paper's 24, with
+/// its scalar c as three components) and "non-compensable" (21), Section 4.2; "platform-hinges" (FS in the paper),
+/// "initial-position" (T), "revolute-gap" (R), "rod-length" (L), Section 5.2.
 std::vector<FactorSet> factor_sets();
 
 /// [60] The class of each error: "compensable", "non-compensable", or empty if it has no effect (San et al. 2023,

@@ -13,9 +13,10 @@ namespace poesy::three_prs {
 inline constexpr std::size_t kComponents = 9;
 inline constexpr std::size_t kResponses = kComponents + 3;
 
-/// The responses of all evaluators below. First come nine components in the base frame: theta_x, _y, _z (rotation
-/// vector of the platform, rad), x, y, z (displacement of P, m), tip_x, _y, _z (displacement of the tool tip, m). Then
-/// come their norms: rotation, position, tip_position.
+/// The responses of all evaluators below. First come nine components in the base frame: `theta_x`, `theta_y`, `theta_z`
+/// (rotation vector of the platform, rad), `x`, `y`, `z` (displacement of P, m), `tip_x`, `tip_y`, `tip_z`
+/// (displacement of the tool tip, m). Then come the norms of these three vectors: `rotation`, `position`,
+/// `tip_position`.
 std::vector<Response> responses();
 
 /// The only additional output (Detail in model/model.h), `swing`: the additional swings dphi_i of the three rods (rad).
@@ -35,9 +36,9 @@ enum class Fidelity : std::size_t {
 std::unique_ptr<Evaluator> head_evaluator(const Geometry& geometry, Fidelity fidelity, const SolverOptions& options);
 
 /// An evaluator like head_evaluator(), but with the displacements after the best correction of the carriages
-/// (Model::calibrated_evaluator, Corrections). It subtracts the motion by the correction from [theta; dr], and the
-/// swings by the correction from the swings. The displacement of the tool tip and the norms follow from the corrected
-/// [theta; dr], with finite rotations if the fidelity is exact. At a singular pose every sample is singular.
+/// (Model::calibrated_evaluator, Corrections). It subtracts from [theta; dr], and from the swings of the rods, the
+/// parts that the correction causes. The displacement of the tool tip and the norms follow from the corrected [theta;
+/// dr], with finite rotations if the fidelity is exact. At a singular pose every sample is singular.
 std::unique_ptr<Evaluator> calibrated_head_evaluator(const Geometry& geometry, Fidelity fidelity,
                                                      const SolverOptions& options);
 
@@ -51,11 +52,11 @@ SolveTrace head_trace(const Geometry& geometry, Fidelity fidelity, std::span<con
                       std::span<const double> errors, const SolverOptions& options);
 
 /// An evaluator of the hybrid machine, made from an evaluator of its head. Poses are (alpha, beta, z, slide_x,
-/// slide_y). Errors are the 60 of the head followed by the 13 of the slides. Responses are those of the head, as
-/// differences to the nominal pose in the rack's frame. At exact fidelity the displaced slides carry the head's
-/// displaced platform (nominal_T_head()); to first order the effects of both are added. The swings of the rods, status
-/// and iterations are the head's, but a sample whose responses overflow is non_finite. The head is evaluated once for
-/// each block, with a single sample if none of its errors vary.
+/// slide_y). Errors are the 60 of the head followed by the 13 of the slides. Responses are those of the head; they
+/// state displacements from the nominal pose in the rack's frame. At exact fidelity the displaced slides carry the
+/// head's displaced platform (nominal_T_head()); to first order the effects of both are added. The swings of the rods,
+/// status and iterations are the head's, but a sample whose responses overflow is non_finite. The head is evaluated
+/// once for each block, with a single sample if none of its errors vary.
 std::unique_ptr<Evaluator> machine_evaluator(const Geometry& geometry, Fidelity fidelity,
                                              std::unique_ptr<Evaluator> head);
 

@@ -14,7 +14,7 @@
 namespace poesy::three_prs {
 
 using simd::kMostLanes;
-/// Number of samples in a tile, so small that their data stays in the first-level cache.
+/// Number of samples in a tile. It is so small that the data of a tile stays in the first-level cache.
 inline constexpr std::size_t kTile = 64;
 
 /// The number of components of three vectors: the platform's rotation, and the displacements of P and of the tool tip.
@@ -71,7 +71,8 @@ struct ClosurePose {
   /// Matrix from the values of the equations at zero displacement to the starting point [delta; dr] of the iteration:
   /// rotation of the platform (rad) and displacement of P (m).
   double start[36];
-  /// Position of each equation in the elimination; the columns of the Jacobian are [dr; delta].
+  /// [equations] Row (place in the order of elimination) of each equation. Unlike above, dr is before delta in the
+  /// columns of the kernel's Jacobian.
   std::size_t row[6];
   double pivot_sign;  ///< sign of the product of the pivots without errors: 1.0 or -1.0; 0 at a singular pose
 };

@@ -51,14 +51,14 @@ Pose moved(const Pose& pose, const Matrix3& R, const lie::Screw<double>& twist) 
 Vector3 carriages(const Configuration& at) { return {at.limbs[0].q, at.limbs[1].q, at.limbs[2].q}; }
 
 /// Returns true if a point is so far away that squares of its distance may overflow, or that rounding there exceeds the
-/// size of the mechanism. Points that are nearer than that, but beyond the rails, get a message of their own.
+/// size of the mechanism. Nearer points that the rails do not reach get a message of their own.
 bool is_far(const Geometry& g, const Vector3& place) {
   constexpr double kReaches = 1e6;
   const double reach = g.rail + g.a + g.l + g.c + g.h;
   return !(place.cwiseAbs().maxCoeff() <= kReaches * reach);
 }
 
-/// The upright pose at the mean height of carriages with positions q (m).
+/// The upright pose at the mean height of carriages with displacements q (m) along their rails.
 Pose upright(const Geometry& g, const Vector3& q) {
   return {0.0, 0.0, q.mean() + std::sqrt(g.l * g.l - (g.c - g.a) * (g.c - g.a))};
 }

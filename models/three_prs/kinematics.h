@@ -14,7 +14,7 @@ struct Geometry {
   double c = 0.135;   ///< radius of the circle of the platform's spherical joints; the paper calls it inscribed
   double l = 0.57;    ///< rod length, from the revolute to the spherical joint
   double rail = 0.5;  ///< travel of each carriage: 0 <= q <= rail
-  double h = 0.1717;  ///< tool tip below P along the platform's z axis; not printed in the paper
+  double h = 0.1717;  ///< distance of the tool tip below P, along the platform's z axis; not printed in the paper
 };
 
 /// Pose coordinates: the tilts alpha, beta (rad) of R = Rx(alpha) Ry(beta) Rz(gamma) (San et al. 2023, Eq. 1), and the
@@ -27,7 +27,7 @@ struct Pose {
 
 /// One limb at a nominal pose. The limb's frame {O_i} is the base frame rotated about z by 0, 120 or 240 deg.
 struct LimbConfiguration {
-  double q;  ///< position of the carriage along the rail, downwards from the rail's upper end, m
+  double q;  ///< displacement of the carriage along the rail, downwards from the rail's upper end, m
   /// The swing th_i: rotation of the rod about the limb's y axis, measured from the direction of the rail, rad.
   double swing;
   lie::Vector3<double> c;  ///< c_i: from P to the spherical joint, base frame, m
@@ -69,7 +69,7 @@ lie::Vector3<double> tool(const Geometry& geometry, const lie::Matrix3<double>& 
 /// pose with tilts between -90 and 90 deg. Does not check whether the limbs reach the pose.
 std::optional<Pose> pose_of_tip(const Geometry& geometry, const lie::Vector3<double>& tip);
 
-/// Forward kinematics: the pose with the carriages at these positions q (m), to rounding, with the platform's joints
+/// Forward kinematics: the pose for these displacements q of the carriages (m), to rounding, with the platform's joints
 /// below their carriages. Newton's method starts at the upright pose. None if no such pose exists near the upright pose
 /// with tilts between -90 and 90 deg. Does not check the length of the rails.
 std::optional<Pose> pose_of_carriages(const Geometry& geometry, const lie::Vector3<double>& q);

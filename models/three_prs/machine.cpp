@@ -22,7 +22,7 @@ FactorSet set_of_places(const char* name, const char* description, std::size_t f
   return set;
 }
 
-/// The sets of errors of the machine: all, head, slides, then the head's own sets except its "all".
+/// The sets of errors of the machine: "all", "head", "slides", then the head's own sets except its "all".
 std::vector<FactorSet> machine_sets(const ModelDescription& head) {
   FactorSet slides = set_of_places("slides", "all errors of the slides", kFactors, kFactors + kSlideFactors);
   FactorSet head_set = *head.find_set("all");

@@ -14,7 +14,7 @@ namespace {
 
 using Vector3 = lie::Vector3<double>;
 
-/// A varied error of the slides: its position among the slides' errors, and its row in SampleBlock::values.
+/// A varied error of the slides: its index among the slides' errors, and its row in SampleBlock::values.
 struct VariedSlide {
   std::size_t factor;
   std::size_t row;

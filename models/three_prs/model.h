@@ -8,10 +8,10 @@ namespace poesy::three_prs {
 CatalogEntry catalog_entry();
 
 /// The five-degree-of-freedom hybrid machine of San, Ding, Zhang, Wu 2023, Actuators 12, 324, Section 2. Two serial
-/// slides carry the 3-PRS as a head; fidelities are those of the head. Pose coordinates are alpha, beta, z, slide_x,
-/// slide_y. Factors are the errors of the head, in their order, then those of the slides. Responses are those of the
-/// head, in the rack's frame {O}. The pose chart "tip" has the coordinates alpha, beta and the position of the tool
-/// tip.
+/// slides carry the 3-PRS as a head; fidelities are those of the head. Pose coordinates are `alpha`, `beta`, `z`,
+/// `slide_x`, `slide_y`. Factors are the errors of the head, in their order, then those of the slides. Responses are
+/// those of the head, in the rack's frame {O}. The coordinates of the pose chart "tip" are `alpha`, `beta` and the
+/// position of the tool tip.
 CatalogEntry machine_catalog_entry();
 
 }  // namespace poesy::three_prs

@@ -17,8 +17,8 @@ struct Travel {
   double y = 0.6;  ///< travel of the Y slide, m: slide_y is from -y/2 to y/2
 };
 
-/// Positions of the slides' errors: three for each vector (components x, y, z), one for the scalar. An error is its
-/// value at the commanded position of its slide. EXX and so on are the symbols of ISO 230-1.
+/// The index of the first component of each error of the slides. Vectors have three components (x, y, z); squareness is
+/// a scalar. An error is stated for the commanded position of its slide. EXX and so on are the symbols of ISO 230-1.
 enum class SlideSource : std::size_t {
   x_translation = 0,  ///< translation errors of the X slide along x, y and z: EXX, EYX, EZX
   x_rotation = 3,     ///< rotation errors of the X slide about x, y and z: EAX, EBX, ECX
@@ -29,9 +29,9 @@ enum class SlideSource : std::size_t {
 inline constexpr std::size_t kSlideFactors = 13;
 using SlideErrors = std::span<const double, kSlideFactors>;
 
-/// The errors x_position ... squareness, in the order of SlideSource; descriptions have the symbols of ISO 230-1. The X
-/// slide counts as limb 4, the Y slide as limb 5. Their frames are numbered after those of the head: translation and
-/// rotation of each slide, then squareness.
+/// The errors `x_position` ... `squareness`, in the order of SlideSource; their descriptions contain the symbols of ISO
+/// 230-1. The X slide counts as limb 4, the Y slide as limb 5. Their frames are numbered after those of the head:
+/// translation and rotation of each slide, then squareness.
 std::vector<Factor> slide_factors();
 
 /// The exact displacement of the head's frame by the slides' errors: x -> R x + p maps coordinates of a point in the

@@ -9,7 +9,7 @@ namespace poesy::three_prs {
 
 inline constexpr std::size_t kLimbs = 3;
 
-/// The position of each error source's first component among the errors of a limb.
+/// The index of each error source's first component among the errors of a limb.
 enum class Source : std::size_t {
   a = 0,          ///< position of the rail's upper end A_i, in {O_i}
   q = 3,          ///< initial position of the carriage along the rail
@@ -23,7 +23,7 @@ enum class Source : std::size_t {
 inline constexpr std::size_t kSources = 20;  ///< number of error components of one limb
 inline constexpr std::size_t kFactors = 60;
 
-/// The position of a source's first component among all factors. Limbs are counted from 0.
+/// The index of a source's first component among all factors. Limbs are counted from 0.
 constexpr std::size_t factor_of(std::size_t limb, Source source) {
   return limb * kSources + static_cast<std::size_t>(source);
 }

@@ -41,8 +41,8 @@ class Tiles {
             outcomes.iterations.data() + first};
   }
 
-  /// Copies a tile to padded rows. The unused lanes behind the last sample are copies of this sample, so that they need
-  /// no more iterations than it does.
+  /// Copies a tile to padded rows. The unused lanes behind the last sample are copies of this sample, so that these
+  /// lanes need no more iterations than the sample does.
   void stage(const SampleBlock& samples, Tile& tile) {
     POESY_EXPECTS(samples.varied.size() <= kFactors);
     for (std::size_t v = 0; v < samples.varied.size(); ++v) {

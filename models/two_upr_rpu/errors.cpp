@@ -7,8 +7,8 @@ namespace poesy::two_upr_rpu {
 namespace {
 
 /// The kinds of errors of a limb: a row for each frame j = 0..4, a column for each of delta x, y, z, epsilon x, y, z.
-/// '.' marks no geometric error, 'o' a geometric error, and 'x' a geometric error that causes internal forces and
-/// deformations (Du et al. 2022, Table 7).
+/// '.' means that there is no geometric error, 'o' marks a geometric error, and 'x' marks a geometric error that causes
+/// internal forces and deformations (Du et al. 2022, Table 7).
 using Table = std::array<std::string_view, 5>;
 constexpr Table kUprLimb{"oxx.xx",   //
                          "oxox.x",   //

@@ -12,11 +12,11 @@ namespace poesy::two_upr_rpu {
 /// linear errors precede angular ones.
 std::vector<Factor> factors();
 
-/// For each error, the component of a frame's error that it changes, in the order of factors().
+/// For each error, in the order of factors(), the component of a frame's error that it changes.
 std::vector<chain::ErrorTerms> error_terms();
 
-/// The sets of errors: all (71), deforming (25: limbs 1 and 3, Section 6.1 of Du et al. 2022), deforming-all (41: Table
-/// 7), benign (30).
+/// The sets of errors: "all" (71), "deforming" (25: limbs 1 and 3, Section 6.1 of Du et al. 2022), "deforming-all" (41:
+/// Table 7), "benign" (30).
 std::vector<FactorSet> factor_sets();
 
 }  // namespace poesy::two_upr_rpu

@@ -11,15 +11,15 @@ using Vector3 = lie::Vector3<double>;
 
 constexpr double kQuarter = std::numbers::pi / 2.0;
 
-/// The angle from a to b about the normal, in [-pi/2, 3 pi/2). It equals the paper's arccos between 0 and pi, and
-/// continues where a leg swings past the line of the platform.
+/// The angle from a to b about the normal, in [-pi/2, 3 pi/2). Between 0 and pi it equals the paper's arccos. Outside
+/// this range it continues, if a leg swings past the line of the platform.
 double angle(const Vector3& a, const Vector3& b, const Vector3& normal) {
   const double turn = std::atan2(normal.dot(a.cross(b)), a.dot(b));
   return turn < -kQuarter ? turn + 4.0 * kQuarter : turn;
 }
 
-/// The joint variables as absolute angles and lengths (rad, m). Joint displacements are their differences from the home
-/// pose.
+/// The joint variables as absolute angles and lengths (rad, m). Joint displacements are the differences of these
+/// variables from their values at the home pose.
 std::array<double, 12> joint_variables(const Geometry& g, const Pose& pose) {
   const lie::Transform<double> platform = base_T_platform(pose);
   const Vector3 x = Vector3::UnitX(), y = Vector3::UnitY();

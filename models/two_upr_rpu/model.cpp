@@ -20,7 +20,7 @@
 namespace poesy::two_upr_rpu {
 namespace {
 
-/// The loop of a limb counts as open if the limb's platform pose differs from the wanted one by more than this.
+/// The loop of a limb counts as open if the limb's platform pose differs by this or more from the wanted pose.
 /// Rotations are compared in rad, translations as shares of the chain's reach. Closed loops differ by about 1e-15.
 constexpr double kClosure = 1e-9;
 
@@ -137,8 +137,8 @@ class TwoUprRpu : public Model {
     return {q.begin(), q.end()};
   }
 
-  /// The bound of an error that is a length is the size of the platform or of the base, whichever is smaller, because
-  /// every limb joins both. The offsets c and d are not links and may be 0.
+  /// The bound of an error that is a length is l_A (of the platform) or l_B (of the base), whichever is smaller,
+  /// because every limb joins both. The offsets c and d are not links and may be 0.
   ErrorBound error_bound(FactorIndex factor) const override {
     if (description_.factors[factor.value].dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
     if (geometry_.l_A < geometry_.l_B) return {geometry_.l_A, "the platform's size l_A"};
@@ -172,8 +172,8 @@ class TwoUprRpu : public Model {
   virtual void place(Sketch& sketch, const std::vector<double>& displacements) const = 0;
 
  private:
-  /// The reason why a limb does not close at a pose, if one does not: a leg has no length, or a coordinate is so large
-  /// that digits are lost.
+  /// The reason why the loop of a limb is open at a pose, if one is open: a leg has no length, or a coordinate is so
+  /// large that digits are lost.
   std::optional<std::string> open_loop(const Pose& pose) const {
     const auto q = two_upr_rpu::joint_displacements(geometry_, pose);
     const lie::Transform<double> wanted = base_T_platform(pose);
