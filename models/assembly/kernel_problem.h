@@ -167,7 +167,7 @@ struct KernelProblem {
   bool wants_wrenches;   ///< true if a sample converges only when its wrenches do
   double tolerance;      ///< tolerance of the changes of bodies and joints, in units of the reach
   int most_rounds;       ///< number of rounds after which a sample is left to another solver
-  KernelReport report;   ///< what is reported of each sample
+  KernelReport report;   ///< the data for the responses of each sample
   KernelMap map;         ///< the first-order outcomes
   KernelStart start;     ///< starting points of samples with one varied error
 

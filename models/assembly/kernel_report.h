@@ -161,7 +161,7 @@ class KernelReporter {
   const KernelProblem& problem_;
   const KernelReport& report_;
   const KernelBlock& block_;
-  double* row_ = nullptr;  ///< where the next response is written
+  double* row_ = nullptr;  ///< address of the next response
 };
 
 }  // namespace poesy::assembly

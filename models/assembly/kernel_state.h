@@ -50,8 +50,8 @@ class LaneAssembly {
   /// starts.
   const T& start_move() const { return start_move_; }
 
-  /// Writes the state of the lanes (see KernelStart). row: where its first number is written; the others follow, one
-  /// stride apart.
+  /// Writes the state of the lanes (see KernelStart). row: address of the first number; the others follow at distances
+  /// of one stride.
   void store(double* row) const {
     const auto put = [&](T value) {
       value.store(row);

@@ -27,8 +27,7 @@ struct Mover {
   enum class What { from, joint, to };
   What what;
   Index at;     ///< index in x
-  Screw twist;  ///< twist; it enters the matrix B (see Loops) with a minus sign unless it is that of the body at which
-                ///< the limb ends
+  Screw twist;  ///< twist; in B (see Loops) with the sign + if `what` is `to`, else -
 };
 
 std::vector<Mover> movers(const Limb& limb, const LimbState& state, Index first_joint, Index joints) {

@@ -66,7 +66,7 @@ class PoseProblem {
   /// The kind of samples for which a series of starting points was computed.
   struct Started {
     FactorIndex factor;          ///< the only varied error
-    double range;                ///< range of the varied error
+    double range;                ///< SampleBlock::range of the samples
     std::vector<double> errors;  ///< constant errors of the samples
   };
 

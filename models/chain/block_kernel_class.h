@@ -15,7 +15,7 @@ enum class KernelPass {
   published,  ///< Gauss-Newton with the published stopping rule
   direct,     ///< Newton's method, which stops at the first unsafe step
   follow,     ///< Gauss-Newton, then Newton once its steps are small and safe
-  rescue      ///< Newton where its pivots are positive, else half a Gauss-Newton step
+  rescue      ///< a Newton step if its pivots are positive, else half a Gauss-Newton step
 };
 
 /// The shape of a chain of three limbs, compared in all pairs, with equal numbers of passive joints. The numbers are
@@ -79,7 +79,7 @@ struct AnyShape {
 ///              the root of Gauss-Newton, if there is one. It gives up a sample whose displacements return to those of
 ///              an earlier iteration;
 ///     rescue   from nominal displacements, a Newton step if the pivots of M are positive, else half a Gauss-Newton
-///              step, up to max_iterations. This pass finds a root at which M is positive where Gauss-Newton finds
+///              step, up to max_iterations. This pass finds a root at which M is positive, if Gauss-Newton finds
 ///              none. Roots more than 0.5 (rad, m) away from nominal displacements are other assembly modes of the
 ///              chain and are refused.
 /// Newton converges quadratically. So a safe step of less than sqrt(tolerance / 10) is the last one, and the residual

@@ -52,8 +52,8 @@ auto BlockKernel<T, Shape>::platform_motion(const KernelPlatform& platform, std:
 }
 
 /// Computes the displacement D p - p = V (w x p + v) of a point p by the motion D = exp([w; v]), and its length. V = 1
-/// + b hat(w) + c hat(w)^2 is the left Jacobian; to first order V = 1. rows: where the x components of this batch are
-/// stored; those of y and z follow, one stride apart.
+/// + b hat(w) + c hat(w)^2 is the left Jacobian; to first order V = 1. rows: address for the x components of this
+/// batch; those of y and z follow at distances of one stride.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::displace(const Screw& motion, const double* point, bool is_linear, double* rows,
                                      double* length) const {

@@ -28,7 +28,7 @@ struct Prepared {
   const Nominal* nominal = nullptr;        ///< model at the nominal pose
   std::vector<FrameError<double>> errors;  ///< [frames] constant errors
   std::vector<FrameEntry> varied;          ///< components of frames' errors that vary
-  double range = 0.0;                      ///< range of the varied component, if only one varies
+  double range = 0.0;                      ///< if only one component varies, its values are between -range and range
 
   bool operator==(const Prepared&) const = default;
 };

@@ -39,8 +39,8 @@ double rounding_level(const ParallelChain& chain);
 /// Stopping rule: let c_j be the largest absolute component of delta_mu^j - delta_mu^(j-1). Iteration j ends the solve
 /// as
 ///     converged      when c_j is below the tolerance;
-///     stagnated      when c_j is at most rounding_level(chain), and three iterations in a row did not lower the smallest
-///                    c so far: only rounding moves the iterate;
+///     stagnated      when c_j is at most rounding_level(chain), and three iterations in a row did not lower
+///                    the smallest c so far: only rounding moves the iterate;
 ///     iteration_cap  when j is the allowed number of iterations;
 ///     singular       when a pivot of J^T J falls to rounding relative to its diagonal entry;
 ///     non_finite     when delta_mu^j is not finite.
@@ -55,9 +55,9 @@ class DeformationSolver {
   DeformationSolver(const ParallelChain& chain, const SolverOptions& options);
 
   /// Solves one sample. frames: [chain.frames()] fixed frames with errors, limb by limb. displacements:
-  /// [chain.joints()] (rad, m); nominal on entry, where the solve starts; those of the last iterate on return, with
-  /// unchanged actuated entries. delta_mu: [6 x pairs] residual at the last iterate, [omega; v] in the base frame (rad,
-  /// m), Eq. 41. observe: may be empty. held: as for BlockSolver::prepare().
+  /// [chain.joints()] (rad, m); on entry the nominal ones, at which the solve starts; on return those of the last
+  /// iterate, with unchanged actuated entries. delta_mu: [6 x pairs] residual at the last iterate, [omega; v] in the
+  /// base frame (rad, m), Eq. 41. observe: may be empty. held: as for BlockSolver::prepare().
   Deformation solve(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
                     std::span<double> delta_mu, const DeformationObserver& observe = {}, const Metric* held = nullptr);
 

@@ -110,8 +110,8 @@ void FirstOrder::determinant_slopes(std::span<lie::Screw<double>> slopes) {
   for (std::size_t f = 0; f < slopes.size(); ++f) slopes[f] -= pull_[limb_of_frame_[f]];
 }
 
-/// Changes the residuals delta_mu of the pairs (k, i) by a motion of a limb's platform: adds it where the limb is k,
-/// and subtracts it where the limb is i.
+/// Changes the residuals delta_mu of the pairs (k, i) by a motion of a limb's platform: adds it if the limb is limb k
+/// of the pair, and subtracts it if the limb is limb i.
 void FirstOrder::add_motion(std::size_t limb, const lie::Screw<double>& motion, std::span<double> delta_mu) const {
   for (std::size_t n = 0; n < chain_->pairs.size(); ++n) {
     Eigen::Map<lie::Screw<double>> mu(delta_mu.data() + 6 * n);

@@ -46,7 +46,7 @@ class FirstOrder {
   void taken_away(std::span<const double> delta_mu, std::span<double> part);
 
   /// The gradient of ln det(J^T W J) with respect to errors: a screw for each frame [frames]. This determinant is small
-  /// where the loops are close to opening. The product of this screw with motion() of a component is the first-order
+  /// if the loops are close to opening. The product of this screw with motion() of a component is the first-order
   /// change per unit of that component, including the reaction of the passive joints. Precondition: prepare() returned
   /// true.
   void determinant_slopes(std::span<lie::Screw<double>> slopes);

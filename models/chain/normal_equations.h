@@ -23,8 +23,8 @@ class NormalEquations {
   bool solve(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu,
              const lie::Matrix6<double>* W = nullptr, double damping = 0.0);
 
-  /// [passive joints x passive joints] The matrix J^T W J of the normal equations plus what hold_idle() adds. Arguments
-  /// as for solve().
+  /// [passive joints x passive joints] The matrix J^T W J of the normal equations plus the terms of hold_idle().
+  /// Arguments as for solve().
   Eigen::MatrixXd matrix(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W);
 
   /// Makes J^T W J regular from now on, although idle freedoms (ParallelChain::idle) make it singular. Each idle

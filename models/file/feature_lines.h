@@ -39,10 +39,11 @@ struct ZoneLines {
 struct FeatureLines {
   std::string name;                      ///< name, unique in the limb
   std::string key;                       ///< key in the file, for messages: "limb[0].features[1]"
-  Place place;                           ///< place of its table
+  Place place;                           ///< place of the table of the feature in the file
   FeatureWord kind = FeatureWord::axis;  ///< kind of the feature
   std::optional<Reference> joint;        ///< joint to which the feature belongs
-  /// If `joint` has several axes, the number of the feature's axis, counted from 1; none: the first or the last axis.
+  /// If `joint` has several axes, the number of the feature's axis, counted from 1. The default is the first axis, but
+  /// the last one for a part after a joint other than U.
   std::optional<std::size_t> axis;
   PartSide part = PartSide::before;    ///< side of the joint on which the feature's part is
   std::optional<Triple> at;            ///< middle of the feature
@@ -53,8 +54,8 @@ struct FeatureLines {
   std::optional<Triple> direction;     ///< direction of a distance
   /// The nominal length of a distance.
   std::optional<Expression> nominal_size;
-  std::optional<Triple> z;             ///< z axis of the feature; none: the joint's axis
-  std::optional<Triple> x;             ///< x axis of the feature; none: the x axis of the joint's frame
+  std::optional<Triple> z;             ///< z axis of the feature; default: the joint's axis
+  std::optional<Triple> x;             ///< x axis of the feature; default: the x axis of the joint's frame
   ZoneShape shape = ZoneShape::usual;  ///< shape of the feature's zones
   std::string along;                   ///< "x" or "y": normal of the planes between which the zones are
   std::vector<ZoneLines> zones;        ///< zones of the feature, in the order of zone_traits()

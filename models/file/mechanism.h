@@ -41,7 +41,7 @@ struct Joint {
 
   /// Returns true if the joint has a displacement.
   bool moves() const { return motion != Motion::fixed; }
-  /// The joint in the form that chain::Limb needs. A fixed frame is an actuated joint that stays where it is.
+  /// The joint in the form that chain::Limb needs. A fixed frame is an actuated joint that does not move.
   chain::Joint of_chain() const;
 };
 

@@ -483,7 +483,7 @@ struct NamedLimb {
     return lines->name.empty() ? number : number + " (" + label() + ")";
   }
 
-  /// The index of the last frame, before the body where the limb ends.
+  /// The index of the last frame, before the body at which the limb ends.
   std::size_t last_frame() const { return *frame_behind(lines->joints.back().name); }
 };
 

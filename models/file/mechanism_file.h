@@ -35,7 +35,7 @@ struct JointLines {
   JointKind kind = JointKind::revolute;     ///< type of the joint
   std::string name;                         ///< name, unique in the limb
   std::string key;                          ///< key in the file, for messages: "limb[0].joints[1]"
-  Place place;                              ///< place of its table
+  Place place;                              ///< place of the table of the joint in the file
   std::optional<Triple> at;                 ///< point of the joint
   std::optional<Reference> at_point;        ///< point of the joint, as a named point
   std::optional<Reference> from;            ///< point at which the axis begins
@@ -54,9 +54,9 @@ struct JointLines {
 struct LimbLines {
   std::string name;                           ///< name of the limb and its copies; empty if there is none
   std::string key;                            ///< key in the file, for messages: "limb[0]"
-  Place place;                                ///< place of its table
-  std::optional<Reference> from;              ///< body at which the limb begins; none: the base
-  std::optional<Reference> to;                ///< body at which the limb ends; none: the platform
+  Place place;                                ///< place of the table of the limb in the file
+  std::optional<Reference> from;              ///< body at which the limb begins; default: the base
+  std::optional<Reference> to;                ///< body at which the limb ends; default: the platform
   std::vector<JointLines> joints;             ///< joints, in order from the first body to the last
   std::vector<NamedPoint> points;             ///< named points that only this limb knows
   Copies copies;                              ///< number of copies
@@ -71,7 +71,7 @@ struct CoordinateLines {
   std::string name;       ///< name: "alpha"
   std::string component;  ///< component of the platform's pose: "rx"
   std::string key;        ///< key in the file, for messages
-  Place place;            ///< place of its name
+  Place place;            ///< place of the name in the file
   Expression lower;       ///< lower limit of the workspace
   Expression upper;       ///< upper limit of the workspace
 };
@@ -85,18 +85,18 @@ std::string_view name(Rotation rotation);
 /// The platform as written.
 struct PlatformLines {
   std::optional<Triple> origin;              ///< P at home
-  std::optional<Triple> x;                   ///< x axis at home; none: the base's x axis
+  std::optional<Triple> x;                   ///< x axis at home; default: the base's x axis
   std::optional<Triple> z;                   ///< z axis at home; given if and only if `x` is given
   Rotation rotation = Rotation::vector;      ///< meaning of rx, ry, rz
   std::vector<CoordinateLines> coordinates;  ///< pose coordinates, in the order of a pose's numbers
   Place coordinates_place;                   ///< place of the list of coordinates
   std::optional<Triple> tool;                ///< tool point in the platform's frame
   std::vector<NamedPoint> named;             ///< points whose displacements are reported, in the platform's frame
-  /// Points of the metric, in the platform's frame; none: derived from the ends of the limbs.
+  /// Points of the metric, in the platform's frame; default: derived from the ends of the limbs.
   std::vector<Triple> points;
   Place place;                     ///< place of [platform] or of its points
-  std::optional<Expression> mass;  ///< mass; none: 0
-  std::optional<Triple> centre;    ///< centre of mass, in the platform's frame; none: its origin
+  std::optional<Expression> mass;  ///< mass; default: 0
+  std::optional<Triple> centre;    ///< centre of mass, in the platform's frame; default: its origin
 };
 
 /// The centre about which an angular error of a limb's first or last frame rotates. The axes of rotation are always
@@ -143,7 +143,7 @@ struct ErrorLines {
   std::vector<PlaceLines> places;            ///< the places, if the error acts in several places at once
   /// Joint of the limb to whose displacement the effect of the error is proportional; none if the effect is constant.
   std::optional<Reference> grows_with;
-  std::optional<Expression> from;  ///< displacement from home at which the error is zero; none: 0
+  std::optional<Expression> from;  ///< displacement from home at which the error is zero; default: 0
   std::string description;         ///< description; empty: the description of the frame
 };
 
@@ -165,7 +165,7 @@ struct MechanismFile {
   std::vector<BodyLines> bodies;                 ///< bodies other than base and platform, without copies
   LoadLines load;                                ///< load, used only if there is stiffness
   std::vector<LimbLines> limbs;                  ///< limbs as written, without copies
-  std::optional<std::vector<Reference>> frames;  ///< frame errors, by names and patterns; none: see all_frames()
+  std::optional<std::vector<Reference>> frames;  ///< frame errors, by names and patterns; empty: see all_frames()
   bool all = false;                              ///< true if the file says `frames = "all"`
   ErrorsAbout about = ErrorsAbout::joint;        ///< centre of rotation of all angular errors of frames
   std::vector<ErrorLines> errors;                ///< errors with their own names

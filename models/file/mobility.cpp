@@ -188,7 +188,7 @@ std::string dependent_of(const Mechanism& unit, const Matrix& rates, Index rank)
 
 void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Matrix& twists, Mobility& found) {
   if (twists.cols() == 0) return;  // nothing moves; Eigen does not support a matrix without columns here
-  // At a singular pose of the coordinates, these are the least-squares rates of least norm.
+  // If the coordinates are singular at this pose, `rates` are the least-squares rates of least norm.
   const Matrix rates = linalg::pseudo_inverse(platform_columns(unit, pose)) * twists;
   Matrix chosen(static_cast<Index>(unit.coordinates.size()), rates.cols());
   for (std::size_t c = 0; c < unit.coordinates.size(); ++c) {

@@ -15,13 +15,13 @@ namespace poesy::file {
 struct BodyLines {
   std::string name;                ///< name of the body and its copies
   std::string key;                 ///< key in the file, for messages: "body[0]"
-  Place place;                     ///< place of its table
+  Place place;                     ///< place of the table of the body in the file
   std::optional<Triple> at;        ///< origin at home
-  std::optional<Triple> x;         ///< x axis at home; none: the base's x axis
+  std::optional<Triple> x;         ///< x axis at home; default: the base's x axis
   std::optional<Triple> z;         ///< z axis at home; given if and only if `x` is given
   Copies copies;                   ///< number of copies
-  std::optional<Expression> mass;  ///< mass; none: 0
-  std::optional<Triple> centre;    ///< centre of mass, in the body's frame; none: its origin
+  std::optional<Expression> mass;  ///< mass; default: 0
+  std::optional<Triple> centre;    ///< centre of mass, in the body's frame; default: its origin
 };
 
 /// The stiffness of a joint's bearing and drive, as written. A direction without a value is rigid.
@@ -32,7 +32,7 @@ struct StiffnessLines {
   std::optional<Expression> rx, ry, rz;
   /// @}
   std::string key;  ///< key in the file, for messages
-  Place place;      ///< place of its table
+  Place place;      ///< place of the table of the stiffness in the file
 
   /// The entries in the order rx, ry, rz, x, y, z.
   std::array<const std::optional<Expression>*, 6> in_order() const { return {&rx, &ry, &rz, &x, &y, &z}; }
@@ -48,18 +48,18 @@ struct ComplianceLines {
 /// A link between two joints, or between a body and a joint, as written.
 struct LinkLines {
   std::string key;                     ///< key in the file, for messages: "limb[0].links[1]"
-  Place place;                         ///< place of its table
+  Place place;                         ///< place of the table of the link in the file
   std::optional<Reference> from;       ///< a joint, or the body at which the limb begins
   std::optional<Reference> to;         ///< a joint, or the body at which the limb ends
   std::optional<Expression> E;         ///< Young's modulus
   std::optional<Expression> G;         ///< shear modulus
   std::optional<Expression> diameter;  ///< outer diameter of a round section
-  std::optional<Expression> bore;      ///< inner diameter of a round section; none: 0
+  std::optional<Expression> bore;      ///< inner diameter of a round section; default: 0
   std::optional<Expression> A;         ///< area of the section, if there is no diameter
   std::optional<Expression> Iy;        ///< second moment of area about y
   std::optional<Expression> Iz;        ///< second moment of area about z
   std::optional<Expression> J;         ///< torsion constant
-  /// Shear correction factor of the area; none: shear deformation is neglected.
+  /// Shear correction factor of the area. Without it, shear deformation is neglected.
   std::optional<Expression> shear;
   std::optional<Triple> y;                    ///< y axis at home
   std::optional<ComplianceLines> compliance;  ///< compliance matrix in place of a section
@@ -68,7 +68,7 @@ struct LinkLines {
 /// The loads of a file, as written.
 struct LoadLines {
   std::optional<Triple> gravity;  ///< gravity, an acceleration along base axes
-  std::optional<Reference> body;  ///< body on which force and moment act; none: the platform
+  std::optional<Reference> body;  ///< body on which force and moment act; default: the platform
   std::optional<Triple> at;       ///< point of application, in the body's frame
   std::optional<Triple> force;    ///< force along base axes
   std::optional<Triple> moment;   ///< moment about base axes

@@ -70,7 +70,7 @@ class Tracker {
   /// joints that move.
   std::vector<std::vector<std::size_t>> limb_joints_;
   std::vector<std::size_t> limb_ranks_;  ///< [limbs] rank of the columns of these joints at home
-  std::size_t idle_ = 0;                 ///< number of idle freedoms: number of these joints minus the ranks
+  std::size_t idle_ = 0;  ///< number of idle freedoms: number of all limb_joints_ minus sum of limb_ranks_
 };
 
 }  // namespace poesy::file

@@ -93,10 +93,10 @@ using ClosureObserver = std::function<void(const ClosureIteration&)>;
 ///
 /// Stopping rule: let c_j be the largest component of step j (rad, m). Step j ends the solve as
 ///     converged      when c_j is below the tolerance;
-///     stagnated      when c_j is at most the rounding level, 64 eps x max(1, |r|), and not below the smallest c so far;
+///     stagnated      when c_j is at most rounding_level(r), and not below the smallest c so far;
 ///     iteration_cap  when j is the allowed number of iterations;
-///     singular       when a pivot of the Jacobian falls to rounding, or when the solve has converged where the
-///                    determinant of the Jacobian has the other sign: as errors grow from zero, every path from the
+///     singular       when a pivot of the Jacobian falls to rounding, or when the solve has converged to a root at
+///                    which the determinant of the Jacobian has the other sign: as errors grow, every path from the
 ///                    nominal pose to such a root passes a singular pose (theory.md, "Which root");
 ///     non_finite     when an equation's value is not finite.
 /// A solve that ends at the cap or as singular is not_assembled instead if is_impossible() returns true and orientation

@@ -148,7 +148,8 @@ std::optional<Pose> pose_of_carriages(const Geometry& geometry, const Vector3& q
     lie::Screw<double> wanted = lie::Screw<double>::Zero();
     wanted.head<3>() = missing;
     const lie::Screw<double> twist = linalg::solve(velocity_jacobian(at), wanted);
-    // A full step may lead away from the solution, or to a pose where a rod is too short. Then a shorter step is taken.
+    // A full step may lead away from the solution, or to a pose at which a rod is too short. Then a shorter step is
+    // taken.
     bool nearer = false;
     for (double share = 1.0; share >= kShortest && !nearer; share *= 0.5) {
       const Pose next = moved(pose, at.platform.R, share * twist);

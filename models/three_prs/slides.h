@@ -39,9 +39,9 @@ std::vector<Factor> slide_factors();
 /// slide_y, 0):
 ///     R = E_x E_y,  E = exp of a slide's rotation,
 ///     p = (EXX, EYX, EZX) + E_x Rz(C0Y) (EXY, slide_y + EYY, EZY) - (0, slide_y, 0).
-/// Each slide rotates what it carries about the origin of its carriage, which is the origin of the head's frame at
-/// slide_y = 0 (X slide), or at any slide_y (Y slide). Squareness rotates the travel and straightness directions of the
-/// Y slide, but not the head, which is aligned on its carriage at slide_y = 0.
+/// Each slide rotates the parts that it carries about the origin of its carriage, which is the origin of the head's
+/// frame at slide_y = 0 (X slide), or at any slide_y (Y slide). Squareness rotates the travel and straightness
+/// directions of the Y slide, but not the head, which is aligned on its carriage at slide_y = 0.
 lie::Transform<double> nominal_T_head(double slide_y, SlideErrors errors);
 
 using SlideEffects = Eigen::Matrix<double, kSwing, static_cast<int>(kSlideFactors), Eigen::RowMajor>;
