@@ -27,7 +27,7 @@ double chebyshev(std::size_t n, std::size_t node) {
 }
 
 /// The coefficients of the Chebyshev series through the states at the nodes; empty if the states do not vary smoothly.
-/// Both have a row of kTerms numbers for each number of a state.
+/// Coefficients and states have a row of kTerms numbers for each number of a state.
 std::vector<double> series_of(std::span<const double> states) {
   std::array<double, kTerms * kTerms> weights;
   for (std::size_t n = 0; n < kTerms; ++n) {

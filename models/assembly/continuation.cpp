@@ -9,7 +9,7 @@
 namespace poesy::assembly {
 namespace {
 
-/// Tolerance of solves on the way; the error after Newton's last step is about its square.
+/// Tolerance of solves on the way; the error after Newton's last step is about the square of the tolerance.
 constexpr double kTolerance = 1e-9;
 constexpr int kMostIterations = 12;  ///< largest number of iterations of a solve on the way
 /// Shortest stride, as a share of the errors. If a stride had to be shorter, the path ends.

@@ -23,10 +23,10 @@ class Continuation {
   /// The model must outlive this object.
   Continuation(const AssemblyModel& model, const SolverOptions& options);
 
-  /// The machine with these errors [F] at this pose, which must be regular. Status: not_assembled, see above;
-  /// iteration_cap if a stride took more iterations than the options allow, or all strides together more than 1000;
-  /// non_finite if an error is not finite; else the status of the last solve, with the load. iterations and steps: of
-  /// all strides.
+  /// The machine with these errors [errors of the model] at this pose, which must be regular. Status: not_assembled,
+  /// see above; iteration_cap if a stride took more iterations than the options allow, or all strides together more
+  /// than 1000; non_finite if an error is not finite; else the status of the last solve, with the load. iterations and
+  /// steps: of all strides.
   Solution solve(const Nominal& pose, std::span<const double> errors);
 
  private:
@@ -38,7 +38,7 @@ class Continuation {
   Solver on_the_way_;  ///< solver of the strides on the way, with their tolerance
   Solver at_the_end_;  ///< solver of the last step, with the tolerance of the options
   ErrorFrames frames_;
-  std::vector<double> grown_;  ///< [F] errors of a stride
+  std::vector<double> grown_;  ///< [errors of the model] errors of a stride
 };
 
 }  // namespace poesy::assembly

@@ -63,16 +63,16 @@ struct KernelLimb {
   std::size_t from;                 ///< index of the body at which the limb begins
   std::size_t to;                   ///< index of the body at which the limb ends
   std::vector<KernelJoint> joints;  ///< joints that move or are reported
-  /// Motions before, between and behind these joints. The first one includes the place of the base if the limb begins
-  /// at the base.
+  /// Motions before, between and behind these joints. If the limb begins at the base, the first motion includes the
+  /// pose of the base in the kernel's frame.
   std::vector<KernelSegment> segments;
   std::size_t passive;       ///< number of passive joints
   std::size_t first_joint;   ///< index of the limb's first passive joint among those of all limbs
   std::size_t first_wrench;  ///< index of the limb's first lambda (wrench coordinate) among all
-  std::size_t carried;       ///< number of wrenches that the limb can carry (its lambda)
+  std::size_t carried;       ///< number of wrenches that the limb can carry, each with one lambda
   /// [6 x carried] Basis of the wrenches that the limb can carry (N of Equilibrium), row by row.
   std::vector<double> carry;
-  std::vector<double> give;  ///< [passive x 6] matrix from a twist to displacements of the passive joints of least norm
+  std::vector<double> give;  ///< [passive x 6] matrix from a twist to the passive joints' displacements of least norm
   double compliance[36];     ///< compliance of the limb, row by row
   double stiffness[36];      ///< inverse of the compliance, row by row, if samples have matrices of their own
   bool is_diagonal;          ///< true if the inverse of the compliance is diagonal

@@ -14,7 +14,7 @@ namespace poesy::assembly {
 /// An assembly as a model. Its responses are displacements, mismatch, energy and forces.
 struct AssemblyModel {
   Assembly assembly;                     ///< perfect limbs that connect bodies
-  Report report;                         ///< which responses the model has in addition to those of every assembly
+  Report report;                         ///< responses in addition to those of every assembly
   std::vector<chain::ErrorTerms> terms;  ///< [errors] terms of each error
   std::vector<std::size_t> ranks;        ///< [limbs] rank of the passive joints' columns
   std::size_t idle = 0;                  ///< number of motions of passive joints that move no body

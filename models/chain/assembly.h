@@ -29,9 +29,10 @@ inline constexpr double kNearing = -0.5;
 ///     r = J0 (J0^T W J0)^-1 J0^T W delta_mu,   J0: J at nominal displacements without errors.
 /// In a machine that can be assembled, r is small: of the order of the mismatch times the errors. In a machine that
 /// cannot be assembled, the loops are closed as far as possible and then bend away from each other: there is a motion x
-/// of the joints that changes the mismatch in J0 but no longer in J. Then N x nearly vanishes, where N = J^T W J, while
-/// r does not vanish. Newton's matrix is M = N + C(r) (BlockKernel); C(r) is the part of minus the derivative of J^T W
-/// delta_mu that a residual r causes. A machine cannot be assembled if
+/// of the joints that changes the mismatch at nominal displacements (J0 x), but hardly at the displacements at which
+/// the joints rest (J x). Then N x nearly vanishes, where N = J^T W J, while r does not vanish. Newton's matrix is M =
+/// N + C(r) (BlockKernel); C(r) is the part of minus the derivative of J^T W delta_mu that a residual r causes. A
+/// machine cannot be assembled if
 ///     N - 2 C(r)
 /// is not positive definite. This criterion does not depend on units or on the size of the machine. At its boundary the
 /// loops just close (theory.md, "Machines that cannot be assembled").
@@ -47,7 +48,8 @@ class Assembly {
   Assembly& operator=(const Assembly&) = delete;
 
   /// Sets the nominal displacements [all joints] (rad, m) and the metric (null: W = 1). Use the metric of the points at
-  /// which the limbs are joined to the platform, even if the solver uses another one, because it depends on no unit.
+  /// which the limbs are joined to the platform, even if the solver uses another metric, because with the metric of
+  /// points the decision depends on no unit.
   void prepare(std::span<const double> displacements, const Metric* metric);
 
   /// The first-order change of ln det(J^T W J) per unit of a component of a frame's error (1/rad, 1/m). If the sum of

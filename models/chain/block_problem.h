@@ -92,7 +92,8 @@ struct KernelStart {
   std::size_t fits;      ///< number of fits
 };
 
-/// The number of coordinates of a KernelMap is a multiple of this; those that are added to reach it are zero.
+/// The number of coordinates of a KernelMap is a multiple of this; coordinates that are added to reach a multiple are
+/// zero.
 inline constexpr std::size_t kMapRows = 3;
 
 /// A linear map from errors to residuals (first order). The map computes a few coordinates y of the residuals (see

@@ -19,7 +19,7 @@ struct Joint {
   /// True if a drive or a fixed connection holds the joint; false if it is passive and reacts to errors.
   bool actuated;
   double advance = 0.0;  ///< pitch of a helical joint (type revolute), m per rad along its axis; else 0
-  bool fixed = false;    ///< actuated without a drive: a frame between parts that do not move relative to each other
+  bool fixed = false;    ///< true for a fixed frame between two parts: `actuated` is true, but there is no drive
   /// The number of an actuated joint's drive. Joints with the same number, in any limbs, share one drive, which moves
   /// all of them by the same displacement. 0: the joint has a drive of its own.
   std::size_t drive = 0;

@@ -19,8 +19,8 @@ struct Metric {
 };
 
 /// The metric W = 1/n sum P_a^T P_a with P_a = [-[c_a]x, I]: |xi|_W is the root mean square displacement of the n
-/// points c_a by the twist xi. This length is the same in every unit of length, in every frame and about every origin.
-/// points: [n], in the frame of the twist (m).
+/// points c_a by the twist xi. This length does not depend on the choice of frame, origin and unit. points: [n], in the
+/// frame of the twist (m).
 lie::Matrix6<double> metric_of_points(std::span<const lie::Vector3<double>> points);
 
 /// The root mean square distance of the points from their centroid (m).

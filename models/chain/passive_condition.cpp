@@ -16,8 +16,8 @@ lie::Screw<double> in_reaches(const lie::Screw<double>& spatial, double reach) {
   return scaled;
 }
 
-/// The dimensionless Jacobian J of Du et al. 2022, Eq. 43. A motion of limb i enters pair (k, i) with +, one of limb k
-/// with -.
+/// The dimensionless Jacobian J of Du et al. 2022, Eq. 43. A motion of limb i enters pair (k, i) with the sign +, and a
+/// motion of limb k with the sign -.
 Eigen::MatrixXd passive_jacobian(const ParallelChain& chain, std::span<const double> displacements) {
   const double reach = chain.reach();
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(chain.pairs.size()),

@@ -24,7 +24,7 @@ class ResidualSpace {
 
   /// The degree of over-constraint D.
   std::size_t dimensions() const { return dimensions_; }
-  /// Adds to y [dimensions()] the effect of an error of this size (rad, m) of a component of a frame.
+  /// Adds to y [dimensions()] the effect of an error (rad, m) in the component `entry` of a frame's error.
   void add(const FirstOrder& first_order, const FrameEntry& entry, double error, std::span<double> y) const;
   /// Adds to y [dimensions()] the effect of a small motion of a limb's end, after the reaction of the passive joints.
   void add(std::size_t limb, const lie::Screw<double>& motion, std::span<double> y) const;

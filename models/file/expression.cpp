@@ -118,7 +118,7 @@ class Parser {
     }
   }
 
-  /// The powers of one x other^exponent.
+  /// The powers of the product `one` x `other`^exponent.
   static Powers multiplied(const Powers& one, const Powers& other, int exponent) {
     return {one.length + exponent * other.length, one.angle + exponent * other.angle, one.mass + exponent * other.mass,
             one.time + exponent * other.time};

@@ -338,7 +338,7 @@ void add_named(const ErrorLines& error, const Numbers& numbers, Mechanism& mecha
   add_vector(error, numbers, mechanism);
 }
 
-/// Returns true if two limbs have the same joints in the same order.
+/// Returns true if the elementary joints of two limbs have the same motions in the same order.
 bool are_alike(const Limb& a, const Limb& b) {
   return std::ranges::equal(a.joints, b.joints, {}, &Joint::motion, &Joint::motion);
 }

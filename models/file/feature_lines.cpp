@@ -99,7 +99,7 @@ void refuse_form(const StudyValue& value, FeatureLines&) {
              "remove it, or give the location or the orientation of the feature");
 }
 
-/// Throws for concentricity, the name of coaxiality for the centres of circles.
+/// Throws for concentricity, the name that drawings use for coaxiality of centres of circles.
 void refuse_concentricity(const StudyValue& value, FeatureLines&) {
   value.fail("has the sign of coaxiality, by which it is known here",
              "write coaxiality of an axis, or position of a point");

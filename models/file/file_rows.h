@@ -20,7 +20,7 @@ struct Nothing {};
 template <class Object>
 using Row = Key<Object, Nothing>;
 
-/// The value of a key: calls `read` with the StudyValue, and stores the result in the member at `path`.
+/// Makes the KeyValue of a key: it calls `read` with the StudyValue, and stores the result in the member at `path`.
 template <class Read, class... Path>
 auto kept(std::string type, Read read, Path... path) {
   using Object = OwnerOf<Path...>;
@@ -29,7 +29,7 @@ auto kept(std::string type, Read read, Path... path) {
                           }};
 }
 
-/// The value of a key: calls `read` with the StudyValue and the object.
+/// Makes the KeyValue of a key: it calls `read` with the StudyValue and the object.
 template <class Object>
 KeyValue<Object> read_by(std::string type, void (*read)(const StudyValue&, Object&)) {
   return {.type = std::move(type), .read = read};

@@ -113,7 +113,7 @@ struct Precision {
 /// An error that the file states with limb = "each".
 struct EachLimb {
   std::string text;  ///< name of the error, and the two parts that its frame connects in each limb
-  bool alike;        ///< true if these limbs have the same kinds of joints in the same order
+  bool alike;        ///< true if the elementary joints of these limbs have the same motions in the same order
 };
 
 /// A mechanism in numbers. It contains everything that a model needs except solvers.

@@ -229,8 +229,8 @@ Mobility mobility_of(const Mechanism& unit, std::span<const double> q, const Pla
   return found;
 }
 
-/// The k-th point of Roberts' sequence in the unit cube of n dimensions: multiples of powers of 1/phi, where phi^(n+1)
-/// = phi + 1.
+/// The k-th point of Roberts' sequence in the unit cube of n dimensions. Coordinate d (from 1) is the fractional part
+/// of 1/2 + (k + 1) / phi^d, where phi^(n+1) = phi + 1.
 std::vector<double> even_point(std::size_t k, std::size_t dimensions) {
   double phi = 2.0;
   for (int n = 0; n < 60; ++n) phi = std::pow(1.0 + phi, 1.0 / (static_cast<double>(dimensions) + 1.0));

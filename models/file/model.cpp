@@ -57,8 +57,8 @@ std::unique_ptr<Model> with_points(std::unique_ptr<TrackedModel> model, const Re
                               fidelity == chain::Fidelity::first_order);
 }
 
-/// Builds the model for these values of the geometry (SI). points: points that define the platform's metric (m); none:
-/// those of the file.
+/// Builds the model for these values of the geometry (SI). points: points that define the platform's metric (m);
+/// default: those of the file.
 std::unique_ptr<Model> built(const Read& read, std::span<const double> values, std::size_t fidelity, By by,
                              std::optional<std::vector<Vector3>> points = {}) {
   Checked found = read.with(values);

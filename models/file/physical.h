@@ -63,8 +63,8 @@ inline constexpr Physical kModulus{"a modulus", {.length = -1, .mass = 1, .time 
 /// The quantity for a dimension of the engine.
 const Physical& physical(Dimension dimension);
 
-/// A dimension as text: "a length", "an angle", "a number", "length^2 angle^-1". With mass or time it is the name of
-/// the quantity, such as "a force", or else "kg m^2 s^-1".
+/// A dimension as text: "a length", "an angle", "a number", "length^2 angle^-1". If mass or time is among the powers,
+/// the text is the name of the quantity, such as "a force", or "kg m^2 s^-1" if it has no name.
 std::string dimension_text(const Powers& powers);
 
 /// A unit that was found at the beginning of a text.
@@ -75,8 +75,8 @@ struct WrittenUnit {
 };
 
 /// Finds the unit with the longest name at the beginning of a text: "N m/rad", not "N". In the text a micro sign
-/// (U+00B5) or a Greek mu (U+03BC) counts as u before m, a degree sign (U+00B0) as deg, and several blanks as one. None
-/// if the text does not begin with a unit.
+/// (U+00B5) or a Greek mu (U+03BC) counts as u before m, a degree sign (U+00B0) as deg, and several blanks as one.
+/// Returns no value if the text does not begin with a unit.
 std::optional<WrittenUnit> unit_at_begin(std::string_view text);
 
 /// The names of possible units of a quantity, for messages: units of length and angle, and all other units too if mass

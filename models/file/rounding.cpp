@@ -39,7 +39,7 @@ struct Gap {
 
   double ratio() const { return above / std::max(below, kRankThreshold); }
   /// Narrows the gap by the singular values of another configuration. Returns true if a gap remains, so that the
-  /// mechanism can have this rank in both.
+  /// mechanism can have this rank in both configurations.
   bool narrow(const std::vector<double>& values) {
     above = std::min(above, values[rank - 1] / values[0]);
     below = std::max(below, values[rank] / values[0]);

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-/// The largest number of lanes (numbers in one vector register) for which kernels are compiled. It is 1 where kernels
+/// The largest number of lanes (numbers in one vector register) for which kernels are compiled. It is 1 if kernels
 /// compute one number at a time, as on a GPU.
 #ifndef POESY_MOST_LANES
 #define POESY_MOST_LANES 8

@@ -283,7 +283,8 @@ void ClosureSolver::solve(const Configuration& nominal, const SampleBlock& sampl
   }
 }
 
-/// Sets the status not_assembled for samples that the kernel did not solve because their limbs cannot be assembled.
+/// Examines the samples that the kernel ended with the status iteration_cap or singular. Sets the status not_assembled
+/// for those whose limbs cannot be assembled.
 void ClosureSolver::review(const Configuration& nominal, const SampleBlock& samples, const ClosureStart& start,
                            const OutcomeBlock& outcomes) const {
   if (start.orientation() == 0.0) return;

@@ -15,13 +15,14 @@ enum class Role {
   non_compensable  ///< enters the constraint rows
 };
 
-/// One component of an error source. The table lists components in the order of Source.
+/// One component of an error source.
 struct Entry {
   std::size_t frame;
   std::string_view source;
   std::string_view axis;  ///< axis of a vector's component; empty for a scalar
   Role role;
 };
+/// The components of all error sources, in the order of Source.
 constexpr std::array<Entry, kSources> kEntries{{{0, "a", "x", Role::compensable},
                                                 {0, "a", "y", Role::non_compensable},
                                                 {0, "a", "z", Role::compensable},

@@ -54,7 +54,7 @@ struct ClosureLimb {
   double base_R_platform_limb[9];  ///< rotation R R_i from the limb's frame on the platform (R_i) through the
                                    ///< platform's frame (R) to the base frame
   double joint[3];                 ///< from P to C_i, base frame
-  double q;                        ///< nominal position of the carriage (m)
+  double q;                        ///< nominal displacement of the carriage (m)
   double error[kSources];          ///< constant part of each error, in the order of Source
   int varied_row[kSources];        ///< row of Tile::values that replaces the error; -1 if it is constant
   bool varies;                     ///< true if any error of the limb varies
