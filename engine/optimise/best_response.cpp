@@ -10,18 +10,19 @@ namespace poesy {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// A process has no weight if its lagrangian exceeds the least one by more than this multiple of mu.
+/// In a mix, a process has the weight exp(-lagrangian / mu). If its lagrangian exceeds the least one by more than this
+/// multiple of mu, the weight counts as 0.
 constexpr double kNegligibleExponent = 40.0;
 constexpr int kMaxNewtonSteps = 100;  ///< largest number of Newton steps in common_size()
 
-/// The size in [lo, hi] that minimises cost + price x size.
+/// The size in [lo, hi] at which cost + price x size is least.
 double size_within(const CostLaw& cost, double lo, double hi, double price, Stacking stacking) {
   if (lo == hi) return lo;
   return std::fmax(lo, std::fmin(hi, price > 0.0 ? cost.cheapest_size(price, stacking) : kInfinity));
 }
 
-/// The cost of both parts of a pair as a function of the outer part's size, with the largest inner part that fits in
-/// it.
+/// The cost of both parts of a pair, and its derivatives, if the outer part has this size and the inner part is the
+/// largest that fits in it (share x size).
 CostCurve common_curve(const SizedProcess& process, double size, Stacking stacking) {
   const double share = process.inner->share;
   const CostCurve outer = process.cost.curve(size, stacking);
@@ -43,14 +44,15 @@ CommonRange common_range(const SizedProcess& process) {
   return {lo, std::fmax(lo, std::fmin(process.hi, inner.hi / inner.share))};
 }
 
-/// The size of a pair's outer part that minimises cost + price x size, with the largest inner part that fits: share x
-/// size of the outer part. Newton's method solves for the logarithm of the slope as a function of the logarithm of the
-/// size, which is nearly linear. An error of the size changes the minimum only to second order.
+/// The size of a pair's outer part at which cost + price x size is least, if the inner part is the largest that fits in
+/// it (share x size). Newton's method solves for the logarithm of the slope as a function of the logarithm of the size,
+/// which is nearly linear. An error of the size changes the minimum only to second order.
 double common_size(const SizedProcess& process, double price, Stacking stacking) {
   auto [lo, hi] = common_range(process);
   if (lo == hi || price <= 0.0 || common_curve(process, hi, stacking).slope + price <= 0.0) return hi;
   if (lo > 0.0 && common_curve(process, lo, stacking).slope + price >= 0.0) return lo;
-  // The best size for one cost law alone is at most the best size for both, so it is a lower bound.
+  // The size that is best for one of the two cost laws is at most the size that is best for both, so it is a lower
+  // bound.
   const double share = process.inner->share;
   double size = lo;
   if (!process.cost.is_constant()) size = std::fmax(size, process.cost.cheapest_size(price, stacking));
@@ -91,8 +93,9 @@ ProcessResponse pair_response(const SizedProcess& process, const Prices& prices,
   return {size, cost, cost + prices.own * size + prices.inner * within, within};
 }
 
-/// The decrease of sizes per unit of price. own: of the part's size, by the part's own price. inner: of the inner
-/// part's size, by the inner part's price. cross: of the size of either part, by the price of the other.
+/// Derivatives of the best sizes with respect to prices, without their minus sign. own: of the part's size, with
+/// respect to its own price. inner: of the inner part's size, with respect to the inner part's price. cross: of the
+/// size of either part, with respect to the price of the other.
 struct InverseCurvature {
   double own;
   double inner = 0.0;
@@ -119,7 +122,7 @@ InverseCurvature pair_curvature(const SizedProcess& process, const ProcessRespon
   return {common, share * share * common, share * common};
 }
 
-/// The functions for a part that is in no pair.
+/// The best sizes of a part that is in no pair, and their derivatives, for mix().
 struct PlainPart {
   static ProcessResponse response(const SizedProcess& process, const Prices& prices, Stacking stacking) {
     const double size = size_within(process.cost, process.lo, process.hi, prices.own, stacking);
@@ -132,7 +135,7 @@ struct PlainPart {
   static constexpr bool kHasInner = false;
 };
 
-/// The functions for both parts of a pair.
+/// The best sizes of both parts of a pair, and their derivatives, for mix().
 struct PairOfParts {
   static ProcessResponse response(const SizedProcess& process, const Prices& prices, Stacking stacking) {
     return pair_response(process, prices, stacking);
@@ -143,8 +146,8 @@ struct PairOfParts {
   static constexpr bool kHasInner = true;
 };
 
-/// Sets the weighted means over the allowed processes. Sizes are taken relative to those of the main process, so that
-/// the variance does not lose digits.
+/// Sets the members of `part` that are weighted means over the allowed processes. Sizes are summed relative to those of
+/// the process with the largest weight, so that the variance does not lose digits.
 template <class Kind>
 void mix(std::span<const SizedProcess> processes, ProcessRange allowed, double mu, Stacking stacking,
          BestResponse& part) {

@@ -5,10 +5,11 @@
 
 #include "engine/optimise/sized_problem.h"
 
-/// The sizes that minimise cost + price x size at given prices. Lagrange's lower bound is a sum of these minima.
+/// The sizes of a part at which cost + price x size is least, for given prices (its best response). Lagrange's lower
+/// bound on the cost is computed from the sum of these minima.
 namespace poesy {
 
-/// The prices of a unit of size, for a part and for the inner part of its pair (Within in least_cost.h). A price is the
+/// The prices of a unit of size, of a part and of the inner part of its pair (Within in least_cost.h). A price is the
 /// sum over the limits of multiplier x effect.
 struct Prices {
   double own;          ///< price of the part's own size, >= 0
@@ -16,34 +17,34 @@ struct Prices {
                        ///< Within::share x inner is >= 0
 };
 
-/// The best sizes within one process.
+/// The sizes that one process allows at which cost + price x size is least.
 struct ProcessResponse {
   double size;              ///< best size, in [lo, hi]
   double cost;              ///< cost at these sizes
-  double lagrangian;        ///< cost + price x size, minimal at these sizes
+  double lagrangian;        ///< least value of cost + price x size, which is that at these sizes
   double inner_size = 0.0;  ///< size of a pair's inner part: within its bounds and at most share x size
 };
 
-/// The sizes within one process that minimise cost + price x size.
+/// Finds the sizes that the process allows at which cost + price x size is least.
 ProcessResponse process_response(const SizedProcess& process, const Prices& prices, Stacking stacking);
 
-/// The best response of the inner part of a pair (Within in least_cost.h).
+/// The part of BestResponse that is about the inner part of a pair (Within in least_cost.h).
 struct InnerResponse {
   double price = 0.0;              ///< price of a unit of the inner part's size
   double size = 0.0;               ///< mean size over the mixed processes
-  double inverse_curvature = 0.0;  ///< decrease of the inner part's size per unit of its price
+  double inverse_curvature = 0.0;  ///< decrease of the size per unit of the inner part's price
   /// Decrease of the inner part's size per unit of the outer part's price. It equals the decrease of the outer part's
   /// size per unit of the inner part's price.
   double cross = 0.0;
   double deviation = 0.0;  ///< standard deviation of the size over the mixed processes
 };
 
-/// The best response of a part, or of both parts of a pair, at given multipliers. If several processes are allowed, the
-/// response is a weighted mean over them (a mix).
+/// The sizes at which cost + price x size is least, for a part or for both parts of a pair, at given prices. If several
+/// processes are allowed, sizes and costs are weighted means over them (a mix).
 struct BestResponse {
   double price = 0.0;              ///< price of a unit of the part's own size
   double size = 0.0;               ///< mean size over the mixed processes
-  double inverse_curvature = 0.0;  ///< decrease of the size per unit of price
+  double inverse_curvature = 0.0;  ///< decrease of the size per unit of the part's own price
   double cost = 0.0;               ///< mean cost over the mixed processes
   double lagrangian = 0.0;         ///< least cost + price x size over all sizes of all processes
   double deviation = 0.0;          ///< standard deviation of the size over the mixed processes
@@ -53,8 +54,8 @@ struct BestResponse {
   Prices prices() const { return {price, inner.price}; }  ///< The prices of the part and of its pair's inner part.
 };
 
-/// The best response of a part to prices. The weight of a process is proportional to exp(-lagrangian / mu), as in a
-/// Boltzmann distribution of temperature mu.
+/// Computes the best sizes for these prices. The weight of a process in the mix is proportional to exp(-lagrangian /
+/// mu), as in a Boltzmann distribution of temperature mu.
 BestResponse best_response(std::span<const SizedProcess> processes, ProcessRange allowed, const Prices& prices,
                            double mu, Stacking stacking);
 

@@ -61,8 +61,8 @@ struct Raise {
   std::size_t process;  ///< position of the new process
 };
 
-/// How much price x size scatters over the mixed processes of a part (standard deviation). The part with the largest
-/// value is branched first.
+/// The standard deviation of price x size over the mixed processes of a part, summed over the parts of a pair. The part
+/// with the largest value is branched first.
 double spread_of(const BestResponse& part) {
   return part.price * part.deviation + std::abs(part.inner.price) * part.inner.deviation;
 }
@@ -112,8 +112,8 @@ void BranchAndBound::push(double bound, std::vector<ProcessRange> allowed, std::
   open_.push({bound, made_++, std::move(allowed), std::move(multipliers)});
 }
 
-/// Solves the convex programme of one choice and records its solution. Returns the lower bound, or infinity if
-/// infeasible.
+/// Solves the convex programme of one choice and adds its solution to the best ones. Returns the lower bound on its
+/// cost, or infinity if no sizes keep the limits.
 double BranchAndBound::solve_leaf(const Choice& choice) {
   if (const auto known = solved_.find(choice); known != solved_.end()) return known->second;
   double& bound = solved_[choice];
@@ -141,8 +141,8 @@ bool BranchAndBound::is_feasible(const std::vector<ProcessRange>& allowed) const
   return true;
 }
 
-/// A choice that keeps the limits: for each part, the cheapest process that allows a size no larger than the
-/// relaxation's.
+/// A choice that keeps the limits: for each part, the cheapest process that allows a size no larger than the one in the
+/// relaxation.
 Choice BranchAndBound::round_down(const std::vector<ProcessRange>& allowed, const PathPoint& point) const {
   Choice choice;
   for (std::size_t i = 0; i < allowed.size(); ++i) {
@@ -159,8 +159,9 @@ Choice BranchAndBound::round_down(const std::vector<ProcessRange>& allowed, cons
   return choice;
 }
 
-/// Improves greedily, as long as the limits allow it, a choice of processes that allow one size each. In each step the
-/// part that saves most takes its next larger value; a pair may take any cheaper values.
+/// Makes parts of a choice coarser one after the other, as long as the limits allow it, if each process of the choice
+/// allows only one size. In each step the part that saves most takes its next larger value; a pair may take any cheaper
+/// values.
 void BranchAndBound::raise_greedily(Choice& choice) const {
   std::vector<double> sizes(choice.size());
   for (std::size_t i = 0; i < choice.size(); ++i) {

@@ -17,7 +17,7 @@ const Process& process_of(const AllocationProblem& problem, const SizedProblem& 
   return problem.parts[part][sized.processes[part].front().index];
 }
 
-/// The tolerance of a size. At a bound it is exactly the bound's tolerance.
+/// The tolerance that belongs to a size. At a bound it is exactly the bound's tolerance.
 double tolerance_within(const Process& process, double size, Stacking stacking) {
   if (size == size_of(process.hi, stacking)) return process.hi;
   if (size <= size_of(process.lo, stacking)) return process.lo;
@@ -50,7 +50,7 @@ std::vector<double> lowest_like(const SizedProblem& sized, std::span<const doubl
   return lo;
 }
 
-/// The tolerances [parts] of the sizes lo + keep (sizes - lo), where lo are the sizes that lowest_like() gives.
+/// [parts] The tolerances that belong to the sizes lo + keep (sizes - lo), where lo are the sizes from lowest_like().
 std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedProblem& sized,
                                   std::span<const double> sizes, double keep) {
   std::vector<double> tolerance(sizes.size());
@@ -66,8 +66,8 @@ std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedP
   return tolerance;
 }
 
-/// The largest s from 0 to 1 for which the sizes lo + s (sizes - lo) keep all limits, where lo are the sizes that
-/// lowest_like() gives.
+/// The largest s from 0 to 1 for which the sizes lo + s (sizes - lo) keep all limits, where lo are the sizes from
+/// lowest_like().
 double share_within(const SizedProblem& sized, std::span<const double> sizes) {
   const double room = 1.0 - 4.0 * rounding_margin(sized.parts());
   const std::vector<double> lo = lowest_like(sized, sizes);
@@ -80,8 +80,8 @@ double share_within(const SizedProblem& sized, std::span<const double> sizes) {
   return share;
 }
 
-/// The tolerances [parts] of these sizes. Where rounding would break a limit, the sizes move towards the lowest bounds.
-/// None if even the lowest bounds break a limit.
+/// [parts] The tolerances that belong to these sizes. If rounding would break a limit, all sizes move towards the
+/// lowest bounds. None if even the lowest bounds break a limit.
 std::optional<std::vector<double>> tolerances_within(const AllocationProblem& problem, const SizedProblem& sized,
                                                      std::span<const double> sizes) {
   for (const double keep : {1.0, share_within(sized, sizes), 0.0}) {
@@ -120,7 +120,8 @@ DualCertificate certify(const SizedProblem& sized, std::vector<std::size_t> work
   return {std::move(working_set), std::move(multipliers), bound};
 }
 
-/// The certificate with negligible multipliers set to 0, if its bound is still about as good as that of `whole`.
+/// The certificate `whole` with negligible multipliers set to 0, if the lower bound that it then proves is about as
+/// good.
 DualCertificate without_negligible(const SizedProblem& sized, const DualCertificate& whole, double cost) {
   const double sum = std::accumulate(whole.multipliers.begin(), whole.multipliers.end(), 0.0);
   DualCertificate less = whole;

@@ -8,7 +8,7 @@
 #include "engine/optimise/least_cost.h"
 #include "engine/optimise/sized_problem.h"
 
-/// The tolerances with the least cost if each part has one process: a convex programme.
+/// The tolerances with the least cost if each part has one process. Finding them is a convex programme.
 namespace poesy {
 
 /// The solution of a convex programme and its proof of optimality.
@@ -23,8 +23,8 @@ struct ConvexSolution {
 std::optional<ConvexSolution> solve_convex(const AllocationProblem& problem, const SizedProblem& sized,
                                            std::span<const std::size_t> working_set);
 
-/// [limits] The multipliers of all limits, in cost per unit of room. multipliers: those of the working set, in the
-/// units of SizedProblem. Negligible ones become 0.
+/// [limits] The multipliers of all limits, in cost per unit of room. multipliers: those of the working set, for limits
+/// divided by their rooms (SizedProblem). Negligible ones become 0.
 std::vector<double> limit_multipliers(const ToleranceLimits& limits, std::span<const std::size_t> working_set,
                                       std::span<const double> multipliers);
 

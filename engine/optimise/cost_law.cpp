@@ -26,7 +26,7 @@ double root(double x, double n) {
   return std::pow(x, 1.0 / n);
 }
 
-/// Solves z + log z = value for z > 0 (Lambert's W of exp(value)) by Newton's method for the logarithm of z.
+/// The z > 0 with z + log z = value (Lambert's W of exp(value)), by Newton's method for the logarithm of z.
 double with_own_logarithm(double value) {
   double z = value > 1.0 ? value - std::log(value) : std::exp(value) / (1.0 + std::exp(value));
   if (z == 0.0) return z;
@@ -99,8 +99,8 @@ double CostLaw::cheapest_size(double price, Stacking stacking) const {
     const double q = exponent(stacking);
     return root(q * b_ / price, q + 1.0);
   }
-  // The slope equation is b / decay exp(-T / decay) = price in the worst case, and b / (2 T decay) exp(-T / decay) =
-  // price for squares.
+  // At the cheapest size, the cost falls by `price` per unit of size. In the worst case (size T), b / decay exp(-T /
+  // decay) = price; for squares (size T^2), b / (2 T decay) exp(-T / decay) = price.
   if (stacking == Stacking::worst_case) return std::fmax(0.0, shape_ * std::log(b_ / (shape_ * price)));
   const double value = std::log(b_) - 2.0 * std::log(shape_) - std::log(2.0 * price);
   const double tolerance = shape_ * with_own_logarithm(value);

@@ -10,12 +10,13 @@ enum class Stacking {
   worst_case        ///< sum of |a| T <= L: the limit is linear in T
 };
 
-/// The size of a tolerance T >= 0: T^2 if effects add up as squares, T in the worst case. Limits are linear in sizes.
+/// The size of a tolerance T: T^2 for Stacking::root_sum_square, T for Stacking::worst_case. Limits are linear in
+/// sizes. Precondition: T >= 0.
 double size_of(double tolerance, Stacking stacking);
-/// The tolerance of a size >= 0.
+/// The tolerance with this size, the inverse of size_of(). Precondition: size >= 0.
 double tolerance_of(double size, Stacking stacking);
 
-/// A cost and its derivatives with respect to the size.
+/// A cost and its derivatives with respect to the size (T^2 or T, see size_of()).
 struct CostCurve {
   double value;      ///< cost, in the unit of the costs
   double slope;      ///< first derivative with respect to the size, <= 0
@@ -37,10 +38,10 @@ class CostLaw {
 
   /// The cost of a tolerance T >= 0; infinite for T = 0 if the law divides by T.
   double at(double tolerance) const;
-  /// The cost of a size > 0 and its derivatives with respect to the size.
+  /// The cost of the tolerance with this size, and its derivatives with respect to the size. Precondition: size > 0.
   CostCurve curve(double size, Stacking stacking) const;
-  /// The size > 0 that minimises cost + price x size; infinite for price 0. Preconditions: price >= 0, the law is not
-  /// constant.
+  /// The size > 0 at which cost + price x size is least; infinite for price 0. Preconditions: price >= 0, the law is
+  /// not constant.
   double cheapest_size(double price, Stacking stacking) const;
   /// The part of the cost that does not depend on the tolerance.
   double fixed() const { return fixed_; }
@@ -49,7 +50,7 @@ class CostLaw {
  private:
   enum class Form { constant, power, exponential };
   CostLaw(Form form, double fixed, double b, double shape);
-  /// The exponent q of the law, whose cost falls as 1 / size^q; see size_of().
+  /// The exponent q with which the cost falls as 1 / size^q, for a law of the form `power`.
   double exponent(Stacking stacking) const;
 
   Form form_;

@@ -14,16 +14,18 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Factor by which the parameter mu of the path (DualPath) falls from one point to the next.
 constexpr double kMuReduction = 0.1;
-/// Relative gap at the end of the path. The reference is the part of the cost that tolerances can change.
+/// The path ends when the cost is within this of its lower bound, as a share of the part of the cost that tolerances
+/// can change.
 constexpr double kRelativeGap = 1e-12;
 /// The path ends if mu is below this share of the scale of multipliers, because rounding dominates there.
 constexpr double kSmallestMu = 1e-16;
-/// The path ends when its parameter mu has this value, if processes are mixed. The value is a share of the part of the
-/// cost that tolerances can change.
+/// If processes are mixed, the path already ends when mu reaches this share of the part of the cost that tolerances can
+/// change.
 constexpr double kSmallestMixingMu = 3e-8;
-constexpr int kMaxNewtonSteps = 60;      ///< largest number of Newton steps for one maximum
+constexpr int kMaxNewtonSteps = 60;      ///< largest number of Newton steps to one point of the path
 constexpr int kMaxLineSearchSteps = 60;  ///< largest number of trial steps along one direction
-constexpr int kMaxIterations = 400;      ///< largest number of maxima and of additions to the working set, together
+constexpr int kMaxIterations =
+    400;  ///< largest number of points of the path and of additions to the working set, together
 constexpr std::size_t kAddedAtOnce = 4;  ///< number of violated limits that join the working set in one iteration
 
 /// The mean cost of the mixed processes, less the smallest fixed cost of an allowed process. Tolerances can change at
@@ -34,8 +36,8 @@ double changeable(std::span<const SizedProcess> processes, ProcessRange allowed,
   return std::fmax(0.0, part.cost - least);
 }
 
-/// A scale for multipliers: the total price of all sizes if each part uses an equal share of the room of the limit that
-/// it affects most.
+/// A scale for multipliers: the sum over the parts of price x size, if each part uses an equal share of the room of the
+/// limit that it affects most.
 double multiplier_scale(const SizedProblem& problem, std::span<const ProcessRange> allowed) {
   const auto parts = static_cast<double>(problem.parts());
   double sum = 0.0;
@@ -113,7 +115,7 @@ double lower_bound(const SizedProblem& problem, std::span<const ProcessRange> al
   }
   for (const double multiplier : multipliers) bound -= multiplier;
   magnitude = std::accumulate(multipliers.begin(), multipliers.end(), magnitude);
-  // Each number comes from at most about 64 operations, plus one for each limit and each part.
+  // The margin for rounding: each number comes from at most about 64 operations, plus one for each limit and each part.
   const double operations = static_cast<double>(problem.parts() + working_set.size()) + 64.0;
   return bound - operations * kEpsilon * magnitude;
 }
@@ -144,7 +146,7 @@ void DualPath::begin(std::span<const double> start, double mu) {
   }
 }
 
-/// Computes the best responses at the multipliers, and the slack of the limits.
+/// Computes the best sizes of all parts at the multipliers, and the slack of the limits (room minus use).
 void DualPath::update_responses(double mu) {
   const std::size_t parts = problem_.parts();
   std::fill(sizes_.begin(), sizes_.end(), 0.0);  // sizes_ first holds the prices
@@ -224,9 +226,10 @@ bool DualPath::find_newton_direction(double mu) {
   return std::ranges::all_of(direction_, [](double one) { return std::isfinite(one); });
 }
 
-/// Searches along Newton's direction. The function is concave, so its slope falls along the direction. A step is too
-/// long if the slope at its end is more negative than half the first slope. If it is too long, the search looks for a
-/// small slope between this step and a shorter one, because the function bends sharply where parts reach a bound.
+/// Steps along Newton's direction to a larger value of the function that the path maximises (DualPath). The function is
+/// concave, so its slope falls along the direction. A step is too long if the slope at its end is more negative than
+/// half the first slope. Then the search looks for a small slope between this step and a shorter one, because the
+/// function bends sharply where parts reach a bound.
 void DualPath::search_line(double mu) {
   const std::vector<double> before = multipliers_;
   double step = 1.0;

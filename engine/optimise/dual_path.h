@@ -8,13 +8,14 @@
 #include "engine/optimise/best_response.h"
 #include "engine/optimise/sized_problem.h"
 
-/// The Lagrange dual of the least-cost problem, and its central path. Given multipliers of the limits, the best size of
+/// The Lagrange dual of the least-cost problem, and its central path. If each limit has a multiplier, the best size of
 /// each part does not depend on the other parts. At these sizes, the sum of the parts' costs and of multiplier x (use -
 /// room) is a lower bound on the least cost.
 namespace poesy {
 
-/// The lower bound on the cost that these multipliers, >= 0, of the limits in the working set prove. All tolerances
-/// within the allowed processes and the limits cost at least this much. A margin for rounding is subtracted.
+/// The lower bound on the cost that multipliers of the limits in the working set prove: all tolerances that the
+/// processes allow and that keep the limits cost at least this much. A margin for rounding is subtracted. Precondition:
+/// multipliers >= 0.
 double lower_bound(const SizedProblem& problem, std::span<const ProcessRange> allowed,
                    std::span<const std::size_t> working_set, std::span<const double> multipliers);
 
@@ -23,16 +24,16 @@ struct PathTarget {
   /// Stop when the lower bound of the path reaches this value. Set it to the cost of the best known choice, because a
   /// node with a higher bound is pruned.
   double cutoff = std::numeric_limits<double>::infinity();
-  /// Also stop when the lower bound can no longer reach the cutoff. Set it in branch and bound, where such a node is
-  /// divided whatever its exact bound is. Do not set it if the multipliers themselves are wanted.
+  /// Also stop when the lower bound can no longer reach the cutoff. Set it in branch and bound, which divides such a
+  /// node whatever its exact bound is. Do not set it if the multipliers are needed exactly.
   bool only_to_branch = false;
 };
 
-/// The point at which the path was left.
+/// The point of the central path at which DualPath::follow() stopped.
 struct PathPoint {
-  /// [parts] Responses of the parts. Their sizes keep all limits, except if rounding ended the path too soon. That may
-  /// happen if the lowest bounds leave hardly any room in a limit. The response of a pair's outer part describes both
-  /// parts; the element of the inner part contains only its size.
+  /// [parts] Best sizes of the parts. They keep all limits, except if rounding ended the path too soon. That may happen
+  /// if the lowest bounds leave hardly any room in a limit. The element of a pair's outer part describes both parts;
+  /// the element of the inner part contains only its size.
   std::vector<BestResponse> parts;
   std::vector<double> multipliers;  ///< [working set] multipliers, in the order of DualPath::working_set()
   double lower_bound = 0.0;         ///< lower_bound() at these multipliers
@@ -48,11 +49,12 @@ struct PathPoint {
 /// set; Newton's method finds each maximum. A limit joins the working set when sizes break it.
 class DualPath {
  public:
-  /// Keeps a reference to the problem. The working set begins with these limits.
+  /// Keeps a reference to the problem. working_set: the limits with which the working set begins.
   explicit DualPath(const SizedProblem& problem, std::vector<std::size_t> working_set = {});
 
-  /// Follows the path. start: multipliers of the limits of working_set() in their order; the last ones may be missing.
-  /// Precondition: the lowest allowed sizes keep every limit.
+  /// Follows the path with these allowed processes until the target is reached. start: multipliers of the limits of
+  /// working_set() in their order; the last ones may be missing. Precondition: the lowest allowed sizes keep every
+  /// limit.
   PathPoint follow(std::span<const ProcessRange> allowed, std::span<const double> start, const PathTarget& target);
 
   /// [working set] The limits that have joined the working set so far.
@@ -79,7 +81,7 @@ class DualPath {
   std::vector<double> multipliers_;  ///< [working set] multipliers of the limits of the working set
   std::vector<double> slack_;        ///< [working set] slack (room - use) of these limits at the multipliers
   std::vector<double> direction_;    ///< [working set] Newton's step, relative to the multipliers
-  std::vector<BestResponse> responses_;  ///< [parts] best responses of the parts
+  std::vector<BestResponse> responses_;  ///< [parts] best sizes of the parts at the multipliers
   std::vector<double> sizes_;            ///< [parts] sizes of the parts
   std::vector<double> inner_prices_;     ///< [parts] price of the inner part of a pair; 0 for other parts
 };

@@ -17,7 +17,7 @@ AtBound bound_of(const Process& process, double tolerance) {
   return tolerance == process.hi ? AtBound::upper : AtBound::none;
 }
 
-/// Sets the members of the result that follow from its tolerances.
+/// Sets the members of the result that follow from its tolerances: `bound` and `use`.
 void complete(const AllocationProblem& problem, LeastCost& found) {
   for (std::size_t i = 0; i < problem.parts.size(); ++i) {
     found.bound.push_back(bound_of(problem.parts[i][found.best.process[i]], found.best.tolerance[i]));

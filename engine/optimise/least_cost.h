@@ -8,30 +8,31 @@
 #include "engine/optimise/cost_law.h"
 #include "engine/optimise/tolerance_limits.h"
 
-/// Tolerances with the least cost under limits, with a proof. Limits are linear and costs convex in T^2 (in T for the
-/// worst case). Multipliers of the limits therefore give a lower bound on the cost of all tolerances that keep the
-/// limits: theory.md, D65.
+/// Tolerances with the least cost under limits, with a proof. In T^2 (in T for Stacking::worst_case), limits are linear
+/// and costs are convex. Multipliers of the limits therefore give a lower bound on the cost of all tolerances that keep
+/// the limits: theory.md, D65.
 namespace poesy {
 
 /// One way of making a part.
 struct Process {
   CostLaw cost;  ///< cost as a function of the tolerance
-  double lo;     ///< least tolerance, SI, >= 0
-  double hi;     ///< largest tolerance, SI, >= lo; equal to lo for a single value, infinite if only the limits bound it
+  double lo;     ///< smallest tolerance that the process can keep, SI, >= 0
+  double hi;  ///< largest tolerance, SI, >= lo; equal to lo for a single value, infinite if the process has no largest
+              ///< tolerance
 };
 
-/// The only process of a part whose tolerance is given, SI.
+/// The only process of a part whose tolerance (SI) is given and not chosen.
 Process fixed_process(double tolerance, double cost = 0.0);
 
 /// One process for each available tolerance (SI), such as the grades of a standard. The law gives the cost of each.
 std::vector<Process> available_values(const CostLaw& cost, std::span<const double> tolerances);
 
-/// When the inner part of a pair may be left out. A part that is left out has no tolerance of its own and costs
-/// nothing.
+/// When the inner part of a pair (Within) may be left out. A part that is left out has no tolerance of its own and
+/// costs nothing.
 enum class LeftOut {
   never,
-  by_choice,        ///< left out where that costs less
-  where_it_is_void  ///< left out where the outer part is so fine that no process of the inner part fits in it
+  by_choice,        ///< left out if that costs less
+  where_it_is_void  ///< left out only if the outer part is so fine that no process of the inner part fits in it
 };
 
 /// A pair of parts, in which the size of the inner part is at most a share of the size of the outer part. An example is
@@ -53,15 +54,16 @@ struct AllocationProblem {
   std::vector<Within> pairs = {};           ///< pairs of parts; a part is in at most one pair
 };
 
-/// When branch and bound ends, and what it returns. Unused if each part has only one process.
+/// When branch and bound ends, and how many choices it returns. Unused if each part has only one process.
 struct SearchOptions {
-  /// The search ends when the cost is proven to be within this relative distance of the least cost. Make it larger for
-  /// many parts with lists of values: most nodes go into the last digits, and tolerances are hardly known to 1e-6.
+  /// The search ends when the cost is proven to exceed the least cost by at most this share. Make it larger for many
+  /// parts with lists of values: most nodes go into the last digits, and the errors that tolerances permit are hardly
+  /// known to 1e-6.
   double relative_gap = 1e-9;
-  /// The number of next-best choices of processes to return. Each one makes the search longer, because nodes are pruned
-  /// by the cost of the worst choice that is kept.
+  /// The number of choices of processes to return besides the best one, cheapest first. Each of them makes the search
+  /// longer, because nodes are pruned by the cost of the worst choice that is kept.
   std::size_t alternatives = 0;
-  /// The largest number of nodes. If it is reached, the search ends and the result states the remaining gap. Make it
+  /// The largest number of nodes. If it is reached, the search ends, and LeastCost::gap() is larger than asked. Make it
   /// smaller if a good choice soon is worth more than a proof: the default takes 4 s for 71 parts of which many are
   /// alike (D65).
   std::size_t max_nodes = 20000;
@@ -70,7 +72,7 @@ struct SearchOptions {
 /// Whether a tolerance is at a bound of its process; single: the process allows only one tolerance.
 enum class AtBound { none, lower, upper, single };
 
-/// A choice of processes, and the tolerances with the least cost for this choice.
+/// A choice of one process for each part, and the tolerances with the least cost for this choice.
 struct Allocation {
   std::vector<std::size_t> process;  ///< [parts] position of the chosen process among the processes of each part
   std::vector<double> tolerance;     ///< [parts] SI; they keep every limit, also in floating-point sums
@@ -83,14 +85,14 @@ struct Allocation {
 /// The tolerances with the least cost and the proof that nothing costs less.
 struct LeastCost {
   Allocation best;             ///< the cheapest known choice that keeps the limits
-  double lower_bound;          ///< proven lower bound on the cost of all tolerances within bounds and limits
+  double lower_bound;          ///< proven lower bound on the cost of all tolerances that keep bounds and limits
   std::vector<AtBound> bound;  ///< [parts] whether each tolerance of `best` is at a bound
-  /// [limits] Saving per unit of additional room, >= 0; 0 for a limit that does not bind.
+  /// [limits] Cost saved per unit of additional room, >= 0; 0 for a limit that is not used up.
   std::vector<double> multiplier;
   /// [limits] Multipliers if processes may be mixed; equal to `multiplier` if no part has a choice.
   std::vector<double> relaxed;
-  LimitUse use;  ///< use of the limit that is used most, share <= 1; {0, 0} if there are no limits
-  /// Next-best choices of processes, cheapest first; at most SearchOptions::alternatives.
+  LimitUse use;  ///< the limit with the largest share of its room in use, share <= 1; {0, 0} if there are no limits
+  /// The next cheapest choices of processes, cheapest first; at most SearchOptions::alternatives.
   std::vector<Allocation> next;
   std::size_t nodes = 0;  ///< number of nodes of branch and bound; 0 if no part has a choice
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The tolerance of a part at a common factor, clamped to its range.
+/// The tolerance factor x proportion of a part, clamped to its range.
 double tolerance_at(double factor, double proportion, const ToleranceRange& range) {
   if (proportion == kInfinity) return range.hi;
   return std::clamp(factor * proportion, range.lo, range.hi);
@@ -24,8 +24,8 @@ std::vector<double> tolerances_at(double factor, std::span<const double> proport
   return tolerance;
 }
 
-/// The use of a limit by these tolerances [parts]. A part without effect uses nothing, even if its tolerance is
-/// infinite.
+/// The combined effect of these tolerances [parts] on a limit. A part without effect adds nothing, even if its
+/// tolerance is infinite.
 double need_of(const ToleranceLimits& limits, std::size_t l, std::span<const double> tolerance) {
   double sum = 0.0;
   for (std::size_t i = 0; i < tolerance.size(); ++i) {
@@ -46,7 +46,7 @@ std::optional<Infeasible> find_infeasible(const ToleranceLimits& limits, std::sp
   return worst;
 }
 
-/// The factors at which the bound of some part begins or ceases to hold, ascending.
+/// The common factors at which the tolerance of some part reaches or leaves a bound, ascending.
 std::vector<double> corners(std::span<const double> proportions, std::span<const ToleranceRange> ranges) {
   std::vector<double> factors{0.0};
   for (std::size_t i = 0; i < ranges.size(); ++i) {
@@ -58,7 +58,8 @@ std::vector<double> corners(std::span<const double> proportions, std::span<const
   return factors;
 }
 
-/// The common factor at which a limit is used up if the same parts are at a bound as at the factor `inside`.
+/// The common factor at which a limit is used up, if the parts that are at a bound are the same as at the factor
+/// `inside`.
 double factor_of(const ToleranceLimits& limits, std::size_t l, double inside, std::span<const double> proportions,
                  std::span<const ToleranceRange> ranges) {
   double held = 0.0;  // sum over the parts at a bound of effect x size
@@ -99,7 +100,7 @@ std::variant<MaxTolerances, Infeasible> maximise_tolerances(const ToleranceLimit
     return !find_infeasible(limits, tolerances_at(factor, proportions, ranges));
   };
   if (const auto worst = find_infeasible(limits, tolerances_at(0.0, proportions, ranges))) return *worst;
-  // Between two corners the same bounds hold.
+  // Between two neighbouring corners, the same parts are at a bound.
   const std::vector<double> factors = corners(proportions, ranges);
   const auto next = std::ranges::partition_point(factors, keeps);
   const double from = *std::prev(next);

@@ -8,7 +8,7 @@
 
 #include "engine/optimise/tolerance_limits.h"
 
-/// Tolerances without costs: given proportions, times the largest common factor that the limits allow.
+/// Tolerances that do not depend on costs: given proportions, times the largest common factor that the limits allow.
 namespace poesy {
 
 /// The range of a tolerance, SI: 0 <= lo <= hi; hi may be infinite.
@@ -17,9 +17,9 @@ struct ToleranceRange {
   double hi;  ///< largest tolerance, SI
 };
 
-/// [parts] The tolerances at which each part alone would use up the limit that it affects most: T_i = 1 / sqrt(e_i), or
-/// 1 / e_i in the worst case, where e_i is the largest effect / room of part i over the limits. Infinite for a part
-/// without effect.
+/// [parts] Proportions of tolerances of equal effect. With its tolerance T_i, each part would use up the limit that it
+/// affects most, if it were the only part: T_i = 1 / sqrt(e_i), or 1 / e_i for Stacking::worst_case, where e_i is the
+/// largest effect / room of part i over the limits. Infinite for a part without effect.
 std::vector<double> equal_effect_proportions(const ToleranceLimits& limits);
 
 /// The largest tolerances in given proportions.
@@ -29,9 +29,9 @@ struct MaxTolerances {
   std::optional<std::size_t> limit;  ///< the limit that prevents a larger factor
 };
 
-/// Finds the largest factor for which T_i = factor x proportion_i, clamped to [lo_i, hi_i], keeps all limits. The
-/// factor has a closed form between the factors at which bounds begin to hold. A part of infinite proportion gets its
-/// upper bound. Proportions of 1 give equal tolerances. Preconditions: proportions [parts] > 0; ranges [parts]; the
+/// Finds the largest factor for which T_i = factor x proportion_i, clamped to [lo_i, hi_i], keeps all limits. Between
+/// two factors at which some part reaches a bound, it has a closed form. A part of infinite proportion gets its upper
+/// bound. Proportions of 1 give equal tolerances. Preconditions: proportions [parts] > 0; ranges [parts]; the
 /// proportion of a part with effect is finite.
 std::variant<MaxTolerances, Infeasible> maximise_tolerances(const ToleranceLimits& limits,
                                                             std::span<const double> proportions,

@@ -40,7 +40,8 @@ std::vector<SizedProcess> processes_of_pair(const Within& pair, const std::vecto
   return both;
 }
 
-/// The largest growth of the outer part's size that the limits allow; infinite if no limit stops the growth.
+/// The largest growth of the outer part's size (in a pair) that the limits allow; infinite if no limit stops the
+/// growth.
 struct PairGrowth {
   double alone = kInfinity;     ///< if only the outer part grows
   double together = kInfinity;  ///< if the inner part grows with it in proportion to its share

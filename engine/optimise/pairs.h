@@ -7,9 +7,10 @@
 
 #include "engine/optimise/sized_problem.h"
 
-/// Presolve of pairs of parts (Within). All sizes (u, v) of an outer and an inner part, 0 <= v <= share x u, are sums
-/// of two kinds of growth: of the outer part alone, (1, 0), and of both parts, (1, share). Neither kind lowers the use
-/// of a limit, even if the inner part's effect is negative. So the unused room of a limit bounds both kinds.
+/// Presolve of pairs of parts (Within): bounds their sizes before the search. All sizes (u, v) of an outer and an inner
+/// part, 0 <= v <= share x u, are sums of two kinds of growth: of the outer part alone, (1, 0), and of both parts, (1,
+/// share). Neither kind lowers the use of a limit, even if the inner part's effect is negative. So the unused room of a
+/// limit bounds both kinds.
 namespace poesy {
 
 /// Replaces the processes of the outer part of each pair by common processes of both parts. Precondition: some process
@@ -19,8 +20,8 @@ void join_pairs(SizedProblem& problem);
 /// Whether a part is in a pair.
 bool is_in_pair(const SizedProblem& problem, std::size_t part);
 
-/// Fixes an outer part at its largest size in processes where no limit stops its growth. Adds the parts that have no
-/// largest size to `unbounded`.
+/// In processes where no limit stops the growth of an outer part, fixes it at its largest size. Adds the outer parts
+/// that have no largest size to `unbounded`.
 void fix_free_pairs(SizedProblem& problem, std::vector<std::size_t>& unbounded);
 
 /// Removes the processes of a pair that break a limit even if all other parts use as little of the limit as they can.
@@ -28,8 +29,8 @@ void fix_free_pairs(SizedProblem& problem, std::vector<std::size_t>& unbounded);
 /// of it as they can. Returns a limit that every process breaks, or none.
 std::optional<std::size_t> tighten_pair(SizedProblem& problem, const Within& pair, std::span<const double> left);
 
-/// Fixes the sizes of a pair where it uses limit l least. Sizes that do not affect this limit stay free. Returns
-/// whether the cost is finite.
+/// Restricts a pair to the sizes that use limit l least. Sizes that do not affect this limit stay free. Returns whether
+/// the cost at the largest of the remaining sizes is finite for some process.
 bool fix_at_least_use(SizedProblem& problem, const Within& pair, std::size_t l);
 
 }  // namespace poesy

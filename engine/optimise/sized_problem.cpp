@@ -98,7 +98,7 @@ std::vector<std::size_t> fix_free_parts(SizedProblem& problem) {
 }
 
 /// Bounds each size by the largest one that the limits allow if all other parts are at their lowest sizes. A margin for
-/// rounding is added, so that no bound is too tight. Returns a limit that every process of a pair breaks, or none.
+/// rounding is added, so that no allowed size is lost. Returns a limit that every process of a pair breaks, or none.
 std::optional<std::size_t> tighten_bounds(SizedProblem& problem) {
   const auto all = all_processes(problem);
   const std::vector<double> lo = lowest(problem, all);
@@ -127,8 +127,8 @@ std::optional<std::size_t> tighten_bounds(SizedProblem& problem) {
   return std::nullopt;
 }
 
-/// Finds the tight limits (SizedProblem::tight): with the lowest bounds of all parts, nothing but rounding is left of
-/// their room. Fixes the parts that affect them. Returns the first tight limit for which the cost of a fixed part is
+/// Finds the tight limits (SizedProblem::tight), whose room is used up by the lowest sizes of all parts, except for
+/// rounding. Fixes the parts that affect them. Returns the first tight limit for which the cost of a fixed part is
 /// infinite, or none.
 std::optional<std::size_t> fix_tight_limits(SizedProblem& problem) {
   auto all = all_processes(problem);

@@ -12,7 +12,7 @@
 /// divided by its room, so its room is 1.
 namespace poesy {
 
-/// The process of the inner part of a pair (Within), in terms of sizes.
+/// The process of the inner part of a pair (Within). Bounds are sizes (T^2, or T for Stacking::worst_case).
 struct InnerProcess {
   CostLaw cost;       ///< cost as a function of the tolerance
   double lo;          ///< least size
@@ -30,7 +30,8 @@ struct Effects {
   double inner;  ///< effect of a pair's inner part; may be negative, but own + share x inner is >= 0
 };
 
-/// A process in terms of sizes. A pair has common processes for both parts, stored with the outer part.
+/// A process whose bounds are sizes (T^2, or T for Stacking::worst_case) instead of tolerances. A pair has common
+/// processes for both parts, stored with the outer part.
 struct SizedProcess {
   CostLaw cost;  ///< cost as a function of the tolerance
   double lo;     ///< least size
@@ -42,18 +43,19 @@ struct SizedProcess {
   /// Whether the process allows only one size.
   bool single() const { return lo == hi && (!inner || inner->left_out || inner->lo == inner->hi); }
   double fixed_cost() const;  ///< The part of the cost that does not depend on sizes.
-  /// The least use of a limit over the sizes that the process allows. effects: those of the process's parts on the
+  /// The least share of a limit's room that sizes of this process use. effects: those of the process's parts on the
   /// limit.
   double least_use(const Effects& effects) const;
 };
 
-/// [limits x parts] The effects divided by the rooms of the limits. They do not depend on the choice of processes.
+/// [limits x parts] The effects of the parts on the limits, divided by the rooms of the limits. They do not depend on
+/// the choice of processes.
 std::vector<double> effects_by_room(const AllocationProblem& problem);
 
-/// The share of a room that sums over N parts leave unused, so that no order of additions breaks a limit.
+/// The share of a limit's room that is left unused, so that no order of additions over the parts breaks the limit.
 double rounding_margin(std::size_t parts);
 
-/// The sum of a_k b_k, accumulated in eight partial sums.
+/// The scalar product of two vectors, accumulated in eight partial sums.
 double dot(std::span<const double> a, std::span<const double> b);
 
 /// The whole problem in terms of sizes.

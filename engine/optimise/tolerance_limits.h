@@ -10,14 +10,14 @@
 namespace poesy {
 
 /// L linear constraints on the sizes of N parts: sum over the parts i of effects_li size_i <= room_l. The size of a
-/// tolerance T is T^2, or T in the worst case.
+/// tolerance T is T^2, or T for Stacking::worst_case (cost_law.h).
 struct ToleranceLimits {
   Stacking stacking = Stacking::root_sum_square;  ///< how effects add up
   std::size_t parts = 0;                          ///< N, the number of parts
-  /// [limits x parts] effect of a unit of size, such as a^2, or |a| in the worst case; >= 0, except for inner parts
-  /// (Within)
+  /// [limits x parts] Effect on each limit per unit of each part's size: a^2, or |a| for Stacking::worst_case, if a
+  /// tolerance T has the effect a T. Not negative, except for inner parts (Within).
   std::vector<double> effects;
-  std::vector<double> room;  ///< [limits] the largest combined effect of all parts
+  std::vector<double> room;  ///< [limits] the largest combined effect of all parts that keeps the limit
 
   std::size_t count() const { return room.size(); }  ///< L, the number of limits.
   /// [parts] The effects of all parts on limit l.
@@ -26,13 +26,13 @@ struct ToleranceLimits {
   double need(std::size_t l, std::span<const double> tolerance) const;
 };
 
-/// The use of one limit by given tolerances.
+/// How much of one limit given tolerances use.
 struct LimitUse {
   std::size_t limit;  ///< position of the limit
   double share;       ///< need / room: above 1 the limit is broken; infinite if the room is not positive
 };
 
-/// The use of the limit with the largest share; the first one if several are equal. Preconditions: there is at least
+/// The limit of which the largest share is used; the first one if several are equal. Preconditions: there is at least
 /// one limit; tolerance [parts] is finite.
 LimitUse worst_use(const ToleranceLimits& limits, std::span<const double> tolerance);
 

@@ -17,18 +17,18 @@ namespace {
 
 using Law = StatedCost::Law;
 
-/// The names of laws in study files, in the order of the enumeration.
+/// The names of cost laws in study files, in the order of StatedCost::Law.
 constexpr std::array<std::string_view, 4> kLawNames{"none", "reciprocal", "reciprocal-power", "exponential"};
 
-/// A cost as a study file states it: b refers to a tolerance in the stated unit.
+/// A cost as a study file states it. Its coefficient b is for a tolerance in the stated unit.
 struct WrittenCost {
   StatedCost cost = {};
   Dimension dimension = Dimension::length;
-  std::string unit = {};   ///< the unit as written; empty: none stated
+  std::string unit = {};   ///< the unit of the tolerance as written; empty: none stated
   double unit_size = 1.0;  ///< size of the unit, SI
 };
 
-/// The size of a unit of this dimension, SI. None if the text is not such a unit.
+/// The size of a unit in SI. None if the text is not a unit of this dimension.
 std::optional<double> unit_size(std::string_view spelling, Dimension dimension) {
   if (dimension == Dimension::number) return spelling == si_unit(dimension) ? 1.0 : ratio_unit(spelling);
   const Unit* unit = find_unit(spelling);

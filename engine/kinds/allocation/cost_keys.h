@@ -5,7 +5,7 @@
 #include "engine/kinds/allocation/result.h"
 #include "engine/study/study_kind.h"
 
-/// Reads and writes the cost of a part in study files, as a function of its tolerance.
+/// Reads and writes, in study files, the cost of a part as a function of its tolerance.
 namespace poesy {
 
 /// The keys of a cost in study files. They are the same for the cost of a part and the cost of a process.

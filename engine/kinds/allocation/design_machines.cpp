@@ -1,4 +1,5 @@
-// Functions on the design's machines that several stages of the search use.
+// Functions on the design's machines (the machines with which tolerances are found) that several stages of the search
+// use.
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +14,14 @@
 namespace poesy::allocation {
 namespace {
 
-/// The smallest load above the deciding load (deciding_load()): that of the last machine that is still rejected.
-/// Infinite if no reject is allowed.
+/// The load of the last machine that is still rejected if the deciding load (deciding_load()) is at the limit. Infinite
+/// if no reject is allowed.
 double load_before_deciding(const std::vector<double>& load, std::uint64_t rejects) {
   return rejects == 0 ? std::numeric_limits<double>::infinity() : deciding_load(load, rejects - 1);
 }
 
-/// The factor on all tolerances that brings the machine with the deciding load (deciding_load()) just within the limit.
-/// The machine with the next larger load stays beyond the limit, however close the two loads are.
+/// The factor on all tolerances with which the deciding load (deciding_load()) gets just below 1. The next larger load,
+/// `before`, stays above 1, however close the two loads are.
 double factor_to_limit(double deciding, double before) {
   constexpr double kWithin = 1.0 + 0.5 * kFinalLoadTolerance;
   const double between = before > deciding && std::isfinite(before) ? std::sqrt(before / deciding) : kWithin;
@@ -152,7 +153,7 @@ PartScores part_scores(const SearchProblem& problem, const ToleranceDesign& desi
       sum += growth * of_error[p];
       squares += growth * growth;
     }
-    // In one machine, the score of an error has variance 2.
+    // The score x^2 - 1 of a normal error in one machine has variance 2; other shapes have less.
     const double noise = std::sqrt(2.0 * static_cast<double>(machines.size()) * squares);
     scores.of_part.push_back(sum);
     scores.is_sure.push_back((may_fall[i] ? std::abs(sum) : sum) > kSignificance * noise);

@@ -14,7 +14,7 @@ struct Spread {
   double shift = 0.0;  ///< offset of the mean as a share of T; 0 <= shift < 1
 };
 
-/// The standard deviation of a part's errors, divided by T: (1 - shift) / sigmas.
+/// The standard deviation of a part's errors about their mean, divided by T: (1 - shift) / sigmas.
 double sigma_per_tolerance(const Spread& spread);
 
 /// The mean square of a part's errors, divided by T^2: ((1 - shift) / sigmas)^2 + shift^2. The shift is treated as a

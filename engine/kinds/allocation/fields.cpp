@@ -119,7 +119,7 @@ const Fields<AllocationStage> kStageFields{
 
 constexpr const char* kCertificate = "/allocation/certificate";
 
-/// The verdict on the certificate's machines.
+/// The verdict on the certificate's machines, in the group of the certificate.
 const Group<YieldVerdict> kVerdict{
     kCertificate,
     "What fresh machines show of the tolerances: their number is set beforehand, their seed serves nothing else, and "
@@ -134,7 +134,7 @@ const Group<YieldVerdict> kVerdict{
      {"ci_low", &YieldVerdict::ci_low, "1", "Lower end of its two-sided interval (Clopper and Pearson)"},
      {"ci_high", &YieldVerdict::ci_high, "1", "Upper end of its two-sided interval (Clopper and Pearson)"}}};
 
-/// Seeds and numbers of machines.
+/// The seed of the certificate's machines, and numbers of machines.
 const Fields<Result> kMachines{
     {"seed", &Result::certificate_seed, "1", "Seed of the fresh machines"},
     {"most_rejects", &Result::certificate_most, "1", "The certificate holds with no more rejects than these"},
@@ -144,7 +144,7 @@ const Fields<Result> kMachines{
 
 constexpr const char* kCertificateStudy = "/allocation/certificate_study";
 
-/// The words in a file for YieldVerdict::Decision, in the order of the enumeration.
+/// The words for YieldVerdict::Decision in a result file, in the order of the enumeration.
 constexpr std::array<std::string_view, 4> kDecisions{"not_asked", "kept", "not_kept", "undecided"};
 constexpr std::array kAims{Aim::least_cost, Aim::equal_effect, Aim::equal_tolerance, Aim::common_factor};
 
@@ -187,7 +187,7 @@ void read_certificate(const h5::File& file, Result& found) {
   }
 }
 
-/// Adds attributes for readers without this program: texts, and numbers that follow from other data.
+/// Adds attributes for programs that read only the file: texts, and numbers that follow from other data.
 void add_attributes(h5::File& file, const Result& found) {
   const auto set = [&](const char* name, const auto& value) { file.set_attribute(kAllocation.path, name, value); };
   set("yield", found.certificate.value);
@@ -345,7 +345,7 @@ CsvTable limit_table(const StoredResult& result) {
   return table;
 }
 
-/// A CSV table of the use of each limit at each pose, and of the multiplier there.
+/// A CSV table with the use of each limit at each pose, and the limit's multiplier at this pose.
 CsvTable pose_use_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   CsvTable table = lines_of_poses(result, "allocation_poses");
@@ -368,7 +368,7 @@ CsvTable stage_table(const Result& found) {
   return table;
 }
 
-/// A CSV table of predicted costs: first at other yields, then at other limits.
+/// A CSV table of predicted costs: first for other yields, then with all limits multiplied by a factor.
 CsvTable curve_table(const Result& found) {
   const std::size_t yields = found.curve_yield.size();
   const auto of = [yields](std::span<const double> by_yield, std::span<const double> by_factor) {

@@ -1,4 +1,4 @@
-// The stage of the search that follows the gradient of the yield.
+// The stage of the search that moves tolerances along the gradient of the yield.
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace poesy::allocation {
 namespace {
 
-/// [parts] The share of each part in the mean squares under the limits, weighted by the multipliers of the limits.
+/// [parts] The share of each part in the sum of all mean squares under limits, each weighted by the limit's multiplier.
 std::vector<double> shares_by_multipliers(const ToleranceLimits& limits, const Candidate& candidate) {
   std::vector<double> shares(limits.parts, 0.0);
   for (std::size_t l = 0; l < limits.count(); ++l) {
@@ -26,8 +26,8 @@ std::vector<double> shares_by_multipliers(const ToleranceLimits& limits, const C
   return shares;
 }
 
-/// The machines with the largest loads. The load of a machine is its largest ratio of a response to its limit. The
-/// gradient of the yield is estimated from these machines.
+/// The machines from which the gradient of the yield is estimated: the screened machines with the largest loads. The
+/// load of a machine is its largest ratio of a response to its limit.
 std::vector<std::uint32_t> machines_of_largest_load(const SearchProblem& problem, const ToleranceDesign& design) {
   const auto& [numbers, load] = design.screened;
   const std::size_t share = std::min<std::size_t>(kMaxGradientMachines, design.load.size() / 30);
@@ -40,8 +40,9 @@ std::vector<std::uint32_t> machines_of_largest_load(const SearchProblem& problem
   return machines;
 }
 
-/// A single limit that replaces all others. The effect of each part is its score among the machines with the largest
-/// loads, or, if the score is not significant, its share in the mean squares. shares: [parts].
+/// A limit on one weighted sum of the parts' T^2, which replaces all limits. At the present tolerances, the share of a
+/// part in the sum is its score among the machines with the largest loads, or, if the score is not significant, its
+/// share in the mean squares. shares: [parts].
 ToleranceLimits gradient_limit(const SearchProblem& problem, const ToleranceDesign& design,
                                std::span<const double> shares) {
   const auto [scores, is_sure] = part_scores(problem, design, machines_of_largest_load(problem, design));
@@ -59,7 +60,7 @@ ToleranceLimits gradient_limit(const SearchProblem& problem, const ToleranceDesi
   return limit;
 }
 
-/// Chooses tolerances under this limit and scales it until the yield is kept. None if the tolerances save too little.
+/// Chooses tolerances under this limit, and scales the limit until they keep the yield. None if they save too little.
 std::optional<ToleranceDesign> fit_gradient(const SearchProblem& problem, const ToleranceDesign& from,
                                             ToleranceLimits limit) {
   const TolerancePoint& before = from.candidate.point;

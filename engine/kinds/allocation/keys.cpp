@@ -23,10 +23,11 @@ constexpr std::array<std::string_view, 12> kAllocationKeys{"factors", "limits", 
                                                            "samples", "aim",        "background",  "sigmas",
                                                            "cpk",     "calibrated", "calibration", "parts"};
 
-/// The names of aims in study files, in the order of the enumeration.
+/// The names of the aims (Aim) in study files, in the order of the enumeration.
 constexpr std::array<std::string_view, 4> kAimNames{"least-cost", "equal-effect", "equal-tolerance", "common-factor"};
 
-/// The expected number of rejects in a study of default size. It estimates 1 - yield to about 5 %.
+/// The expected number of rejects in a study with the default number of machines, which estimates 1 - yield to about 5
+/// %.
 constexpr double kUsualRejects = 400.0;
 constexpr double kFewestUsual = 2000.0;
 constexpr double kMostUsual = 20e6;
@@ -49,12 +50,12 @@ void read_samples(const StudyValue& value, Study& study, const Reading&) {
   samples_value().read(value, study);
 }
 
-/// Only checks the keys; read_sigmas() passes their values to the parts.
+/// Reads `sigmas` or `cpk` of [analysis] only to refuse bad values; read_parts() reads them for the parts.
 void read_usual_sigmas(const StudyValue&, Study&, const Reading& reading) {
   static_cast<void>(read_sigmas(reading.root.section("analysis")));
 }
 
-/// Throws InputError if an error of the new parts is in an earlier part.
+/// Throws InputError if an error of these parts is also in an earlier part.
 void check_own_errors(const StudySection& block, std::span<const AllocatedPart> earlier,
                       std::span<const AllocatedPart> parts, const ModelDescription& model) {
   std::vector<const AllocatedPart*> owner(model.factors.size());
@@ -93,8 +94,8 @@ std::string parts_lines(const Study& study) {
   return text;
 }
 
-/// A commented line of a template that names the first two limbs as an example of the key identical_limbs. Empty if the
-/// mechanism has fewer than two limbs.
+/// The template's line for the key `identical_limbs`, as a comment, with the first two limbs as an example. Empty if
+/// the mechanism has fewer than two limbs.
 std::string shown_limbs(const ModelDescription& model) {
   std::set<std::size_t> limbs;
   for (const Factor& factor : model.factors) limbs.insert(factor.limb);
@@ -102,8 +103,8 @@ std::string shown_limbs(const ModelDescription& model) {
   return fmt::format("# identical_limbs = [{}, {}]\n", *limbs.begin(), *std::next(limbs.begin()));
 }
 
-/// The TOML table [[analysis.parts]] of a template in which each error of this dimension is a part of its own. Empty if
-/// the mechanism has no such error.
+/// A table [[analysis.parts]] for a template, in which each error of this dimension is a part of its own. Empty if the
+/// mechanism has no such error.
 std::string shown_block(Dimension dimension, const ModelDescription& model) {
   if (std::ranges::count(model.factors, dimension, &Factor::dimension) == 0) return {};
   return fmt::format(
@@ -113,8 +114,8 @@ std::string shown_block(Dimension dimension, const ModelDescription& model) {
       example_size(dimension, 1.0));
 }
 
-/// The TOML table [[analysis.parts]] of a template in which each tolerance zone is a part of its own. Empty if the
-/// mechanism has no zones.
+/// A table [[analysis.parts]] for a template, in which each tolerance zone is a part of its own. Empty if the mechanism
+/// has no zones.
 std::string shown_zone_block(const ModelDescription& model) {
   const auto has_zone = [](const Feature& feature) { return feature.location || feature.orientation; };
   if (std::ranges::none_of(model.features, has_zone)) return {};
@@ -125,7 +126,7 @@ std::string shown_zone_block(const ModelDescription& model) {
       example_size(Dimension::length, 1.0));
 }
 
-/// The template's line with `sigmas`, which applies to parts that are not zones. If the template has no such part, the
+/// The template's line for `sigmas`, which applies to parts that are not zones. If the template has no such part, the
 /// line is a comment.
 std::string shown_sigmas(const TemplateLines& lines, const Study& study) {
   const ModelDescription& model = study.model();
@@ -235,7 +236,7 @@ void require_all(const Study& study, const StudySection& section) {
   static_cast<void>(section.require("parts", "write [[analysis.parts]] with factors, e.g. factors = \"linear\""));
 }
 
-/// Refuses a limit on the spread of a response that has no sign.
+/// Refuses a limit on the spread over the poses of a response that has no sign.
 void check_limits(const Study& study, const StudySection& section) {
   for (const ResponseLimit& limit : study.analysis.limits) {
     const Response& response = study.model().responses[limit.response];
@@ -248,8 +249,8 @@ void check_limits(const Study& study, const StudySection& section) {
   }
 }
 
-/// Refuses an aim that cannot choose the tolerance of an orientation, because the effect of an orientation alone may be
-/// negative.
+/// Refuses an aim that cannot choose the tolerance of an orientation, because the effect of an orientation on a limit
+/// may be negative.
 void check_aim_of_zones(const Study& study, const StudySection& section) {
   const AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
   if (asked.aim != Aim::equal_effect && asked.aim != Aim::equal_tolerance) return;

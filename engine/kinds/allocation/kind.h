@@ -11,7 +11,7 @@ extern const FileKind kAllocationFile;
 extern const ReportKind kAllocationReport;
 /// @}
 
-/// Runs studies of kind `allocation` and describes their keys, files and reports.
+/// Runs studies of kind `allocation`, and describes their keys, result files and reports.
 extern const Kind kAllocationKind;
 
 }  // namespace poesy

@@ -54,7 +54,7 @@ Linearised linearise(const SearchProblem& problem, StageLog& log) {
   std::vector<double> small = usual;
   for (double& tolerance : small) tolerance *= kLinearSize;
   Linearisation linearisation = measure(problem, small, 0, usual);
-  // The share `yield` of the draws of a standard normal have |z| below this quantile.
+  // A standard normal number has a magnitude below this quantile with the probability `yield`.
   const double share = 1.0 / normal_quantile(1.0, 0.5 + 0.5 * problem.options.yield);
   std::optional<Candidate> candidate = choose(problem, linearisation, share, {});
   if (!candidate) {
@@ -63,7 +63,8 @@ Linearised linearise(const SearchProblem& problem, StageLog& log) {
     candidate = choose_by_least_share(problem, linearisation, share, 1.0, {});
   }
   log.add("linear", *candidate, 0, 0);
-  // An error may act only together with other errors. Until these effects are measured, its tolerance stays usual.
+  // The first linearisation does not see errors that act only together with others. Until their effects are measured,
+  // their tolerances are at most the usual ones.
   const ToleranceLimits limits = programme.limits(linearisation.squares, small, candidate->share);
   for (std::size_t i = 0; i < programme.size(); ++i) {
     bool acts = false;

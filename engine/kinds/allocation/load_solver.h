@@ -18,11 +18,11 @@
 
 namespace poesy {
 
-/// The number of machines in a piece of work, which one thread solves together at each pose.
+/// The number of machines that one thread solves together at each pose, as a piece of work.
 inline constexpr std::size_t kMachinesOfPiece = 200;
 
-/// The counts of a piece of work that does not record how its solves ended: all of them count as converged. How solves
-/// ended is recorded by machine_loads(), which tries all machines.
+/// The counts of a piece of work that does not record how its solves ended: all of them count as converged. Only
+/// machine_loads(), which tries all machines, records how solves ended.
 inline SolveCounts as_converged(std::uint64_t solves) {
   SolveCounts counts;
   counts.by_status[static_cast<std::size_t>(SolveStatus::converged)] = solves;
@@ -40,13 +40,13 @@ inline void loads_state(Archive& archive, std::vector<double>& loads, std::size_
 /// of a response to its limit. Owns the scratch memory of one thread.
 class LoadSolver : protected UnitSolver {
  protected:
-  /// Refers to all arguments. calibration: how machines are calibrated; null: they are not.
+  /// Refers to all arguments. calibration: the calibration of each machine; null: machines are not calibrated.
   LoadSolver(const Plan& plan, const Model& model, const RelativeLimits& limits, const MachineCalibration* calibration)
       : UnitSolver(plan, model, plan.factors().size()), limits_(limits), calibration_(calibration) {
     if (calibration != nullptr) calibrator_ = std::make_unique<MachineCalibrator>(*calibration);
   }
 
-  /// Draws the errors of these machines at the first pose into values_ [errors x machines]. machines: ascending, at
+  /// Draws the errors of these machines at the first pose into `values_` [errors x machines]. machines: ascending, at
   /// most kMachinesOfPiece.
   void draw(std::span<const std::size_t> machines) {
     const std::size_t count = machines.size();
@@ -55,8 +55,8 @@ class LoadSolver : protected UnitSolver {
     plan_->transform(std::span(values_).first(errors * count), count);
   }
 
-  /// Calibrates the machines whose errors are in values_ [errors x machines], if machines are calibrated. The next
-  /// solves are of these machines.
+  /// Calibrates the machines whose errors are in `values_` [errors x machines], if the study calibrates machines. The
+  /// following solves are of these machines after calibration.
   void calibrate(std::span<const std::size_t> machines) {
     if (calibrator_ == nullptr) return;
     calibrated_ = calibration_->evaluator((*calibrator_)(all_errors(drawn(machines.size())), machines));
@@ -64,7 +64,7 @@ class LoadSolver : protected UnitSolver {
   }
   bool is_calibrated() const { return calibrator_ != nullptr; }  ///< Whether machines are calibrated.
 
-  /// Draws the errors that machines draw anew at each pose. Returns the positions of these errors.
+  /// Draws for this pose the errors that machines draw anew at each pose. Returns the positions of these errors.
   std::span<const std::size_t> draw_per_pose(PoseIndex pose, std::span<const std::size_t> machines) {
     const std::span<const std::size_t> errors = plan_->per_pose();
     if (errors.empty()) return errors;
@@ -73,15 +73,15 @@ class LoadSolver : protected UnitSolver {
     return errors;
   }
 
-  /// Prepares to record what limits that are judged over several poses need from this number of machines.
+  /// Makes room for the values of this number of machines at all poses, if some limit is judged over several poses.
   void begin_poses(std::size_t machines) {
     const std::size_t poses = plan_->poses().size();
     if (limits_.any_over_poses()) at_poses_.assign(limits_.size() * machines * poses, 0.0);
   }
 
-  /// Solves the drawn machines at one pose and raises their loads [machines] to the largest so far. Sets missing
-  /// [machines] to 1 if a machine is not solved, and beyond [limits x machines] to 1 if it breaks a limit. Limits over
-  /// poses are evaluated by end_poses().
+  /// Solves the drawn machines at one pose and raises their loads [machines] to the largest so far. Sets `missing`
+  /// [machines] to 1 for a machine that is not solved, and `beyond` [limits x machines] to 1 for a machine that breaks
+  /// the limit. Limits over poses are evaluated by end_poses().
   UnitOutcomes add_pose(PoseIndex pose, std::span<double> loads, std::span<std::uint8_t> missing,
                         std::span<std::uint8_t> beyond) {
     const std::size_t count = loads.size();
@@ -105,8 +105,8 @@ class LoadSolver : protected UnitSolver {
     return outcomes;
   }
 
-  /// Raises the loads of the machines by their loads under limits over poses, and sets beyond [limits x machines], as
-  /// add_pose() does. The loads of machines that are not solved at some pose are meaningless.
+  /// Raises the loads of the machines to those under limits over poses, if these are larger, and sets `beyond` [limits
+  /// x machines], as add_pose() does. The loads of machines that are not solved at some pose are meaningless.
   void end_poses(std::span<double> loads, std::span<std::uint8_t> beyond) {
     const std::size_t count = loads.size();
     for (std::size_t k = 0; k < limits_.size(); ++k) {
@@ -128,8 +128,8 @@ class LoadSolver : protected UnitSolver {
     return std::span(at_poses_).subspan((k * count + machine) * poses, poses);
   }
 
-  /// Fills the row of an error in values_ with the uniform numbers from which the error is drawn, for these machines at
-  /// a pose.
+  /// Fills the row of an error in `values_` with the uniform numbers from which the error of each of these machines is
+  /// drawn at a pose.
   void draw_row(std::size_t error, PoseIndex pose, std::span<const std::size_t> machines) {
     const std::size_t count = machines.size();
     for (std::size_t from = 0; from < count;) {  // machines with consecutive numbers are drawn in one call
@@ -144,8 +144,8 @@ class LoadSolver : protected UnitSolver {
   const MachineCalibration* calibration_;
   std::unique_ptr<MachineCalibrator> calibrator_;  ///< null: machines are not calibrated
   std::unique_ptr<Evaluator> calibrated_;          ///< evaluator of the machines that were calibrated last
-  /// [limits x machines x poses] What limits over poses need at each pose: the response for a spread, otherwise the
-  /// load. Empty without such a limit.
+  /// [limits x machines x poses] Values at each pose for limits over poses: the response for a limit on a spread,
+  /// otherwise the load. Empty without such a limit.
   std::vector<double> at_poses_;
 };
 

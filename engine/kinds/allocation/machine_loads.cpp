@@ -15,7 +15,7 @@ namespace {
 /// The machines that a run solves.
 struct Machines {
   std::size_t count;                      ///< n, the number of machines
-  std::span<const std::uint32_t> listed;  ///< [n] their numbers; empty: 0 .. n - 1
+  std::span<const std::uint32_t> listed;  ///< [n] their numbers in the plan; empty: 0 .. n - 1
 
   std::size_t pieces() const { return (count + kMachinesOfPiece - 1) / kMachinesOfPiece; }
   std::size_t first(std::size_t piece) const { return piece * kMachinesOfPiece; }

@@ -17,11 +17,11 @@
 namespace poesy {
 namespace {
 
-/// Number of values of an error at which the mechanism is solved (nodes): mu - sigma, c and mu + sigma, where c is
-/// Distribution::centre().
+/// The number of values of an error at which the mechanism is solved (nodes): mu - sigma, c and mu + sigma, with its
+/// mean mu, its standard deviation sigma and c = Distribution::centre().
 constexpr std::size_t kNodes = 3;
 constexpr std::size_t kDrawsOfPiece = 16;  ///< number of draws in a piece of work
-/// A sample that is not solved counts as this multiple of the limit.
+/// If a sample with one varied error is not solved, its response counts as this multiple of the limit.
 constexpr double kUnsolvedOverLimit = 10.0;
 constexpr double kLargestSum = 1e100;  ///< the largest sum of squares that a state may hold, so that slopes computed
                                        ///< from it are finite
@@ -42,16 +42,16 @@ Sources sources_of(const Plan& plan, const MachineCalibration* calibration) {
   return {plan.factors().size(), is_noisy ? calibration->values() : 0};
 }
 
-/// The squares that one piece of work adds at its pose. A source of scatter is an error, or a measured value whose
+/// The numbers that one piece of work computes at its pose. A source of scatter is an error, or a measured value whose
 /// noise counts.
 struct AddedSquares {
-  /// [limits] Square of the response of the mechanism with all errors at their centres. NaN if it is not solved, and in
+  /// [limits] Square of the response with all errors at their centres. NaN if the mechanism is not solved, and in
   /// pieces in which the other errors are drawn.
   std::vector<double> base;
-  std::vector<double> added;    ///< [limits x sources] squares that each source adds, summed over the draws
+  std::vector<double> added;    ///< [limits x sources] mean square that each source adds, summed over the draws
   std::vector<double> counted;  ///< [sources] number of draws that were solved
-  /// [limits x sources x kNodes] For limits on spreads: the response with each source alone, at each of its three
-  /// values. NaN if it is not solved, and in pieces in which the other errors are drawn. Empty without such a limit.
+  /// [limits x sources x kNodes] Response at the three nodes of each source, with all others at their centres. NaN if
+  /// it is not solved, and in pieces in which the other errors are drawn. Empty without a limit on a spread.
   std::vector<double> nodes;
 
   AddedSquares() = default;
@@ -66,8 +66,8 @@ struct AddedSquares {
   }
 };
 
-/// The pieces of work. At each pose, the first piece varies each error with the others at their centres; the following
-/// pieces vary each error among draws of the others.
+/// The pieces of work. At each pose, the first piece varies one error after the other, with all others at their
+/// centres. The following pieces do the same with the other errors drawn.
 struct Pieces {
   std::size_t poses;
   std::size_t draws;
@@ -113,13 +113,13 @@ class AddedSquaresEvaluator : private UnitSolver {
   }
 
  private:
-  /// The value that the error at this position of Plan::factors() has in a sample while another error is varied.
+  /// The value of the error at this position of Plan::factors() in a sample in which another error is varied.
   double other(std::size_t n, std::size_t sample, std::size_t slot) const {
     if (pieces_.alone(n)) return plan_->distributions()[slot].centre();
     return draws_[slot * pieces_.draws + pieces_.first_draw(n) + sample];
   }
 
-  /// Solves pairs of a sample and a source, sample by sample, at each of the three nodes.
+  /// Solves pairs of a sample of the other errors and a varied source, sample by sample, at each of the three nodes.
   void add_pairs(std::size_t n, std::size_t first, std::size_t pairs, AddedSquares& found) {
     const std::size_t count = pairs * kNodes;
     for (std::size_t v = 0; v < sources_.errors; ++v) {
@@ -141,8 +141,8 @@ class AddedSquaresEvaluator : private UnitSolver {
     for (std::size_t k = 0; k < pairs; ++k) add(n, (first + k) % sources_.size(), k, outcomes, found);
   }
 
-  /// Calibrates the machines in values_, if machines are calibrated. Pairs are the same machines at each pose, so they
-  /// are calibrated once.
+  /// Calibrates the machines in `values_`, if the study calibrates machines. Pairs are the same machines at each pose,
+  /// so they are calibrated only once.
   void calibrate(std::size_t first, std::size_t pairs) {
     if (calibrator_ == nullptr) return;
     std::unique_ptr<Evaluator>& evaluator = calibrated_[first];
@@ -153,8 +153,8 @@ class AddedSquaresEvaluator : private UnitSolver {
     solve_by(evaluator.get());
   }
 
-  /// [measured values x 3 pairs] The noise of the measured values at the nodes of each pair; 0 for a pair with an
-  /// error.
+  /// [measured values x 3 pairs] The noise of the measured values at the three nodes of each pair; 0 for a pair whose
+  /// source is an error.
   calibration::Matrix noise_of(std::size_t first, std::size_t pairs) const {
     const auto columns = static_cast<Eigen::Index>(pairs * kNodes);
     calibration::Matrix noise = calibration::Matrix::Zero(static_cast<Eigen::Index>(calibration_->values()), columns);
@@ -203,20 +203,20 @@ class AddedSquaresEvaluator : private UnitSolver {
   Sources sources_;
   const MachineCalibration* calibration_;
   std::unique_ptr<MachineCalibrator> calibrator_;  ///< null: machines are not calibrated
-  /// Evaluators of calibrated machines for a block of pairs (a sample and a source), by the position of its first pair.
+  /// Evaluators of the calibrated machines of a block of pairs, by the position of its first pair.
   std::map<std::size_t, std::unique_ptr<Evaluator>> calibrated_;
   std::vector<double> draws_;     ///< [errors x draws] draws of all errors, SI
   std::vector<double> rounding_;  ///< [limits] rounding of the response with the limit (Model::rounding)
 };
 
-/// The sums over all pieces of work. A source of scatter is an error, or a measured value whose noise counts. There is
-/// one row for each limit at each pose, limit by limit.
+/// The sums over all pieces of work. A source of scatter is an error, or a measured value whose noise counts. A row is
+/// a limit at a pose; the poses of the first limit come first.
 struct SquareSums {
   const Pieces* pieces;
   std::size_t sources;        ///< number of sources
   std::vector<double> base;   ///< [rows] square of the response with all errors at their centres
-  std::vector<double> alone;  ///< [rows x sources] added mean squares of each source alone
-  /// [rows x sources] added mean squares of each source among other errors, summed over draws
+  std::vector<double> alone;  ///< [rows x sources] mean square that each source adds if all others are at their centres
+  /// [rows x sources] Mean square that each source adds if the other errors are drawn, summed over draws.
   std::vector<double> among;
   std::vector<double> counted;  ///< [poses x sources] number of draws that were solved
   std::vector<double> nodes;  ///< [rows x sources x kNodes] see AddedSquares::nodes; empty without a limit on a spread
@@ -282,8 +282,8 @@ struct SquareJob {
   SquareSums sums() const { return {pieces, limits, sources()}; }
 };
 
-/// Computes the rows of MeanSquares for limits on spreads, to first order in single errors. The response minus its mean
-/// over the solved poses takes the place of the response. An error that is drawn anew at each pose is independent
+/// Computes the rows of MeanSquares for limits on spreads over the poses, to first order in single errors: the mean
+/// square of the response minus its mean over the solved poses. An error that is drawn anew at each pose is independent
 /// between poses.
 class SpreadRows {
  public:
@@ -301,7 +301,7 @@ class SpreadRows {
  private:
   using Nodes = std::array<double, kNodes>;
 
-  /// The response at the nodes of an error, minus the mean over the poses.
+  /// The response at the nodes of an error, minus its mean over the poses.
   Nodes centred(std::size_t k, std::size_t m, std::size_t p) const {
     Nodes y{};
     for (std::size_t at = 0; at < kNodes; ++at) y[at] = node(k, m, p, at) - mean_[at];
@@ -350,7 +350,7 @@ class SpreadRows {
     }
   }
 
-  /// For an error that is drawn anew at each pose: the mean square of the change that it causes at its own pose.
+  /// The mean square of the change that an error causes at its own pose, if it is drawn anew at each pose.
   double own_square(std::size_t k, std::size_t m, std::size_t p) const {
     const double low = node(k, m, p, 0) - node(k, m, p, 1);
     const double high = node(k, m, p, 2) - node(k, m, p, 1);

@@ -13,15 +13,15 @@
 
 namespace poesy {
 
-/// The mean squares of the responses with limits about their centres (RelativeLimits), and their derivatives with
-/// respect to the variances of the errors. There is one row for each limit at each pose, limit by limit.
+/// The mean squares of the limited responses about their centres (RelativeLimits), and their derivatives with respect
+/// to the variances of the errors. A row is a limit at a pose; the poses of the first limit come first.
 struct MeanSquares {
   std::vector<double> value;  ///< [rows] mean squares, SI squared
   std::vector<double> slope;  ///< [rows x errors] derivative with respect to the variance of each error, >= 0
   std::vector<double> room;   ///< [rows] RelativeLimits::room, SI; the root mean square is compared with it
 };
 
-/// The usual number of draws of the other errors among which the effect of each error is measured.
+/// The usual number of draws of the other errors with which the effect of each error is measured.
 inline constexpr std::size_t kDrawsAmongOthers = 64;
 
 /// Measures the mean squares at the plan's errors.
@@ -32,12 +32,12 @@ inline constexpr std::size_t kDrawsAmongOthers = 64;
 /// first `draws` draws of the other errors. If errors interact in pairs, t - o is what the interactions of this error
 /// add. Each interaction belongs to two errors, so half of it is counted for each:
 ///
-///     value = y(c)^2 + sum of (o + t) / 2,     slope = t / sigma^2.
+/// value = y(c)^2 + sum of (o + t) / 2, slope = t / sigma^2.
 ///
-/// The value has no sampling noise if errors do not interact, or if draws = 0, because t = o then. For a limit on a
-/// spread, y is the response minus its mean over the poses, and t is always o. A sample that is not solved counts as
-/// ten times the limit if the error is alone, and is left out if the other errors are drawn. The result has the same
-/// bits for any number of threads and on all ranks. None if the run was stopped.
+/// If errors do not interact, or if draws = 0, t = o, so the value has no sampling noise. For a limit on a spread, y is
+/// the response minus its mean over the poses, and t is always o. The response of a sample that is not solved counts as
+/// ten times the limit if the other errors are at their centres; the sample is left out if they are drawn. The result
+/// has the same bits for any number of threads and on all ranks. None if the run was stopped.
 ///
 /// With a calibration, y is the response that remains after a calibration without measurement noise, and draws must be
 /// 0. The noise of each measured value adds to a mean square as an error with its standard deviation does, but it has

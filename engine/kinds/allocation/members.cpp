@@ -33,8 +33,8 @@ PartMembers members_of(const StudyValue& value, Dimension dimension, const Study
              "leave this part out");
 }
 
-/// The errors that a word names: "linear", "angular" or "relative" names all varied errors of that dimension; any other
-/// word names a factor set.
+/// The errors that a word stands for: "linear", "angular" or "relative" stands for all varied errors of that dimension;
+/// any other word is the name of a factor set.
 PartMembers members_by_word(const StudyValue& value, const Study& study) {
   const ModelDescription& model = study.model();
   for (const Dimension dimension : kErrorDimensions) {
@@ -50,7 +50,7 @@ PartMembers members_by_word(const StudyValue& value, const Study& study) {
   return members;
 }
 
-/// Refuses a name or a pattern that names no varied error.
+/// Refuses a name or a pattern that fits no varied error.
 [[noreturn]] void refuse_pattern(const StudyValue& value, const std::string& pattern, const Study& study) {
   const ModelDescription& model = study.model();
   const auto fits = [&](const Factor& factor) { return matches(pattern, factor.name); };
@@ -84,7 +84,7 @@ bool is_digit(const std::string& text, std::size_t at) {
   return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
 }
 
-/// The error of another limb whose name differs only in the number of the limb.
+/// The error of the limb `limb` whose name differs from that of `factor` only in the number of the limb.
 std::optional<FactorIndex> counterpart(const Factor& factor, std::size_t limb, const ModelDescription& model) {
   const std::string number = std::to_string(factor.limb);
   for (std::size_t at = factor.name.find(number); at != std::string::npos; at = factor.name.find(number, at + 1)) {

@@ -5,7 +5,7 @@
 #include "engine/base/index.h"
 #include "engine/study/study_kind.h"
 
-/// Reads which errors each block [[analysis.parts]] joins into parts.
+/// Reads which errors each block [[analysis.parts]] of a study file joins into parts.
 namespace poesy {
 
 using PartMembers = std::vector<FactorIndex>;  ///< The errors of a part, which share one tolerance; at least one.
@@ -19,12 +19,12 @@ Limbs read_limbs(const StudyValue& value, const ModelDescription& model);
 /// stated mean, or is drawn anew at each pose.
 void check_distributions(const StudyValue& value, const PartMembers& members, const Study& study);
 
-/// The errors of each part of a block. A block is one part. With `each`, every error is a part, but corresponding
-/// errors of identical limbs share one. No error is in two parts of the block. Throws InputError for an error that
-/// cannot be in a part: unknown, fixed, measured or correlated.
+/// The errors of each part of a block. A block is one part. With the key `each`, every error is a part, but
+/// corresponding errors of identical limbs share one. No error is in two parts of the block. Throws InputError for an
+/// error that cannot be in a part: unknown, fixed, measured or correlated.
 std::vector<PartMembers> read_members(const StudySection& block, const Study& study);
 
-/// Whether the block has `each`, so that every error is a part of its own.
+/// Whether the block has the key `each`, with which every error is a part of its own.
 bool is_each(const StudySection& block);
 
 }  // namespace poesy

@@ -9,7 +9,8 @@ namespace poesy {
 namespace {
 
 /// Bounds of the window's half-width. Machines outside the widest window say nothing about the limit. The narrowest
-/// window still contains enough machines if their loads (largest ratios of a response to its limit) are nearly equal.
+/// window is used if the loads of the wanted machines (largest ratios of a response to its limit) are nearly equal;
+/// more machines than wanted are then in the window.
 constexpr double kWidest = 0.2;
 constexpr double kNarrowest = 0.02;
 
@@ -39,8 +40,8 @@ NearLimit::NearLimit(std::span<const std::uint32_t> machines, std::span<const do
 
 bool NearLimit::is_near(double load) const { return std::abs(load - 1.0) <= window_; }
 
-/// The fraction of a reject: the integral of the biweight kernel, which rises from 0 to 1 across the window and has two
-/// continuous derivatives.
+/// The fraction of a reject that a machine with this load counts as. It is the integral of the biweight kernel, rises
+/// from 0 to 1 across the window and has two continuous derivatives.
 double NearLimit::reject(double load) const {
   const double u = std::clamp((load - 1.0) / window_, -1.0, 1.0);
   const double square = u * u;
@@ -72,7 +73,7 @@ double NearLimit::added_rejects(std::span<const double> coarser, std::span<const
                 mirrored_coarser.size() == loads_.size());
   double come = 0.0;
   for (std::size_t k = 0; k < loads_.size(); ++k) {
-    // If both machines of a pair are near the limit, the pair is counted twice, so each counts half.
+    // If both machines of an antithetic pair are near the limit, the pair is counted twice, so its weight is one half.
     const double weight = is_near(mirrored[k]) ? 0.5 : 1.0;
     const double of_machine = reject(coarser[k]) - reject(loads_[k]);
     const double of_mirrored = reject(mirrored_coarser[k]) - reject(mirrored[k]);

@@ -109,7 +109,7 @@ void read_fixed(const StudyValue& value, const StudySection&, Dimension dimensio
   part.lo = value.positive_quantity(dimension);
 }
 
-/// A key that states which tolerances a part may have.
+/// A key of a study file that states which tolerances a part may have.
 struct ChoiceKey {
   std::string_view name;
   PartChoice choice;
@@ -122,7 +122,7 @@ constexpr std::array<ChoiceKey, 5> kChoiceKeys{{{"bounds", PartChoice::range, re
                                                 {"processes", PartChoice::processes, read_processes},
                                                 {"tolerance", PartChoice::fixed, read_fixed}}};
 
-/// Throws InputError if no rounded value is within these bounds.
+/// Throws InputError if no value to which tolerances are rounded is within these bounds.
 void check_rounding(const StudyValue& value, double lo, double hi, const Rounding& round) {
   if (std::isinf(hi) || round.up(lo) <= round.down(hi)) return;
   value.fail("is set, but no such value is within the bounds of the tolerance", "take a finer step, or wider bounds");
@@ -140,7 +140,7 @@ void read_round(const StudySection& block, Dimension dimension, AllocatedPart& p
   for (const StatedProcess& process : part.processes) check_rounding(*value, process.lo, process.hi, *part.round);
 }
 
-/// Reads the cost and the possible tolerances of a block whose errors have this dimension.
+/// Reads the cost and the possible tolerances of the parts of a block, whose errors have this dimension.
 void read_choice(const StudySection& block, Dimension dimension, AllocatedPart& part) {
   std::optional<StudyValue> chosen;
   for (const ChoiceKey& key : kChoiceKeys) {
@@ -189,8 +189,8 @@ std::string two_dimensions(std::span<const PartMembers> parts, const ModelDescri
   return {};
 }
 
-/// Throws InputError if a part has errors of two dimensions, or if parts of two dimensions share a cost or possible
-/// values.
+/// Throws InputError if a part has errors of two dimensions, or if parts of two dimensions share a cost or a list of
+/// possible tolerances.
 void check_dimensions(const StudySection& block, std::span<const PartMembers> parts, const ModelDescription& model) {
   constexpr std::string_view kRemedy = "write a block with factors = \"linear\" and another with factors = \"angular\"";
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -214,7 +214,8 @@ double sigmas_of(const StudySection& block, std::optional<double> usual, const s
                    "say how many standard deviations a tolerance is: sigmas = 3 or cpk = 1");
 }
 
-/// Throws InputError if a part's name is taken. In a block with `each`, the name of a part is that of its first error.
+/// Throws InputError if another part has this name. In a block with `each`, the name of a part is that of its first
+/// error.
 void check_each_name(const StudySection& block, std::span<const std::string_view> taken, const std::string& name) {
   if (const auto value = block.find("name")) {
     static_cast<void>(value->text());

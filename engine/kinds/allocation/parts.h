@@ -14,17 +14,17 @@ namespace poesy {
 
 StudyTables part_tables();  ///< The keys of a part and of its cost and processes.
 
-/// Reads how many standard deviations a tolerance is, from `sigmas` or `cpk` of a section; none if the section has
+/// Reads from `sigmas` or `cpk` of a section how many standard deviations a tolerance is; none if the section has
 /// neither. Throws InputError if it has both.
 std::optional<double> read_sigmas(const StudySection& section);
 
-/// Reads one block: one part, or several with `each`. usual_sigmas: for a block that states neither sigmas nor cpk.
-/// taken: names of other parts. Precondition: the study already has its errors and the factors that vary. Throws
-/// InputError, but does not check whether another block has the same errors.
+/// Reads one block: one part, or several with the key `each`. usual_sigmas: for a block that states neither `sigmas`
+/// nor `cpk`. taken: names of other parts. Precondition: the study already has its errors and the factors that vary.
+/// Throws InputError, but does not check whether another block has the same errors.
 std::vector<AllocatedPart> read_part_block(const StudySection& block, const Study& study,
                                            std::optional<double> usual_sigmas, std::span<const std::string_view> taken);
 
-/// The part as a TOML block, which lists its factors one by one and reads back as the same part.
+/// The part as a TOML block that lists its errors one by one and reads back as the same part.
 std::string part_text(const AllocatedPart& part, const ModelDescription& model);
 
 /// Throws InputError if a tolerance of this part is not smaller than the dimension that the error changes

@@ -15,7 +15,7 @@
 namespace poesy {
 namespace {
 
-/// The cost law of a part at its tolerance: that of the part, or of its process.
+/// The cost law of a part: its own, or that of its process at this point.
 CostLaw law_of(const ToleranceProgramme& programme, const TolerancePoint& point, std::size_t part) {
   const AllocatedPart& stated = programme.parts()[part];
   if (stated.choice != AllocatedPart::Choice::processes) return stated.cost.cost_law();
@@ -29,8 +29,8 @@ WhatIfSize size_of(const AllocationResult& found, std::size_t part) {
   return {is_zone ? found.zone_key(part) : "\u00b1", found.tolerance(part) / unit.si, std::string(unit.name)};
 }
 
-/// Adds the errors of a part to a group of errors that one slider scales. Adds to the group's costs the cost of the
-/// part's tolerance at each factor of the slider.
+/// Adds the errors of a part to a group of errors that one slider of the page scales. Adds to the group's costs the
+/// cost of the part's tolerance at each factor of the slider.
 void add_part(const AllocationResult& found, const ToleranceProgramme& programme, const TolerancePoint& point,
               std::size_t part, SizedErrors& errors) {
   for (const ErrorFactor& one : programme.weights(point, part).errors) {
@@ -46,8 +46,8 @@ void add_part(const AllocationResult& found, const ToleranceProgramme& programme
                          [&](double factor, double cost) { return cost + law.at(factor * found.tolerance(part)); });
 }
 
-/// The parts as groups of errors. Location and orientation of a feature form one group, because they determine the same
-/// errors.
+/// The parts as groups of errors, one for each slider of the page. Location and orientation of a feature form one
+/// group, because they determine the same errors.
 std::vector<SizedErrors> sized_parts(const AllocationResult& found, const ToleranceProgramme& programme) {
   const TolerancePoint point = programme.at_most(found.tolerance.all());
   std::vector<SizedErrors> list;
@@ -62,7 +62,7 @@ std::vector<SizedErrors> sized_parts(const AllocationResult& found, const Tolera
   return list;
 }
 
-/// [poses] At each pose, the use of the limit that is used most there.
+/// [poses] The use of the limit that is used most at the pose.
 std::vector<double> pose_weights(const AllocationResult& found) {
   std::vector<double> weights(found.poses(), 0.0);
   for (std::size_t r = 0; r < found.limit_use.length<axis::Response>(); ++r) {

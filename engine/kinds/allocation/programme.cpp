@@ -16,8 +16,8 @@ namespace poesy {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// The largest tolerance, as a share of the dimension that the error changes. At a quarter, four standard deviations of
-/// a normal error equal the dimension.
+/// The largest tolerance, as a share of the dimension of the mechanism that the error changes. At a quarter, four
+/// standard deviations of a normal error equal the dimension.
 constexpr double kShareOfPart = 0.25;
 
 /// The standard deviation that stands in for 0, m or rad. No solve can distinguish it from 0.
@@ -104,21 +104,21 @@ DrawnPart drawn_part(const AllocatedPart& part, const std::vector<std::size_t>& 
   return {{{errors, mean_square_per_tolerance({part.sigmas, part.shift})}}};
 }
 
-/// Whether all errors of a part have the same standard deviation for a given T.
+/// Whether all errors of a part have the same standard deviation, which depends only on the part's own tolerance.
 bool has_one_spread(const AllocatedPart& part, const ModelDescription& model) {
   return !part.zone || feature_of(part, model).kind == FeatureKind::distance;
 }
 
-/// From this share of the largest width on, a zone of orientation counts as not needed.
+/// A zone of orientation counts as not needed from this share of the width that the zone of location allows.
 constexpr double kVoid = 1.0 - 1e-9;
 
-/// A tolerance and the position of a process that can make it.
+/// A tolerance and the position of a process that can keep it.
 struct Held {
   double tolerance;
   std::size_t process;
 };
 
-/// The largest tolerance up to `most` that a process can make, with the cheapest such process. If there is none, the
+/// The largest tolerance up to `most` that some process can keep, with the cheapest such process. If there is none, the
 /// lowest tolerance of all processes.
 Held held_below(const std::vector<Process>& processes, double most) {
   std::optional<Held> best;
@@ -281,7 +281,7 @@ std::string ToleranceProgramme::chosen_name(std::size_t part, std::size_t proces
   return name + (name.empty() ? "" : ", ") + rounding_words(*one.round, dimension_of(one, study_.model()));
 }
 
-/// The finest of the zones that the drawing gives to the features of a part.
+/// The size of the finest zone of this kind that the drawing gives to the features of a part.
 double ToleranceProgramme::usual_of_zone(const AllocatedPart& part) const {
   const bool turned = is_orientation(part, study_.model());
   double usual = kInfinity;
@@ -340,7 +340,7 @@ TolerancePoint ToleranceProgramme::rounded(const TolerancePoint& point) const {
     const double location = point.tolerance[pair.outer];
     const double before = point.tolerance[pair.inner];
     const double after = next.tolerance[pair.inner];
-    // The mean square of the middle, which grows with location^2 - orientation^2, must not grow.
+    // The mean square of the middle is proportional to location^2 - orientation^2, and must not grow.
     const double most = std::sqrt(location * location - (before - after) * (before + after));
     next.tolerance[pair.outer] = down(pair.outer, most);
   }
@@ -445,7 +445,8 @@ ChoiceOfTolerances ToleranceProgramme::least(const ToleranceLimits& limits, cons
   const LeastCost& found = std::get<LeastCost>(outcome);
   ChosenTolerances chosen{{found.best.tolerance, {}, 0.0}, found.lower_bound, found.multiplier};
   if (std::ranges::all_of(chosen.multiplier, [](double one) { return one == 0.0; })) {
-    // If all parts have single values, all multipliers are 0. Then those of the relaxation are used.
+    // If all parts have single values, all multipliers are 0. Then the multipliers of the relaxation are used, in which
+    // processes may be mixed.
     chosen.multiplier = found.relaxed;
   }
   for (std::size_t i = 0; i < size(); ++i) chosen.process.push_back(kept[i][found.best.process[i]]);

@@ -32,7 +32,7 @@ struct ChosenTolerances : TolerancePoint {
   std::vector<double> multiplier;  ///< [limits] cost saved per unit of additional room; empty if the aim has no costs
 };
 
-/// The region around the linearisation in which the programme may choose tolerances.
+/// The region around the tolerances of a linearisation in which the programme may choose tolerances.
 struct TrustRegion {
   /// [parts] Tolerances at the linearisation; empty: no trust region.
   std::span<const double> centre = {};
@@ -43,7 +43,7 @@ struct TrustRegion {
 /// The result of a programme: tolerances, or the reason why there are none.
 using ChoiceOfTolerances = std::variant<ChosenTolerances, Infeasible, Unbounded>;
 
-/// The optimisation problem of a study: its parts with their bounds, processes and costs.
+/// The optimisation problem of a study: the parts whose tolerances are sought, with their bounds, processes and costs.
 class ToleranceProgramme {
  public:
   /// Refers to the study. A part without an upper bound gets one: a quarter of the size that Model::error_bound gives.
@@ -51,16 +51,17 @@ class ToleranceProgramme {
 
   std::size_t size() const { return parts().size(); }  ///< The number of parts.
   const std::vector<AllocatedPart>& parts() const;     ///< The parts as the study states them.
-  /// [parts] The processes of each part. Each of several values, grades or ranges is a process.
+  /// [parts] The processes of each part. Each value, grade or range from which the part may choose is a process.
   const std::vector<std::vector<Process>>& processes() const { return processes_; }
   /// The positions, among the study's errors, of the errors that belong to a part. If a feature also has a zone of
   /// orientation, the errors of its zone of location depend on both.
   std::span<const std::size_t> errors(std::size_t part) const { return errors_[part]; }
   const std::vector<Within>& pairs() const { return pairs_; }  ///< Zones of orientation within zones of location.
-  /// Whether a part is a zone of orientation as wide as the zone of location allows. Then the drawing does not need it.
+  /// Whether a part is a zone of orientation that is as wide as the zone of location allows, so that the drawing does
+  /// not need it.
   bool is_void(const TolerancePoint& point, std::size_t part) const;
-  /// The factors on errors that result if only this part's tolerance is multiplied by |factor|. A negative factor also
-  /// mirrors the errors. Errors of paired zones whose standard deviation is 0 are left out.
+  /// The factors on the errors if only this part's tolerance is multiplied by |factor|. A negative factor also mirrors
+  /// the errors. Errors of paired zones whose standard deviation is 0 are left out.
   Variation variation(const TolerancePoint& point, std::size_t part, double factor) const;
   /// How the effect of a part on a mean square is divided among its errors.
   struct Weights {
@@ -69,20 +70,20 @@ class ToleranceProgramme {
   };
   Weights weights(const TolerancePoint& point, std::size_t part) const;  ///< The weights of a part's errors.
   /// The logarithmic derivative of each error's standard deviation with respect to this part's tolerance; 1 if the part
-  /// is not in a pair.
+  /// is in no pair of zones.
   std::vector<ErrorFactor> growth(const TolerancePoint& point, std::size_t part) const;
   /// The name of a process or grade; empty if the part has neither.
   std::string chosen_name(std::size_t part, std::size_t process) const;
 
-  /// [parts] The tolerances that belong to the sizes of errors in [errors] of the study; for zones those of the
+  /// [parts] The tolerances with which errors have the sizes in [errors] of the study; for zones, the tolerances of the
   /// drawing. All are moved within the bounds of the parts.
   std::vector<double> usual() const;
-  /// For each part, the largest tolerance that it can have up to the one given [parts]; if there is none, its lowest.
+  /// For each part, its largest possible tolerance up to the one given [parts]; if there is none, its lowest.
   TolerancePoint at_most(std::span<const double> tolerance) const;
   TolerancePoint lowest() const;  ///< The lowest tolerances.
-  /// The point with each tolerance rounded down as its part asks. No standard deviation grows. A finer orientation
-  /// would leave more of the zone of location to the middle, so the location is made finer as well before it is
-  /// rounded.
+  /// The point with each tolerance rounded down as the study asks for its part. No standard deviation grows. A finer
+  /// orientation would leave more of the zone of location to the middle, so the location is made finer as well before
+  /// it is rounded.
   TolerancePoint rounded(const TolerancePoint& point) const;
   /// The point with one part coarser: its tolerance multiplied by `factor`, or its next larger value. None if the
   /// process allows neither, or if the tolerance is 0. A zone of orientation may also be made so wide that the drawing
@@ -92,21 +93,21 @@ class ToleranceProgramme {
   AtBound at_bound(const TolerancePoint& point, std::size_t part) const;
   /// The cost of a part; 0 if it has no cost or the drawing does not need it.
   double cost(const TolerancePoint& point, std::size_t part) const;
-  /// Reduces each zone of orientation to the widest that its zone of location allows.
+  /// Reduces each zone of orientation that is too wide to the widest that its zone of location allows.
   void keep_within(std::span<double> tolerance) const;
-  /// Sets each orientation that the drawing does not need in `point` to the widest that the locations in `tolerance`
+  /// Sets each orientation that the drawing does not need at `point` to the widest that the locations in `tolerance`
   /// [parts] allow.
   void keep_void(const TolerancePoint& point, std::span<double> tolerance) const;
   /// Raises negative effects of zones of orientation on limits to the smallest value that a programme accepts (Within).
   void keep_allowed(ToleranceLimits& limits) const;
-  /// The limits on the mean squares that parts cause: room = (share x MeanSquares::room x wider)^2 minus the effect of
-  /// fixed errors. at: [parts] tolerances at which the mean squares were measured.
+  /// The limits on the sums of mean squares that parts cause: room = (share x MeanSquares::room x wider)^2 minus the
+  /// effect of fixed errors. at: [parts] tolerances at which the mean squares were measured.
   ToleranceLimits limits(const MeanSquares& squares, std::span<const double> at, double share,
                          double wider = 1.0) const;
   /// Solves the programme of the study's aim under these limits.
   ChoiceOfTolerances choose(const ToleranceLimits& limits, const TrustRegion& region) const;
 
-  /// The study with these tolerances [parts].
+  /// The study in which the errors of the parts have these tolerances [parts].
   Study at(std::span<const double> tolerance) const;
 
  private:

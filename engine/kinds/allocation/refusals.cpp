@@ -29,7 +29,7 @@ RelativeLimits stated_limits(const SearchProblem& problem) {
           problem.calibration_of(study).get()};
 }
 
-/// Advice on how parts can have lower tolerances.
+/// Advice for a user on how parts can get lower tolerances.
 std::string finer_parts(const SearchProblem& problem) {
   const bool has_steps =
       std::ranges::any_of(problem.programme.parts(), [](const AllocatedPart& part) { return part.round.has_value(); });
@@ -63,7 +63,7 @@ void refuse_infeasible(const SearchProblem& problem, const Infeasible& infeasibl
   const ResponseLimit& limit = study.analysis.limits[k];
   const Response& response = study.model().responses[limit.response];
   const double room = stated_limits(problem).room(k, PoseIndex(infeasible.limit % poses.size()));
-  const double fixed = room * room - infeasible.room;  // the effect of errors that belong to no part
+  const double fixed = room * room - infeasible.room;  // effect of errors that are in no part
   const auto text = [&](double square) {
     return readable_text({std::sqrt(std::max(0.0, square)), response.dimension}, 4);
   };

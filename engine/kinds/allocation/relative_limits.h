@@ -18,24 +18,24 @@ using Limit = Axis<"limit">;  ///< Limits of a study.
 }  // namespace axis
 
 /// The limits of a study as distances from a centre. For a limit with one or two ends, the centre is the response of
-/// the mechanism whose errors are at their own centres (Distribution::centre: zero, or a stated mean) with the constant
-/// errors of the background; the deviation from this response grows with the tolerances. For a limit on a magnitude,
-/// the centre is zero. For a limit on the spread over the poses, it is the mean over the poses.
+/// the mechanism with the constant errors of the background and all varied errors at their own centres
+/// (Distribution::centre: zero, or a stated mean); the deviation from this response grows with the tolerances. For a
+/// limit on a magnitude, the centre is zero. For a limit on the spread over the poses, it is the mean over the poses.
 class RelativeLimits {
  public:
-  /// Solves the mechanism with all errors at their centres at all poses of the plan, if a limit is not on magnitudes.
-  /// calibration: how this mechanism is calibrated, without noise; null: it is not calibrated.
+  /// Solves the mechanism with all errors at their centres at all poses of the plan, unless all limits are on
+  /// magnitudes or spreads. calibration: how this mechanism is calibrated, without noise; null: it is not calibrated.
   RelativeLimits(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                  const MachineCalibration* calibration = nullptr);
 
   std::size_t size() const { return limits_.size(); }  ///< The number of limits.
-  /// Position of the response that a limit is on.
+  /// Position of the response that limit k limits.
   std::size_t response(std::size_t k) const { return limits_[k].response; }
   /// The centre of a limit at a pose, SI.
   double centre(std::size_t k, PoseIndex pose) const { return centre_(k, pose.value); }
   /// The distance from the centre to the nearer end of the limit, SI; zero or negative if the centre is not within the
-  /// limit. For a limit on a spread, half the limit: if no value is farther than this from the mean, the spread is
-  /// kept.
+  /// limit. For a limit on a spread, half the limit: if no value is farther than this from the mean, the spread keeps
+  /// its limit.
   double room(std::size_t k, PoseIndex pose) const;
   /// The load of a value: its distance from the centre divided by the distance of the end on the same side. It is at
   /// most 1 exactly if the limit holds, in spite of rounding. Preconditions: room() > 0; the limit is not on a spread.

@@ -14,11 +14,11 @@
 namespace poesy::allocation {
 namespace {
 
-/// A step that makes one part coarser.
+/// A small step of one part to a coarser tolerance, from which the effect of its next tolerance is extrapolated.
 struct CoarserPart {
   std::size_t part;
-  double step;   ///< factor by which the step scales the part's errors
-  double steps;  ///< increase of T^2 to the next tolerance that the part can have, divided by the increase of T^2 in
+  double step;   ///< factor by which the step multiplies the tolerance T of the part
+  double steps;  ///< increase of T^2 up to the next tolerance that the part can have, divided by the increase of T^2 in
                  ///< one step
 };
 
@@ -31,14 +31,15 @@ std::vector<double> try_varied(const SearchProblem& problem, const ToleranceDesi
                                        variations, run.options, calibration.get()));
 }
 
-/// The predicted share of good machines. added: rejects that one step of the part adds.
+/// The predicted share of good machines if the part gets its next tolerance. added: rejects that one step of the part
+/// adds.
 double yield_with(const ToleranceDesign& design, const CoarserPart& coarser, double added) {
   const double rejects = static_cast<double>(rejects_of(design.screened.load)) + coarser.steps * added;
   return std::clamp(1.0 - rejects / static_cast<double>(design.load.size()), 0.0, 1.0);
 }
 
-/// Predicts the yields for larger tolerances of parts that hardly change the machines' ratios of response to limit,
-/// with more machines and with mirrored errors.
+/// Predicts the yield with each of these parts coarser alone, for parts that hardly change the loads of machines. Uses
+/// more machines, and mirrored errors.
 void probe_small(const SearchProblem& problem, const ToleranceDesign& design, std::span<const CoarserPart> parts,
                  std::vector<double>& yield) {
   const NearLimit many(design.screened.numbers, design.screened.load, kProbesOfSmall);
@@ -55,9 +56,9 @@ void probe_small(const SearchProblem& problem, const ToleranceDesign& design, st
   }
 }
 
-/// Predicts the yield with each of these parts coarser alone, and sets it in the list [parts]; NaN if a part cannot be
-/// coarser. If the next value of a part is far away, only few machines are near enough to show its effect. Then the
-/// rejects of a small step are extrapolated in proportion to T^2.
+/// Predicts the yield for each of these parts if only its tolerance is larger, and sets it in the list `yield` [parts];
+/// NaN if a part cannot be coarser. If the next value of a part is far away, only few machines are near enough to the
+/// limit to show its effect. Then the rejects of a small step are extrapolated in proportion to T^2.
 std::vector<double> probe(const SearchProblem& problem, const ToleranceDesign& design,
                           std::span<const std::size_t> parts, std::vector<double> yield) {
   const NearLimit few(design.screened.numbers, design.screened.load, kProbes);
@@ -96,8 +97,8 @@ Probed probe_all(const SearchProblem& problem, ToleranceDesign design) {
   return {std::move(design), std::move(yield)};
 }
 
-/// Selects from these parts those that could be coarser alone at a lower cost, without more rejects than the design may
-/// have. If all together would add too many rejects, selects the parts with the least effect.
+/// Selects from these parts those of which each alone could be coarser at a lower cost, without more rejects than the
+/// design may have. If all together would add too many rejects, selects only the parts with the least effect.
 std::vector<std::size_t> idle_parts(const SearchProblem& problem, const Probed& probed,
                                     std::span<const std::size_t> parts) {
   const auto& [design, coarser_yield] = probed;
@@ -118,8 +119,9 @@ std::vector<std::size_t> idle_parts(const SearchProblem& problem, const Probed& 
   return idle;
 }
 
-/// Makes these parts coarser in growing steps, until a further step would break the yield or a part cannot be coarser.
-/// Then scales the other parts to the yield. None if the cost does not fall or the yield is not kept.
+/// Makes each of these parts coarser in growing steps, until a further step would break the yield or the part cannot be
+/// coarser. Then scales the other parts to the yield. None if the cost does not fall, if the yield is not kept, or if a
+/// machine that was screened out is rejected (misses_rejects()).
 std::optional<Probed> loosen(const SearchProblem& problem, const Probed& from, std::vector<std::size_t> idle) {
   Probed loose = from;
   std::vector<bool> stays(problem.programme.size(), false);

@@ -24,7 +24,8 @@ SolveTally tally(const StoredResult& result) {
   return {"", {"all errors"}, result.poses.size(), {solves.begin(), solves.end()}};
 }
 
-/// Which responses the figures show at each pose: those with a limit, each with its use and its multiplier.
+/// The responses that figures show at each pose: those with a limit, each with two values, the use of its limit and the
+/// multiplier.
 ShownCells cells(const StoredResult& result) {
   return shown_cells(result, 2, limited_responses(allocation_of(result)));
 }
@@ -55,7 +56,7 @@ std::pair<std::vector<std::string>, std::vector<double>> shown_tolerances(const 
   return shown;
 }
 
-/// Bars of cost, share of the mean square, and tolerance of each part.
+/// Bars that show cost, share of the mean square, and tolerance of each part.
 Bars part_bars(const Result& found, ArrayPool& pool) {
   const auto [units, tolerances] = shown_tolerances(found);
   Bars bars{{}, {}, found.part_names};
@@ -107,7 +108,7 @@ void add_costs(const StoredResult& result, std::span<const Table> tables, Page& 
   }
 }
 
-/// The values of these responses at all poses, listed response by response.
+/// The numbers of these responses at all poses, one response after the other.
 std::vector<double> rows_of(const Result::AtPoses& values, std::span<const std::size_t> responses) {
   std::vector<double> list;
   for (const std::size_t r : responses) std::ranges::copy(values.row(r), std::back_inserter(list));
@@ -216,8 +217,8 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-/// "34 parts of +-0.01 to +-0.05 mm, 3 standard deviations each" for each unit: what the fresh machines were drawn
-/// with.
+/// The tolerances with which the fresh machines were drawn, as a text for each unit: "34 parts of +-0.01 to +-0.05 mm,
+/// 3 standard deviations each".
 std::vector<std::string> tolerance_sizes(const Result& found) {
   std::vector<std::string> sizes;
   for (const std::string_view unit : {"m", "rad"}) {
@@ -249,7 +250,8 @@ StudyWords words(const StoredResult& result) {
           .seed = found.certificate_seed};
 }
 
-/// The share of each error in the mean square, and at each pose the use of the limit that is used most.
+/// The share of each error in the mean square under the tightest limit, and the use of the limit that is used most at
+/// each pose.
 ErrorShares error_shares(const StoredResult& result) {
   const Result& found = allocation_of(result);
   if (found.parts() == 0 || found.poses() == 0) return {};
@@ -270,7 +272,8 @@ ErrorShares error_shares(const StoredResult& result) {
   return shares;
 }
 
-/// The parts of a result for comparison with another; costs are compared if both results have them.
+/// The tolerances of a result, part by part, for comparison with another result; costs are compared if both results
+/// have them.
 Comparable comparable(const StoredResult& result, const StoredResult& other) {
   const Result& found = allocation_of(result);
   Comparable all{"tolerances", {"all limits"}, "part", found.part_names};

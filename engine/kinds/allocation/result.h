@@ -61,7 +61,7 @@ struct PartZone {
 struct AllocatedPart {
   /// How the tolerance is chosen.
   enum class Choice {
-    range,      ///< any value within bounds
+    range,      ///< any value between a lower and an upper bound
     values,     ///< one of a list of values
     grades,     ///< one of the grades of ISO 286-1 for a nominal size; T is half the width of the grade
     processes,  ///< any value within the range of one of several processes
@@ -70,7 +70,7 @@ struct AllocatedPart {
   std::string name;                  ///< name of the part in tables and files
   std::vector<FactorIndex> factors;  ///< its errors, at least one, all of one dimension; an error is in one part only
   double sigmas = 3.0;  ///< standard deviations in a tolerance: T = shift T + sigmas x standard deviation; for a zone,
-                        ///< T / 2 = sigmas x standard deviation
+                        ///< T / 2 = `sigmas` x standard deviation
   double shift = 0.0;   ///< offset of the mean as a share of T, in either direction; 0 <= shift < 1
   Choice choice = Choice::range;  ///< how the tolerance is chosen; this determines which of the members below apply
   StatedCost cost = {};           ///< cost of T; `processes` have their own costs
@@ -83,14 +83,14 @@ struct AllocatedPart {
   double nominal_size = 0.0;                  ///< the nominal size, m; only with the key `grades`
   std::vector<StatedProcess> processes = {};  ///< the processes that may be chosen; only with the key `processes`
   std::optional<PartZone> zone = {};          ///< the zone, if the part is one
-  /// The numbers to which the tolerance is rounded down at the end; only with a range or the key `processes`.
+  /// The preferred numbers to which the tolerance is rounded down at the end; only with a range or the key `processes`.
   std::optional<Rounding> round = {};
 };
 
 /// Which tolerances a study seeks among those that keep the limits.
 enum class Aim {
   least_cost,       ///< the tolerances of least total cost
-  equal_effect,     ///< every part uses the same share of the limit on which its effect is largest
+  equal_effect,     ///< every part uses the same share of the limit on which it has the largest effect
   equal_tolerance,  ///< one tolerance for all lengths and one for all angles; their ratio is that of the usual sizes in
                     ///< [errors]
   common_factor     ///< all standard deviations of [errors] times one factor, as large as the limits allow
@@ -118,7 +118,7 @@ struct AllocationStage {
   std::string name;            ///< name of the stage: "linear", "tried on machines", "scaled to the yield", ...
   double cost = 0.0;           ///< total cost at the end of the stage; NaN if the aim has no costs
   double lower_bound = 0.0;    ///< lower bound on the least cost in this stage's programme; NaN if the aim has no costs
-  double rms_share = 0.0;      ///< share of each limit that the programme allowed as root mean square
+  double rms_share = 0.0;      ///< share of each limit that this stage's programme allowed as root mean square
   std::uint64_t machines = 0;  ///< machines tried at the tolerances of this stage; 0: none
   std::uint64_t rejects = 0;   ///< rejects among these machines
 };
@@ -155,10 +155,10 @@ struct AllocationResult {
   Array<double, axis::Factor> error_mean_square_share;
   Parts<std::uint8_t> bound;  ///< AtBound: 0 between bounds, 1 at the lower bound, 2 at the upper bound, 3 a single
                               ///< possible value
-  Parts<std::string> chosen;  ///< name of the process or grade, and of the series of numbers to which T is rounded
-                              ///< down; empty without these
-  /// Predicted share of good machines, among those with which the tolerances were found, if only this part is made 5 %
-  /// coarser, or gets its next larger value; NaN if it cannot be coarser.
+  Parts<std::string> chosen;  ///< name of the chosen process or grade, and of the series of numbers to which T is
+                              ///< rounded down; empty without these
+  /// Predicted share of good machines, among those with which the tolerances were found, if the tolerance of only this
+  /// part is 5 % larger, or its next larger possible value; NaN if it cannot be larger.
   Parts<double> coarser_yield;
 
   /// @name Zones of a drawing: a number or text for each part, or an empty text if the part is not a zone. All arrays
@@ -175,7 +175,7 @@ struct AllocationResult {
   Parts<std::uint8_t> zone_is_needed;  ///< 0 for a zone of orientation that the drawing does not need, otherwise 1
   /// @}
 
-  AtPoses multiplier;  ///< cost saved per unit by which the limit is wider at this pose alone
+  AtPoses multiplier;  ///< cost saved per unit by which the limit is wider at only this pose
   AtPoses limit_use;   ///< predicted root mean square, divided by the one that the programme allows
   /// The limit, SI. For a limit that is not on a magnitude: the smallest distance, over the poses, from the response of
   /// the mechanism with perfect parts to the nearer end.
@@ -190,10 +190,8 @@ struct AllocationResult {
   /// @{
   Array<double, axis::Response> limit_pose_share;
   Array<double, axis::Response> limit_is_spread;
-  /// @}
-  /// Share of the mean square under the limit, at the pose where the limit is used most, that belongs to no
-  /// part: to the background, errors without a part, noise of measurements and interactions of errors. Empty in files
-  /// of version 0.2.
+  /// @} Share of the mean square that belongs to no part, at the pose where the limit is used most: to the background,
+  /// to errors without a part, to noise of measurements and to interactions of errors. Empty in files of version 0.2.
   Array<double, axis::Response> fixed_share;
   Array<double, axis::Response> saving;  ///< cost saved if a limit is one percent wider at all poses, to first order
 

@@ -18,15 +18,15 @@ struct Rounding {
                                         ///< none.
   double up(double tolerance) const;  ///< The smallest positive preferred tolerance that is not below this one. With a
                                       ///< series, the result for a tolerance of 0 is 0.
-  bool operator==(const Rounding&) const = default;  ///< Whether both round alike.
+  bool operator==(const Rounding&) const = default;  ///< Whether both have the same preferred tolerances.
 };
 
 /// Reads "0.001 mm" or "R10" for a tolerance of this dimension. Throws InputError at the value if it is neither.
 Rounding read_rounding(const StudyValue& value, Dimension dimension);
 
-/// The rounding as a TOML value, which reads back as the same rounding.
+/// The preferred tolerances as a TOML value that reads back as the same Rounding.
 std::string rounding_text(const Rounding& rounding, Dimension dimension);
-/// The rounding in words: "R10" or "steps of 0.001 mm".
+/// The preferred tolerances in words: "R10" or "steps of 0.001 mm".
 std::string rounding_words(const Rounding& rounding, Dimension dimension);
 
 }  // namespace poesy

@@ -21,7 +21,7 @@
 namespace poesy::allocation {
 namespace {
 
-/// Yields, and factors on all limits, for which costs are predicted.
+/// Yields, and factors by which all limits are multiplied, for which costs are predicted.
 constexpr std::array kYields{0.9, 0.95, 0.98, 0.99, 0.995, 0.9973, 0.999, 0.9995, 0.9999};
 constexpr std::array kFactors{0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5, 2.0};
 
@@ -212,7 +212,7 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
     for (std::size_t m = 0; m < poses; ++m) {
       const std::size_t row = k * poses + m;
       const double allowed = candidate.share * rooms[m];
-      const double fixed = allowed * allowed - limits.room[row];  // mean square of all that is in no part
+      const double fixed = allowed * allowed - limits.room[row];  // mean square of everything that belongs to no part
       const double square = fixed + limits.need(row, candidate.point.tolerance);
       found.limit_use(r, m) = std::sqrt(std::max(0.0, square)) / allowed;
       if (found.limit_use(r, m) > most_used) {
@@ -256,8 +256,8 @@ void add_curves(const SearchProblem& problem, const FoundTolerances& search, All
   found.curve_factor_cost = {{costs.size()}, costs};
 }
 
-/// The result of a search. fresh: the certificate's machines, with the ratio of response to limit that decides about
-/// each (MachineLoads).
+/// The result of a study whose search found these tolerances. fresh: the loads (MachineLoads) of the certificate's
+/// machines.
 AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& search, const MachineLoads& fresh,
                            const Study& certificate) {
   const Study& study = problem.run.study;
@@ -271,7 +271,7 @@ AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& 
   found.aim = problem.options.aim;
   found.calibrated = study.mechanism.calibrated;
   found.total_cost = candidate.point.cost;
-  // NaN if the lowest tolerances were taken, which no programme chose.
+  // NaN if the tolerances are the lowest ones, which no programme chose.
   found.lower_bound = candidate.chosen.lower_bound;
   found.gap = candidate.chosen.cost - candidate.chosen.lower_bound;
   found.wanted_yield = problem.options.yield;
@@ -320,10 +320,10 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   return StudyResult{std::move(found), std::move(verdicts), {}, certificate};
 }
 
-/// About how many times all machines are tried, including the certificate; an estimate.
+/// An estimate of how many times a search tries all machines, including the certificate.
 constexpr double kTrials = 5.0;
 
-/// What a search that tries this many machines will cost. A few calibrated machines are solved to measure their time.
+/// The expected work of a search with calibrated machines. A few of them are solved to measure their time.
 WorkOutlook trying_calibrated(const std::shared_ptr<const Plan>& plan, const Model& model, const Study& study,
                               const std::shared_ptr<const MachineCalibration>& calibration) {
   return {[plan, &model, &study, calibration](double) {

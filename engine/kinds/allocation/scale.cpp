@@ -1,4 +1,4 @@
-// The stages of the search that scale tolerances to the yield.
+// The stages of the search that scale tolerances until machines have the yield that was asked for.
 
 #include <algorithm>
 #include <cmath>
@@ -25,8 +25,8 @@ struct Rescaled {
   bool moved;
 };
 
-/// Divides the limits on root mean squares by the deciding load and chooses tolerances under them. If no tolerances
-/// keep such small limits, uses the smallest limits that some tolerances keep.
+/// Divides the limits on root mean squares by the deciding load (deciding_load()) and chooses tolerances under them. If
+/// no tolerances keep such small limits, uses the smallest limits that some tolerances keep.
 Rescaled rescale(const SearchProblem& problem, const Linearisation& linearisation, const Candidate& from, double load) {
   const TrustRegion region{from.point.tolerance, kMaxGrowth};
   const double share = from.share / std::clamp(load * (1.0 + 0.25 * kLoadTolerance), 0.25, 4.0);
@@ -38,8 +38,8 @@ Rescaled rescale(const SearchProblem& problem, const Linearisation& linearisatio
   return {*std::move(next), moved};
 }
 
-/// Brings the tolerances near the yield with a pilot, which has only a part of the machines. Measures effects again
-/// after large changes of tolerances.
+/// Changes tolerances until a pilot, which is only a part of the machines, has about the yield that was asked for.
+/// Measures effects again after large changes of tolerances.
 Linearised approach_yield(const SearchProblem& problem, Linearised from, StageLog& log) {
   auto [linearisation, candidate] = std::move(from);
   const Study& study = problem.run.study;
@@ -75,10 +75,10 @@ struct Tightened {
   bool meets_yield;
 };
 
-/// Tightens tolerances if limits on root mean squares do not lead to the yield. This happens if only few machines
-/// decide and their errors hardly change a mean square, for example if an error has no effect until it is large.
-/// Tightens the parts whose errors are significantly larger in rejected machines; if there are none, tightens all
-/// parts.
+/// Tightens tolerances, for a study in which limits on root mean squares do not lead to the yield. This happens if only
+/// few machines decide and their errors hardly change a mean square, for example if an error has no effect until it is
+/// large. Tightens the parts whose errors are significantly larger in rejected machines; if there are none, tightens
+/// all parts.
 Tightened tighten_rejecting_parts(const SearchProblem& problem, Candidate from, StageLog& log) {
   ToleranceDesign design{std::move(from), problem.run.study.seed, {}, {}};
   for (std::size_t trial = 0; trial < kMaxTrials; ++trial) {

@@ -13,10 +13,10 @@
 #include "engine/kinds/kind.h"
 #include "engine/kinds/machine_calibration.h"
 
-/// The search for the tolerances of a study. Its stages are: linearise, settle, scale, improve, scale to other
-/// machines, use the remaining yield, round down (search_stages.h). Each stage computes new tolerances from those of
-/// the stage before. The search is a sequence of runs, each with its own checkpoint, and its decisions depend only on
-/// the study.
+/// The search for the tolerances of a study. Its stages are linearise(), settle(), scale_to_yield(), improve(),
+/// scale_to_other_machines(), use_remaining_yield() and round_down() (search_stages.h). Each stage computes new
+/// tolerances from those of the stage before. The search is a sequence of runs, each with its own checkpoint, and its
+/// decisions depend only on the study.
 namespace poesy::allocation {
 
 /// The numbers of rejects that the certificate and the design may have. The design is the set of machines with which
@@ -29,9 +29,9 @@ struct AllowedRejects {
 
 /// The allowed numbers of rejects among this many machines. The certificate allows as many rejects as still show, with
 /// this confidence (Clopper and Pearson), that the yield is at least `yield`. The number for the machines of the design
-/// is smaller: if they have no more rejects than this number, fresh machines have with 99 % probability no more rejects
-/// than the certificate allows. For this, the numbers of rejects of both sets of machines are approximated as normal.
-/// Precondition: machines >= trials_without_failure().
+/// is smaller: if the design has no more rejects than this number, fresh machines have with 99 % probability no more
+/// rejects than the certificate allows. For this, the numbers of rejects of both sets of machines are approximated as
+/// normal. Precondition: machines >= trials_without_failure().
 AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t machines);
 
 /// A seed for machines that the study draws for no other purpose. set: 0 for the certificate, 1 for scaling to other
@@ -49,8 +49,8 @@ struct SearchProblem {
   AllowedRejects allowed;                         ///< allowed rejects of as many machines as the study has samples
   std::optional<MachineCalibration> calibration;  ///< how the study's machines are calibrated; none: they are not
 
-  /// A calibration for the machines of another study, which differs from the study of the search in the sizes of its
-  /// errors or in its seed. The other study must outlive the calibration. Null: machines are not calibrated.
+  /// The calibration of the machines of another study, which differs from the study of the search only in the sizes of
+  /// its errors or in its seed. The other study must outlive the calibration. Null: machines are not calibrated.
   std::unique_ptr<const MachineCalibration> calibration_of(const Study& study) const;
 };
 
@@ -61,14 +61,14 @@ struct Linearisation {
   MeanSquares squares;     ///< mean squares at these tolerances, and their slopes
 };
 
-/// Tolerances during the search, and the solution of the last programme.
+/// The tolerances at some point of the search, and the solution of the last programme.
 struct Candidate {
   TolerancePoint point;     ///< the present tolerances
   ChosenTolerances chosen;  ///< the solution of the last programme, with its lower bound and multipliers
-  double share = 0.0;       ///< the share of each limit that this programme allowed as root mean square
+  double share = 0.0;       ///< the share of each limit that the last programme allowed as root mean square
 };
 
-/// The machines with the largest loads. Among them is the machine that decides whether the yield is kept.
+/// The machines of a design with the largest loads. Among them is the machine that decides whether the yield is kept.
 struct ScreenedMachines {
   std::vector<std::uint32_t> numbers;  ///< [machines] numbers of the machines, ascending
   std::vector<double> load;  ///< [machines] load of each machine: its largest ratio of a response to its limit
@@ -89,7 +89,8 @@ struct StageLog {
   std::vector<AllocationStage> stages;  ///< the stages, in order
   std::vector<double> tolerance;        ///< [stages x parts] tolerances at the end of each stage
 
-  /// Adds a stage that ended with this candidate. machines: number that was tried; rejects: number among them.
+  /// Adds a stage that ended with this candidate. machines: how many machines the stage tried; rejects: how many of
+  /// them were rejects.
   void add(std::string name, const Candidate& candidate, std::uint64_t machines, std::uint64_t rejects);
 };
 
@@ -110,10 +111,10 @@ std::optional<FoundTolerances> find_tolerances(const SearchProblem& problem);
 ToleranceLimits limits_of(const SearchProblem& problem, const FoundTolerances& found);
 
 /// The cost that the last programme predicts if root mean squares may use `share` of each limit and all limits are
-/// multiplied by `wider`. NaN if the programme has no solution there.
+/// multiplied by `wider`. NaN if no tolerances keep these limits.
 double predicted_cost(const SearchProblem& problem, const FoundTolerances& found, double share, double wider);
 
-/// The number of rejects: machines with a load above 1. load: [machines] see MachineLoads.
+/// The number of rejects: machines with a load (MachineLoads) above 1.
 std::uint64_t rejects_of(std::span<const double> load);
 
 }  // namespace poesy::allocation

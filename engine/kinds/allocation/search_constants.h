@@ -8,27 +8,28 @@
 namespace poesy::allocation {
 
 /// The size of errors in the first linearisation, as a share of their usual size. Make it smaller if the first
-/// linearisation is far from the settled one, larger if responses to such small errors drown in rounding.
+/// linearisation is far from the last one, larger if responses to such small errors drown in rounding.
 inline constexpr double kLinearSize = 0.01;
 /// The trust region of a linearisation: the factor by which a tolerance may grow. Make it smaller for mechanisms whose
 /// effects change much between such tolerances.
 inline constexpr double kMaxGrowth = 4.0;
-/// The largest number of linearisations before machines are tried. Make it larger if costs have not settled by then.
+/// The largest number of linearisations before machines are tried. Make it larger if costs still change by then.
 inline constexpr std::size_t kMaxLinearisations = 6;
-/// The relative change of the cost below which tolerances count as settled. Later stages change the cost by percents.
+/// Linearisations are repeated until the cost changes by less than this share of it. Later stages change the cost by
+/// percents.
 inline constexpr double kCostTolerance = 1e-3;
 
 /// The largest number of trials of machines in one loop. Make it larger where loops end before the deciding load is
 /// near 1. The load of a machine is its largest ratio of a response to its limit (MachineLoads). The deciding load is
 /// the largest load after those of the rejects that the design may have (deciding_load()).
 inline constexpr std::size_t kMaxTrials = 12;
-/// How far the deciding load may be below 1. Tolerances are proportional to this load, so a smaller value only helps if
-/// costs must be compared more finely.
+/// How far the deciding load may be below 1. Loads are nearly proportional to tolerances, so a smaller value only helps
+/// if costs must be compared more finely.
 inline constexpr double kLoadTolerance = 2e-3;
 /// How far the deciding load may be below 1 after the last scaling, which no improvement follows. Make it smaller if
 /// the loads of machines near the limit are closer together than this.
 inline constexpr double kFinalLoadTolerance = 1e-5;
-/// Machines with loads below this share of the deciding load are screened out. They are not tried again, because small
+/// Machines with loads below this share of the deciding load are screened out: they are not tried again, because small
 /// changes of tolerances do not make them decide. Make it smaller if the last scaling finds rejects among these
 /// machines (D66).
 inline constexpr double kScreeningLoad = 0.75;
@@ -37,43 +38,47 @@ inline constexpr double kScreeningLoad = 0.75;
 inline constexpr std::size_t kPilotOf = 8;
 /// The smallest number of machines in a pilot that looks for rejects among machines that were screened out.
 inline constexpr std::size_t kMinPilot = 20'000;
-/// The relative change above which effects are measured again (change of tolerances) or all machines are tried again
-/// (change of load). Make it smaller for mechanisms whose effects change much between such tolerances.
+/// After a relative change of tolerances by more than this, effects are measured again; after such a change of the
+/// deciding load, all machines are tried again. Make it smaller for mechanisms whose effects change much between such
+/// tolerances.
 inline constexpr double kRelinearise = 0.1;
-/// The share of a limit is the part of it that the programme allows as root mean square. If the share that the yield
-/// needs is smaller than this number times the share of the settled tolerances, root mean squares do not show which
-/// parts cause rejects, and the search tightens the parts that do. Make the number larger if this starts too late.
+/// Root mean squares do not show which parts cause rejects if the share of limits that they may use, so that the yield
+/// is kept, is smaller than this number times the share before machines were tried. Then the search tightens the parts
+/// whose errors are larger in rejected machines. Make the number larger if this starts too late.
 inline constexpr double kBlindShare = 0.7;
 
-/// The largest number of machines from which the gradient of the yield is estimated. With more machines the gradient is
-/// less noisy, but it is biased, because the machines are farther from the limit.
+/// The largest number of machines from which the gradient of the yield is estimated, unless the design may have more
+/// rejects. With more machines the gradient is less noisy, but it is biased, because the machines are farther from the
+/// limit.
 inline constexpr std::size_t kMaxGradientMachines = 3000;
-/// The number of standard deviations above which the score of a part (PartScores) counts as significant.
+/// The score of a part (PartScores) is significant if it is more than this number of its standard deviations.
 inline constexpr double kSignificance = 3.0;
 /// The largest number of steps along the gradient. More steps would fit the noise of the machines (D66).
 inline constexpr std::size_t kMaxGradientSteps = 3;
-/// The largest number of programmes that one step solves until the yield is kept.
+/// The largest number of programmes that one step along the gradient solves until the yield is kept.
 inline constexpr std::size_t kMaxFits = 6;
 /// The trust region of a step along the gradient: the factor by which a tolerance may grow.
 inline constexpr double kGradientGrowth = 1.3;
-/// The share of the cost that a step along the gradient must save. A smaller saving is noise.
+/// The least share of the cost that a step along the gradient must save. A smaller saving is noise.
 inline constexpr double kMinSaving = 1e-4;
 
-/// The factor by which a part is made coarser to find its effect. Users read "5 % coarser".
+/// The factor by which the tolerance of a part is multiplied to find its effect. Texts of results call this "5 %
+/// coarser".
 inline constexpr double kCoarserStep = 1.05;
-/// The number of machines near the limit in which the effect of a coarser part is measured. With more machines, the
+/// The number of machines near the limit from which the effect of a coarser part is estimated. With more machines, the
 /// predicted yield is less noisy.
 inline constexpr std::size_t kProbes = 700;
-/// The number of machines near the limit for parts of small effect, each with a mirrored machine.
+/// The same number for parts of small effect. Each of these machines also has a mirrored machine.
 inline constexpr std::size_t kProbesOfSmall = 3000;
-/// A part has a small effect if a step of its tolerance changes the loads of machines by less than this times the step.
+/// A part has a small effect if the loads of machines change by less than this times the relative change of its
+/// tolerance (root mean square).
 inline constexpr double kSmallEffect = 0.01;
-/// The factor of the first step by which a part is made coarser to use remaining yield. The factor of each further step
+/// The factor on the tolerance of a part in the first step that uses remaining yield. The factor of each further step
 /// is the square of the one before.
 inline constexpr double kFirstCoarsening = 1.25;
-/// The largest number of steps in which a part uses remaining yield.
+/// The largest number of steps by which a part gets coarser to use remaining yield.
 inline constexpr std::size_t kMaxCoarsenings = 12;
-/// The largest number of rounds over all parts in which they use remaining yield.
+/// The largest number of passes over all parts to use remaining yield.
 inline constexpr std::size_t kMaxCoarseningRounds = 3;
 
 }  // namespace poesy::allocation

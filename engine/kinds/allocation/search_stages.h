@@ -26,16 +26,17 @@ Value unless_stopped(std::optional<Value> value) {
 /// @name Functions that several stages use
 /// @{
 
-/// Measures mean squares at these tolerances [parts], among `draws` draws of the other errors. If machines are
-/// calibrated, each error is measured alone instead. known: [parts] the tolerances that a calibration takes for known
-/// before it measures; empty: these.
+/// Measures mean squares at these tolerances [parts], with `draws` draws of the other errors while one error is varied.
+/// If machines are calibrated, the other errors are at their centres instead. known: [parts] the tolerances from which
+/// a calibration takes its prior knowledge; empty: `tolerance`.
 Linearisation measure(const SearchProblem& problem, std::span<const double> tolerance, std::size_t draws,
                       std::span<const double> known = {});
 /// Solves the programme in which root mean squares may use this share of each limit. None if it is infeasible. Throws
 /// InputError if it is unbounded.
 std::optional<Candidate> choose(const SearchProblem& problem, const Linearisation& linearisation, double share,
                                 const TrustRegion& region);
-/// Solves the programme with the least feasible share between `low` and `high`, to a thousandth.
+/// Solves the programme with the least share of limits between `low` and `high` for which it is feasible, to a
+/// thousandth.
 std::optional<Candidate> choose_by_least_share(const SearchProblem& problem, const Linearisation& linearisation,
                                                double low, double high, const TrustRegion& region);
 /// The largest of the ratios a_i / b_i and b_i / a_i, over all i.
@@ -46,27 +47,30 @@ Study machine_study(const SearchProblem& problem, std::uint64_t seed, std::span<
 /// The loads (MachineLoads) of the first `machines` machines, or of all machines if `machines` is not given.
 std::vector<double> loads_of(const SearchProblem& problem, std::uint64_t seed, std::span<const double> tolerance,
                              std::optional<std::size_t> machines = std::nullopt);
-/// The deciding load: the largest load after the `rejects` largest ones. With a limit at this load, exactly `rejects`
-/// machines would be rejected.
+/// The deciding load: the largest load after those of the `rejects` worst machines. If the limit were at this load,
+/// exactly `rejects` machines would be rejected.
 double deciding_load(std::vector<double> load, std::uint64_t rejects);
-/// The numbers of the machines that may decide: those with at least kScreeningLoad times the deciding load.
+/// The numbers of the machines that may decide whether the yield is kept: those with at least kScreeningLoad times the
+/// deciding load.
 std::vector<std::uint32_t> screen(const SearchProblem& problem, std::span<const double> load);
-/// Solves, at other tolerances, those machines of a design that may decide whether the yield is kept (screen()).
+/// Solves, at the tolerances of `point`, those machines of a design that may decide whether the yield is kept
+/// (screen()).
 ScreenedMachines try_screened(const SearchProblem& problem, const ToleranceDesign& design, const TolerancePoint& point);
 /// Solves all machines with this seed at the tolerances of a candidate, and screens them.
 ToleranceDesign try_all(const SearchProblem& problem, Candidate candidate, std::uint64_t seed);
-/// The design, in which the loads of screened machines replace those from the last trial of all machines.
+/// The design, with the loads of screened machines in place of those from the last trial of all machines.
 ToleranceDesign with_screened_loads(ToleranceDesign design);
-/// Solves only a part of all machines (a pilot). Returns whether one of its rejects had been screened out.
+/// Solves only a part of all machines (a pilot) at the design's tolerances. Returns whether one of its rejects is a
+/// machine that was screened out.
 bool misses_rejects(const SearchProblem& problem, const ToleranceDesign& design);
 /// Multiplies all tolerances by one factor, except those that stay [parts], so that the screened machines have as many
-/// rejects as the design allows. If even the lowest tolerances do not keep the yield for these machines, the design is
-/// returned unchanged, and the certificate decides.
+/// rejects as the design allows. If no factor that was tried keeps the yield for these machines, the design is returned
+/// unchanged, and the certificate decides.
 ToleranceDesign scale_screened(const SearchProblem& problem, const ToleranceDesign& from,
                                const std::vector<bool>& stays);
 
 /// Scores of parts: sums of x^2 - 1 over some machines, where x is an error divided by its standard deviation. A
-/// positive score means that the part's errors are larger than usual in these machines.
+/// positive score means that the part's errors are larger in these machines than in all.
 struct PartScores {
   std::vector<double> of_part;  ///< [parts] score of each part: the sum over its errors, each times its growth with the
                                 ///< tolerance
@@ -78,7 +82,7 @@ PartScores part_scores(const SearchProblem& problem, const ToleranceDesign& desi
                        std::span<const std::uint32_t> machines);
 /// @}
 
-/// Tolerances (Candidate) that a programme chose, and the mean squares that it used (Linearisation).
+/// Tolerances that a programme chose, and the mean squares (Linearisation) that it used.
 struct Linearised {
   Linearisation linearisation;  ///< the linearisation that the programme used
   Candidate candidate;          ///< the tolerances that the programme chose
@@ -88,24 +92,25 @@ struct Linearised {
 /// squares cannot be made small enough for that, makes them as small as possible.
 Linearised linearise(const SearchProblem& problem, StageLog& log);
 
-/// Tolerances that hardly change when effects are measured again.
+/// Tolerances that hardly change any more when effects are measured again.
 struct Settled {
   Linearisation linearisation;  ///< the last linearisation
-  Candidate candidate;          ///< the settled tolerances, or the lowest ones if the last programme was infeasible
+  Candidate candidate;          ///< the last tolerances, or the lowest ones if the last programme was infeasible
   Candidate feasible;           ///< the last tolerances that a programme chose
 };
 
-/// Measures effects at the present tolerances and solves the programme, in turn, until the tolerances settle.
+/// Measures effects at the present tolerances and solves the programme, in turn, until cost and tolerances hardly
+/// change.
 Settled settle(const SearchProblem& problem, Linearised from, StageLog& log);
 
-/// Tolerances with which the design's machines keep the yield, and the mean squares (Linearisation) in the programme
-/// that chose them.
+/// Tolerances with which the design's machines keep the yield, and the mean squares that the programme used.
 struct Scaled {
   Linearisation linearisation;  ///< the linearisation that the programme used
   ToleranceDesign design;       ///< a design with at most the allowed number of rejects
 };
 
-/// Changes the share of limits that root mean squares may use, until the design has as many rejects as allowed.
+/// Changes the share of limits that root mean squares may use, until the design has as many rejects as allowed. If this
+/// fails, or needs a much smaller share, tightens the parts whose errors cause the rejects.
 Scaled scale_to_yield(const SearchProblem& problem, Settled from, StageLog& log);
 
 /// Shifts tolerance between parts along the gradient of the yield, if that reduces the cost. The gradient is estimated
@@ -113,22 +118,22 @@ Scaled scale_to_yield(const SearchProblem& problem, Settled from, StageLog& log)
 ToleranceDesign improve(const SearchProblem& problem, const Linearisation& linearisation, ToleranceDesign from,
                         StageLog& log);
 
-/// Scales all tolerances so that new machines keep the yield. For the machines by which tolerances were chosen, the
-/// yield is biased upwards.
+/// Scales all tolerances until other machines, with another seed, keep the yield. For the machines by which tolerances
+/// were chosen, the yield is biased upwards.
 ToleranceDesign scale_to_other_machines(const SearchProblem& problem, const ToleranceDesign& from, StageLog& log);
 
-/// Tolerances and the loads of the design's machines with them, and the predicted yield if one part is made coarser.
+/// Tolerances, the loads of the design's machines with them, and the predicted yield if only one part is made coarser.
 struct Probed {
   ToleranceDesign design;             ///< the tolerances, and the loads of machines with them (MachineLoads)
   std::vector<double> coarser_yield;  ///< [parts] predicted yield if the tolerance of this part alone is larger, see
                                       ///< AllocationResult::coarser_yield
 };
 
-/// Predicts the yield with each part coarser alone, and makes those parts coarser that the yield allows. There are none
-/// at the least cost, where every coarser part would break the yield.
+/// Predicts the yield for each part if only this part is coarser, and makes those parts coarser that the yield allows.
+/// At the least cost there are no such parts, because every coarser part would break the yield.
 Probed use_remaining_yield(const SearchProblem& problem, ToleranceDesign from, StageLog& log);
 
-/// Rounds tolerances down as their parts ask. If a tolerance changes, tries all machines again.
+/// Rounds tolerances down as the study asks for their parts. If a tolerance changes, tries all machines again.
 Probed round_down(const SearchProblem& problem, Probed from, StageLog& log);
 
 /// @name Refusals: these functions throw InputError
@@ -139,8 +144,8 @@ void refuse_perfect_beyond(const SearchProblem& problem);
 [[noreturn]] void refuse_unbounded(const SearchProblem& problem, const Unbounded& unbounded);
 /// Refuses a study if the lowest tolerances have too many rejects.
 [[noreturn]] void refuse_lowest(const SearchProblem& problem, std::uint64_t rejects);
-/// Refuses a study if only perfect parts would keep the limits, because the lowest tolerance of some part is 0.
-/// rejects: number of rejects at the smallest tolerances tried before.
+/// Refuses a study in which only the lowest tolerances keep the limits and some of them are 0, so that parts would have
+/// to be perfect. rejects: number of rejects at the smallest tolerances tried before.
 [[noreturn]] void refuse_perfect(const SearchProblem& problem, std::uint64_t rejects);
 /// @}
 

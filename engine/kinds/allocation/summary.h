@@ -10,7 +10,7 @@
 #include "engine/kinds/allocation/result.h"
 #include "engine/report/tables.h"
 
-/// Texts and orders of an allocation result that its files, tables and reports share.
+/// Texts of an allocation result, and orders of its parts, that files, tables and reports share.
 namespace poesy {
 
 /// Whether the study has costs.
@@ -19,17 +19,17 @@ inline bool has_costs(const AllocationResult& found) { return !std::isnan(found.
 /// Positions of the responses that have a limit, ascending.
 std::vector<std::size_t> limited_responses(const AllocationResult& found);
 
-/// The pose at which a response's number is largest; none if no number is above zero.
+/// The pose with the largest of these numbers, one for each pose; none if no number is above zero.
 std::optional<std::size_t> worst_pose(std::span<const double> at_poses);
 
 /// The shares by which parts are ordered: shares of the cost, or of the mean square if the study has no costs.
 const AllocationResult::Parts<double>& shown_shares(const AllocationResult& found);
 
-/// Positions of the parts in this order: by shown_shares() descending, by name, or as in the study.
+/// Positions of the parts in the chosen order: by shown_shares() descending, by name, or as in the study.
 std::vector<std::size_t> ordered_parts(const AllocationResult& found, RowOrder order);
 
 /// The certificate in words: "certified: at least 99.73 % of the machines are within all limits at all poses, ...", or
-/// the reason why there is none.
+/// the reason why the tolerances are not certified.
 std::string certificate_text(const AllocationResult& found);
 
 /// A tolerance as a number in its display unit: four digits, rounded down so that the limits still hold.

@@ -38,7 +38,7 @@ Table certificate_table(const StoredResult& result) {
   return table;
 }
 
-/// The components of the tolerance T of part n in words: "3 sigma + 10 % of T".
+/// What the tolerance T of part n consists of, in words: "3 sigma + 10 % of T".
 std::string made_of(const Result& found, std::size_t n) {
   const std::string text = number_text(found.sigmas(n), kCostDigits) + " sigma";
   const double share = found.shift(n) / found.tolerance(n);
@@ -97,8 +97,8 @@ FilledColumn words_column(std::string name, std::string heading, std::span<const
           [values](std::size_t at) { return text_cell(values[at]); }};
 }
 
-/// Extends the list `columns` by columns with the tolerance T in full and with its components; narrow tables omit these
-/// columns.
+/// Extends the list `columns` by columns with the tolerance T with all its digits and with its components; narrow
+/// tables omit these columns.
 void add_details(const Result& found, std::vector<FilledColumn>& columns) {
   constexpr int kFirstToGo = 3;
   const auto unit = [&](std::size_t n) { return display_unit(dimension_of(found.part_unit(n))); };
@@ -114,8 +114,8 @@ void add_details(const Result& found, std::vector<FilledColumn>& columns) {
   columns.push_back(words_column("errors", "errors", found.part_members, kFirstToGo + 1));
 }
 
-/// Whether the part adds nothing to any mean square and its tolerance ends where the search does, which says nothing
-/// about the part.
+/// Whether the part adds nothing to any mean square and has the largest tolerance that the search allows, so that this
+/// tolerance says nothing about the part.
 bool has_no_effect(const Result& found, std::size_t n) {
   constexpr double kRounding = 1e-12;  // share of the mean square
   return found.mean_square_share(n) < kRounding && found.bound(n) == static_cast<std::uint8_t>(AtBound::upper);
@@ -164,10 +164,10 @@ double largest(std::span<const double> at_poses) {
   return pose ? at_poses[*pose] : 0.0;
 }
 
-constexpr double kNoticeable = 0.001;  // least share of a mean square that is worth a line
+constexpr double kNoticeable = 0.001;  // least share of a mean square that a table mentions
 
-/// What is in no part, and its share of the mean square under the limit that is used most. Empty if that is hardly
-/// anything.
+/// A note on the share of the mean square that belongs to no part, under the limit that is used most. Empty if the
+/// share is hardly anything.
 std::string fixed_note(const Result& found) {
   const std::vector<std::size_t> limited = limited_responses(found);
   if (found.fixed_share.empty() || limited.empty()) return {};
@@ -213,7 +213,7 @@ Table drawing_table(const Result& found, RowOrder order) {
   return table;
 }
 
-/// Columns with the number and coordinates of the pose at which each response's value is largest.
+/// Columns with the number and the coordinates of the pose at which the value of each response is largest.
 std::vector<FilledColumn> pose_columns(const StoredResult& result, const std::string& name,
                                        const Result::AtPoses& values, int dispensable) {
   return {{number_column(name + "_pose", "at pose", "", dispensable),
@@ -227,7 +227,7 @@ std::vector<FilledColumn> pose_columns(const StoredResult& result, const std::st
            }}};
 }
 
-/// The limit on a response.
+/// The limit on response r.
 ValueLimit limit_on(const Result& found, std::size_t r) {
   const double most = found.limit(r);
   if (!found.limit_is_spread.empty() && found.limit_is_spread(r) == 1.0) return ValueLimit::of_spread(most);
@@ -323,7 +323,8 @@ Table stages_table(const Result& found) {
   return table;
 }
 
-/// Fills a table with predicted costs and their changes from the cost of the tolerances found.
+/// Fills a table with predicted costs and their relative changes from the cost of the tolerances found. at: the first
+/// column, which says to what each cost belongs.
 void add_costs(const Result& found, std::span<const double> costs, FilledColumn at, Table& table) {
   table.notes.emplace_back("predicted, not certified; change: from the cost of the tolerances found");
   fill(table, positions(costs.size()),

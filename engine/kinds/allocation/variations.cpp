@@ -15,7 +15,8 @@ namespace {
 /// The number of machines in a piece of work. It is small so that a piece ends soon even with many variations.
 constexpr std::size_t kVariedAtOnce = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// About one pose in this number of poses decides, by experience. Used to estimate the number of solves that remain.
+/// By experience, about one of this many poses decides for a machine (kDeciding). Used to estimate the number of solves
+/// that remain.
 constexpr std::size_t kOfPosesDecide = 4;
 
 /// Machines and their variations. A piece of work solves all variations of some machines.
@@ -77,8 +78,8 @@ class VariationEvaluator : private LoadSolver {
   }
 
  private:
-  /// Solves each variation at all poses, because limits over poses need them all, and because a calibration takes more
-  /// time than the solves at all poses.
+  /// Solves all machines with each variation at all poses, because limits over poses need all poses, and because a
+  /// calibration takes more time than the solves at all poses.
   VariedLoads solve_all(std::size_t piece) {
     VariedLoads found{&varied_, {}, varied_.loads_of(piece) * plan_->poses().size()};
     std::vector<double> loads(count_);
@@ -110,7 +111,7 @@ class VariationEvaluator : private LoadSolver {
     }
   }
 
-  /// Solves the machines of a piece without variations at all poses.
+  /// Solves the machines of a piece, without variations, at all poses.
   void solve_without(VariedLoads& found) {
     at_pose_.assign(plan_->poses().size() * count_, 0.0);
     load_.assign(count_, 0.0);
@@ -122,9 +123,9 @@ class VariationEvaluator : private LoadSolver {
     found.solves += at_pose_.size();
   }
 
-  /// Solves variations at a pose. If `deciding`, solves all variations of the machines for which the pose decides.
-  /// Otherwise, for the other machines, solves only variations that change some load much: their effect may be small at
-  /// the deciding pose and large elsewhere.
+  /// Solves variations at a pose. If `deciding` is true, solves each variation of each machine for which the pose
+  /// decides. Otherwise solves the other machines, but only with variations that have changed some load much: their
+  /// effect may be small at the deciding pose and large elsewhere.
   void solve_at(std::size_t m, bool deciding, VariedLoads& found) {
     pairs_.clear();
     for (const std::size_t p : draw_per_pose(PoseIndex(m), numbers_)) {
@@ -140,7 +141,7 @@ class VariationEvaluator : private LoadSolver {
     if (!pairs_.empty()) solve_pairs(m, found);
   }
 
-  /// Solves the waiting pairs of a variation and a machine at a pose, and updates their loads.
+  /// Solves the pairs of a variation and a machine in `pairs_` at a pose, and updates their loads.
   void solve_pairs(std::size_t m, VariedLoads& found) {
     const std::size_t count = pairs_.size();
     for (std::size_t p = 0; p < plan_->factors().size(); ++p) {
@@ -161,7 +162,8 @@ class VariationEvaluator : private LoadSolver {
     pairs_.clear();
   }
 
-  /// Computes the loads at a pose of the machines in the first columns of values_; infinite if a machine is not solved.
+  /// Computes the loads, at a pose, of the machines in the first columns of `values_`; infinite if a machine is not
+  /// solved.
   void solve(std::size_t m, std::span<double> loads) {
     missing_.assign(loads.size(), 0);
     beyond_.assign(limits_.size() * loads.size(), 0);
@@ -178,9 +180,10 @@ class VariationEvaluator : private LoadSolver {
   std::vector<double> at_pose_;       ///< [poses x machines] loads at each pose without variations
   std::vector<double> load_;          ///< [machines] largest load over the poses without variations
   std::vector<double> change_;        ///< [variations] largest change of a load that each variation caused at some pose
-  /// Waiting pairs of a variation and a machine, as positions in an array [variations x machines].
+  /// Pairs of a variation and a machine that are still to be solved at the present pose, as positions in an array
+  /// [variations x machines].
   std::vector<std::size_t> pairs_;
-  std::vector<double> of_pairs_;  ///< loads of the waiting pairs at the present pose
+  std::vector<double> of_pairs_;  ///< loads of these pairs at the present pose
   std::vector<std::uint8_t> missing_;
   std::vector<std::uint8_t> beyond_;
 };

@@ -30,17 +30,17 @@ std::vector<ZoneAt> all_zones(const ModelDescription& model) {
   return zones;
 }
 
-/// The name of the zone of one limb: "rail_1.position".
+/// The name of a zone with the number of its limb: "rail_1.position".
 std::string name_at(const ZoneAt& zone, const ModelDescription& model) {
   return fmt::format("{}.{}", model.features[zone.feature].name, zone.key);
 }
 
-/// The name of the zone of all limbs: "rail.position".
+/// The name of a zone for all limbs that have it: "rail.position".
 std::string label_at(const ZoneAt& zone, const ModelDescription& model) {
   return fmt::format("{}.{}", model.features[zone.feature].label, zone.key);
 }
 
-/// The zones that a list of patterns names, in the order of the drawing.
+/// The zones whose names fit one of these patterns, in the order of the drawing.
 std::vector<ZoneAt> zones_by_pattern(const StudyValue& value, const ModelDescription& model) {
   const std::vector<ZoneAt> all = all_zones(model);
   std::vector<bool> is_named(all.size(), false);

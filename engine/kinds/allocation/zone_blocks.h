@@ -9,13 +9,13 @@
 #include "engine/kinds/allocation/result.h"
 #include "engine/study/study_kind.h"
 
-/// Reads and writes which zones of a drawing are parts by a block [[analysis.parts]].
+/// Reads and writes the zones of a drawing that a block [[analysis.parts]] of a study file makes parts.
 namespace poesy {
 
-/// The parts of a block with `zones`, without their cost and choice. Each named zone is a part, but zones of identical
-/// limbs share one. The part of a zone of location has all errors of the feature, or only those of its middle if the
-/// feature also has a zone of orientation. taken: names of other parts. Throws InputError. Precondition: the block has
-/// `zones`.
+/// The parts of a block with the key `zones`; their cost and their possible tolerances are not set. Each named zone is
+/// a part, but zones of identical limbs share one. The part of a zone of location has all errors of the feature, or
+/// only those of its middle if the feature also has a zone of orientation. taken: names of other parts. Throws
+/// InputError. Precondition: the block has `zones`.
 std::vector<AllocatedPart> read_zones(const StudySection& block, const Study& study,
                                       std::span<const std::string_view> taken);
 
@@ -24,7 +24,7 @@ std::vector<AllocatedPart> read_zones(const StudySection& block, const Study& st
 /// zone of orientation whose location is in no part, or is shared by other limbs.
 void complete_zones(const StudyValue& value, const Study& study, std::vector<AllocatedPart>& parts);
 
-/// The keys of a block that reads back as this part. Precondition: the part is a zone.
+/// The text of the keys of a block that reads back as this part. Precondition: the part is a zone.
 std::string zones_text(const AllocatedPart& part, const ModelDescription& model);
 
 }  // namespace poesy

@@ -23,7 +23,8 @@ std::vector<std::size_t> positions_of(std::span<const FactorIndex> errors, std::
   return positions;
 }
 
-/// The mean squares of a feature's middle and tilt in a zone of location of size 1.
+/// The mean squares of the errors of a feature's middle and tilt if its zone has size 1. The zone is that of location,
+/// or that of orientation if there is no location.
 struct UnitSquares {
   double middle;
   double tilt;

@@ -13,9 +13,9 @@
 #include "engine/optimise/least_cost.h"
 
 /// Zones of a drawing as parts. The mean squares of a feature's errors are linear in the squares of its tolerances. Let
-/// T be the zone of location, T_o the zone of orientation, and k the number of standard deviations in half a zone. With
-/// a zone of orientation, each error of the middle has the mean square (T^2 - T_o^2) / 4 k^2, and the tilt a multiple
-/// of T_o^2. Without one, middle and tilt share the zone of location.
+/// T be the width of the zone of location, T_o that of the zone of orientation, and k the number of standard deviations
+/// in half a zone. With a zone of orientation, each error of the middle has the mean square (T^2 - T_o^2) / 4 k^2, and
+/// the tilt a multiple of T_o^2. Without one, middle and tilt share the zone of location.
 namespace poesy {
 
 /// Whether the part is a zone of orientation. Precondition: the part is a zone.
@@ -33,8 +33,8 @@ std::string limbs_of(const AllocatedPart& part, const ModelDescription& model);
 /// The shape of a zone: "cylinder", "sphere", "planes", or "interval" for a distance. Precondition: the part is a zone.
 std::string_view shape_of(const AllocatedPart& part, const ModelDescription& model);
 
-/// The effect of T^2, where T is the tolerance of a zone, on the mean squares of the errors. factors: the errors that
-/// vary; the result refers to positions in this list.
+/// The errors that depend on the tolerance T of a zone, and how their mean squares grow with T^2. factors: the errors
+/// that vary; the result refers to positions in this list.
 DrawnPart drawn_zone(const AllocatedPart& part, const ModelDescription& model, std::span<const FactorIndex> factors);
 
 /// The pairs of a zone of orientation and the zone of location of the same features, in the order of the locations. The

@@ -34,7 +34,7 @@ std::string feature_text(const Result& found, std::size_t n) {
 }
 
 /// The sign that a drawing writes before the size of a zone: the sign of a diameter, or of the diameter of a sphere;
-/// none before a width.
+/// nothing before a width.
 std::string_view before_number(const Result& found, std::size_t n) {
   if (!is_zone(found, n) || found.zone_shape(n) == "interval") return kPlusMinus;
   if (found.zone_shape(n) == "sphere") return kSphereDiameter;
@@ -47,7 +47,7 @@ std::string zone_text(const Result& found, std::size_t n) {
                      display_unit(dimension_of(unit)).name);
 }
 
-/// A cell with the zone and its tolerance frame, in mm. A distance has no frame.
+/// A cell with the zone as text and as tolerance frame, in mm. A distance has no frame.
 Cell zone_cell(const Result& found, std::size_t n) {
   Cell cell = text_cell(zone_text(found, n));
   if (!is_zone(found, n) || found.zone_shape(n) == "interval") return cell;
@@ -64,7 +64,7 @@ Column framed_column(std::string name, std::string heading) {
   return column;
 }
 
-/// The extent of a feature: "500 mm", "60 x 40 mm", or the diameter of a round plane.
+/// The size of a feature in the table: "500 mm", "60 x 40 mm", or the diameter of a round plane.
 std::string over_text(const Result& found, std::size_t n) {
   if (!is_zone(found, n) || std::isnan(found.zone_length(n))) return "-";
   const Unit& unit = display_unit(Dimension::length);
@@ -81,7 +81,8 @@ bool are_of_one_feature(const Result& found, std::size_t a, std::size_t b) {
          found.zone_limbs(a) == found.zone_limbs(b);
 }
 
-/// Remarks on a part: its orientation is not needed, or its tolerance could not be chosen.
+/// Remarks on a part: that the orientation of its feature is not needed, that its tolerance is at a bound, or that the
+/// tolerance was given.
 std::string remark(const Result& found, std::size_t n) {
   std::vector<std::string> words;
   for (std::size_t other = 0; other < found.parts(); ++other) {

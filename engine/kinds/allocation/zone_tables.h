@@ -12,7 +12,8 @@
 /// the result outlives the columns and tables that refer to it.
 namespace poesy {
 
-/// Columns for feature, symbol, zone, datums and length of each part. For a part that is not a zone, its name and T.
+/// Columns for feature, symbol, zone, datums and length of each part. A part that is not a zone has only its name and
+/// T.
 std::vector<FilledColumn> zone_columns(const AllocationResult& found);
 
 /// Columns for the share of features inside their zone, and for remarks.
@@ -22,7 +23,7 @@ std::vector<FilledColumn> inside_columns(const AllocationResult& found);
 /// not need are left out.
 std::vector<std::size_t> drawn_parts(const AllocationResult& found, const std::vector<std::size_t>& order);
 
-/// What a zone means for the errors, in words: "half a zone: 3 standard deviations of a coordinate of an extreme
+/// The relation between zones and errors in words: "half a zone: 3 standard deviations of a coordinate of an extreme
 /// point".
 std::string zones_note(const AllocationResult& found);
 
