@@ -24,8 +24,7 @@ constexpr double kSmallestMu = 1e-16;
 constexpr double kSmallestMixingMu = 3e-8;
 constexpr int kMaxNewtonSteps = 60;      ///< largest number of Newton steps to one point of the path
 constexpr int kMaxLineSearchSteps = 60;  ///< largest number of trial steps along one direction
-constexpr int kMaxIterations =
-    400;  ///< largest number of points of the path and of additions to the working set, together
+constexpr int kMaxIterations = 400;      ///< largest number of points of the path plus additions to the working set
 constexpr std::size_t kAddedAtOnce = 4;  ///< number of violated limits that join the working set in one iteration
 
 /// The mean cost of the mixed processes, less the smallest fixed cost of an allowed process. Tolerances can change at

@@ -22,17 +22,18 @@
 namespace poesy {
 namespace {
 
-/// The errors that make most of the mean square, and those that together make hardly any of it.
+/// The errors that cause most of the mean square of the response by which errors are ranked, and those that together
+/// cause hardly any of it.
 struct FewMatter {
-  std::vector<std::string> names;   ///< errors that together make the share kMost of the mean square, largest first
-  double sum = 0.0;                 ///< share of these errors
-  std::vector<std::string> hardly;  ///< errors that together make less than the share kHardly of the mean square
+  std::vector<std::string> names;   ///< errors that together cause the share kMost of the mean square, largest first
+  double sum = 0.0;                 ///< share of the mean square that these errors cause
+  std::vector<std::string> hardly;  ///< errors that together cause less than the share kHardly of the mean square
 };
 
 constexpr double kMost = 0.8;
 constexpr double kHardly = 0.01;
 
-/// Finds the errors of FewMatter; none if an effect is not known, or if no error has an effect.
+/// Finds the errors that FewMatter lists; none if an effect is not known, or if no error has an effect.
 std::optional<FewMatter> few_matter(const StoredResult& result) {
   const std::size_t response = response_named(result, default_ranking(result));
   const MeanSquare found =
@@ -71,7 +72,8 @@ std::string largest_text(const StoredResult& result, const RankedErrors& ranked)
                      response_text(response, shown.high(r, p) * sigma));
 }
 
-/// A sentence on how wide the intervals of errors with an effect are, and whether the indices hold at other sizes.
+/// A sentence on the width of the intervals of errors with an effect, and on whether indices hold at other sizes of the
+/// errors.
 std::string sure_text(const StoredResult& result, const RankedErrors& ranked) {
   const GlobalIndices shown = shown_indices(result);
   double widest = 0.0;

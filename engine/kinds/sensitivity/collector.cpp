@@ -77,8 +77,8 @@ std::vector<std::size_t> HistoryCollector::poses_at(std::size_t slot, std::size_
 
 void HistoryCollector::state(Archive& archive, std::span<const std::size_t> units_done, std::size_t samples) {
   const auto points = static_cast<std::size_t>(std::ranges::upper_bound(points_, samples) - points_.begin());
-  // If the earlier study had fewer samples than a whole unit, a longer study solves this unit again and ignores its
-  // indices.
+  // If the study that wrote the indices had fewer samples than a whole unit, a longer study solves this unit again and
+  // ignores these indices.
   const bool begins_longer = samples == plan_->samples() || samples >= Plan::kUnitSamples;
   const bool takes = archive.reads() && begins_longer;
   std::vector<LocalIndex> indices(responses_);

@@ -16,12 +16,12 @@
 
 namespace poesy {
 
-/// Computes the course of the global indices of a sensitivity study over the number of samples, while units are merged.
-/// The course has indices at the history points, which are fixed numbers of samples such as 100, 200 and 500
+/// Computes, while units are merged, how the global indices of a sensitivity study develop with the number of samples.
+/// The indices are computed at the history points, which are fixed numbers of samples such as 100, 200 and 500
 /// (history_points() in engine/run/evaluate_unit.h). When all poses of an error have reached a point, the global
 /// indices there are computed and the local indices are dropped. Errors are solved one after the other, so only the
 /// data of one error are in memory: 16 bytes for each response, pose and point. A continued run or a shard may also
-/// hold the data of errors that it has only in part.
+/// hold the data of errors whose poses it has only in part.
 class HistoryCollector {
  public:
   /// Refers to the plan.
@@ -29,23 +29,25 @@ class HistoryCollector {
 
   /// Adds the next unit of a cell (one error at one pose). within: [points x responses] local indices at the history
   /// points inside the unit. cell: statistics of all samples of the cell up to this unit; only used if the unit ends at
-  /// a history point. A smaller last unit ends at a history point only if it is also the first unit of its cell.
+  /// a history point. A last unit with fewer samples ends at a history point only if it is also the first unit of its
+  /// cell.
   void add(const WorkUnit& unit, std::span<const LocalIndex> within, const UnitStats& cell);
-  /// The course of the indices over all history points. Precondition: all units of all cells were added. end: the final
-  /// result.
+  /// The indices at all history points, ending with the final result `end`. Precondition: all units of all cells were
+  /// added.
   EstimateCourse history(const SensitivityResult& end) const;
 
   /// Writes the indices at all history points, or reads them and adds them to those of this object. samples: number of
-  /// samples of the study that wrote them, at most that of this plan. units_done: [cells] number of units of each cell.
+  /// samples of the study that wrote them, at most the number of this study. units_done: [cells] number of units of
+  /// each cell.
   void state(Archive& archive, std::span<const std::size_t> units_done, std::size_t samples);
 
  private:
-  /// The indices of one error at one history point.
+  /// The indices of one error at one history point, as far as they are known.
   struct Look {
-    std::size_t reached = 0;  ///< number of poses that have reached the point
-    /// Local indices, until all poses have reached the point.
+    std::size_t reached = 0;  ///< number of poses of the error that have as many samples
+    /// Local indices; empty when all poses have as many samples.
     Array<LocalIndex, axis::Response, axis::Pose> local = {};
-    /// [responses] Global indices, when all poses have reached the point.
+    /// [responses] Global indices; empty until all poses have as many samples.
     std::vector<Estimate> global = {};
   };
   struct Point {
@@ -75,8 +77,8 @@ class SensitivityCollector : public CellSums<CellStats> {
 
   /// Adds a unit. Precondition: it is the next unit of its cell.
   void add(const WorkUnit& unit, const CellUnit& found);
-  /// The course of the indices over the history points, which ends with the indices of `end`. Precondition: all units
-  /// of all cells were added, and the study has a fixed number of samples.
+  /// The indices at the history points, ending with those of `end`. Precondition: all units of all cells were added,
+  /// and the study has a fixed number of samples.
   EstimateCourse history(const SensitivityResult& end) const { return history_.history(end); }
   /// Writes the statistics of all cells, or reads those of a plan with this many samples and adds them.
   void state(Archive& archive, std::size_t samples);

@@ -15,10 +15,10 @@
 namespace poesy {
 namespace {
 
-/// The largest spread, SI, that may be the rounding of a solver: kIndexRounding times an error of 1e-3.
+/// A spread of a response up to this, SI, may be the rounding of a solver: kIndexRounding times an error of 1e-3.
 constexpr double kSpreadRounding = 1e-13;
 
-/// The results at two fidelities, with the dimensions and sigmas of both.
+/// The results at two fidelities, with the dimensions of the responses and the standard deviations of the errors.
 struct BothFidelities {
   const SensitivityResult& first;
   const SensitivityResult& second;
@@ -29,7 +29,8 @@ struct BothFidelities {
     return index < kIndexRounding || index * sigma[factor] < kSpreadRounding;
   }
 
-  /// The effect of an error: its largest index over all responses of the same dimension. NaN if an index is unknown.
+  /// The effect of an error: its largest index over all responses of the same dimension as `response`. NaN if an index
+  /// is unknown.
   double effect(const SensitivityResult& result, std::size_t response, std::size_t factor) const {
     double largest = 0.0;
     for (std::size_t r = 0; r < result.responses(); ++r) {
@@ -46,7 +47,8 @@ struct BothFidelities {
     return result.mean(response, factor, pose) - result.background(response, pose);
   }
 
-  /// The root mean square over the poses of the change of mean and spread, divided by sigma.
+  /// The root mean square over the poses of the change of mean and spread between the fidelities, divided by the
+  /// error's standard deviation.
   double change(std::size_t response, std::size_t factor) const {
     double sum = 0.0;
     for (std::size_t m = 0; m < first.poses(); ++m) {
@@ -66,8 +68,8 @@ struct BothFidelities {
   }
 };
 
-/// The denominator of the ratios for one error and response. NaN if the effect at both fidelities is rounding, 0 if
-/// only the effect at the first fidelity is rounding.
+/// The denominator of the ratios for one error and response: the effect at the first fidelity. NaN if the effect at
+/// both fidelities is rounding, 0 if only that at the first fidelity is.
 double ratio_base(const BothFidelities& both, std::size_t response, std::size_t factor) {
   const double effect = both.effect(both.first, response, factor);
   if (!both.is_rounding(factor, effect)) return effect;
@@ -97,7 +99,7 @@ const Group<Fidelity> kFidelity{
 
 using Measure = FidelityResult::Indices;
 
-/// The response for which the measure of an error has the largest magnitude; none if no value is known.
+/// The response for which this measure of an error has the largest magnitude; none if no value is known.
 std::optional<std::size_t> largest(const Measure& measure, std::size_t factor) {
   std::optional<std::size_t> found;
   for (std::size_t r = 0; r < measure.length<axis::Response>(); ++r) {
@@ -107,8 +109,8 @@ std::optional<std::size_t> largest(const Measure& measure, std::size_t factor) {
   return found;
 }
 
-/// Extends the list `columns` by columns with each error's largest value in percent, and with the response that has it.
-/// Refers to the result and the measure.
+/// Extends the list `columns` by two columns: each error's value of largest magnitude, in percent, and the response
+/// that has this value. Refers to the result and the measure.
 void add_largest(std::vector<FilledColumn>& columns, const StoredResult& result, const Measure& measure,
                  const std::string& name, int dispensable) {
   const auto value = [&measure](std::size_t p) {

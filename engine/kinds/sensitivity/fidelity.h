@@ -11,15 +11,15 @@
 namespace poesy {
 
 /// Compares two sensitivity results of the same draws at two fidelities of a model. dimensions: [responses] dimension
-/// of each response. sigma: [errors] standard deviation of each error, SI. linearity: a limit between 0 and 1.
+/// of each response. sigma: [errors] standard deviation of each error, SI. linearity: the limit below which an error
+/// counts as linear, between 0 and 1.
 ///
 /// The denominator of all ratios is the error's effect: its largest global index at the first fidelity, over all
-/// responses of the same dimension. Therefore an error is not called nonlinear because of a component on which it
-/// hardly acts.
+/// responses of the same dimension. Therefore an error is not called nonlinear because of a response on which it hardly
+/// acts.
 ///
-///     discrepancy           global index at the second fidelity - global index at the first
-///     relative_discrepancy  discrepancy / effect
-///     nonlinearity          root mean square over the poses of hypot(m1 - m2, s1 - s2) / sigma, over effect
+/// discrepancy global index at the second fidelity - global index at the first relative_discrepancy discrepancy /
+/// effect nonlinearity root mean square over the poses of hypot(m1 - m2, s1 - s2) / sigma, over effect
 ///
 /// Here m is the mean of the response minus the response to the background alone, s is its standard deviation, and 1
 /// and 2 are the fidelities. Nonlinearity includes the shift of the mean, because a second-order effect shifts the mean
@@ -44,8 +44,8 @@ std::optional<FidelityResult> read_fidelity(const h5::File& file);
 /// Adds fidelity.csv and fidelity_not_converged.csv.
 void append_fidelity_tables(CsvTables& tables, const StoredResult& result);
 
-/// The table of each error's largest discrepancy between the two fidelities, and the verdict, in the order of `ranked`.
-/// Precondition: the study compares two fidelities.
+/// The table of each error's largest discrepancy between the two fidelities, and of the verdict whether it is linear,
+/// in the order of `ranked`. Precondition: the study compares two fidelities.
 Table fidelity_table(const StoredResult& result, const RankedErrors& ranked);
 /// Adds to the page the section on fidelities, if the study compares two.
 void add_fidelity_section(const StoredResult& result, std::span<const Table> tables, Page& page);

@@ -24,7 +24,7 @@ bool same_poses(const StoredResult& a, const StoredResult& b) {
   return true;
 }
 
-/// The local index x sigma of result B minus that of result A, for the errors that both results have.
+/// The effects at each pose (local index x sigma) in result b minus those in result a, for the errors that both have.
 ErrorCells local_differences(const StoredResult& a, const StoredResult& b, const Common& factors,
                              std::pair<std::size_t, std::size_t> response) {
   const ErrorCells in_a = local_effects(a, response.first);
@@ -41,7 +41,7 @@ ErrorCells local_differences(const StoredResult& a, const StoredResult& b, const
   return differences;
 }
 
-/// The errors that both results have, in the order of their importance in A.
+/// The errors that both results have, in the order of their ranks in a.
 Common ranked_common(const StoredResult& a, const StoredResult& b) {
   Common factors = common(names_of(a.factors), names_of(b.factors));
   const std::vector<std::size_t> ranks = ranked_errors(a, default_ranking(a)).ranks;
@@ -100,8 +100,8 @@ void add_rankings(const ReportedResult& a, const ReportedResult& b, Page& page) 
   }
 }
 
-/// The root mean square of the response, predicted from the effects of single errors (stats/tolerance.h), in the
-/// display unit.
+/// The root mean square of the response over samples and poses, predicted from the effects of single errors
+/// (stats/tolerance.h), in the display unit.
 double total_rms(const StoredResult& result, std::size_t response) {
   const MeanSquare squares =
       mean_square(response_study(sensitivity_of(result), result.factor_sigma, result.factor_mean, response));

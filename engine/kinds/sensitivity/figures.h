@@ -10,17 +10,17 @@
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/report_kind.h"
 
-/// Figures that the page of a sensitivity result shares with the page that compares two.
+/// Figures that are both on the page of a sensitivity result and on the page that compares two.
 namespace poesy {
 
 /// How the solves ended, for each error and pose.
 SolveTally sensitivity_tally(const StoredResult& result);
 
-/// Which responses the figures show at each pose. Curves along a trajectory show the same numbers as the heat map.
+/// The responses and poses that the figures show. Curves along a trajectory show the same numbers as the heat map.
 ShownCells sensitivity_cells(const StoredResult& result);
 
-/// Indices in display units, either as effects (index x sigma) or as they are. Row-major: [responses x errors], with
-/// the responses in the order of response_order().
+/// [responses x errors] Indices in display units, either as effects (index x sigma) or as they are, with the responses
+/// in the order of response_order().
 std::vector<double> in_shown_units(const StoredResult& result, const SensitivityResult::Indices& indices,
                                    bool as_effect);
 
@@ -36,11 +36,11 @@ ErrorCells local_effects(const StoredResult& result, std::size_t response);
 
 /// Bars that show these quantities for each error.
 Bars error_bars(const StoredResult& result, std::vector<BarQuantity> quantities);
-/// Shares, shown in percent, as a quantity of bars.
+/// A quantity for bars that shows shares in percent.
 BarQuantity share_quantity(std::string label, const std::string& array, std::span<const double> values,
                            ArrayPool& pool);
 
-/// A pose coordinate, or the magnitude of one, by whose values poses can be ordered.
+/// A pose coordinate, or its magnitude, by which poses can be ordered.
 struct PoseOrder {
   std::size_t coordinate;  ///< position among the pose coordinates
   bool magnitude;          ///< whether the order is by |coordinate|
@@ -49,15 +49,16 @@ struct PoseOrder {
   std::string name(const StoredResult& result) const;
 };
 
-/// If the magnitude of a rank correlation is above this, values are said to grow or fall with the coordinate.
+/// Values are said to grow or fall with a coordinate if their rank correlation with it has a larger magnitude than
+/// this.
 inline constexpr double kClearCorrelation = 0.8;
 
 /// The root sum of squares over the errors, at each pose.
 std::vector<double> root_sum_squares(const ErrorCells& cells);
 
-/// The coordinate, or the magnitude of a coordinate with both signs, whose rank correlation with `values` at the poses
-/// is largest in magnitude. Among equal ones, the first coordinate, and a coordinate before its magnitude. None if no
-/// correlation is known.
+/// The order of the poses whose rank correlation with `values` is largest in magnitude: by a coordinate, or by the
+/// magnitude of a coordinate that has both signs. Among equal ones, the first coordinate, and a coordinate before its
+/// magnitude. None if no correlation is known.
 std::optional<PoseOrder> explaining_order(const StoredResult& result, std::span<const double> values);
 
 /// The name of the order in which a heat map of these cells first shows its poses: the one that correlates best with
@@ -69,8 +70,8 @@ std::string first_order(const StoredResult& result, const ErrorCells& cells);
 /// errors together.
 Comparable comparable_sensitivity(const StoredResult& result, const StoredResult& other);
 
-/// The merit by which results are compared: the root mean square of the response over samples and poses, predicted from
-/// the effects of single errors.
+/// The number by which it is judged which of two results is better: the root mean square of the response over samples
+/// and poses, predicted from the effects of single errors.
 std::vector<Merit> sensitivity_merits(const StoredResult& result, std::string_view response);
 
 /// Adds to the page the sections that compare two results: rankings, differences, and where in the workspace they

@@ -25,8 +25,8 @@ Estimate told_index(std::span<const LocalIndex> poses, double rounding, double c
   return is_too_small_to_tell(index.value, rounding) ? Estimate{kNaN, {kNaN, kNaN}} : index;
 }
 
-/// The numbers of all cells, which are appended cell by cell. Memory that is reserved but not yet written takes no
-/// space.
+/// The numbers of all cells (one error at one pose), which are appended cell by cell. Reserved memory takes no space
+/// until it is written.
 class CellNumbers {
  public:
   explicit CellNumbers(std::size_t cells) {

@@ -20,14 +20,14 @@ Array<double, axis::Response, axis::Pose> background_responses(const Plan& plan,
 /// deviation, SI.
 std::vector<Estimate> global_indices(const CellStats& at_poses, double sigma, double conf_level);
 
-/// Computes the indices of a study. cells: statistics over all units of each error and pose. They are moved, and each
+/// Computes the indices of a study. cells: statistics of each error and pose over all units. They are moved, and each
 /// response's memory is freed when its indices are computed, so that cells and result are not in memory together.
 /// background: see background_responses(); rounding: see response_rounding() (run/response_rounding.h).
 SensitivityResult sensitivity_result(const Plan& plan, CellStats cells,
                                      Array<double, axis::Response, axis::Pose> background, std::vector<double> rounding,
                                      double conf_level);
 
-/// An index below this magnitude is rounding, for an error with this standard deviation (stats/indices.h).
+/// The magnitude below which the index of an error with this standard deviation is rounding (stats/indices.h).
 double index_rounding(const SensitivityResult& result, std::size_t response, double sigma);
 
 /// The data of one response from which tolerances are set. Its indices are those of the published estimator. sigma:
@@ -36,8 +36,8 @@ double index_rounding(const SensitivityResult& result, std::size_t response, dou
 ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma,
                              std::span<const double> error_mean, std::size_t response);
 
-/// The tolerances for one response, relative to this reference error. Without a reference, tolerances of equal effect
-/// are NaN.
+/// The tolerances of the errors for one response, relative to that of a reference error. Without a reference,
+/// tolerances of equal effect are NaN.
 Tolerances response_tolerances(const SensitivityResult& result, std::span<const double> sigma,
                                std::span<const double> error_mean, std::size_t response,
                                const std::optional<ReferenceError>& reference);

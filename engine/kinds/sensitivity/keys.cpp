@@ -67,7 +67,7 @@ std::string linearity_line(const Study& study) {
   return study.mechanism.compared ? "linearity = " + linearity().text(study) + "\n" : "";
 }
 
-/// The template's line of `linearity`; empty unless the model has two fidelities to compare.
+/// The template's line for the key `linearity`; empty unless the model has two fidelities to compare.
 std::string shown_linearity(const TemplateLines& lines, const Study& study) {
   return study.model().fidelities.size() == 2 ? lines.usual("analysis", "linearity", "# ") : "";
 }

@@ -16,11 +16,11 @@ namespace poesy {
 std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
                                                  const RunOptions& options);
 
-/// Bytes of the numbers of responses and errors in the group /sensitivity, if axes have these lengths. The same in
-/// memory and in a file.
+/// The bytes that the group /sensitivity needs for the numbers of responses and errors, if axes have these lengths. The
+/// same in memory and in a file.
 std::size_t sensitivity_bytes(const AxisLengths& lengths);
 
-/// Runs and reports sensitivity studies: the effect of each error alone.
+/// Runs and reports sensitivity studies, which compute the effect of each error while all others are constant.
 extern const Kind kSensitivityKind;
 
 /// How sensitivity results are stored and reported.

@@ -33,8 +33,8 @@ constexpr std::array kScales{1.0, -1.0, kSmallerSize, -kSmallerSize};
 /// The number of poses at which draws are solved at the study's size and at a tenth of it.
 std::size_t chosen_poses(const Plan& plan) { return some_poses(plan.poses().size()); }
 
-/// The draws that are solved again, of one cell (one error at one of chosen_poses()). chosen_cell: number of this cell;
-/// all poses of one error come before those of the next.
+/// The draws of one cell (one error at one of chosen_poses()) that are solved again at another size. chosen_cell:
+/// number of this cell; all poses of one error come before those of the next.
 WorkUnit first_draws(const Plan& plan, std::size_t chosen_cell) {
   const std::size_t poses = chosen_poses(plan);
   return {chosen_cell / poses, some_pose(chosen_cell % poses, plan.poses().size()), SampleIndex(0),
@@ -56,8 +56,8 @@ class CellEvaluator {
 
   CellIndices operator()(std::size_t cell) {
     const WorkUnit unit = first_draws(*plan_, cell);
-    const UnitOutcomes found = solve_.solve(unit, kScales);  // both sizes together, because a model prepares for a pose
-                                                             // only once
+    const UnitOutcomes found =
+        solve_.solve(unit, kScales);  // both sizes together, because a model prepares for a pose once
     const std::size_t draws = kSigns * unit.count;
     const ArrayView<const double, axis::Response, ErrorSize, axis::Sample> responses(found.responses,
                                                                                      {responses_, kSizes, draws});
@@ -85,8 +85,8 @@ class CellEvaluator {
   UnitEvaluator solve_;
 };
 
-/// Collects the local indices of one error after the other, and computes the changes of an error's indices when all its
-/// poses are there.
+/// Collects the local indices of one error after the other, and computes the changes of an error's indices when those
+/// of all its poses are collected.
 struct ChangeSums {
   const Plan* plan;
   std::vector<double> rounding;  ///< [responses] rounding of each response
@@ -108,7 +108,8 @@ struct ChangeSums {
     for (std::size_t r = 0; r < rounding.size(); ++r) changes(r, slot) = change(r, slot);
     for (std::vector<LocalIndex>& poses_of_one : at_poses) poses_of_one.clear();
   }
-  /// Reads or writes all changes. There is no checkpoint before the last cell.
+  /// Reads or writes all changes. They are only read or written after the last cell, because there is no checkpoint
+  /// before.
   void state(Archive& archive, const NumberRange&) { archive.reals(changes.all()); }
 
  private:
@@ -139,7 +140,7 @@ struct ChangeJob {
   ChangeSums sums() const { return {plan, response_rounding(model)}; }
 };
 
-/// The largest number of names in one sentence.
+/// The largest number of errors that one sentence names.
 constexpr std::size_t kMostNames = 10;
 
 std::span<const double> changes_of(const StoredResult& result, std::size_t response) {
@@ -149,8 +150,8 @@ std::span<const double> changes_of(const StoredResult& result, std::size_t respo
 /// A change as text: "-99.1 %".
 std::string change_text(double change) { return fmt::format("{:+.1f} %", 100.0 * change); }
 
-/// The size at which to study an error, as a multiple of the studied size. If the index grows with a power of the size,
-/// a study at the returned size gives about this size as tolerance. ratio: tolerance divided by studied size; change:
+/// The size at which to study an error, as a multiple of the studied size. If the index is proportional to a power of
+/// the size, a study at this size gives about this size as tolerance. ratio: tolerance divided by studied size; change:
 /// relative change of the index at a tenth of the size.
 double corrected_ratio(double ratio, double change) {
   constexpr double kFallsTooFast = -0.9;
@@ -158,8 +159,8 @@ double corrected_ratio(double ratio, double change) {
   return std::isfinite(power) && power > kFallsTooFast ? std::pow(ratio, 1.0 / (1.0 + power)) : ratio;
 }
 
-/// The size at which to study an error, from the first of its tolerances that is of another size than studied; none if
-/// all tolerances are near the studied size.
+/// The size at which to study an error, computed from its first proposed tolerance that differs much from the studied
+/// size (kSameSize); none if no tolerance differs so much.
 std::optional<double> size_to_study(const ResponseTolerances& tolerances, std::size_t factor, double studied,
                                     double change) {
   for (const std::span<const double> proposed : proposed_tolerances(tolerances)) {

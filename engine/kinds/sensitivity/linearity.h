@@ -13,13 +13,13 @@
 #include "engine/run/run_options.h"
 #include "engine/study/plan.h"
 
-/// Computes whether the indices of a sensitivity study hold for errors of other sizes. Each run computes this, and its
-/// result contains it.
+/// Computes whether the indices of a sensitivity study also hold for errors of other sizes. Each run of such a study
+/// does this, and its result states it.
 namespace poesy {
 
-/// To check linearity, this number of draws of each error is solved at the study's size and at a tenth of it, at each
-/// of some poses: the first draws of the study, or all if there are fewer. Their mirror images, with opposite signs,
-/// are solved as well.
+/// The number of draws of each error that are solved again to check linearity, at the study's size and at a tenth of
+/// it, at each of some poses. They are the first draws of the study, or all if there are fewer. Their mirror images,
+/// with opposite signs, are solved as well.
 inline constexpr std::size_t kLinearityDraws = 16;
 
 /// The smaller size at which draws are solved again, as a multiple of the study's size.
@@ -31,12 +31,12 @@ inline constexpr double kSmallerSize = 0.1;
 /// used because errors are symmetric (random/distribution.h); without them, a second-order term beside a first-order
 /// one would change the index of a few draws by chance. The change is 0 up to rounding if the response is linear in the
 /// error, or the norm of a linear function. It is -0.9 if the response is quadratic. Errors of the background keep
-/// their sizes. A draw that does not count at one size counts at neither. An index that is rounding (stats/indices.h)
+/// their sizes. A draw that does not count at one size is left out at both. An index that is rounding (stats/indices.h)
 /// counts as 0. The change is NaN if both indices are rounding, or if one is unknown.
 ///
 /// All ranks run this function and have the same result, with the same bits for any number of threads. It has no
-/// checkpoint, so a run that is stopped here begins it again. Returns nothing if the run was stopped. Precondition: a
-/// plan of a sensitivity study.
+/// checkpoint: if a run is stopped during this function, a continued run calls it again from the start. Returns nothing
+/// if the run was stopped. Precondition: a plan of a sensitivity study.
 std::optional<SensitivityResult::Indices> index_changes(const Plan& plan, const Model& model,
                                                         const RunOptions& options);
 
@@ -49,36 +49,35 @@ Cell change_cell(double change);
 /// The errors that have an effect on the response and whose index changes with size, the largest change first.
 std::vector<std::size_t> changing_errors(const StoredResult& result, std::size_t response);
 
-/// A text that states for how many errors with an effect the index on the response holds at a tenth of the size, and
-/// names the errors for which it does not hold, the largest change first: "the index on gap holds at a tenth of the
-/// size, within 2 %: 15 of 25 errors with an effect; not for epsilon_3_4_z (-99.1 %), ...". unnamed: errors that are
-/// counted but not named.
+/// A text on the errors with an effect. It states for how many of them the index on the response holds at a tenth of
+/// the size, and names those for which it does not hold, the largest change first: "the index on gap holds at a tenth
+/// of the size, within 2 %: 15 of 25 errors with an effect; not for epsilon_3_4_z (-99.1 %), ...". unnamed: errors that
+/// are counted but not named.
 std::string index_change_text(const StoredResult& result, std::size_t response,
                               std::span<const std::size_t> unnamed = {});
 
-/// The largest share of a mean square that all negligible errors together may make.
+/// The largest share of a mean square that all negligible errors together may cause.
 inline constexpr double kNegligible = 1e-3;
 
-/// The errors whose index on the response changes with size, but whose effect is negligible. Such an error adds at the
-/// studied size at most kNegligible / P of `added` to the response's mean square, where P is the number of all errors.
-/// added: what all errors together may add to it. The tolerance of a negligible error can be the studied size, so its
-/// index at other sizes is not needed.
+/// The errors whose index on the response changes with size, but whose effect is negligible: at the studied size, such
+/// an error adds at most kNegligible / P of `added` to the response's mean square, where P is the number of all errors.
+/// added: how much all errors together may add to it. A negligible error may have the studied size as its tolerance, so
+/// its index at other sizes is not needed.
 std::vector<std::size_t> negligible_errors(const StoredResult& result, std::size_t response,
                                            const MeanSquare& mean_square, double added);
 
-/// A note that names the negligible errors, whose tolerance is the studied size; empty if there are none.
+/// A note that names the negligible errors, which get the studied size as tolerance; empty if there are none.
 std::string negligible_text(const StoredResult& result, const ResponseTolerances& tolerances);
 
-/// A tolerance is of another size than studied if the tolerance divided by the studied size is above this ratio, or
-/// below its inverse.
+/// A tolerance differs much from the studied size if their ratio is above this number or below its inverse.
 inline constexpr double kSameSize = 2.0;
 
-/// A text on the errors whose index changes with size and of which some tolerance is of another size than studied. With
-/// a limit, an error has two tolerances, one for each way to share the limit. The text names for each error the size at
-/// which to study it: "2 errors have an index on gap that changes with size, by so much at a tenth of it, and a
-/// tolerance of another size than was studied: epsilon_3_4_z (-99.1 %; study it at 0.02 deg), ...". At most ten errors
-/// are named, the largest change first. If the index is a power of the size, a study at the named size gives about this
-/// size as tolerance. Empty if there are no such errors.
+/// A text on the errors whose index changes with size and of which some tolerance differs much from the studied size
+/// (kSameSize). With a limit, an error has two tolerances, one for each way to share the limit. The text names for each
+/// error the size at which to study it: "2 errors have an index on gap that changes with size, by so much at a tenth of
+/// it, and a tolerance of another size than was studied: epsilon_3_4_z (-99.1 %; study it at 0.02 deg), ...". At most
+/// ten errors are named, the largest change first. If the index is a power of the size, a study at the named size gives
+/// about this size as tolerance. Empty if there are no such errors.
 std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerances& tolerances);
 
 }  // namespace poesy

@@ -57,7 +57,7 @@ void add_which_errors_matter(const StoredResult& result, std::span<const Table> 
   section.table(tables, "ranked");
 }
 
-/// The numbers at all poses of the errors `rows`, error by error in this order.
+/// The numbers of these errors at all poses, one error after the other in the order of `rows`.
 std::vector<double> in_order(const ErrorCells& cells, std::span<const std::size_t> rows) {
   std::vector<double> list;
   list.reserve(cells.size());
@@ -136,7 +136,7 @@ void add_where(const StoredResult& result, Page& page) {
   figures.add_workspace(section, std::move(fields));
 }
 
-/// The course of the indices over the number of samples.
+/// The indices after growing numbers of samples.
 EstimateCourse course_of(const StoredResult& result) {
   return result.convergence ? with_ends(result.convergence->course) : sensitivity_of(result).history.value();
 }
@@ -209,7 +209,7 @@ void warn_of_small_errors(const StoredResult& result, std::vector<std::string>& 
                   counted(small.size(), "error is", "errors are"), some_names(small)));
 }
 
-/// Warns that indices change with size, but only for errors that make a noticeable part of the mean square.
+/// Warns of errors whose indices change with their size, unless they hardly contribute to the mean square.
 void warn_of_sizes(const StoredResult& result, std::vector<std::string>& list) {
   const std::size_t response = response_named(result, default_ranking(result));
   const MeanSquare square =
@@ -261,7 +261,7 @@ std::vector<double> rms_at_poses(const StoredResult& result, std::size_t respons
   return root_sum_squares(effects);
 }
 
-/// The share of each error in the mean square, and the effect of all errors at each pose.
+/// The share of each error in the mean square, and the combined effect of all errors at each pose.
 ErrorShares error_shares(const StoredResult& result) {
   if (result.factors.empty() || result.poses.size() == 0) return {};
   const std::size_t r = response_named(result, default_ranking(result));

@@ -15,7 +15,7 @@
 namespace poesy {
 namespace {
 
-/// The points at this multiple of their distance from their middle.
+/// The points, moved to this multiple of their distance from their common middle.
 std::vector<PlatformPoint> at_radius(std::vector<PlatformPoint> points, double multiple) {
   PlatformPoint middle{};
   for (const PlatformPoint& point : points) {
@@ -27,7 +27,7 @@ std::vector<PlatformPoint> at_radius(std::vector<PlatformPoint> points, double m
   return points;
 }
 
-/// The study's mechanism at the fidelity "first-order"; none if it does not have this fidelity.
+/// The mechanism at the fidelity "first-order"; none if it does not have this fidelity.
 std::optional<MechanismChoice> to_first_order(MechanismChoice mechanism) {
   const std::vector<std::string>& fidelities = mechanism.entry->description.fidelities;
   const auto found = std::ranges::find(fidelities, "first-order");
@@ -37,7 +37,7 @@ std::optional<MechanismChoice> to_first_order(MechanismChoice mechanism) {
   return mechanism;
 }
 
-/// The model of the mechanism with these points; null if it refuses them.
+/// The model of the mechanism with these points as those of its metric; null if the mechanism refuses them.
 std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<PlatformPoint> points) {
   mechanism.points = std::move(points);
   try {
@@ -47,8 +47,8 @@ std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<Platfor
   }
 }
 
-/// The effects of all errors on all responses, by the published estimator. Poses at which the model has no solution are
-/// left out.
+/// The effects of all errors on all responses (index x sigma), by the published estimator. Poses at which the model has
+/// no solution are left out.
 SensitivityResult::Indices effects_of(const Plan& plan, const Model& model) {
   const std::vector<double> no_background(model.description().factors.size(), 0.0);
   std::vector<double> responses(model.description().responses.size());

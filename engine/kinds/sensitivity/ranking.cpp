@@ -20,7 +20,7 @@
 namespace poesy {
 namespace {
 
-/// The positions of the errors in this order.
+/// The positions of the errors in the order that the user chose.
 std::vector<std::size_t> ordered(const StoredResult& result, std::size_t response, RowOrder order) {
   const SensitivityResult& found = sensitivity_of(result);
   const auto key = [&](std::size_t p) {
@@ -39,8 +39,8 @@ std::vector<std::size_t> ordered(const StoredResult& result, std::size_t respons
   return rows;
 }
 
-/// The effects of one result's errors on the response by which errors are ranked, SI. Only errors that both results
-/// have are listed.
+/// The effects of errors in one of two results that are compared, on the response by which errors are ranked, SI. Only
+/// errors that both results have are listed.
 struct Ranking {
   std::vector<double> effects;  ///< effect of each error; 0: none; NaN: not known
   std::string metric;           ///< name of the metric that the result uses
@@ -66,13 +66,13 @@ Cell rank_cell(const Ranking& ranking, std::size_t at) {
   return count_cell(1 + static_cast<std::uint64_t>(std::ranges::count_if(ranking.effects, larger)));
 }
 
-/// Extends the list `columns` by columns with the rank and the effect of each error. letter: A or B, the result. Refers
+/// Extends the list `columns` by columns with the rank and the effect of each error. letter: the result, A or B. Refers
 /// to the ranking.
 void add_columns(std::vector<FilledColumn>& columns, char letter, const Ranking& ranking, bool by_metric) {
   const std::string suffix = letter == 'A' ? "_a" : "_b";
   const NamedUnit& response = ranking.response;
   const std::string in = fmt::format(" in {}", letter);
-  const int dispensable = letter == 'A' ? 2 : 1;  // the rows are in the order of A
+  const int dispensable = letter == 'A' ? 2 : 1;  // the columns of B go first, because the rows are in the order of A
   columns.push_back({number_column("rank" + suffix, "rank" + (by_metric ? ", " + ranking.metric : in), "", dispensable),
                      [&ranking](std::size_t n) { return rank_cell(ranking, n); }});
   columns.push_back(
@@ -128,11 +128,12 @@ Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder or
   return both;
 }
 
-/// The order in which narrow tables omit columns: higher numbers first. Other responses go first, beginning with the
-/// last one, then the rank.
+/// The order in which narrow tables omit columns: higher numbers first. Columns of other responses are omitted first,
+/// beginning with the last response, then the rank.
 enum Dispensable : int { kIndexChange = 1, kNotConverged = 2, kRank = 3, kFirstOther = 4 };
 
-/// The responses that a summary shows (the headline) and that have a dimension, except the one that ranks.
+/// The responses that a summary shows (the headline) and that have a dimension, except the one by which errors are
+/// ranked.
 std::vector<std::size_t> other_responses(const StoredResult& result, std::size_t ranking) {
   std::vector<std::size_t> others;
   for (const std::size_t r : varying_first(result, result.headline)) {
@@ -195,7 +196,8 @@ std::vector<std::string> ranked_notes(const StoredResult& result, const RankedEr
           "not converged: share of the samples whose solve did not settle"};
 }
 
-/// A note on how the ranking changes with the points of the platform's metric; empty if the result does not know it.
+/// A note on how the ranking changes with the points of the platform's metric; empty if the result does not contain
+/// this.
 std::string radius_note(const StoredResult& result, std::size_t response) {
   const auto& tau = sensitivity_of(result).radius_tau;
   if (tau.empty() || std::isnan(tau(0, response)) || std::isnan(tau(1, response))) return {};
@@ -205,13 +207,13 @@ std::string radius_note(const StoredResult& result, std::size_t response) {
       result.responses[response].name, tau(0, response), tau(1, response));
 }
 
-/// A note on how often intervals from this few samples contain the index; empty if there are enough samples. With few
-/// samples, intervals are too narrow if the samples are skewed, because their tails are hardly seen. This is so for a
-/// norm, and for an error that acts by its square.
+/// A note on how often intervals from this few samples contain the true index; empty if there are enough samples. With
+/// few samples, intervals are too narrow if the responses are skewed, because few samples are in the tails. This is so
+/// for a norm, and for an error that acts by its square.
 std::string few_samples_note(const StoredResult& result, std::size_t response) {
   constexpr std::uint64_t kEnoughOfNorms = 200;
   constexpr std::uint64_t kEnoughOfSquares = 1000;
-  constexpr double kSquare = -0.5;  // index change above which no error acts by its square; an index that is
+  constexpr double kSquare = -0.5;  // an error with an index change below this acts by its square; an index that is
                                     // proportional to size changes by -90 %
   const SensitivityResult& found = sensitivity_of(result);
   if (found.solves.empty()) return {};
@@ -225,7 +227,7 @@ std::string few_samples_note(const StoredResult& result, std::size_t response) {
       counted(samples, "sample", "samples"));
 }
 
-/// A note on why some cells have no number; empty if all cells have one.
+/// A note on why some cells of the table have no number; empty if all have one.
 std::string rounding_note(const Table& table) {
   const auto is_rounding = [](const Cell& cell) { return cell.text == kTooSmall; };
   const bool any = std::ranges::any_of(

@@ -33,28 +33,28 @@ struct GlobalIndices {
 /// The indices that are shown and by which errors are ranked: the corrected ones.
 GlobalIndices shown_indices(const StoredResult& result);
 
-/// The distance of the farther end of an interval from its index, divided by the index.
+/// The distance of the farther end of an index's interval from the index, divided by the index.
 double relative_reach(const GlobalIndices& indices, std::size_t response, std::size_t factor);
 
-/// A global or local index of this response and error is rounding if its magnitude is below this.
+/// The magnitude below which a global or local index of this response and error is rounding.
 double index_rounding(const StoredResult& result, std::size_t response, std::size_t factor);
 
 /// An index, or an end of its interval, SI, with rounding removed: 0 if the error has no effect, NaN if the index is
 /// too small to be distinguished from rounding.
 double without_rounding(const StoredResult& result, double index, std::size_t response, std::size_t factor);
 
-/// Whether the shown index is more than rounding.
+/// Whether the index that is shown is larger than rounding.
 bool has_effect(const StoredResult& result, std::size_t response, std::size_t factor);
 
 /// Positions of the responses on which no error has an effect. A response is listed only if some index on it is known.
 std::vector<std::size_t> responses_without_effect(const StoredResult& result);
 
-/// The effect of an error, index x sigma, SI. Indices alone cannot be compared, because some are per m and some per
-/// rad.
+/// The effect of an error: its global index times its standard deviation, SI. Indices themselves cannot be compared,
+/// because some are per m and some per rad.
 double effect(const StoredResult& result, std::size_t response, std::size_t factor);
 
-/// A column with global indices per unit of the error, or with ends of their intervals. values: SI. Refers to the
-/// result and the values.
+/// A column with global indices per unit of the error, or with the ends of their intervals. values: the numbers of the
+/// column, SI. Refers to the result and the values.
 FilledColumn index_column(const StoredResult& result, const SensitivityResult::Indices& values, std::size_t response,
                           std::string name, std::string heading, int dispensable = 0);
 

@@ -15,7 +15,7 @@
 
 namespace poesy {
 
-/// The error relative to which tolerances of equal effect are set, with its own tolerance.
+/// The error relative to which tolerances of equal effect are set, and the tolerance that it gets.
 struct ToleranceReference {
   FactorIndex factor;  ///< the error, which varies in the study
   double tolerance;    ///< its tolerance, SI
@@ -24,7 +24,7 @@ struct ToleranceReference {
 /// The options of a sensitivity study.
 struct SensitivityOptions {
   std::optional<ToleranceReference> reference;  ///< reference error; none: the error with the smallest effect
-  /// Largest measure of nonlinearity of an error that counts as linear; only with two fidelities.
+  /// An error counts as linear up to this measure of nonlinearity; only with two fidelities.
   double linearity = 0.01;
 };
 
@@ -32,7 +32,7 @@ struct SensitivityOptions {
 extern const StudyKind kSensitivityStudy;
 
 namespace axis {
-/// Multiples of the distance of the platform's points from their middle. The points are those that define the metric.
+/// Multiples of the distance that the points of the platform's metric have from their middle.
 using RadiusMultiple = Axis<"radius_multiple">;
 }  // namespace axis
 
@@ -48,12 +48,13 @@ struct SeparationResult {
   Cells effect;           ///< effect of both parts together
   Cells residual;         ///< effect that remains after the best correction by the actuators
   Cells removable_local;  ///< 1 - residual / effect
-  /// D / (D + C), with the root mean squares D of `drive` and C of `constraint` over the poses.
+  /// D / (D + C), where D is the root mean square of `drive` over the poses, and C that of `constraint`.
   Array<double, axis::Factor> drive_share;
   Array<double, axis::Factor> removable;  ///< 1 - residual / effect, each as a root mean square over the poses
   /// 1 - residual / effect for all errors together, if they are independent and have the study's standard deviations.
   double removable_together = 0.0;
-  Array<std::string, axis::Factor> published;  ///< class of each error in the literature; empty if it gives none
+  Array<std::string, axis::Factor>
+      published;  ///< class of each error in the literature; empty if the literature gives none
 };
 
 /// The result at a second fidelity of the model, from the same draws, and its comparison with the first; SI. See
@@ -62,11 +63,10 @@ struct FidelityResult {
   /// A number for each response and error.
   using Indices = Array<double, axis::Response, axis::Factor>;
 
-  std::vector<std::string> fidelities;       ///< names of the two fidelities, the first one first
-  double linearity = 0.01;                   ///< largest magnitude of relative discrepancy and nonlinearity of a linear
-                                             ///< error
-  Indices global;                            ///< SensitivityResult::global at the second fidelity
-  Indices discrepancy;                       ///< global at the second fidelity minus global at the first
+  std::vector<std::string> fidelities;  ///< names of the two fidelities, the first one first
+  double linearity = 0.01;  ///< an error counts as linear up to this magnitude of relative discrepancy and nonlinearity
+  Indices global;           ///< SensitivityResult::global at the second fidelity
+  Indices discrepancy;      ///< global at the second fidelity minus global at the first
   Indices relative_discrepancy;              ///< discrepancy divided by the error's effect
   Indices nonlinearity;                      ///< change of mean and spread, divided by the error's effect
   Array<std::uint8_t, axis::Factor> linear;  ///< 1 if the error is linear, otherwise 0
@@ -114,14 +114,15 @@ struct SensitivityResult {
   Array<double, axis::Response> mean_square_bound;  ///< Response::mean_square_bound
   std::optional<SeparationResult> separation;       ///< set if the model separates its errors
   std::optional<FidelityResult> fidelity;           ///< set if the study compares two fidelities
-  /// The course of the global indices with fewer samples, and their intervals, for a study with a fixed number of
-  /// samples. Each entry has the same bits as the result of a study with exactly this number of samples at each pose
+  /// The global indices and their intervals with fewer samples, for a study with a fixed number of samples. Each entry
+  /// has the same bits as the result of a study with exactly this number of samples at each pose
   /// (engine/run/evaluate_unit.h). The last entry is the result itself.
   std::optional<EstimateCourse> history;
 
   // The following members are set by a run only. A result that was read from a file has them in StoredResult.
-  std::vector<Failure> failures;                 ///< first failed samples, ordered by error, pose and sample
-  std::optional<ConvergenceResult> convergence;  ///< course of adaptive samples; set if the study has adaptive samples
+  std::vector<Failure> failures;  ///< first failed samples, ordered by error, pose and sample
+  std::optional<ConvergenceResult>
+      convergence;  ///< indices after each round of adaptive samples; set if the study has adaptive samples
 
   std::size_t responses() const { return global.length<axis::Response>(); }  ///< The number of responses.
   std::size_t factors() const { return global.length<axis::Factor>(); }      ///< The number of errors that vary.

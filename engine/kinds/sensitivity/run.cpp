@@ -60,13 +60,13 @@ struct SensitivityJob {
   }
 };
 
-/// Returns true if certified series replace solves at this fidelity. A linear map costs no more than a series, and the
-/// published iteration must keep every bit.
+/// Returns true if certified series replace solves at this fidelity. They do not for linear maps, which cost no more
+/// than a series, nor for the published iteration, which must keep every bit.
 bool has_series(const Study& study, std::size_t fidelity) {
   return study.solver.series && fidelity == 0 && study.model().metric != "published";
 }
 
-/// The model, with series where has_series().
+/// The model; with certified series if has_series().
 std::shared_ptr<const Model> by_series(const Study& study, std::shared_ptr<const Model> model, std::size_t fidelity) {
   return has_series(study, fidelity) ? with_series(std::move(model)) : std::move(model);
 }
@@ -83,8 +83,8 @@ std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const 
   const auto report = [&](const Progress& progress) {
     if (run.options.progress) run.options.progress(progress);
   };
-  // The progress of both fidelities is reported as that of one run. If the first reports none, it was complete in the
-  // checkpoint.
+  // The progress of both fidelities is reported as that of one run. If the first fidelity reports none, the checkpoint
+  // contained all of it.
   std::optional<std::uint64_t> before;
   RunOptions options = run.options;
   options.progress = [&](const Progress& half) {
@@ -137,7 +137,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
 
 std::size_t cells(const Study& study, std::size_t poses) { return study.analysis.factors.size() * poses; }
 
-/// The work of separating the errors of a study (SeparationResult), timed at one of its poses.
+/// The expected work of separating the errors of a study (SeparationResult), measured at one of its poses.
 WorkOutlook separating(const Study& study, const Model& model, const PoseSet& poses) {
   return {[&](double at) {
     const auto pose = poses[PoseIndex(static_cast<std::size_t>(at * static_cast<double>(poses.size())))];
@@ -156,7 +156,7 @@ MemoryOutlook sensitivity_memory(const Study& study, const Plan& plan, std::size
   const std::size_t result = numbers + plan.cells() * sizeof(SolveCounts);
   const std::size_t ends = plan.cells() * (sizeof(SolveCounts) + sizeof(FailedSamples));
   const std::size_t moments = plan.cells() * sizeof(Moments);  // bytes for one response
-  // A last unit that is smaller is kept apart from the full units.
+  // If the last unit of a cell has fewer samples, it is kept apart from the full units.
   const bool both = plan.samples() > Plan::kUnitSamples && plan.samples() % Plan::kUnitSamples != 0;
   const std::size_t parts = both ? 2 : 1;
   const std::size_t at_once = parts * (responses * moments + ends);

@@ -12,9 +12,9 @@
 
 namespace poesy {
 
-/// Separates these errors at all poses. sigma: [errors] standard deviations, SI. The shares of an error are NaN if its
-/// effect is rounding. Its shares over the poses are NaN if its effect is not finite at some pose. Precondition: the
-/// model separates its errors and reaches the poses.
+/// Separates the effects of these errors at all poses (SeparationResult). sigma: [errors] standard deviations, SI. The
+/// shares of an error are NaN if its effect is rounding. Its shares over the poses are NaN if its effect is not finite
+/// at some pose. Precondition: the model separates its errors and reaches the poses.
 SeparationResult separate_errors(const Model& model, const PoseSet& poses, std::span<const FactorIndex> factors,
                                  std::span<const double> sigma);
 

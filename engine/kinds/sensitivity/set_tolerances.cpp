@@ -28,8 +28,8 @@ namespace {
 constexpr const char* kStem = "confirm";
 constexpr const char* kEqualEffect = "confirm_equal_effect";
 constexpr const char* kEqualTolerance = "confirm_equal_tolerance";
-/// The largest tolerance, as a share of the dimension that the error changes. At a quarter, four standard deviations of
-/// a normal error equal the dimension.
+/// The largest tolerance, as a share of the dimension of the mechanism that the error changes. At a quarter, four
+/// standard deviations of a normal error equal the dimension.
 constexpr double kShareOfPart = 0.25;
 
 /// The Monte Carlo study of the same errors at the same poses as a sensitivity result.
@@ -42,7 +42,7 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   return as_confirming_study(std::move(study), kStem);
 }
 
-/// For each error of the study, a quarter of the dimension that it changes.
+/// For each error of the study, a quarter of the dimension of the mechanism that the error changes.
 std::vector<double> quarters_of_parts(const Study& study) {
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   std::vector<double> largest;
@@ -66,7 +66,7 @@ void set_tolerances(Study& study, std::span<const double> largest, std::span<con
   }
 }
 
-/// The position of the item that an option names. Throws InputError if there is none.
+/// The position of the response or error that a command-line option names. Throws InputError if there is none.
 std::size_t position(const std::vector<NamedUnit>& things, const std::string& name, std::string_view option,
                      std::string_view what) {
   const auto at = std::ranges::find(things, name, &NamedUnit::name);
@@ -75,8 +75,8 @@ std::size_t position(const std::vector<NamedUnit>& things, const std::string& na
                    suggestion(name, names(things)));
 }
 
-/// The positive quantity (SI) that an option states. owner: the response or error to which it belongs, whose unit has
-/// its dimension.
+/// The positive quantity (SI) that a command-line option states. owner: the response or error to which the quantity
+/// belongs; its unit has the same dimension.
 double positive(const std::string& text, std::string_view option, const NamedUnit& owner) {
   const Dimension dimension = dimension_of(owner.unit);
   const std::string example = fmt::format("{} is measured in {}", owner.name, display_unit(dimension).name);
@@ -239,8 +239,8 @@ std::string write_files(const TolerancesOptions& options, const StoredResult& re
   return table + "\n" + commands;
 }
 
-/// A note on the errors of the mechanism that the study neither varies nor has in its background. None if this program
-/// does not have the mechanism or cannot read the stored study.
+/// A note on the errors of the mechanism that the study neither varies nor holds constant in its background. None if
+/// this program does not have the mechanism or cannot read the stored study.
 std::optional<std::string> perfect_errors_note(const StoredResult& result, const Catalog& catalog) {
   const std::optional<Study> study = study_in(result, catalog);
   if (!study) return std::nullopt;
@@ -256,8 +256,8 @@ std::optional<std::string> perfect_errors_note(const StoredResult& result, const
                      absent == 1 ? "was" : "were", absent == 1 ? "counts" : "count");
 }
 
-/// Refuses a limit on what calibrations leave, because the studies that test tolerances draw errors anew at each pose,
-/// so they have no machines to calibrate.
+/// Refuses a limit on the errors that calibrations leave, because the studies that test tolerances draw errors anew at
+/// each pose, so they have no machines to calibrate.
 void refuse_calibrated(const TolerancesOptions& options, const StoredResult& result, const Catalog& catalog) {
   const std::optional<Study> study = study_in(result, catalog);
   if (!options.limit || !study || study->analysis.calibration == nullptr) return;
@@ -266,7 +266,7 @@ void refuse_calibrated(const TolerancesOptions& options, const StoredResult& res
                    "leave out --limit, or take a study of kind \"allocation\" with the same [analysis.calibration]");
 }
 
-/// Refuses tolerances for errors whose index does not hold at their size, or returns why they may not hold.
+/// Refuses tolerances at whose size the errors' indices do not hold, or returns the reason why they may not hold.
 std::string caveat_of(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found) {
   const std::string caveat = wrong_sizes_text(result, found);
   if (caveat.empty() || options.extrapolate) return caveat;

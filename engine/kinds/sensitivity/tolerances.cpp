@@ -17,7 +17,7 @@ namespace {
 
 using Indices = SensitivityResult::Indices;
 
-/// Data that are also in other groups, for programs that read only /tolerances.
+/// The group /tolerances. It repeats data of other groups, for programs that read only this group.
 struct ToleranceGroup {
   Array<std::string, axis::Factor> kind;  ///< dimension of the error: "linear" or "angular"
   Array<std::string, axis::Factor> unit;
@@ -57,7 +57,8 @@ const Fields<SensitivityResult> kIndexFields{
     {"index_ci_high", &SensitivityResult::global_ci_high, kIndexUnit, "Upper end of the interval of index",
      Presence::always, kIndexLevel}};
 
-/// The fields of numbers that follow from the study. Of the group /tolerances, only these and the references are read.
+/// The fields of numbers that follow from the study. Of the group /tolerances, only these fields and the reference
+/// errors are read.
 const Fields<SensitivityResult> kStudyFields{
     {"limb", &SensitivityResult::limb, "1", "Limb of the error, from 1"},
     {"mean_square_bound", &SensitivityResult::mean_square_bound, "1",
@@ -88,8 +89,8 @@ std::optional<ReferenceError> reference_for(const Study& study, const Sensitivit
   return ReferenceError{*smallest, display_unit(study.model().factors[factors[*smallest].value].dimension).si};
 }
 
-/// Gives the table further columns with the numbers of each error. heading(name, unit, suffix): the heading of a
-/// column; the suffix is "_display" for columns in display units.
+/// Appends columns with the numbers of each error to the table. heading(name, unit, suffix): the heading of a column;
+/// the suffix is "_display" for columns in display units.
 template <class Heading>
 void append_tolerance_columns(CsvTable& table, const StoredResult& result, const ResponseTolerances& tolerances,
                               const Heading& heading) {
@@ -172,7 +173,8 @@ void add_bound_note(std::vector<std::string>& notes, const StoredResult& result,
                   response_text(response, tolerances.limit->limit / bound)));
 }
 
-/// If the study's errors are not normal, adds a note that a tolerance is for a normal error.
+/// If some errors of the study are not normal, adds a note that a tolerance is the standard deviation of a normal
+/// error.
 void add_distribution_note(std::vector<std::string>& notes, const StoredResult& result) {
   std::vector<std::string> shapes;
   std::size_t count = 0;

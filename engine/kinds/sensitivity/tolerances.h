@@ -17,19 +17,20 @@
 
 namespace poesy {
 
-/// Tolerances for one response of a sensitivity result, and if there is a limit on the response, tolerances within it.
+/// Tolerances of the errors for one response of a sensitivity result, and if there is a limit on the response,
+/// tolerances with which it is kept.
 struct ResponseTolerances {
   std::size_t response;                  ///< position of the response
   Tolerances all;                        ///< tolerances without a limit
-  std::optional<LimitTolerances> limit;  ///< tolerances within the limit, if there is one
-  /// Positions of errors whose tolerance is the studied size; see negligible_errors().
+  std::optional<LimitTolerances> limit;  ///< tolerances with which the limit is kept, if there is one
+  /// Positions of errors that get the studied size as tolerance; see negligible_errors().
   std::vector<std::size_t> negligible = {};
   std::string caveat = {};  ///< reason why the tolerances may not hold, for tables and studies; empty if none is known
 };
 
-/// Sets the members of a result that tolerances need: limb, reference and mean_square_bound. The reference of each
-/// response is the error that the study states, or else the error with the smallest effect, with one display unit as
-/// tolerance.
+/// Sets the members of a result that tolerances need: `limb`, `reference` and `mean_square_bound`. The reference of
+/// each response is the error that the study states, or else the error with the smallest effect, with one display unit
+/// as tolerance.
 void set_references(const Study& study, SensitivityResult& found);
 
 /// Writes the group /tolerances, which contains all data that a program needs to set tolerances.
@@ -47,8 +48,9 @@ void add_tolerance_section(const StoredResult& result, Page& page);
 /// of equal effect. Refers to the tolerances.
 std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerances& tolerances);
 
-/// The largest sensible tolerance for each error of a sensitivity result, SI: a quarter of the dimension that the error
-/// changes (Model::error_bound). Throws InputError if the stored study cannot be read with this catalog.
+/// The largest sensible tolerance for each error of a sensitivity result, SI: a quarter of the dimension of the
+/// mechanism that the error changes (Model::error_bound). Throws InputError if the stored study cannot be read with
+/// this catalog.
 std::vector<double> largest_tolerances(const StoredResult& result, const Catalog& catalog);
 
 /// The tolerances for one response, relative to the reference in the result.

@@ -19,7 +19,7 @@ std::vector<Dimension> detail_dimensions(const ModelDescription& model) {
   return list;
 }
 
-/// The standard deviation of a row of the panel at each pose.
+/// [poses] The standard deviation of a row of the panel (axis::PanelRow) at each pose.
 std::vector<double> deviations(const PanelSums& sums, std::size_t row) {
   std::vector<double> list;
   for (const Moments& moments : sums.moments.row(row)) list.push_back(moments.standard_deviation());
@@ -33,7 +33,7 @@ void leave_out(Indices& indices, Positions... at) {
   indices.ST.leave_out(at...);
 }
 
-/// Copies flags into a result. The result has no flags if all are 1.
+/// Copies flags into a list of a result. The list stays empty if all flags are 1.
 template <class Flags>
 void keep_flags(std::span<const std::uint8_t> from, Flags& flags) {
   const bool any = std::ranges::find(from, 0) != from.end();

@@ -12,27 +12,26 @@
 
 namespace poesy {
 
-/// A unit of work: consecutive samples of a panel (IndexPanel), which are solved at all poses. A sample of a panel is a
-/// draw A, a draw B, and mixtures of the two.
+/// A unit of work: consecutive samples of a panel (IndexPanel), which are solved at all poses. A sample of a panel
+/// consists of a draw A, a draw B, and mixtures of the two.
 struct PanelUnit {
-  std::size_t replicate;  ///< replicate of the design; 0 for random draws
+  std::size_t replicate;  ///< number of the replicate of the design that has the samples; 0 for random draws
   std::size_t first;      ///< position of the first sample within the replicate
   std::size_t count;      ///< number of samples, B
   std::size_t number;     ///< position of the first sample among all samples of the study
 };
 
-/// The two independent samples that a panel combines.
+/// The two independent samples that a panel (IndexPanel) mixes.
 enum class PanelSample { A, B };
 
 /// The points of a design; none for random draws.
 using PanelPoints = std::variant<std::monostate, LatinHypercube, ScrambledSobol>;
 
-/// The points of a study of Sobol' indices in the space of the errors, and their division into units of work. They are
-/// the same for any number of threads and ranks.
+/// The points of a study of Sobol' indices in the space of the errors, divided into units of work. They are the same
+/// for any number of threads and ranks.
 class PanelDesign {
  public:
-  /// The largest number of samples in a unit. The numbers of samples after which adaptive sampling decides are whole
-  /// numbers of units.
+  /// The largest number of samples in a unit. Adaptive sampling decides only after whole units.
   static constexpr std::size_t kUnitSamples = 125;
 
   /// Refers to the plan.
@@ -46,7 +45,7 @@ class PanelDesign {
   std::size_t units() const { return replicates_ * units_per_replicate(); }
   PanelUnit unit(std::size_t n) const;  ///< Unit n, counted replicate by replicate.
 
-  /// The number of units that contain the first `samples` samples. Precondition: samples are independent.
+  /// The number of units that contain the first `samples` samples of the study. Precondition: samples are independent.
   std::size_t units_for(std::size_t samples) const { return (samples + kUnitSamples - 1) / kUnitSamples; }
 
   /// [samples] The uniforms of one error in the unit's samples. slot: position among the plan's factors. With random

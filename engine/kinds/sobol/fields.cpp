@@ -11,7 +11,7 @@
 namespace poesy {
 namespace {
 
-/// The name of the axis along which indices are listed: errors, or the groups into which the study joins them.
+/// The name of the axis of indices in a file: errors, or the groups into which the study joins them.
 std::string axis_of(bool joined) { return joined ? "group" : "factor"; }
 
 /// The fields, with their axis "group" renamed by axis_of().
@@ -21,7 +21,7 @@ Fields<Found> along(bool joined, Fields<Found> rows) {
   return rows;
 }
 
-/// The fields of shares, and of the ends of their intervals.
+/// The fields of shares of the variance, and of the ends of their intervals.
 template <class Shares>
 Fields<Shares> share_rows(bool joined, const std::string& name, std::string meaning) {
   return along<Shares>(joined, {{name, &Shares::value, "1", std::move(meaning)},
@@ -69,7 +69,7 @@ const std::string kVaries =
     "0 where it does not vary: what its samples scatter at any pose is rounding, so nothing has a share of it; "
     "left out where all vary";
 
-/// The datasets of a result. The name of their axis depends on whether errors are joined.
+/// The datasets of a result. The name of their axis of errors or groups depends on whether errors are joined.
 struct Layout {
   explicit Layout(bool joined)
       : at_poses(joined, "/sobol", "Sobol' indices of each response at each pose"),
@@ -210,7 +210,7 @@ void append_interval_columns(CsvTable& table, const std::string& name, const Sha
   table.columns.push_back(list_column(name + "_ci_high", shares.ci_high.row(row)));
 }
 
-/// A table with a line for each group and columns for the indices of one quantity.
+/// A table with a line for each error or group, and columns for the indices of one quantity (a response or a vector).
 template <class Indices>
 CsvTable indices_table(const SobolResult& result, std::string name, const Indices& found, std::size_t quantity) {
   CsvTable table = lines_of_groups(result, std::move(name));

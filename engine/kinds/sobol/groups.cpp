@@ -17,7 +17,7 @@ const Factor& factor_at(const Analysis& analysis, const ModelDescription& model,
   return model.factors[analysis.factors[position].value];
 }
 
-/// Joins errors with equal texts into groups, in the order in which the texts first appear.
+/// Joins errors into groups: those for which text(position) is equal, in the order in which the texts first appear.
 std::vector<ErrorGroup> joined_by(const Analysis& analysis, const std::function<std::string(std::size_t)>& text) {
   std::vector<ErrorGroup> groups;
   for (std::size_t p = 0; p < analysis.factors.size(); ++p) {
@@ -48,14 +48,14 @@ std::vector<ErrorGroup> joined_by_name(const Analysis& analysis, const ModelDesc
   return groups;
 }
 
-/// The position of the response with this name; none if there is none.
+/// The position of the response with this name; none if the model has no such response.
 std::optional<std::size_t> find_response(const ModelDescription& model, const std::string& name) {
   const auto found = std::ranges::find(model.responses, name, &Response::name);
   if (found == model.responses.end()) return std::nullopt;
   return static_cast<std::size_t>(found - model.responses.begin());
 }
 
-/// The vector whose x component is this response; none if there is no such vector.
+/// The vector whose x component is this response; none if the responses form no such vector.
 std::optional<SignedVector> vector_of(const ModelDescription& model, std::size_t x) {
   const std::string& name = model.responses[x].name;
   if (name != "x" && !name.ends_with("_x")) return std::nullopt;
@@ -85,8 +85,8 @@ std::vector<std::string> split(const std::string& text) {
 /// The name of a component without its axis: "omega" of "omega_x".
 std::string stem_of(const std::string& component) { return component.substr(0, component.find_last_of('_')); }
 
-/// Divides the components of an additional output into sequences with the same unit, and adds a vector for each
-/// sequence to `vectors`. first: position of the output's first component, as in SignedVector::components.
+/// Divides the components of an additional output of the model into sequences with the same unit, and adds a vector for
+/// each sequence to `vectors`. first: position of the output's first component, as in SignedVector::components.
 void append_parts(const Detail& detail, std::size_t first, std::vector<SignedVector>& vectors) {
   const std::vector<std::string> units = component_units(detail);
   const bool alone = units == std::vector(units.size(), detail.unit);

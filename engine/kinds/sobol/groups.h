@@ -36,7 +36,8 @@ using GroupPair = std::pair<std::size_t, std::size_t>;
 /// All pairs of groups, with the smaller position first.
 std::vector<GroupPair> group_pairs(std::size_t groups);
 
-/// A vector whose components have a sign and the same unit, so that its mean square does not depend on the axes.
+/// A vector whose components have a sign and the same unit, so that its mean square does not depend on the coordinate
+/// axes.
 struct SignedVector {
   std::string name;                     ///< name of the vector: "position", "delta_mu_21_v"
   std::vector<std::size_t> components;  ///< positions of the components: r for response r; R + d for component d of the
@@ -46,9 +47,9 @@ struct SignedVector {
 /// The SI unit of each component of an additional output.
 std::vector<std::string> component_units(const Detail& detail);
 
-/// The signed vectors of a model. The responses NAME_x, NAME_y and NAME_z are one vector; x, y and z alone are the
-/// vector "displacement", and theta_x, theta_y and theta_z the vector "theta". Neighbouring components of an additional
-/// output (Detail in model/model.h) with the same unit are one vector as well.
+/// The signed vectors of a model. The responses NAME_x, NAME_y and NAME_z are one vector; x, y and z without a name are
+/// the vector "displacement", and theta_x, theta_y and theta_z the vector "theta". Neighbouring components of an
+/// additional output (Detail in model/model.h) with the same unit are one vector as well.
 std::vector<SignedVector> signed_vectors(const ModelDescription& model);
 
 }  // namespace poesy

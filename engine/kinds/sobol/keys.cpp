@@ -181,7 +181,8 @@ std::string names_of(const std::vector<FactorIndex>& factors, const Study& study
   return printable(text, 120);
 }
 
-/// Throws InputError if errors of different groups are correlated, because S1 and ST need independent groups.
+/// Throws InputError if errors of different groups are correlated and S1 and ST are wanted, which need independent
+/// groups.
 void check_correlation(const Study& study, const StudySection& analysis) {
   const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
   const std::vector<ErrorGroup> groups = error_groups(study.analysis, study.model());
@@ -267,8 +268,8 @@ void check_sobol(Study& study, const Reading& reading) {
                    "name more factors, or other groups");
 }
 
-/// The number of solves of a sample at each pose: one each for the two independent samples A and B, one for each group
-/// or subset of groups, and one for each pair of groups if second-order indices are wanted.
+/// The number of solves for a sample of the panel at each pose: one each for the two independent samples A and B, one
+/// for each group or subset of groups, and one for each pair of groups if second-order indices are wanted.
 double solves_of_sample(const Study& study) {
   const auto groups = static_cast<double>(error_groups(study.analysis, study.model()).size());
   const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);

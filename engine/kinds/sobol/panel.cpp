@@ -45,7 +45,7 @@ std::vector<SplitBlock> split_blocks(const Plan& plan, std::span<const ErrorGrou
   return blocks;
 }
 
-/// The weight of a subset of this size in the Shapley effect of a group that is not in it, s! (n - s - 1)! / n! for
+/// The weight of a subset of `size` groups in the Shapley effect of a group that is not in it, s! (n - s - 1)! / n! for
 /// size s and n groups (Shapley 1953; for variances Owen 2014, SIAM/ASA J. Uncertain. Quantif. 2, 245-251).
 double shapley_weight(std::size_t size, std::size_t groups) {
   double weight = 1.0 / static_cast<double>(groups);

@@ -43,7 +43,7 @@ struct IndexPanel {
   std::size_t responses;              ///< number of responses
   std::size_t details;  ///< number of components of the model's additional outputs; 0 if no vector needs them
   std::size_t poses;    ///< number of poses
-  /// [groups] 1 if an error of the group is correlated with an error of another group, otherwise 0. A group with 1 has
+  /// [groups] 1 if an error of the group is correlated with an error of another group, otherwise 0. A group with 1 gets
   /// neither S1 nor ST.
   std::vector<std::uint8_t> split;
   bool shapley;  ///< whether Shapley effects are wanted
@@ -61,7 +61,7 @@ struct IndexPanel {
   std::vector<std::vector<std::size_t>> components_;  ///< [quantities] rows of each quantity's components
 };
 
-/// Sums for the two indices of one group.
+/// Sums from which the two indices of one group are computed.
 struct IndexSums {
   RatioSums total;  ///< sums for the total index ST
   RatioSums first;  ///< sums for the first-order index S1
@@ -89,8 +89,8 @@ struct PanelSums {
   /// Adds later samples of the same panel. Precondition: the samples of `later` come after those of this object.
   void merge(const PanelSums& later);
   /// The sums of a single sample whose values are the means over all samples of these sums; moments and counts stay as
-  /// they are. Used for a replicate of a design: its samples depend on each other, so only their mean counts as an
-  /// independent sample.
+  /// they are. Used for a replicate of a design, whose samples depend on each other, so that only their mean counts as
+  /// an independent sample.
   PanelSums as_one() const;
 
   void state(Archive& archive);  ///< Reads or writes the sums, bit for bit.
@@ -103,9 +103,9 @@ struct SplitBlock {
   const NormalCopula* copula;       ///< joint distribution of the errors
 };
 
-/// The draws of a block of correlated errors for Shapley effects, if the block belongs to several groups. A mixture
-/// takes the errors of some groups from A and draws the others; bit g of the mixture's number is set if group g is
-/// drawn. The mixture determines which errors of the block are drawn conditional on which others.
+/// The draws of a block of correlated errors that belong to several groups, for Shapley effects. A mixture takes the
+/// errors of some groups from A and draws the others; bit g of the mixture's number is set if group g is drawn. The
+/// mixture determines which errors of the block are drawn conditional on which others.
 struct SplitDraws {
   /// The errors of a block in one mixture.
   struct Mixture {
@@ -121,31 +121,32 @@ struct SplitDraws {
   SplitBlock block;                                       ///< the block of correlated errors
   std::vector<Mixture> mixtures;                          ///< [subsets] mixtures, by the number of the subset that is
                                                           ///< drawn
-  Array<double, axis::BlockError, axis::Sample> scores;   ///< [block errors x samples] normal scores of A
+  Array<double, axis::BlockError, axis::Sample> scores;   ///< [block errors x samples] normal scores in sample A
   Array<double, axis::BlockError, axis::Sample> normals;  ///< [block errors x samples] independent normals from which
                                                           ///< the scores of B are computed
 };
 
-/// Solves the samples A and B, and mixtures of the two: A with the errors of one group, or of a pair of groups, from B.
-/// For Shapley effects, it also solves A with every other subset of groups from B. A mixture has the same errors at all
-/// poses. If errors from B are correlated with errors from A, they are drawn conditional on these, from the normals of
-/// B. The result of a unit depends only on the study and the unit. Owns the scratch memory of one thread.
+/// Solves the samples A and B of a panel (IndexPanel), and mixtures of the two: A with the errors of one group, or of a
+/// pair of groups, from B. For Shapley effects, it also solves A with every other subset of groups from B. A mixture
+/// has the same errors at all poses. If errors from B are correlated with errors from A, they are drawn conditional on
+/// these, from the normals of B. The result of a unit depends only on the study and the unit. Owns the scratch memory
+/// of one thread.
 class PanelEvaluator {
  public:
   /// Refers to all arguments.
   PanelEvaluator(const Plan& plan, const Model& model, const IndexPanel& panel, const PanelDesign& design);
 
   PanelSums operator()(const PanelUnit& unit);  ///< Solves a unit at all poses.
-  /// Solves a unit at some poses, beginning with `pose`, to measure the time. Returns the number of solves.
+  /// Solves a unit at one pose to measure the time. Returns the number of solves.
   std::uint64_t try_pose(const PanelUnit& unit, PoseIndex pose);
 
  private:
   /// Numbers along some axes and for each sample of the unit.
   template <NamedAxis... Axes>
   using OfSamples = Array<double, Axes..., axis::Sample>;
-  /// [samples] 1 or 0 for each sample.
+  /// [samples] 1 or 0: a property of each sample.
   using Flags = std::vector<std::uint8_t>;
-  /// The outcomes of samples at a pose.
+  /// The responses and additional outputs of samples at a pose.
   struct Outcomes {
     OfSamples<axis::PanelRow> values;
     Flags counts;  ///< whether each sample counts
@@ -154,14 +155,15 @@ class PanelEvaluator {
   /// independent samples; the mixture C is A with the errors of the group from B.
   struct GroupRows {
     OfSamples<axis::PanelQuantity, axis::ErrorGroup> total;  ///< squared difference of the outcomes of A and C
-    /// The part of the variance that B and C share: the squared difference of A and B minus that of B and C.
+    /// Squared difference of A and B minus that of B and C. Its mean is twice the covariance of B and C, which is the
+    /// variance that the group causes alone.
     OfSamples<axis::PanelQuantity, axis::ErrorGroup> first;
-    /// Squared difference of the outcomes of A and B. In over_poses_, poses at which A, B or C does not count add 0.
+    /// Squared difference of A and B. In `over_poses_`, a pose at which A, B or C does not count adds 0.
     OfSamples<axis::PanelQuantity, axis::ErrorGroup> between;
   };
 
   void begin(const PanelUnit& unit);
-  /// Resizes the scratch for this many samples and sets it to zero.
+  /// Resizes the scratch memory for this many samples and sets it to zero.
   void begin_scratch(std::size_t samples);
   void keep_scores(PanelSample sample, const OfSamples<axis::Factor>& uniforms);
   void add_pose(PoseIndex pose);
@@ -170,7 +172,7 @@ class PanelEvaluator {
   void add_pair(PoseIndex pose, std::size_t pair);
   void add_over_poses();
   void solve(PoseIndex pose, const OfSamples<axis::Factor>& errors, Outcomes& outcomes);
-  /// Sets mixed_ to A with the errors of these groups from B. Without groups, sets it to A.
+  /// Sets `mixed_` to A with the errors of these groups from B. Without groups, sets it to A.
   void mix(std::span<const std::size_t> groups);
   void unmix(std::span<const std::size_t> groups);
   void draw_given(std::span<const std::size_t> groups);
@@ -178,8 +180,8 @@ class PanelEvaluator {
   void keep_differences(std::size_t subset);
   void add_shapley(PoseIndex pose);
   void take(std::size_t group, const OfSamples<axis::Factor>& from);
-  /// Sets the outcomes of a mixture to those of A, for each sample in which all responses differ only by rounding, so
-  /// that rounding does not count as an effect.
+  /// Sets the outcomes of the mixture to those of A for each sample in which all its responses differ from those of A
+  /// only by rounding, so that rounding does not count as an effect.
   void absorb();
   /// Adds to `sum` [samples] the squared difference of a quantity between two outcomes, summed over its components.
   void add_squared_differences(std::size_t quantity, const Outcomes& one, const Outcomes& other,
@@ -201,19 +203,20 @@ class PanelEvaluator {
   OfSamples<axis::PanelQuantity> between_;
   GroupRows at_pose_;     ///< numbers at the present pose
   GroupRows over_poses_;  ///< numbers summed over the poses
-  /// For each pair of groups: GroupRows::first of both groups exchanged together, minus that of each group alone,
-  /// summed over the poses.
+  /// For each pair of groups: GroupRows::first with both groups exchanged together, minus the same with each of them
+  /// exchanged alone, summed over the poses.
   OfSamples<axis::Response, axis::GroupPair> pair_first_;
-  /// Squared difference of the outcomes of samples A and B for each pair of groups, summed over the poses.
+  /// Squared difference of A and B, summed over the poses that count for this pair of groups.
   OfSamples<axis::Response, axis::GroupPair> pair_between_;
-  /// Blocks whose errors belong to several groups, for Shapley effects.
+  /// Blocks of correlated errors that belong to several groups, for Shapley effects.
   std::vector<SplitDraws> split_;
-  /// Squared difference of A and the mixture that has this subset of groups in common with A, at the present pose.
+  /// Squared difference, at the present pose, of A and the mixture that has the errors of this subset of groups in
+  /// common with A.
   OfSamples<axis::GroupSubset, axis::Response> differences_;
   Flags all_count_;  ///< whether all mixtures of each sample count at the present pose
   /// Shapley effects times variance, summed over the poses.
   OfSamples<axis::Response, axis::ErrorGroup> shapley_;
-  /// Squared difference of the outcomes of samples A and B for Shapley effects, summed over the poses.
+  /// Squared difference of A and B, summed over the poses that count for Shapley effects.
   OfSamples<axis::Response> shapley_between_;
   /// Whether samples A and B and the mixture C of the group (GroupRows) count at the present pose.
   Array<std::uint8_t, axis::ErrorGroup, axis::Sample> group_counts_;

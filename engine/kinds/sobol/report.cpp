@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostPairs = 10;  ///< largest number of pairs in a table
 
-/// The word for the items whose indices a result has: "error", or "group" if errors are joined.
+/// The word for what has indices in a result: "error", or "group" if errors are joined.
 std::string word(const SobolResult& found) { return found.joined ? "group" : "error"; }
 
 double or_least(double value) { return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value; }
@@ -34,7 +34,8 @@ std::span<const double> ranked_shares(const SobolResult& found, std::size_t r) {
   return (found.Sh.empty() ? found.aggregated.ST : found.Sh).value.row(r);
 }
 
-/// The groups in the order that the user chose. Groups have no index per unit, so the order by index is that by share.
+/// The groups in the order that the user chose. Groups have no index per unit, so the order by index is the order by
+/// share.
 std::vector<std::size_t> ordered(const SobolResult& found, std::size_t r, RowOrder order) {
   std::vector<std::size_t> rows = by_size(ranked_shares(found, r));
   if (order == RowOrder::study) rows = positions(found.groups());
@@ -185,7 +186,7 @@ Table pairs_table(const StoredResult& result, std::size_t r) {
 
 using SharesOfResponses = Shares<axis::Response, axis::ErrorGroup>;
 
-/// The values of all responses in the order of the page.
+/// The shares of all responses, one response after the other in the order of the page.
 std::vector<double> of_responses(const StoredResult& result, const SharesOfResponses::Values& values) {
   std::vector<double> list;
   for (const std::size_t r : response_order(result)) {
@@ -201,7 +202,7 @@ struct BarSeries {
   const SharesOfResponses& shares;  ///< shares that the bars show
 };
 
-/// Bars with shares of the variance of each response. name: prefix of the names of the arrays.
+/// Bars with shares of the variance of each response. name: prefix of the names of the page's arrays.
 Bars share_bars(const StoredResult& result, ArrayPool& pool, const std::string& name,
                 const std::vector<BarSeries>& series) {
   const auto all = [&](const std::string& array, SharesOfResponses::Values SharesOfResponses::*part) {
@@ -251,7 +252,7 @@ void add_shares(const StoredResult& result, std::span<const Table> tables, Page&
       percent_text(found.aggregated.conf_level)));
   add_index_bars(result, page, section);
   add_shapley_bars(result, page, section);
-  // Tables of the responses that the figure does not show first.
+  // Tables of the other responses, which the figure shows only when chosen.
   std::vector<Table> others;
   for (bool first = true; const Table& table : tables) {
     if (!table.name.starts_with("sobol_")) continue;
@@ -334,8 +335,8 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   if (!names.empty()) list.push_back(without_sign_text(some_names(names), names.size() > 1) + ".");
 }
 
-/// The shares of errors, and the variance at each pose. The shares are Shapley effects if there are any, because they
-/// add up to 1; otherwise total indices.
+/// The shares of errors in the variance, and the variance at each pose. The shares are Shapley effects if there are
+/// any, because they add up to 1; otherwise total indices.
 ErrorShares error_shares(const StoredResult& result) {
   const SobolResult& found = sobol_of(result);
   if (found.n.empty()) return {};
@@ -361,8 +362,8 @@ std::string largest_shares(const SobolResult& found, std::span<const double> sha
   return text;
 }
 
-/// The answer at the top of the report, for the response by which errors are ranked. It states Shapley effects if there
-/// are any, otherwise total indices.
+/// The summary at the top of the report, for the response by which errors are ranked. It states Shapley effects if
+/// there are any, otherwise total indices.
 Answer answer(const StoredResult& result) {
   constexpr double kWide = 0.2;
   const SobolResult& found = sobol_of(result);
@@ -399,7 +400,8 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-/// The merit by which results are compared: the root mean square of the response over the samples of all poses.
+/// The number by which it is judged which of two results is better: the root mean square of the response over the
+/// samples of all poses.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   const SobolResult& found = sobol_of(result);
   if (name.empty() || found.mean.empty()) return {};

@@ -36,7 +36,7 @@ enum class GroupsBy {
   name    ///< groups that the study lists
 };
 
-/// How samples fill the space of the errors.
+/// How the samples are placed in the space of the errors.
 enum class Design {
   random,  ///< independent draws
   lhs,     ///< Latin hypercubes
@@ -68,8 +68,8 @@ std::string_view name(Design design);  ///< The word for this design in study fi
 /// The kind of study that divides the variance of each response among the errors, `sobol`.
 extern const StudyKind kSobolStudy;
 
-/// Shares of the variance of some quantities, with confidence intervals. NaN for a quantity that does not vary
-/// (stats/indices.h), and for a group whose errors are correlated with errors of other groups.
+/// Shares that errors or groups have in the variance of some quantities, with confidence intervals. NaN for a quantity
+/// that does not vary (stats/indices.h), and for a group whose errors are correlated with errors of other groups.
 template <NamedAxis... Axes>
 struct Shares {
   using Values = Array<double, Axes...>;     ///< A share for each quantity and group, possibly at each pose.
@@ -122,14 +122,14 @@ struct SobolResult {
   Array<double, axis::Response, axis::Pose> mean;                        ///< mean of the response
   Array<double, axis::Response, axis::Pose> variance;  ///< variance of the response, of which the indices are shares
   Array<std::uint8_t, axis::Response> without_sign;    ///< 1 if no sample of the response was negative, otherwise 0
-  /// Second-order indices of pairs over all poses, without the first-order indices of the two groups. Symmetric; NaN
-  /// for a group with itself.
+  /// Second-order indices of pairs of groups over all poses, without the first-order indices of the two groups.
+  /// Symmetric; NaN for a group with itself.
   Shares<axis::Response, axis::ErrorGroup, axis::OtherGroup> S2;
   Shares<axis::Response, axis::ErrorGroup> Sh;  ///< Shapley effects over all poses, which add up to 1
   std::vector<SolveCounts> solves;              ///< [poses] how the solves at each pose ended
   std::vector<Failure> failures;                ///< first failed samples, ordered by pose and sample
-  std::uint64_t failed_samples = 0;  ///< number of failed samples A, if `poesy replay` can repeat them; otherwise 0
-  /// Course of adaptive samples; set if the study has adaptive samples.
+  std::uint64_t failed_samples = 0;             ///< number of failed samples A; 0 if `poesy replay` cannot repeat them
+  /// Indices after each round of adaptive samples; set if the study has adaptive samples.
   std::optional<ConvergenceResult> convergence = std::nullopt;
 
   Array<std::uint8_t, axis::Response> varies;             ///< 1 if the response varies, otherwise 0; empty if all vary
@@ -139,7 +139,7 @@ struct SobolResult {
   SolveCounts total() const { return total_of(solves); }     ///< How the solves at all poses ended.
 };
 
-/// Bytes of the numbers of a result whose axes have these lengths. The axis "group" stands for errors or groups;
+/// Bytes of the numbers of a result whose axes have these lengths. The axis "group" is that of the errors or groups;
 /// "other" has length 0 without second-order indices.
 std::size_t sobol_bytes(const AxisLengths& lengths);
 

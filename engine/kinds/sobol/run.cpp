@@ -22,15 +22,15 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The index of a group by which adaptive sampling decides: ST, or the Shapley effect of a group without ST.
+/// The index of a group by which adaptive sampling decides: ST, or the Shapley effect if the group gets no ST.
 Estimate headline_index(const IndexPanel& panel, const PanelSums& sums, std::size_t r, std::size_t g,
                         double conf_level) {
   return (panel.split[g] != 0 ? sums.shapley(r, g) : sums.aggregated(r, g).total).estimate(conf_level);
 }
 
-/// For each response: the largest ST of a group (or Shapley effect of a group without ST), with the largest half-width
-/// of an interval over all groups. It shows how certain the indices of a panel are. Zero for a response that does not
-/// vary, so that it causes no more samples. rounding: [rows] see row_rounding().
+/// For each response, the largest index of a group (headline_index()), with the largest half-width of an interval over
+/// all groups. Adaptive sampling ends when these are narrow. Zero for a response that does not vary, so that it causes
+/// no more samples. rounding: [rows] see row_rounding().
 std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelSums& sums,
                                            std::span<const double> rounding, double conf_level) {
   const std::vector<std::uint8_t> varies = varying_quantities(panel, sums, rounding);
@@ -53,8 +53,8 @@ std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelS
   return list;
 }
 
-/// Merges the units of a panel in their order. With random draws, each unit is a leaf of the merge tree. In other
-/// designs a replicate is a leaf; its units are merged first.
+/// Merges the units of a panel (samples A, B and their mixtures) in their order. With random draws, each unit is a leaf
+/// of the merge tree. In other designs a replicate is a leaf; its units are merged first.
 struct PanelTree {
   const IndexPanel* panel;
   const PanelDesign* design;
@@ -71,8 +71,8 @@ struct PanelTree {
     }
     if ((n + 1) % units_per_leaf() == 0) leaves.add(n / units_per_leaf(), open.as_one());
   }
-  /// In a design that is not random, a sample depends on the number of samples, so a longer study cannot continue the
-  /// state.
+  /// Reads or writes the sums of these units. In a design that is not random, a sample depends on the number of
+  /// samples, so a longer study cannot continue these sums.
   void state(Archive& archive, const NumberRange& units) {
     archive.known(design->independent() ? 0 : panel->samples, "is of a design with other samples");
     leaves.state(archive, design->units() / units_per_leaf(), PanelSums(*panel));
@@ -97,7 +97,7 @@ struct PanelJob {
   std::vector<std::uint64_t> sizes() const {
     return {panel.quantities(), panel.groups.size(), panel.poses, panel.pairs.size(), panel.shapley ? 1U : 0U};
   }
-  /// The units of a shard. In a design that is not random, a shard has whole replicates.
+  /// The units that a shard solves. In a design that is not random, they are whole replicates.
   NumberRange units(const Shard& shard) const {
     const std::size_t each = sums().units_per_leaf();
     const NumberRange leaves = shard.of(design.units() / each);
@@ -165,7 +165,7 @@ void set_response(const IndexPanel& panel, const PanelSums& sums, std::size_t r,
   found.without_sign(r) = sums.least(r) >= 0.0 ? 1 : 0;
 }
 
-/// A result with arrays of the right lengths, in which nothing is set.
+/// A result with arrays of the right lengths, whose numbers are not yet set.
 SobolResult room_for(const IndexPanel& panel, double level) {
   const std::size_t responses = panel.responses;
   const std::size_t groups = panel.groups.size();
