@@ -17,7 +17,7 @@ namespace poesy {
 namespace axis {
 /// Components of the model's additional outputs (Detail in model/model.h).
 using DetailComponent = Axis<"detail_component">;
-using VectorRow = Axis<"vector_row">;  ///< Components of the vectors behind all responses with a limit.
+using VectorRow = Axis<"vector_row">;  ///< Components of all limited vectors (LimitedVector).
 }  // namespace axis
 
 /// The vector whose norm is a response with a limit. To first order, its components are linear in the errors. The
@@ -28,7 +28,7 @@ struct LimitedVector {
   ValueLimit limit;                    ///< the limit on this response
   std::vector<std::size_t> responses;  ///< the responses that are the components; empty if Model::norm_of_details
                                        ///< computes the components instead
-  std::size_t first_row;               ///< position of the first component among the components of all limited vectors
+  std::size_t first_row;               ///< position of the first component among those of all limited vectors
   std::size_t rows;                    ///< number of components
   bool is_centred;                     ///< whether the mean over the poses is subtracted
 };

@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// Reads or writes the numbers that a result has from a response's sketch at a finished pose.
+/// Reads or writes the numbers of a result that were computed from the sketch of a response at a finished pose.
 void sketched_state(Archive& archive, MonteCarloResult& result, std::size_t response, std::size_t pose) {
   archive.real(result.min(response, pose), result.max(response, pose));
   archive.reals(result.quantiles.row(response, pose));
@@ -20,7 +20,7 @@ void sketched_state(Archive& archive, MonteCarloResult& result, std::size_t resp
   if (!result.share_magnitude.empty()) archive.real(result.share_magnitude(response, pose));
 }
 
-/// Refuses a state whose solves are not whole units, or are more than most_samples.
+/// Refuses the state of a pose if its samples are not whole units, or are more than most_samples.
 void expect_whole(const Archive& archive, const SolveCounts& solves, std::size_t most_samples) {
   const std::uint64_t total = solves.total();
   archive.expect(total > 0 && total % Plan::kUnitSamples == 0 && total <= most_samples,

@@ -19,8 +19,8 @@ namespace poesy {
 
 /// The statistics of one response over some samples.
 struct ResponseSamples {
-  Moments moments;        ///< mean and spread, without the approximation of the sketch
-  QuantileSketch sketch;  ///< approximate distribution, for quantiles
+  Moments moments;        ///< mean and spread, which the sketch would only approximate
+  QuantileSketch sketch;  ///< approximate distribution of the samples, for quantiles
 
   void state(Archive& archive) { archive.objects(moments, sketch); }  ///< Reads or writes the statistics.
 };
@@ -42,14 +42,15 @@ struct PoseSamples {
   std::size_t errors_;
 };
 
-/// Merges units of samples, pose by pose. Objects of this class are the sums of a PoseFold (run/pose_fold.h). In memory
-/// are the sketches of the pose that is being merged, and one sketch for each response over all finished poses. So
-/// memory does not depend on the number of samples; only the result grows with the number of poses. For a later study
-/// with more samples, packed sketches of finished poses are kept as well, up to kMostKeptBytes. The result does not
-/// depend on the order in which poses are finished.
+/// Merges units of samples, pose by pose. Objects of this class are the sums of a PoseFold (run/pose_fold.h). The
+/// sketches of the pose that is being merged are in memory, and one sketch for each response over all finished poses.
+/// So memory does not depend on the number of samples; only the result grows with the number of poses. For a later
+/// study with more samples, packed sketches of finished poses are kept as well, up to kMostKeptBytes. The result does
+/// not depend on the order in which poses are finished.
 class MonteCarloCollector {
  public:
-  /// Limit on the bytes of packed sketches. A pose that exceeds it is solved again if more samples are wanted.
+  /// The largest number of bytes of packed sketches. A pose whose sketches would exceed it is solved again if more
+  /// samples are wanted.
   static constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20U;
   /// True: PoseFold makes the sums anew for each round of adaptive sampling, because a finished pose takes no more
   /// samples.
@@ -74,7 +75,7 @@ class MonteCarloCollector {
   void state(Archive& archive, std::size_t samples);
 
  private:
-  /// The packed statistics of whole units at a pose.
+  /// The statistics of whole units at a pose, packed as bytes.
   struct Kept {
     SolveCounts solves;
     Bytes bytes;  ///< state of a PoseSamples
@@ -85,11 +86,12 @@ class MonteCarloCollector {
   void finish_pose();
   /// Sets the numbers that depend on the moments of a response at a pose.
   void set_moments(std::size_t response, std::size_t pose, const Moments& moments);
-  /// Packs the samples of the open pose, which are whole units. Keeps them only if the limit on bytes allows it.
+  /// Packs the statistics of the open pose, which are those of whole units. Keeps them only if kMostKeptBytes allows
+  /// it.
   void keep();
   void set_kept(std::size_t pose, Kept kept);
   void finished_state(Archive& archive, std::size_t pose, std::size_t samples);
-  /// First-order indices and main effects. Draws at different poses are independent.
+  /// Computes first-order indices and main effects. Draws at different poses are independent.
   EffectResult effects() const;
   PoseSamples no_samples() const { return {responses_, plan_->factors().size()}; }
   void open_state(Archive& archive, std::size_t samples);
@@ -108,8 +110,8 @@ class MonteCarloCollector {
   std::vector<std::optional<MainEffectSums>> effects_;  ///< sums for main effects of each finished pose at which they
                                                         ///< are computed
   std::vector<FailedSamples> failed_;                   ///< failed samples of each finished pose
-  /// Packed statistics of each pose: of a finished pose for a longer study, of an unfinished pose as a shorter study
-  /// left it.
+  /// [poses] Packed statistics. Those of a finished pose are kept for a longer study; an unfinished pose has those that
+  /// were read from a shorter study.
   std::vector<Kept> kept_;
   std::size_t kept_bytes_ = 0;
 };

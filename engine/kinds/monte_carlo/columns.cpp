@@ -14,7 +14,8 @@ namespace {
 /// The mean, or NaN without samples.
 double mean_of(const Moments& moments) { return moments.count() == 0 ? kNaN : moments.mean(); }
 
-/// Converts ranks among `trials` values to ranks among `count` values, in proportion, rounded outwards.
+/// Converts the ranks of an interval's ends among `trials` values to ranks among `count` values, in proportion, rounded
+/// outwards.
 RankInterval among(const RankInterval& ranks, std::uint64_t trials, std::uint64_t count) {
   if (trials == count || trials == 0) return ranks;
   const double each = static_cast<double>(count) / static_cast<double>(trials);
@@ -23,7 +24,7 @@ RankInterval among(const RankInterval& ranks, std::uint64_t trials, std::uint64_
   return {static_cast<std::uint64_t>(low), ranks.high > trials ? count + 1 : static_cast<std::uint64_t>(high)};
 }
 
-/// The number of samples within a limit. All samples of a bucket count as the middle of the bucket.
+/// The number of samples within a limit. All samples of a bucket of the sketch count as the middle of the bucket.
 std::uint64_t count_within(const QuantileSketch& samples, const ValueLimit& limit) {
   std::uint64_t within = 0;
   for (const Bucket& bucket : samples.buckets()) {

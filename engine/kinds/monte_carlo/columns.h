@@ -17,7 +17,7 @@ namespace poesy {
 /// Computes the numbers of a Monte Carlo result at each pose and over all poses.
 class MonteCarloColumns {
  public:
-  /// Starts the result of a study with this analysis. All numbers are unset.
+  /// A result for a study with this analysis, in which all numbers are unset.
   MonteCarloColumns(std::size_t poses, std::size_t responses, const Analysis& analysis);
 
   MonteCarloResult& result() { return result_; }              ///< The numbers set so far.
@@ -26,16 +26,16 @@ class MonteCarloColumns {
   /// Sets the numbers that depend on the moments of a response at a pose.
   void set_moments(std::size_t response, std::size_t pose, const Moments& moments);
   /// Sets the quantiles of a response at a pose. tried: the number of all samples at the pose, including samples that
-  /// do not count (see counts()).
+  /// do not count (counts()).
   void set_quantiles(std::size_t response, std::size_t pose, const QuantileSketch& sketch, std::uint64_t tried);
-  /// Sets the numbers of a response over all poses. independent: the number of independent samples. This is the number
-  /// of all samples, or with draws per machine the number of machines. With draws per machine, the intervals of
-  /// quantiles assume that a machine's samples are equal at all poses, so they are never too narrow.
+  /// Sets the numbers of a response over all poses. independent: the number of independent samples, which is that of
+  /// all samples, or with draws per machine the number of machines. With draws per machine, the intervals of quantiles
+  /// assume that a machine's samples are equal at all poses, so they are never too narrow.
   void set_overall(std::size_t response, const Moments& moments, const QuantileSketch& sketch,
                    std::uint64_t independent);
 
  private:
-  /// The ranks of the ends of quantile intervals, one pair for each quantile, for this many samples.
+  /// For each quantile, the ranks of both ends of its interval among this many samples.
   const std::vector<RankInterval>& ranks_of(std::uint64_t samples);
 
   MonteCarloOptions asked_;
@@ -50,15 +50,16 @@ class MonteCarloColumns {
 struct QuantilesOf {
   std::vector<double> value;       ///< [quantiles] order statistics; NaN without samples
   std::vector<Interval> interval;  ///< [quantiles] confidence interval of each
-  double error = kNaN;  ///< bound on the difference between a value and the exact order statistic; NaN without samples
+  double error = kNaN;  ///< bound on the difference between a value and the order statistic of the samples that it
+                        ///< stands for; NaN without samples
 
   /// Copies values and intervals into the rows of a result.
   void copy(std::span<double> values, std::span<double> low, std::span<double> high) const;
 };
 
 /// The value with this rank, counted from 1, if values are sorted by ValueLimit::badness. For a limit on magnitudes,
-/// the value is a magnitude. With fewer values than the rank, the result is beyond every limit: infinite for a limit on
-/// magnitudes, otherwise NaN.
+/// the value is a magnitude. If there are fewer values than the rank, the result is beyond every limit: infinite for a
+/// limit on magnitudes, otherwise NaN.
 double value_at_rank(const QuantileSketch& values, const ValueLimit& limit, std::uint64_t rank);
 
 /// Computes quantiles from a sketch. buckets: the samples; levels: the quantiles; ranks: the ends of each interval.
@@ -69,7 +70,7 @@ QuantilesOf quantiles_of(std::span<const Bucket> buckets, std::span<const double
 inline constexpr std::size_t kHistogramBins = 128;
 
 /// Computes the histogram of the samples in the buckets; edges are NaN without samples. Precondition: `counts` has
-/// kHistogramBins places, and `edges` one more.
+/// kHistogramBins elements, and `edges` one more.
 void fill_histogram(std::span<const Bucket> buckets, std::span<double> edges, std::span<std::uint64_t> counts);
 
 /// Judges the limits of a Monte Carlo study by its result. A limit is kept

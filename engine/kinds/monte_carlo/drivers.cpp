@@ -23,7 +23,7 @@ const YieldResult* yield_in(const StoredResult& result) {
   return machines && machines->yield ? &*machines->yield : nullptr;
 }
 
-/// Limited responses with known shares, the one that rejects most machines first.
+/// The limited responses in whose scatter the shares of errors are known, the one that rejects most machines first.
 std::vector<std::size_t> shared_responses(const StoredResult& result, const YieldResult& yield) {
   std::vector<std::size_t> list;
   if (!yield.has_shares()) return list;
@@ -34,8 +34,8 @@ std::vector<std::size_t> shared_responses(const StoredResult& result, const Yiel
   return list;
 }
 
-/// The change of the yield by each error, with its interval. If a file has only the gradient, the change is computed
-/// from it.
+/// The change of the yield if the sigma of an error grows by a tenth, for each error, and its interval. If a file has
+/// only the gradient, the change is computed from it.
 struct Changes {
   using Values = Array<double, axis::Factor>;
   Values value;
@@ -58,23 +58,25 @@ Changes changes_of(const StoredResult& result, const YieldResult& yield) {
   return {part(yield.gradient), part(yield.gradient_ci_low), part(yield.gradient_ci_high)};
 }
 
-/// Whether the share of the error is above zero, or not known, for any response with a limit whose shares are known.
-/// Also true if no response has known shares.
+/// Whether the share of error p in the scatter of any limited response is above zero or unknown. Also true if no
+/// response has known shares.
 bool has_any_share(const StoredResult& result, const YieldResult& yield, const MainEffects::Indices& shares,
                    std::size_t p) {
   const std::vector<std::size_t> responses = shared_responses(result, yield);
   return responses.empty() || std::ranges::any_of(responses, [&](std::size_t r) { return !(shares(r, p) <= 0.0); });
 }
 
-/// The errors on which the yield depends for certain: their effect is distinguished from zero, or "told".
+/// The errors on which the yield certainly depends: their effect on it is distinguished from zero (told).
 struct ToldErrors {
-  std::vector<std::size_t> told;  ///< these errors: first those whose share of a scatter is certain, then by the
-                                  ///< loss of yield, largest first
-  std::size_t tested = 0;         ///< number of errors whose change of the yield is known and whose share is not zero
-  std::size_t known = 0;          ///< number of errors whose change of the yield is known
+  std::vector<std::size_t> told;  ///< these errors: first those that certainly have a share in the scatter of a
+                                  ///< response, then the others; the largest loss of yield first in both
+  std::size_t tested = 0;  ///< number of errors whose effect was tested: their change of the yield is known, and they
+                           ///< have a share in some scatter
+  std::size_t known = 0;   ///< number of errors whose change of the yield is known
 };
 
-/// Tests all errors together, because among many single tests some would show an effect by chance.
+/// Finds the errors of ToldErrors. Tests all errors together, because of many separate tests some would show an effect
+/// by chance.
 ToldErrors told_errors(const StoredResult& result, const YieldResult& yield, const Changes& changes) {
   ToldErrors found;
   std::vector<Estimate> estimates;
@@ -102,8 +104,8 @@ std::string linear_note(const StoredResult& result, const YieldResult& yield, st
       yield.linear_share(r) < 0.9 ? "; the rest belongs to no error alone, so these shares say little" : "");
 }
 
-/// The mean of a response over the machines, which no smaller scatter of an error changes. Empty if it is hardly a part
-/// of the mean square, or if the file does not have it.
+/// A note on the mean of a response over the machines, which smaller errors do not change. Empty if the mean is hardly
+/// a part of the mean square, or if the file does not contain it.
 std::string offset_note(const StoredResult& result, const YieldResult& yield, std::size_t r) {
   constexpr double kNoticeable = 0.001;  // least share of the whole mean square
   if (!yield.has_offset() || !(yield.offset_share(r) >= kNoticeable)) return {};
@@ -156,8 +158,9 @@ void add_line(Table& table, std::size_t errors, std::string_view one, std::strin
   table.rows.push_back(std::move(row));
 }
 
-/// A note on how small a change of the yield these machines can distinguish from zero, if it is the only one that is
-/// tested, and how many machines a change of a tenth of that size takes. Empty if all changes are distinguished.
+/// A note on how small a change of the yield these machines can distinguish from zero (the median over the errors whose
+/// change is not certain, each tested alone), and how many machines a change of a tenth of that size would need. Empty
+/// if all changes are certain.
 std::string needed_machines_note(const Changes& changes, const ToldErrors& found, const YieldResult& yield) {
   constexpr std::uint64_t kFiner = 10;
   std::vector<double> half_widths;
@@ -243,7 +246,7 @@ void add_share_figure(const StoredResult& result, const YieldResult& yield, Sect
              "order. Thin lines are intervals.");
 }
 
-/// Adds to the page the figure of errors whose effect is certain.
+/// Adds to the page the figure of the errors whose effect on the yield is certain.
 void add_change_figure(const StoredResult& result, const YieldResult& yield, Section& section, Page& page) {
   const Changes changes = changes_of(result, yield);
   const std::vector<std::size_t> told = told_errors(result, yield, changes).told;

@@ -17,12 +17,12 @@ namespace poesy {
 /// Sorts positions by decreasing value, NaN last.
 std::vector<std::size_t> largest_first(std::vector<std::size_t> order, const std::function<double(std::size_t)>& value);
 
-/// The values of all errors, listed response by response in the order of `responses`.
+/// The values of all errors, one response after the other in the order of `responses`.
 std::vector<double> in_order(const MainEffects::Indices& values, std::span<const std::size_t> responses);
 
 /// The shares of errors in the scatter of a limited response.
 struct ResponseShares {
-  std::size_t response;  ///< among the responses with a limit and known shares, the one that rejects most machines
+  std::size_t response;          ///< of the limited responses with known shares, the one that rejects most machines
   std::span<const double> each;  ///< [errors] share of each error; NaN for correlated errors; refers to the result
 };
 

@@ -75,11 +75,11 @@ const Group<MonteCarlo> kMonteCarlo{
       "and no main effects; left out where all vary",
       Presence::where_computed}}};
 
-/// The numbers of a CSV table. They are arrays whose last axis is that of the table's lines; quantiles have the axis of
-/// quantiles after it.
+/// The numbers of a CSV table. They are arrays whose last axis is that of the table's lines; arrays of quantiles have a
+/// further axis for the quantiles after it.
 template <class Numbers, class Quantiles, class Counts>
 struct ShownNumbers {
-  /// Numbers in the columns before the count, each with the heading of its column.
+  /// Numbers in the columns before the number of samples, each with the heading of its column.
   std::vector<std::pair<std::string, const Numbers*>> first;
   const Counts& count;
   const Numbers& rms;
@@ -89,7 +89,8 @@ struct ShownNumbers {
   const Numbers& quantile_error;
 };
 
-/// Appends columns of numbers and quantiles. at: positions on the axes that come before the axis of the table's lines.
+/// Appends columns with these numbers and quantiles. at: positions on the axes that come before the axis of the table's
+/// lines.
 template <class Numbers, class Quantiles, class Counts, class... Positions>
 void append_number_columns(CsvTable& table, const std::string& unit, const std::vector<double>& levels,
                            const ShownNumbers<Numbers, Quantiles, Counts>& shown, Positions... at) {
@@ -108,7 +109,8 @@ void append_number_columns(CsvTable& table, const std::string& unit, const std::
     append_quantile(q, "_ci_low", shown.quantiles_ci_low);
     append_quantile(q, "_ci_high", shown.quantiles_ci_high);
   }
-  if (!shown.quantile_error.empty()) append("quantile_error", shown.quantile_error);  // files of version 0.2 have none
+  if (!shown.quantile_error.empty())
+    append("quantile_error", shown.quantile_error);  // files of version 0.2 have no quantile_error
 }
 
 CsvTable response_table(const StoredResult& result, std::size_t r) {
@@ -132,7 +134,8 @@ CsvTable response_table(const StoredResult& result, std::size_t r) {
   return table;
 }
 
-/// A table of the numbers over all poses. Each line ends with its unit, because responses have different units.
+/// A table of the numbers of each response over all poses. Each line ends with its unit, because responses have
+/// different units.
 CsvTable overall_table(const StoredResult& result) {
   const MonteCarlo& found = monte_carlo_of(result);
   CsvTable table{"overall",
@@ -154,7 +157,8 @@ CsvTable overall_table(const StoredResult& result) {
   return table;
 }
 
-/// A table of a histogram. Bins of zero width are left out, because they only fill unused places of the result.
+/// A table of the histogram of response r. Bins of zero width are left out, because they only fill unused elements of
+/// the result.
 CsvTable histogram_table(const StoredResult& result, std::size_t r) {
   const MonteCarlo& found = monte_carlo_of(result);
   const NamedUnit& response = result.responses[r];

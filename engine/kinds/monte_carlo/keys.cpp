@@ -49,7 +49,7 @@ KeyValue<MonteCarloOptions> judge() {
       &MonteCarloOptions::judge);
 }
 
-/// The default for how limits are judged.
+/// The default for the key `judge`, which states how limits are judged.
 Judge usual_judge(const Analysis& analysis) { return analysis.draws == Draws::per_machine ? Judge::yield : Judge::rms; }
 
 std::string judge_line(const Study& study) {
@@ -113,7 +113,8 @@ void check_share(const Study& study, const StudySection& section) {
   }
 }
 
-/// Refuses a yield that is not judged, or that this number of machines cannot show even if all of them are good.
+/// Refuses a wanted yield if limits are not judged by it, or if this number of machines cannot show it even if all of
+/// them are good.
 void check_yield(const Study& study, const StudySection& section) {
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   const auto yield = section.find("yield");
@@ -135,7 +136,7 @@ void check_yield(const Study& study, const StudySection& section) {
               "take " + std::to_string(needed) + " samples or more, or ask for a smaller yield");
 }
 
-/// Refuses limits that the stated judge cannot judge.
+/// Refuses limits that cannot be judged by the stated rule (Judge).
 void check_limits(const Study& study, const StudySection& section) {
   const Judge by = asked_of<MonteCarloOptions>(study.analysis).judge;
   for (const ResponseLimit& limit : study.analysis.limits) {

@@ -15,8 +15,8 @@
 
 namespace poesy {
 
-/// Merges units of machines in their order. Objects of this class are the sums of a UnitFold (run/unit_fold.h). In
-/// memory is a sketch of each response at each pose. Memory hardly grows with the number of machines: by one set of
+/// Merges units of machines in their order. Objects of this class are the sums of a UnitFold (run/unit_fold.h). A
+/// sketch of each response at each pose is in memory. Memory hardly grows with the number of machines: by one set of
 /// sums for each octal digit of this number (MergeTree).
 class MachineCollector {
  public:
@@ -30,16 +30,16 @@ class MachineCollector {
   /// The result of all machines that were added. Precondition: no units are added afterwards.
   MonteCarloResult result() &&;
 
-  /// Reads or writes the sums of these units. Sums that are read are added.
+  /// Reads or writes the sums of these units. Sums that are read are added to those of this object.
   void state(Archive& archive, const NumberRange& units);
 
  private:
-  /// Counts and sketches. They do not depend on the order in which machines are added.
+  /// Counts and sketches, which do not depend on the order in which machines are added.
   struct Counts {
     Array<QuantileSketch, axis::Pose, axis::Response> at_pose;
     std::vector<QuantileSketch> largest;  ///< [responses] largest magnitude of each machine
     std::vector<QuantileSketch> rms;      ///< [responses] root mean square of each machine
-    std::vector<QuantileSketch> judged;   ///< value by which a machine is judged (ValueLimit::deciding), for each
+    std::vector<QuantileSketch> judged;   ///< values by which machines are judged (ValueLimit::deciding), for each
                                           ///< response of MachineTable::judged()
     std::vector<SolveCounts> solves;      ///< [poses] how the solves at each pose ended
     std::vector<FailedSamples> failed;    ///< [poses] first samples that failed at each pose
@@ -57,10 +57,10 @@ class MachineCollector {
   };
 
   std::size_t poses() const { return table_->plan().poses().size(); }
-  /// Sets the numbers that follow from the moments and sketches of the samples.
+  /// Sets the numbers of a result that follow from the moments and sketches of the samples.
   void set_columns(const MachineSums& sums, MonteCarloResult& found, class MonteCarloColumns& columns) const;
-  /// [responses] The values by which machines are judged: the largest magnitude of each machine, or the value of
-  /// ValueLimit::deciding() for a limit that is not on the magnitude at each pose.
+  /// [responses] The values by which machines are judged: the largest magnitude of each machine, or
+  /// ValueLimit::deciding() if the limit is not on the magnitude at each pose.
   std::vector<QuantileSketch> judged_values() const;
   MachineResult machines(const MachineSums& sums, std::span<const BinSpread> spreads) const;
   EffectResult effects(const MachineSums& sums, std::span<const BinSpread> spreads) const;

@@ -13,11 +13,11 @@ namespace {
 
 const Axes kByEffectPose{"effect_pose"};
 
-/// These words end the description of each number over machines, because machines that are not solved at every pose do
-/// not count in it.
+/// The end of the description of each number over machines: a machine that is not solved at every pose is not counted.
 const std::string kOfSolved = " over the machines that are solved at every pose";
 
-/// The fields of a number of each machine. what: the number, such as "largest magnitude over the poses".
+/// The fields with statistics of one number of each machine. what: this number, such as "largest magnitude over the
+/// poses".
 Group<MachineValues> values_group(const std::string& path, const std::string& what) {
   using Values = MachineValues;
   const std::string of = "of the machines' " + what + ",";
@@ -183,7 +183,7 @@ void write_indices(ResultBuilder& result, const std::string& group, const Fields
   result.file().set_attribute(group + "/S1", "conf_level", conf_level);
 }
 
-/// A table of a number of each machine, with a line for each response.
+/// A table with statistics of one number of each machine, with a line for each response.
 CsvTable by_response(const StoredResult& result, const std::string& name, const MachineValues& values) {
   const std::vector<double>& levels = monte_carlo_of(result).levels;
   CsvTable table{name,
@@ -214,7 +214,7 @@ CsvTable by_response(const StoredResult& result, const std::string& name, const 
   return table;
 }
 
-/// Gives the table further columns with a number of each error for a response, and with its interval: "share_RESPONSE",
+/// Appends to the table columns with a number of each error for a response, and with its interval: "share_RESPONSE",
 /// "share_ci_low_RESPONSE" and "share_ci_high_RESPONSE".
 void append_error_columns(CsvTable& table, const std::string& name, const std::string& response,
                           std::span<const double> value, std::span<const double> low, std::span<const double> high) {

@@ -15,8 +15,8 @@ std::size_t effect_bytes(const AxisLengths& lengths);
 std::size_t machine_bytes(const AxisLengths& lengths);
 /// @}
 
-/// Adds to the result file first-order indices and the group /monte_carlo/main_effect. Precondition: the file has
-/// /monte_carlo.
+/// Adds the first-order indices and the group /monte_carlo/main_effect to the result file. Precondition: the file has
+/// the group /monte_carlo.
 void write_effects(ResultBuilder& result, const EffectResult& found);
 /// Reads what write_effects() wrote. Throws h5::Error.
 EffectResult read_effects(const h5::File& file);

@@ -33,10 +33,10 @@ std::string quantile_name(double level) {
 Table values_table(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const auto number = [&result](std::string name, std::string heading, const auto& values, int dispensable = 0) {
-    return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
-                        [&result, &values](std::size_t r) {
-                          return value_cell(values.row(r).back(), result.responses[r]);  // highest quantile
-                        }};
+    return FilledColumn{
+        number_column(std::move(name), std::move(heading), "", dispensable), [&result, &values](std::size_t r) {
+          return value_cell(values.row(r).back(), result.responses[r]);  // the highest quantile of the response
+        }};
   };
   const MachineValues& largest = machines_of(result).largest;
   const MachineValues& rms = machines_of(result).rms;
@@ -53,7 +53,7 @@ Table values_table(const StoredResult& result) {
         number("largest_max", "max", largest.max), number("rms_mean", "rms: mean", rms.mean, 1),
         number("rms_" + name, level, rms.quantiles, 1), number("rms_max", "max", rms.max, 1)});
   table.notes.push_back("Machines that are not solved at every pose are left out");
-  if (!largest.quantile_error.empty()) {  // files of version 0.2 have none
+  if (!largest.quantile_error.empty()) {  // files of version 0.2 have no quantile_error
     table.notes.push_back(fmt::format("largest: {}; rms: {}",
                                       quantile_error_text(result.headline, largest.quantile_error, largest.std),
                                       quantile_error_text(result.headline, rms.quantile_error, rms.std)));
@@ -113,7 +113,8 @@ std::string no_index_text(const StoredResult& result, std::size_t r) {
   return response + ": no error has an index, because it does not vary at the poses over which indices add up";
 }
 
-/// Over which poses the variances of first-order indices are added up: "added up over 1 of 13 poses (pose 0)".
+/// A text on the poses over which the variances of first-order indices are added up: "added up over 1 of 13 poses (pose
+/// 0)".
 std::string added_up_text(const StoredResult& result) {
   const std::vector<std::uint64_t>& poses = effects_of(result).s1_poses;
   const std::size_t all = monte_carlo_of(result).mean.length<axis::Pose>();
@@ -138,8 +139,8 @@ std::string indices_note(const StoredResult& result, std::size_t r) {
       result.responses[r].name, number_text(sum, 3), has_noise ? ", and the noise of what was measured" : "");
 }
 
-/// Whether an error has one value in a machine at all poses. Otherwise, a mean over the poses does not depend on one
-/// value, and the error has no curve.
+/// Whether an error has the same value at all poses of a machine. Otherwise, a mean over the poses does not depend on
+/// one value of the error, so the error has no main-effect curve.
 bool has_curve(const StoredResult& result, std::size_t p) {
   return result.factor_draws.empty() || result.factor_draws[p] != name(Draws::per_pose);
 }
@@ -152,7 +153,7 @@ Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
   const std::size_t factors = result.factors.size();
   std::vector<double> below;
   for (std::size_t k = 0; k < kEffectBins; ++k) below.push_back((static_cast<double>(k) + 0.5) / kEffectBins);
-  // Number of curves that are shown at first. More bands would hide each other.
+  // The number of curves that are shown at first. The bands of more curves would hide each other.
   constexpr std::size_t kAtFirst = 5;
   Lines lines{.x = {"share of the error's values below", "%", pool.add("effect_bin", below, 0.01)},
               .panels = {},
@@ -192,7 +193,7 @@ std::string quantile_error_text(std::span<const std::size_t> responses, std::spa
 std::vector<Table> machine_tables(const StoredResult& result) {
   std::vector<Table> tables{values_table(result)};
   if (const auto& yield = machines_of(result).yield) {
-    // If limits are not judged by the yield, the verdicts do not contain it.
+    // If limits are not judged by the yield, the verdicts do not contain the yield.
     if (result.verdicts && !result.verdicts->yield) {
       tables.insert(tables.begin(),
                     yield_table(result, {.judge = Judge::yield,

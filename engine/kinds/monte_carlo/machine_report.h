@@ -9,10 +9,11 @@
 #include "engine/result/result_file.h"
 
 /// Tables and report sections of main effects, and of the additional results of a Monte Carlo study with draws per
-/// machine. Precondition of all functions except those of main effects: monte_carlo_of(result).machines is set.
+/// machine. Precondition of all functions except effect_table() and add_effects_section():
+/// monte_carlo_of(result).machines is set.
 namespace poesy {
 
-/// The largest error of the quantiles of some responses, as text: "quantiles to 0.12 % of std".
+/// A text on the largest error bound of the quantiles of some responses: "quantiles to 0.12 % of std".
 std::string quantile_error_text(std::span<const std::size_t> responses, std::span<const double> errors,
                                 std::span<const double> deviations);
 

@@ -24,7 +24,7 @@ ErrorScore score_of(const Distribution& distribution) {
       return PolynomialScore(points.points, points.weights);
     }
     case given:
-      return {};  // the values of a given list have no sigma that could change
+      return {};  // values that are given in a list have no sigma that could change
   }
   throw std::logic_error("unknown shape of distribution");
 }
@@ -32,7 +32,7 @@ ErrorScore score_of(const Distribution& distribution) {
 ErrorScores scores_of(const Plan& plan) {
   ErrorScores scores;
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {
-    // An error that is drawn together with others has no score of its own. An error with a shifted mean has none
+    // An error that is drawn together with others has no score of its own. An error with a shifted mean has no score
     // either, because the shift does not grow with sigma.
     const bool has_score = plan.is_drawn_alone(p) && plan.distributions()[p].shift() == 0.0;
     scores.each.push_back(has_score ? score_of(plan.distributions()[p]) : ErrorScore());
@@ -50,7 +50,8 @@ ErrorScores scores_of(const Plan& plan) {
   return scores;
 }
 
-/// The scores of the errors that are drawn per pose, or of those that are drawn per machine. The others are empty.
+/// The scores of the errors that are drawn as `draws` says, per pose or per machine. The scores of the others are
+/// empty.
 ErrorScores scores_of(const Plan& plan, const ErrorScores& all, Draws draws) {
   const auto is_one = [&](std::size_t p) { return plan.is_per_pose(p) == (draws == Draws::per_pose); };
   ErrorScores scores{std::vector<ErrorScore>(all.each.size())};
@@ -63,8 +64,8 @@ ErrorScores scores_of(const Plan& plan, const ErrorScores& all, Draws draws) {
   return scores;
 }
 
-/// The number of machines for which the gradient takes about a second. 0 if the gradient by a linear map is not wanted
-/// or not possible.
+/// The number of machines with which the gradient of the yield by a linear map takes about a second. 0 if this gradient
+/// is not wanted or not possible.
 std::size_t mapped_machines(const Plan& plan, const LimitedVectors& vectors, const ErrorScores& scores) {
   constexpr std::size_t kMostWork = 1'000'000'000;  // number of products
   constexpr std::size_t kWorkOfRange = 10;  // number of products that find the range in which one error keeps one limit
@@ -90,8 +91,8 @@ MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis&
       fixed_scores_(scores_of(plan, scores_, Draws::per_machine)),
       pose_scores_(scores_of(plan, scores_, Draws::per_pose)),
       vectors_(plan, model, analysis),
-      // A linear map of the errors knows neither the noise of measurements, which also rejects machines, nor limits
-      // over poses.
+      // A linear map from the errors to the responses contains neither the noise of measurements, which also rejects
+      // machines, nor limits over poses.
       mapped_(calibration != nullptr || any_over_poses(analysis.limits) ? 0 : mapped_machines(plan, vectors_, scores_)),
       kept_(keep_all && has_limits_ ? plan.samples() : mapped_) {
   POESY_EXPECTS(plan.draws() == Draws::per_machine);
@@ -104,7 +105,8 @@ MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis&
 }
 
 std::size_t MachineTable::unit_machines(std::size_t poses, UnitSize size_wanted) {
-  // With rows of 500 numbers, which are nearly one page of memory apart, the solver is a third slower.
+  // Numbers of machines in a unit. With 500, rows of numbers are nearly one page of memory apart, and the solver is a
+  // third slower.
   constexpr std::array<std::size_t, 4> kSizes{1000, 200, 100, 40};
   static_assert(std::ranges::all_of(kSizes, [](std::size_t size) { return Plan::kUnitSamples % size == 0; }));
   constexpr std::size_t kMostSamples = 160'000;

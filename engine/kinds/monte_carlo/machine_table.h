@@ -18,12 +18,12 @@ namespace poesy {
 
 /// How many machines a unit of work has.
 enum class UnitSize {
-  usual,      ///< as many as memory allows
+  usual,      ///< many, but fewer with many poses, which need memory
   calibrated  ///< few, because calibrated machines take much longer to solve
 };
 
-/// The machines of a study that draws errors per machine, divided into units of work, with the data for their
-/// statistics. A unit has consecutive machines, each at all poses. All data follow from the study alone, so all ranks
+/// The machines of a study that draws errors per machine, divided into units of work, with the data that their
+/// statistics need. A unit has consecutive machines, each at all poses. All data follow from the study, so all ranks
 /// have the same.
 class MachineTable {
  public:
@@ -47,12 +47,11 @@ class MachineTable {
   const MachineCalibration* calibration() const { return calibration_; }
   std::size_t responses() const { return responses_; }               ///< The number of responses.
   std::size_t units() const { return units_for(plan_->samples()); }  ///< The number of units of the whole study.
-  /// The machines of unit n, at the first pose.
+  /// The machines of unit n as a WorkUnit at the first pose.
   WorkUnit unit(std::size_t n) const;
   /// Whether unit n has the full number of machines.
   bool is_whole(std::size_t n) const { return unit(n).count == unit_machines(); }
-  /// The static functions above, for the number of poses and the calibration of this study.
-  /// @{
+  /// unit_machines() and units_for() for the number of poses and the calibration of this study.
   std::size_t unit_machines() const {
     return unit_machines(plan_->poses().size(), calibration_ == nullptr ? UnitSize::usual : UnitSize::calibrated);
   }
@@ -63,7 +62,7 @@ class MachineTable {
   bool has_limits() const { return has_limits_; }
   /// [responses] The limit of each response; without a limit, one that all values keep.
   std::span<const ValueLimit> limits() const { return limits_; }
-  /// Whether every limit is judged at each pose alone, and none over the poses of a machine.
+  /// Whether every limit must hold at each pose, so that none is judged over the poses of a machine.
   bool judges_each_pose() const {
     return std::ranges::none_of(limits_, [](const ValueLimit& limit) { return limit.is_over_poses(); });
   }
@@ -71,8 +70,8 @@ class MachineTable {
   /// which each machine is judged is recorded.
   std::span<const std::size_t> judged() const { return judged_; }
   std::size_t errors() const { return scores_.each.size(); }  ///< The number of errors.
-  /// The scores of the errors: derivatives of the logarithm of their density, from which the gradient of the yield with
-  /// respect to their sizes is estimated. A correlated error has a score only if all errors of its block are normal.
+  /// The scores of the errors: derivatives of the logarithm of their density with respect to their sizes, from which
+  /// the gradient of the yield is estimated. A correlated error has a score only if all errors of its block are normal.
   const ErrorScores& scores() const { return scores_; }
   /// The scores of errors that stay fixed in a machine, and the scores of errors that a machine draws anew at each pose
   /// (Plan::per_pose). Each list has empty scores for the errors of the other list.
@@ -83,14 +82,14 @@ class MachineTable {
   /// Whether machines draw some errors anew at each pose.
   bool has_per_pose() const { return !plan_->per_pose().empty(); }
 
-  /// The vectors of the responses with limits (LimitedVector), to which a linear map of the errors is fitted.
+  /// The vectors of the responses with limits (LimitedVector), of which a linear function of the errors is fitted.
   const LimitedVectors& vectors() const { return vectors_; }
   /// [responses] The largest spread of a response that may come from rounding in solves (Model::rounding).
   std::span<const double> rounding() const { return rounding_; }
-  /// Whether unit n is used to fit the linear map of the errors. It is fitted to the first machines, as many as it
-  /// needs.
+  /// Whether unit n is used to fit the linear map from the errors to these vectors. The first machines are used, as
+  /// many as the fit needs.
   bool is_fitted(std::size_t n) const;
-  /// The number of machines, from machine 0 on, with which the gradient of the yield by a linear map is estimated. It
+  /// The number of machines, from machine 0 on, with which the gradient of the yield is estimated by a linear map. It
   /// is limited, because the estimate takes time for each error at each pose. 0 if this gradient is not estimated.
   std::size_t mapped() const { return mapped_; }
   /// The number of machines, from machine 0 on, for which it is recorded whether they are rejected: mapped(), or all

@@ -21,7 +21,7 @@
 #include "engine/stats/sums.h"
 #include "engine/stats/yield_gradient.h"
 
-/// Units of work of machines, and the sums over machines.
+/// Units of work that solve machines, and sums over machines.
 namespace poesy {
 
 /// Sums over machines. Their rounding depends on the order of addition, so MergeTree adds them in a fixed order.
@@ -35,9 +35,10 @@ struct MachineSums {
   /// Scores of the errors that machines draw anew at each pose. They are summed over the machines that exactly one pose
   /// rejects, with the errors at that pose. Set if there are such errors and all limits are judged at each pose.
   std::optional<ScoreSums> pose_scores;
-  std::optional<LinearFitSums> fit;  ///< sums for a linear map of the limited vectors at all poses together
-  /// [poses] Sums for a linear map at each pose alone, which replace `fit` if machines draw errors anew at each pose;
-  /// otherwise empty.
+  std::optional<LinearFitSums> fit;  ///< sums for the fit of a linear map from the errors to the limited vectors
+                                     ///< (LimitedVector) at all poses together
+  /// [poses] The same for a linear map at each pose alone. These replace `fit` if machines draw errors anew at each
+  /// pose; otherwise empty.
   std::vector<std::optional<LinearFitSums>> fit_at_pose;
   std::optional<PartSums> parts;        ///< influence of each measured part; set if there are limits and measured
                                         ///< errors
@@ -48,7 +49,8 @@ struct MachineSums {
   /// Adds later machines. Precondition: the machines of `later` come after those of this object.
   void merge(const MachineSums& later);
 
-  /// The linear map of the limited vectors at all poses, listed pose by pose; none if too few machines were fitted.
+  /// The fitted linear map from the errors to the limited vectors at all poses, whose components are listed pose by
+  /// pose; none if too few machines were fitted.
   std::optional<LinearFit> map() const;
   void state(Archive& archive);  ///< Reads or writes the sums, bit for bit.
 
@@ -56,12 +58,13 @@ struct MachineSums {
   const MachineTable* table_;
 };
 
-/// How many of the calibrated machines would be rejected without calibration, or with another correction.
+/// How many of the calibrated machines would be rejected without calibration, or with another correction of the drives.
 struct CalibrationCounts {
   std::uint64_t not_fitted = 0;    ///< machines that were not calibrated: they were not solved, or their fit did not
                                    ///< converge
   std::uint64_t uncalibrated = 0;  ///< rejects if no machine is calibrated
-  std::uint64_t best = 0;          ///< rejects after the best correction at each pose, if the model can compute it
+  std::uint64_t best =
+      0;  ///< rejects after the best correction of the drives at each pose, if the model can compute it
 
   /// Adds the counts over other machines to these.
   void merge(const CalibrationCounts& other);
@@ -69,12 +72,12 @@ struct CalibrationCounts {
   void state(Archive& archive, std::uint64_t machines);
 };
 
-/// Reads or writes whether each machine of a range is rejected, 1 or 0. Only the first MachineTable::kept() machines
-/// have this number.
+/// Reads or writes whether each machine of a range is rejected, 1 or 0. This is recorded only for the first
+/// MachineTable::kept() machines.
 void rejected_state(Archive& archive, std::vector<std::uint8_t>& rejected, const MachineTable& table,
                     const NumberRange& machines);
 
-/// The result of a unit of machines.
+/// The result of solving a unit of machines.
 struct MachineUnit {
   MachineUnit() = default;
   /// An empty unit for this range of machines.
@@ -112,13 +115,13 @@ class MachineUnitEvaluator : private UnitSolver {
   MachineUnit operator()(std::size_t n);
 
  private:
-  /// Calibrates the unit's machines, so that the next solves use their controllers. Before that, counts the rejects
-  /// without calibration and with the best correction.
+  /// Calibrates the unit's machines, so that the following solves are with the calibrated controllers. Before that,
+  /// counts the machines that are rejected without calibration and with the best correction.
   void calibrate(const WorkUnit& unit, MachineUnit& found);
   /// The number of the unit's machines that are rejected if the present evaluator solves them; 0 without limits.
   std::uint64_t count_rejects(const WorkUnit& unit);
-  /// Draws the errors that machines draw anew at each pose. If main effects are summed at this pose, also updates the
-  /// bins.
+  /// Draws the errors that machines draw anew at this pose. If main effects are summed at this pose, also updates the
+  /// bins of these errors.
   void draw_at(const WorkUnit& unit, std::size_t pose, EffectBins& bins);
   void solve_pose(const WorkUnit& unit, std::size_t pose, const EffectBins& bins, MachineBlock& block,
                   MachineUnit& found);
@@ -128,9 +131,9 @@ class MachineUnitEvaluator : private UnitSolver {
   void add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found);
   /// [errors x machines] The present errors minus their means, divided by their standard deviations.
   Array<double, axis::Factor, axis::Sample> standardised(std::size_t machines) const;
-  /// Subtracts the mean over the poses from the components of centred vectors.
+  /// Subtracts the mean over the poses from the components of the vectors with LimitedVector::is_centred.
   void centre_rows();
-  /// Adds these machines to the fit of the limited vectors, whose components at all poses are in rows_.
+  /// Adds these machines to the fit of the limited vectors, whose components at all poses are in `rows_`.
   void add_fit(std::span<const std::uint8_t> solved, MachineUnit& found) const;
   /// Adds the samples at one pose to the fit of that pose. A sample counts if `ok` is 1.
   void add_fit_at(std::size_t pose, std::span<const std::uint8_t> ok, MachineUnit& found) const;
@@ -146,7 +149,7 @@ class MachineUnitEvaluator : private UnitSolver {
   Array<double, axis::Response, axis::Sample> sum_;  ///< sums over the poses
   std::vector<double> kept_;                         ///< values of one response
   bool is_fitted_ = false;                           ///< whether the present unit is fitted
-  /// Additional outputs at the present pose, if some limited vector is computed from them.
+  /// Additional outputs of the model at the present pose, if some limited vector is computed from them.
   Array<double, axis::DetailComponent, axis::Sample> details_;
   /// Components of the limited vectors at all poses, if the linear map is fitted to the unit.
   Array<double, axis::Pose, axis::VectorRow, axis::Sample> rows_;

@@ -70,7 +70,7 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const P
   memory.file += numbers;
   if (machines) return sum_of(memory, machine_memory(study, model, plan));
   if (!plan.adaptive()) return memory;
-  // The next round continues from packed sketches of the finished poses. Bytes of a sketch:
+  // The next round of adaptive sampling continues from packed sketches of the finished poses, each of this many bytes.
   constexpr std::size_t kPackedSketch = 6000;
   const std::size_t kept =
       std::min(plan.poses().size() * responses * kPackedSketch, MonteCarloCollector::kMostKeptBytes);
@@ -98,13 +98,13 @@ class PoseTrial {
         solves_(static_cast<double>(poses.size()) * static_cast<double>(study.analysis.samples)),
         plan_(Plan(study, first_of(poses, kPoses)).with_samples(samples(study.analysis.samples))) {}
 
-  /// Solves one unit, which merge() merges.
+  /// Solves one unit, which merge() then merges repeatedly.
   void prepare() {
     unit_ = PoseUnitEvaluator(plan_, model_)(plan_.unit(0));
     effects_ = std::exchange(unit_.effects, std::nullopt);
     fill();
   }
-  /// Merges the unit at all poses of the trial. Returns the share that this is of the merging in the study.
+  /// Merges the unit at all poses of the trial. Returns the samples merged as a share of those of the study.
   double merge() {
     fill();
     return static_cast<double>(plan_.solves()) / solves_;
@@ -143,8 +143,8 @@ class PoseTrial {
 };
 
 /// A small version of a study with draws per machine, at some of its poses. It has many poses, because some work is
-/// done once for each machine or at the few poses of main effects. With many poses, this work has about the same share
-/// of the time as in the study.
+/// done once for each machine or only at the few poses of main effects. With many poses, this work takes about the same
+/// share of the time as in the study.
 class MachineTrial {
  public:
   MachineTrial(const Study& study, const Model& model, const PoseSet& poses)
@@ -162,12 +162,12 @@ class MachineTrial {
   MachineTrial(const MachineTrial&) = delete;
   MachineTrial& operator=(const MachineTrial&) = delete;
 
-  /// Solves as many machines as a unit of the study has. Returns the share that these solves are of those in the study.
+  /// Solves as many machines as a unit of the study has. Returns the number of solves as a share of those of the study.
   double solve() {
     static_cast<void>(evaluate_(0));
     return share_of(unit_table_.unit(0).count);
   }
-  /// Solves one unit, which is then merged repeatedly.
+  /// Solves one unit, which merge() then merges repeatedly.
   void prepare() {
     unit_ = MachineUnitEvaluator(table_, model_)(0);
     begin();
@@ -180,7 +180,7 @@ class MachineTrial {
     collect_->add(next_++, MachineUnit(unit_));
     return share_of(table_.unit(0).count);
   }
-  /// Computes the result at one pose. Returns the share that this pose is of the poses of the study.
+  /// Computes the result at one pose. Returns one pose as a share of the poses of the study.
   double read_pose() {
     MonteCarloColumns columns(1, responses_, analysis_);
     for (std::size_t r = 0; r < responses_; ++r) {
@@ -202,7 +202,7 @@ class MachineTrial {
     collect_.emplace(table_, analysis_);
     next_ = 0;
   }
-  /// The share of the study's samples that this many machines have at the tried poses.
+  /// The samples of this many machines at the poses of the trial, as a share of the study's samples.
   double share_of(std::size_t machines) const {
     const double tried = static_cast<double>(machines) * static_cast<double>(plan_.poses().size());
     return tried / (static_cast<double>(plan_.samples()) * static_cast<double>(poses_));

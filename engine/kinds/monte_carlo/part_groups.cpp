@@ -33,7 +33,7 @@ std::vector<double> sums_above(std::span<const double> x, std::span<const double
   return sums;
 }
 
-/// The grade of each x: the share of values below it, minus 1/2.
+/// The grade of each x: the share of all x that are below it, minus 1/2.
 std::vector<double> grades(std::span<const double> x) {
   const auto n = static_cast<double>(x.size());
   std::vector<double> found = sums_above(x, std::vector<double>(x.size(), 1.0));
@@ -45,8 +45,9 @@ double mean_product(std::span<const double> a, std::span<const double> b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0) / static_cast<double>(a.size());
 }
 
-/// The derivatives d rho / dw_i of Spearman's rho = E[a b] / sqrt(E[a^2] E[b^2]), where a and b are grades. Each
-/// derivative is the sum of the part's own product and of the effect of its weight on the grades of all parts.
+/// The derivatives d rho / dw_i of Spearman's rho = E[a b] / sqrt(E[a^2] E[b^2]) with respect to the weight of part i,
+/// where a and b are the grades of x and y. Each derivative is the sum of the part's own product and of the effect of
+/// its weight on the grades of all parts.
 std::vector<double> rank_moves(std::span<const double> x, std::span<const double> y) {
   const auto n = static_cast<double>(x.size());
   const std::vector<double> a = grades(x);
@@ -62,12 +63,12 @@ std::vector<double> rank_moves(std::span<const double> x, std::span<const double
   return moves;
 }
 
-/// The correlation of normal scores that belongs to this rank correlation, and its derivative.
+/// The correlation of normal scores with this rank correlation (Spearman), and its derivative.
 double score_correlation(double rank) { return 2.0 * std::sin(std::numbers::pi / 6.0 * rank); }
 double score_slope(double rank) { return std::numbers::pi / 3.0 * std::cos(std::numbers::pi / 6.0 * rank); }
 
-/// [pairs x parts] The derivatives of correlations with respect to the weights, if the correlations are those of the
-/// measured values.
+/// [pairs x parts] The derivatives of the correlations of normal scores with respect to the weights of the parts, if
+/// the correlations are those of the measured values.
 std::vector<double> correlation_moves(std::span<const SmoothedValues> parts, std::span<const double> correlation) {
   constexpr double kSame = 1e-9;
   std::vector<double> moves;
@@ -120,8 +121,8 @@ Range range_of(const SmoothedValues& parts, std::size_t i) {
   return {parts.values()[i] - parts.half_widths()[i], parts.values()[i] + parts.half_widths()[i]};
 }
 
-/// Adds to `influence` [parts] the influence of each part's weight on the logarithm of the density f at x: g_i / f - 1,
-/// where g_i is the density of the smoothed value of part i.
+/// Adds to `influence` [parts] the derivative of the logarithm of the density f at x with respect to each part's
+/// weight: g_i / f - 1, where g_i is the density of the smoothed value of part i.
 void add_density(const SmoothedValues& parts, double x, std::span<double> influence) {
   const std::size_t n = influence.size();
   bool single = false;  // whether x equals a value that is not smoothed, whose density outweighs all others
@@ -137,8 +138,9 @@ void add_density(const SmoothedValues& parts, double x, std::span<double> influe
   for (std::size_t i = 0; i < n; ++i) influence[i] += static_cast<double>(n) * own(i) / sum - 1.0;
 }
 
-/// Adds to `influence` [parts] the influence of each part's weight through the normal scores of correlated errors.
-/// These scores depend on the share of the parts below x.
+/// Adds to `influence` [parts] the derivative of the logarithm of the density with respect to each part's weight, as
+/// far as it acts through the normal scores of correlated errors. These scores depend on the share of the parts below
+/// x.
 void add_scores(const PartGroup& group, std::span<const double> x, std::span<double> influence) {
   const std::size_t size = group.errors.size();
   const std::size_t n = group.size();

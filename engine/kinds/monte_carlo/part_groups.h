@@ -7,8 +7,8 @@
 #include "engine/random/smoothed_values.h"
 #include "engine/study/plan.h"
 
-/// How the density of a machine's errors depends on the weight of each measured part. Derivation: theory.md, "What few
-/// parts leave open".
+/// How the density of a machine's errors depends on the weight of each measured part in their distribution. Derivation:
+/// theory.md, "What few parts leave open".
 namespace poesy {
 
 /// Errors that were measured on the same n parts: a single error, or a block of k correlated errors. Value i of each
@@ -27,8 +27,8 @@ struct PartGroup {
 
 /// All groups of measured errors of a study.
 struct PartGroups {
-  /// False if a machine draws a measured error anew at each pose, or if a measured error is correlated with an error
-  /// that is not measured or is measured on other parts.
+  /// Whether the influence of parts can be computed. False if a machine draws a measured error anew at each pose, or if
+  /// a measured error is correlated with an error that is not measured or is measured on other parts.
   bool known = true;
   std::vector<PartGroup> each = {};  ///< the groups; an error is in one group only
 };
@@ -41,9 +41,8 @@ PartGroups part_groups(const Plan& plan);
 PartGroup part_group(std::vector<std::size_t> errors, std::vector<SmoothedValues> parts,
                      std::span<const double> correlation);
 
-/// Adds to `influence` [parts] the influence of each of the n parts on the density f of the group's errors. This is the
-/// derivative d ln f / dw_i by the part's weight w_i = 1/n. These derivatives sum to 0. x: [errors] errors of a
-/// machine, SI.
+/// Adds to `influence` [parts] the derivative d ln f / dw_i of the density f of the group's errors with respect to the
+/// weight w_i = 1/n of each of the n parts. These derivatives sum to 0. x: [errors] errors of a machine, SI.
 void add_influence(const PartGroup& group, std::span<const double> x, std::span<double> influence);
 
 }  // namespace poesy

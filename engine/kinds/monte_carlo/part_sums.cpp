@@ -65,12 +65,11 @@ Interval PartSums::interval(double conf_level) const {
   const auto machines = static_cast<double>(machines_);
   const double yield = 1.0 - static_cast<double>(rejects_) / machines;
   double of_parts = 0.0;
-  // Sum over the groups of the squared variance divided by its degrees of freedom, for the formula of Welch and
-  // Satterthwaite.
+  // The sum over the groups of variance^2 / degrees of freedom, for the formula of Welch and Satterthwaite.
   double squares = 0.0;
   for (std::size_t g = 0; g < sums_.size(); ++g) {
     const auto n = static_cast<double>(sums_[g].size());
-    // Subtracting squares_ removes the bias of squared sums over few machines.
+    // The square of a sum over few machines is biased; subtracting `squares_` removes the bias.
     const double variance = (square_sum(sums_[g]) - squares_[g]) / (machines * machines * n * (n - 1.0));
     of_parts += variance;
     squares += variance * variance / (n - 1.0);

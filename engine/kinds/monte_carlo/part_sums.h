@@ -10,9 +10,9 @@
 
 namespace poesy {
 
-/// Sums the influence of each measured part on the probability p that a machine is rejected. Let f be the density of
-/// all errors, in which part i has the weight w_i = 1/n. Then dp/dw_i = E[1_reject d ln f / dw_i], so only rejected
-/// machines are added.
+/// Sums the derivative of the probability p that a machine is rejected with respect to the weight of each measured
+/// part. Let f be the density of all errors, in which part i has the weight w_i = 1/n. Then dp/dw_i = E[1_reject d ln f
+/// / dw_i], so only rejected machines are added.
 class PartSums {
  public:
   /// Empty sums. Refers to the groups.
@@ -26,9 +26,9 @@ class PartSums {
   /// The smallest number of rejects, and of good machines, from which the influence of parts is estimated.
   static constexpr std::uint64_t kLeast = 10;
 
-  /// The confidence interval of the yield with the uncertainty from few machines and from few parts: Student's interval
-  /// on the scale of normal scores. Both ends are NaN with fewer than kLeast rejects or good machines, or if the groups
-  /// are not known. Precondition: 0 < conf_level < 1.
+  /// The confidence interval of the yield, which includes the uncertainty from few machines and from few parts:
+  /// Student's interval on the scale of normal scores. Both ends are NaN with fewer than kLeast rejects or good
+  /// machines, or if the influence of parts cannot be computed (PartGroups::known). Precondition: 0 < conf_level < 1.
   Interval interval(double conf_level) const;
 
   void state(Archive& archive);  ///< Reads or writes the sums, bit for bit.

@@ -57,7 +57,7 @@ std::vector<FilledColumn> overall_columns(const StoredResult& result) {
   return columns;
 }
 
-/// The accuracy of the quantiles over all poses, as text.
+/// A text on the accuracy of the quantiles over all poses.
 std::string overall_error_text(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.overall_quantile_error.empty()) {  // files of version 0.2
@@ -90,7 +90,7 @@ std::size_t worst_pose(std::span<const double> at_poses) {
   return static_cast<std::size_t>(worst - at_poses.begin());
 }
 
-/// Gives the row further cells with the largest value over the poses, and its pose.
+/// Appends cells to the row: the largest value over the poses, and its pose.
 void add_worst_pose(std::vector<Cell>& row, std::span<const double> at_poses, const Unit& unit) {
   const std::size_t worst = worst_pose(at_poses);
   row.push_back(number_cell(at_poses[worst] / unit.si));
@@ -182,8 +182,8 @@ Table poses_table(const StoredResult& result) {
   return table;
 }
 
-/// The histogram of a response and its cumulative curve, as outlines over the edges of the bins. The first and the last
-/// bin are left out, because they extend to the extremes.
+/// The histogram of a response and its cumulative curve, as lines over the edges of the bins. The first and the last
+/// bin are left out, because they extend to the smallest and the largest sample.
 struct Outline {
   std::vector<double> x;        ///< each bin's lower and upper end, in the unit shown
   double width = 1.0;           ///< about the width of a bin, a round number, in the unit shown
@@ -344,7 +344,8 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   add_how_sure(result, tables, page);
 }
 
-/// [poses] The share of machines that are rejected at each pose, plus a small amount that grows with the scatter there.
+/// [poses] The share of machines that are rejected at each pose, plus a small amount that is proportional to the root
+/// mean square of the limited responses there.
 std::vector<double> pose_weights(const MonteCarloResult& found, const Study& study) {
   constexpr double kSmall = 1e-6;
   std::vector<double> weights(found.poses(), 0.0);
@@ -384,7 +385,7 @@ void add_solved_page(const ReportedResult& reported, Page& page) {
 }
 
 /// Advice such as "Make smaller first what makes most of the variance of gap alone: delta_1 (12 %), ...". Empty if the
-/// errors' indices are unknown or small, as they are for norms.
+/// first-order indices of the errors are unknown or small, as they are for norms.
 std::string drivers_text(const StoredResult& result, std::size_t r) {
   constexpr std::size_t kMost = 3;
   constexpr double kLittle = 0.1;
@@ -408,8 +409,8 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
                      text);
 }
 
-/// Advice like "Make flange_x (36 %), ... smaller first", with the errors that add most to the scatter of a limited
-/// response. Empty if their shares are not known.
+/// Advice such as "Make smaller first what adds most to the scatter of gap: flange_x (36 %), ...", for a limited
+/// response. Empty if the shares of errors are not known.
 std::string limit_drivers_text(const StoredResult& result) {
   constexpr std::size_t kMost = 3;
   const auto shares = response_shares(result);
@@ -427,7 +428,7 @@ std::string limit_drivers_text(const StoredResult& result) {
                      result.responses[shares->response].name, text);
 }
 
-/// Advice on the verdicts if the study has limits, otherwise on the response.
+/// Advice that follows from the verdicts if the study has limits, otherwise from the response.
 std::string advice(const StoredResult& result, std::size_t r) {
   using Decision = YieldVerdict::Decision;
   const std::optional<LimitVerdicts>& verdicts = result.verdicts;
@@ -446,7 +447,7 @@ std::string advice(const StoredResult& result, std::size_t r) {
   return std::string(first) + which;
 }
 
-/// The answer at the top of the report: the expected values of a response, and its worst pose.
+/// The summary at the top of the report: the expected values of a response, and its worst pose.
 Answer answer(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.poses() == 0 || found.levels.empty()) return {};
@@ -504,8 +505,8 @@ std::vector<double> rms_at_poses(const StoredResult& result, std::size_t respons
   return {values.begin(), values.end()};
 }
 
-/// The shares of errors in the scatter of a limited response, or first-order indices if there are none; and the
-/// root mean square at each pose.
+/// The shares of errors in the scatter of a limited response, or their first-order indices if there are no shares; and
+/// the root mean square at each pose.
 ErrorShares error_shares(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.poses() == 0) return {};
@@ -520,7 +521,8 @@ ErrorShares error_shares(const StoredResult& result) {
           .at_poses = rms_at_poses(result, r)};
 }
 
-/// The merits by which results are compared: the yield, and the root mean square of the response over all samples.
+/// The numbers by which it is judged which of two results is better: the yield, and the root mean square of the
+/// response over all samples.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   const MonteCarloResult& found = monte_carlo_of(result);
   std::vector<Merit> list;

@@ -77,7 +77,7 @@ struct YieldResult {
   double unsolved_pass = 0.0;          ///< yield if samples that are not solved count as within every limit
   double unsolved_pass_ci_low = 0.0;   ///< lower end of the interval of unsolved_pass
   double unsolved_pass_ci_high = 0.0;  ///< upper end of the interval of unsolved_pass
-  /// Number of rejects if samples that are not solved count as within every limit.
+  /// Number of rejects if a sample that is not solved counted as within every limit.
   std::uint64_t unsolved_pass_rejects = 0;
   Array<double, axis::Response> by_response = {};  ///< share of machines that are within this limit at every pose
   Array<double, axis::Response> by_response_ci_low = {};   ///< lower ends of the intervals of by_response
@@ -89,22 +89,23 @@ struct YieldResult {
   /// Lower ends of the intervals of gradient, by the central limit theorem.
   Array<double, axis::Factor> gradient_ci_low = {};
   Array<double, axis::Factor> gradient_ci_high = {};  ///< upper ends of the intervals of gradient
-  /// Change of the yield if the sigma of an error is a tenth larger; NaN if not known. Files of version 0.2 have
-  /// neither this list nor the lists below.
+  /// Change of the yield if the sigma of an error is a tenth larger; NaN if not known. Files of version 0.2 do not have
+  /// this list and the following ones.
   Array<double, axis::Factor> change = {};
   Array<double, axis::Factor> change_ci_low = {};   ///< lower ends of the intervals of change
   Array<double, axis::Factor> change_ci_high = {};  ///< upper ends of the intervals of change
-  /// Share of each error in the scatter of each limited response; NaN if not known.
+  /// Share of each error in the scatter of each limited response (its mean square about the mean over the machines,
+  /// over all poses); NaN if not known.
   Array<double, axis::Response, axis::Factor> mean_square_share = {};
   /// Lower ends of the intervals of mean_square_share.
   Array<double, axis::Response, axis::Factor> mean_square_share_ci_low = {};
   /// Upper ends of the intervals of mean_square_share.
   Array<double, axis::Response, axis::Factor> mean_square_share_ci_high = {};
   Array<double, axis::Response> linear_share = {};  ///< share of the scatter that is linear in the errors
-  /// Root mean square over the poses of the mean of each limited response, of a norm that of its vector; NaN if not
-  /// known. Files of version 0.2 have neither this list nor the next.
+  /// Root mean square over the poses of the mean of each limited response over the machines; for a norm, of the mean of
+  /// its vector. NaN if not known. Files of version 0.2 do not have this list and the next one.
   Array<double, axis::Response> offset = {};
-  Array<double, axis::Response> offset_share = {};  ///< share of the squared mean in the whole mean square
+  Array<double, axis::Response> offset_share = {};  ///< share of the squared mean in the mean square of the response
 
   /// Whether the result has the lists of changes, those of shares, and those of offsets.
   /// @{
@@ -118,13 +119,13 @@ struct YieldResult {
   std::optional<PartsYield> parts = {};  ///< interval with the uncertainty from few parts; set if errors are measured
 };
 
-/// The effect of each error alone on each response.
+/// The effect on each response of each error without its interactions.
 struct MainEffects {
   /// A number for each response and error.
   using Indices = Array<double, axis::Response, axis::Factor>;
   using Curves = Array<double, axis::Response, axis::Factor, axis::EffectBin>;  ///< a curve for each response and error
 
-  Indices s1;          ///< first-order index: share of the variance that the error makes alone
+  Indices s1;          ///< first-order index: share of the variance that the error causes without interactions
   Indices s1_ci_low;   ///< lower ends of the intervals of s1
   Indices s1_ci_high;  ///< upper ends of the intervals of s1
   Curves mean;         ///< mean of the response if the error is in the bin
@@ -132,8 +133,8 @@ struct MainEffects {
   Curves ci_high;      ///< upper ends of the intervals of mean
 };
 
-/// Yields of the calibrated machines as they would be without calibration, and with the best correction. YieldResult
-/// has the yield with calibration.
+/// Yields that the calibrated machines would have without calibration, and with the best correction. The yield with
+/// calibration is in YieldResult.
 struct CalibrationYields {
   double uncalibrated = 0.0;          ///< yield without calibration
   double uncalibrated_ci_low = 0.0;   ///< lower end of the interval of uncalibrated
@@ -162,11 +163,11 @@ struct MachineResult {
 
 /// First-order indices and main effects, which every Monte Carlo study computes.
 struct EffectResult {
-  double conf_level = 0.95;                                ///< confidence level of all intervals
-  std::vector<std::uint64_t> s1_poses;                     ///< poses over which effects.s1 is summed
+  double conf_level = 0.95;             ///< confidence level of all intervals
+  std::vector<std::uint64_t> s1_poses;  ///< poses over which the variances of `effects.s1` are summed
   Array<double, axis::Factor, axis::EffectBin> bin_error;  ///< [errors x bins] mean of the error in each bin
   /// Indices and curves. With draws per machine, curves are for the machines' means over all poses; with draws per
-  /// pose, for all samples at s1_poses.
+  /// pose, for all samples at `s1_poses`.
   MainEffects effects;
 };
 
@@ -197,10 +198,9 @@ struct MonteCarloResult {
   QuantilesAtPoses quantiles_ci_high;  ///< upper ends of the quantiles' intervals
   /// Bound on |quantile - order statistic| for all quantiles at the pose; empty in results of version 0.2.
   AtPoses quantile_error;
-  /// The magnitude within which the asked share of the draws stays, if limits are judged by share; otherwise empty. A
-  /// draw that does not count exceeds every magnitude, so the value is infinite if too many do not count. For a limit
-  /// that is not on magnitudes: the worst value within that share (value_at_rank), or NaN if too many draws do not
-  /// count.
+  /// For Judge::share, the magnitude that the asked share of the draws does not exceed; otherwise empty. A draw that
+  /// does not count exceeds every magnitude, so the value is infinite if too many do not count. For a limit that is not
+  /// on magnitudes: the worst value within that share (value_at_rank), or NaN if too many draws do not count.
   AtPoses share_magnitude;
 
   Overall overall_mean;                                ///< mean over the samples of all poses
@@ -219,7 +219,7 @@ struct MonteCarloResult {
   Array<std::uint64_t, axis::Response, axis::HistogramBin> histogram_counts;  ///< number of samples in each bin
   std::vector<SolveCounts> solves;  ///< [poses] how the solves at each pose ended
   std::vector<Failure> failures;    ///< the first failed samples, ordered by pose and sample
-  /// The course of adaptive samples. Set if the study has adaptive samples.
+  /// The estimates after each round of adaptive samples. Set if the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
   /// The verdicts on limits. Set if the study states limits.
   std::optional<LimitVerdicts> verdicts;
@@ -240,7 +240,7 @@ struct MonteCarloResult {
 /// Bytes of the numbers of a result whose axes have these lengths. machines: whether errors are drawn per machine.
 std::size_t monte_carlo_bytes(const AxisLengths& lengths, bool machines);
 
-/// The Monte Carlo result in a stored result; StoredResult itself has its failures, convergence and verdicts.
+/// The Monte Carlo result in a stored result. Its `failures`, `convergence` and `verdicts` are in StoredResult itself.
 /// Precondition: the result is of kind `monte-carlo`.
 inline const MonteCarloResult& monte_carlo_of(const StoredResult& result) { return found_of<MonteCarloResult>(result); }
 

@@ -28,7 +28,7 @@ std::vector<Estimate> overall_means(const MonteCarloResult& found) {
   return means;
 }
 
-/// The rule that ends adaptive sampling. It judges the intervals of the means of the responses that a summary shows.
+/// The rule by which adaptive sampling ends: by the intervals of the means of the responses that a summary shows.
 Rounds::Rule rule_of(const Model& model, const Analysis& analysis) {
   const ModelDescription& description = model.description();
   const std::size_t responses = description.responses.size();

@@ -15,7 +15,7 @@ namespace {
 
 double share(std::uint64_t part, std::uint64_t all) { return static_cast<double>(part) / static_cast<double>(all); }
 
-/// Copies the estimates of all errors into lists of values and of the ends of their intervals.
+/// Copies the estimates of all errors into lists of values, lower ends and upper ends of their intervals.
 void set_all(const std::vector<Estimate>& estimates, Array<double, axis::Factor>& value,
              Array<double, axis::Factor>& low, Array<double, axis::Factor>& high) {
   make_room({estimates.size()}, value, low, high);
@@ -44,7 +44,7 @@ void set_quantiles(std::span<const Bucket> buckets, std::span<const double> leve
   values.quantile_error(response) = found.error;
 }
 
-/// Sets curves to NaN. at: a response and an error, or a response alone for all its errors.
+/// Sets main-effect curves to NaN. at: a response and an error, or only a response, for all its errors.
 template <class... Positions>
 void leave_out_curve(MainEffects& effects, Positions... at) {
   for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) std::ranges::fill(list->row(at...), kNaN);
@@ -103,7 +103,8 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
     const std::size_t r = limit.response;
     set_estimate(good(counts.by_limit(r).strict), found.by_response, found.by_response_ci_low,
                  found.by_response_ci_high, r);
-    if (limit.allowed.is_spread()) continue;  // a spread is not decided at a single pose
+    if (limit.allowed.is_spread())
+      continue;  // whether a spread over the poses keeps its limit is not decided at a single pose
     std::ranges::transform(counts.at_pose.row(r), found.worst_pose_share.row(r).begin(),
                            [&](const Rejects& rejects) { return share(rejects.strict, n); });
   }

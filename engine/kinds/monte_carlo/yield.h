@@ -16,7 +16,7 @@
 /// Computes the numbers of a result from counts and sums over machines.
 namespace poesy {
 
-/// Sets an estimate at these positions in a list of values and in the lists of the ends of their intervals.
+/// Sets an estimate at these positions: its value, and both ends of its interval, in three lists.
 template <class Values, class... Positions>
 void set_estimate(const Estimate& estimate, Values& value, Values& low, Values& high, Positions... at) {
   value(at...) = estimate.value;
@@ -33,7 +33,7 @@ MachineValues machine_values(std::span<const Moments> moments, std::span<const Q
 YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::span<const ResponseLimit> limits,
                      double conf_level);
 
-/// The yields of the calibrated machines as they would be without calibration, and with the best correction. found: the
+/// The yields that the calibrated machines would have without calibration, and with the best correction. found: the
 /// yield with calibration.
 CalibrationYields calibration_yields(const CalibrationCounts& counts, const MachineCalibration& calibration,
                                      const YieldResult& found);
@@ -41,7 +41,8 @@ CalibrationYields calibration_yields(const CalibrationCounts& counts, const Mach
 /// Sets the gradient with respect to errors that machines draw anew at each pose (MachineSums::pose_scores).
 void set_pose_gradient(const Plan& plan, const ScoreSums& scores, YieldResult& found);
 
-/// The interval of the yield with the uncertainty from few parts. parts: sums over the same machines as `found`.
+/// The interval of the yield that includes the uncertainty from few parts. parts: sums over the same machines as
+/// `found`.
 PartsYield parts_yield(const PartSums& parts, const YieldResult& found);
 
 /// First-order indices, summed over the poses of `at_poses`, and main-effect curves from `curve`. errors: [errors]
@@ -50,7 +51,7 @@ MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence de
                          std::span<const BinSpread> errors, std::size_t responses, double conf_level);
 
 /// Sets indices and curves to NaN for errors that are correlated, or drawn together with others of their feature. Other
-/// errors vary with such an error, and it is not computed from a single uniform of its own.
+/// errors vary with such an error, and it is not computed from a single uniform number of its own.
 void leave_out_dependent(const Plan& plan, MainEffects& effects);
 
 /// Sets indices and curves to NaN for errors that machines draw anew at each pose, because a machine has many values of
@@ -60,15 +61,15 @@ void leave_out_per_pose(const Plan& plan, MainEffects& effects);
 /// errors are valid if they were computed at single poses.
 void leave_out_curves_per_pose(const Plan& plan, MainEffects& effects);
 
-/// Sets indices and curves to NaN for responses that do not vary (stats/indices.h) at the poses over which indices are
-/// summed, or between machines. If some responses do not vary at any pose, records which. rounding: [responses] see
-/// joint_rounding() (run/response_rounding.h).
+/// Sets indices and curves to NaN for responses that do not vary (stats/indices.h): at the poses over which the
+/// variances of indices are summed, or between machines. If some responses do not vary at any pose, records which.
+/// rounding: [responses] see joint_rounding() (run/response_rounding.h).
 void leave_out_constant(std::span<const double> rounding, MonteCarloResult& found);
 
 /// The distribution of each error of a study in its bins.
 std::vector<BinSpread> bin_spreads(const Plan& plan);
 
-/// A result of main effects at these poses, with the bins but without indices and curves.
+/// A result of main effects at these poses, with the means of the errors in the bins but without indices and curves.
 EffectResult effect_result(std::span<const PoseIndex> poses, std::span<const BinSpread> errors, double conf_level);
 
 /// Judges the yield against the wanted yield (0: none). It is kept if the one-sided lower confidence bound is at least
@@ -76,7 +77,7 @@ EffectResult effect_result(std::span<const PoseIndex> poses, std::span<const Bin
 /// poses ended.
 YieldVerdict judge_yield(const YieldResult& found, const SolveCounts& solves, double asked);
 
-/// Judges the limits of a study with draws per machine, all together and each alone. judged: [responses] values by
+/// Judges the limits of a study with draws per machine: all together, and each alone. judged: [responses] values by
 /// which machines are judged (ValueLimit::deciding), of machines that are solved at every pose. counts: see yield_of();
 /// solves: see judge_yield().
 LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked, const YieldResult& found,

@@ -17,7 +17,7 @@
 namespace poesy {
 namespace {
 
-/// The positions in the fit of a vector's components at all poses.
+/// The positions of a vector's components at all poses among the fitted components.
 std::vector<std::size_t> rows_of(const MachineTable& table, const LimitedVector& vector) {
   std::vector<std::size_t> rows;
   for (std::size_t m = 0; m < table.plan().poses().size(); ++m) {
@@ -71,7 +71,8 @@ LinearLimits limits_of(const MachineTable& table, const LinearFit& fit) {
 }
 
 std::vector<std::optional<MappedError>> mapped_errors(const MachineTable& table) {
-  constexpr std::size_t kDegree = 2;  // degree of the polynomial that corrects for machines that the map judges wrongly
+  constexpr std::size_t kDegree =
+      2;  // degree of the polynomial that corrects for machines that the linear map judges wrongly
   std::vector<std::optional<MappedError>> errors;
   for (std::size_t p = 0; p < table.errors(); ++p) {
     errors.emplace_back();
@@ -110,7 +111,8 @@ void set_shares(const MachineTable& table, const LinearFit& fit, double conf_lev
   }
 }
 
-/// Whether the map judges only few machines wrongly. If there are many, the polynomial does not correct well enough.
+/// Whether the linear map judges only few machines wrongly as good or rejected. If it misjudges many, the polynomial
+/// does not correct well enough.
 bool judges_well(const MappedGradient& gradient, std::span<const std::uint8_t> rejected) {
   constexpr double kMost = 0.3;  // share of the rejects, or of the good machines if there are fewer of these
   constexpr double kAnyway = 4.0;

@@ -10,8 +10,8 @@
 
 namespace poesy {
 
-/// Sets the numbers of the yield that follow from the linear map of the limited vectors. fit: the map, fitted to the
-/// first machines of the study; it may be none. The numbers are
+/// Sets the numbers of the yield that follow from the linear map from the errors to the limited vectors. fit: the map,
+/// fitted to the first machines of the study; it may be none. The numbers are
 /// - the shares of all errors in the scatter of each limited response; NaN without a fit;
 /// - the gradient and the change of the yield by errors whose score is a polynomial. These replace the present numbers
 /// if the map judges only few machines wrongly.
