@@ -25,12 +25,12 @@ using calibration::Placement;
 using calibration::Vector;
 using calibration::Vector3;
 
-/// Two values of a coordinate are equal if they differ by less than this: a share of the machine's reach for a length,
-/// rad for an angle.
+/// Two values of a coordinate count as equal if they differ by less than this: a share of the machine's reach for a
+/// length, rad for an angle.
 constexpr double kSameCoordinate = 1e-9;
 constexpr const char* kDrives = "actuators";
 
-/// A coordinate of the platform as a function of its placement.
+/// A coordinate of the platform as a function of the platform's position and rotation (its placement).
 using PlaceCoordinate = std::function<double(const Placement&)>;
 
 /// The angles (rad) of three rotations about the axes i, j and k (`order`) whose product R_i R_j R_k is the rotation
@@ -46,8 +46,9 @@ Vector3 angles_in_order(const Matrix3& R, const std::array<Eigen::Index, 3>& ord
   return angles;
 }
 
-/// All functions of the placement that may be a coordinate of this dimension: the components of the position of P; or
-/// the components of the rotation vector, and the angles of rotations about the axes in any order.
+/// All functions of the placement that may be a coordinate of this dimension. For lengths: the components of the
+/// position of the platform's origin. For angles: the components of the rotation vector, and the angles of rotations
+/// about the axes in any order.
 std::vector<PlaceCoordinate> possible_coordinates(Dimension dimension) {
   std::vector<PlaceCoordinate> list;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -64,8 +65,8 @@ std::vector<PlaceCoordinate> possible_coordinates(Dimension dimension) {
   return list;
 }
 
-/// Poses at which coordinates are compared: reachable poses spread over the workspace, and the first poses of the
-/// study.
+/// Poses at which the values of coordinates are compared: reachable poses spread over the workspace, and the first
+/// poses of the study.
 std::vector<std::vector<double>> test_poses(const Model& model, const PoseSet& poses) {
   constexpr std::array<double, 4> kShares{0.37, 0.61, 0.44, 0.72};
   const ModelDescription& description = model.description();
@@ -84,7 +85,7 @@ std::vector<std::vector<double>> test_poses(const Model& model, const PoseSet& p
   return list;
 }
 
-/// Finds for a coordinate of the mechanism the function of the platform's placement that has its values at all test
+/// Finds the function of the platform's placement that has the same values as a coordinate of the mechanism at all test
 /// poses.
 class Recognition {
  public:
@@ -93,7 +94,7 @@ class Recognition {
     for (const std::vector<double>& pose : poses_) places_.push_back(machine.nominal(pose));
   }
 
-  /// The coordinate of this name; none if it is not recognised.
+  /// The function for the coordinate of this name; none if it is not recognised.
   std::optional<PlaceCoordinate> operator()(const std::string& name) const {
     constexpr std::array<std::string_view, 3> kTip{"tip_x", "tip_y", "tip_z"};
     const auto own = std::ranges::find(description_->pose_coordinates, name, &PoseCoordinate::name);
@@ -129,7 +130,7 @@ Placement moved(const Placement& nominal, const Displacement& by) {
           nominal.tip + by.moved + (by.turn - Matrix3::Identity()) * (nominal.tip - nominal.origin)};
 }
 
-/// The number of drives of a mechanism. Actuated joints of its sketch that name the same drive are one drive.
+/// The number of drives of a mechanism. Actuated joints of its sketch that name the same drive count as one drive.
 std::size_t count_drives(const Model& model) {
   std::set<std::string> named;
   std::size_t alone = 0;

@@ -10,11 +10,11 @@
 
 namespace poesy {
 
-/// A function that computes the errors of the coordinates which the study's controller commands, from the displacement
-/// of the platform. Each coordinate is recognised by its values at test poses: they must be equal to a component of the
-/// platform's position or to an angle of its rotation. Throws InputError if a coordinate is not recognised, or if the
-/// drives do not fit: their number is not that of the pose coordinates, or the drives of one motor do not move
-/// together.
+/// Makes a function that computes, from the displacement of the platform, the errors of the coordinates that the
+/// study's controller commands. Each coordinate is recognised by its values at test poses: they must be equal to a
+/// component of the platform's position or to an angle of its rotation. Throws InputError if a coordinate is not
+/// recognised, or if the drives do not fit: their number is not that of the pose coordinates, or the drives of one
+/// motor do not move together.
 calibration::CoordinateError commanded_coordinates(const Study& study, const Model& model,
                                                    const calibration::ExactMachine& machine, const PoseSet& poses);
 

@@ -14,12 +14,12 @@
 namespace poesy {
 namespace {
 
-/// The kind of study that judges a yield.
+/// The kind of study that can judge a yield.
 const StudyKind& kind_with_yields() {
   return (*std::ranges::find_if(kinds(), [](const Kind* kind) { return kind->study.ask_yield != nullptr; }))->study;
 }
 
-/// Whether machines are measured at poses that a file lists for the calibration.
+/// Whether machines are calibrated from measurements at poses that a file lists.
 bool measures_at_file(const Study& study) {
   const auto& calibration = study.analysis.calibration;
   return calibration != nullptr && calibration->poses && calibration->poses->select == PoseSelection::Select::file;

@@ -7,22 +7,22 @@
 #include "engine/study/study.h"
 
 /// Studies that confirm or refute the result of another study. They do not need the files of that study, because
-/// write_files_beside() writes what was in them.
+/// write_files_beside() writes files with the same contents.
 namespace poesy {
 
 /// Converts a study of drawn errors to a Monte Carlo study of the same errors at the same poses, with default options.
 /// `stem` begins the names of its files, as in name_files_beside().
 Study as_confirming_study(Study study, const std::string& stem);
 
-/// Sets the paths of the files that the study reads: poses from a file will be in STEM_poses.csv, those of a
-/// calibration in STEM_measured.csv, a mechanism from a file in STEM_mechanism.toml. STEM is `stem`.
+/// Sets the paths of the files that the study will read: STEM_poses.csv for poses from a file, STEM_measured.csv for
+/// those of a calibration, STEM_mechanism.toml for a mechanism from a file. STEM is `stem`.
 void name_files_beside(Study& confirming, const std::string& stem);
 
 /// The names of the files that write_files_beside() writes.
 std::vector<std::string> files_beside(const Study& confirming);
 
-/// Writes into a folder the files that name_files_beside() names, as far as the study needs them. poses: the poses of
-/// the study. Throws FileError.
+/// Writes into a folder the files whose paths name_files_beside() set, as far as the study reads them. poses: the poses
+/// of the study. Throws FileError.
 void write_files_beside(const std::string& folder, const Study& confirming, const PoseSet& poses);
 
 /// Writes a study as NAME.toml and returns the path. The file begins with comments: one that states the errors which

@@ -24,11 +24,11 @@ using Side = Axis<"side">;  ///< Whether a step of an error is up or down.
 
 constexpr std::string_view kNone = "-";
 
-/// The step of a central difference, in standard deviations of the error. Both curvature and rounding change a slope by
-/// at most a share of 1e-9.
+/// The step of the central differences, in standard deviations of the error. With it, curvature and rounding each
+/// change a slope by at most a share of 1e-9.
 constexpr double kDifferenceStep = 1.0 / 16.0;
 
-/// The features that scatter, in a tolerance zone or a clearance, and of which every error varies in the study.
+/// The features whose errors scatter (in a tolerance zone or a clearance) and all vary in the study.
 std::vector<Feature> varied_features(const Study& study) {
   const auto varies = [&](FactorIndex error) {
     return std::ranges::find(study.analysis.factors, error) != study.analysis.factors.end();
@@ -43,7 +43,7 @@ std::vector<Feature> varied_features(const Study& study) {
   return list;
 }
 
-/// Slopes of all responses with respect to the errors of features, at one pose.
+/// Computes the slopes of all responses with respect to the errors of features, at one pose.
 class Slopes {
  public:
   /// Positions on the axis Side: a step of the error in the positive and in the negative direction.
@@ -79,8 +79,8 @@ class Slopes {
     evaluator_->evaluate(samples, {found_.all(), status_.all(), iterations_, {}});
   }
 
-  /// The slopes of a response with a sign with respect to the errors of a feature. NaN for an error whose steps were
-  /// not solved at the pose.
+  /// The slopes of a response, which must have a sign, with respect to the errors of a feature. NaN for an error whose
+  /// steps were not solved at the pose.
   OfErrors of(std::size_t response, std::size_t feature) const {
     OfErrors list;
     for (std::size_t e = first_[feature]; e < first_[feature + 1]; ++e) {
@@ -103,8 +103,9 @@ class Slopes {
   std::vector<std::uint32_t> iterations_;
 };
 
-/// The responses with a sign that make up a response: the response itself, or its components if it is a norm. Empty if
-/// the response has no sign but no components, or has more than three components.
+/// The responses with a sign from which a response is computed: the response itself, or its components if it is a norm.
+/// Empty if the response is never negative without being a norm (Response::has_no_sign), or has more than three
+/// components.
 std::vector<std::size_t> components(const ModelDescription& model, std::size_t response) {
   const Response& one = model.responses[response];
   if (one.has_no_sign || one.components.size() > 3) return {};
@@ -132,7 +133,7 @@ std::string datums_of(const std::optional<Zone>& zone) {
   return zone && !zone->datums.empty() ? zone->datums : std::string(kNone);
 }
 
-/// The result with the description of the features and all effects NaN.
+/// A result with the description of the features, in which all effects are NaN.
 DrawingResult described(const StudyRun& run, const std::vector<Feature>& features) {
   DrawingResult made;
   const std::size_t count = features.size();
@@ -170,8 +171,8 @@ DrawingResult described(const StudyRun& run, const std::vector<Feature>& feature
   return made;
 }
 
-/// [features] The variances (SI) of a feature's errors, if the study gives one of them a distribution of its own, such
-/// as a measured one. Empty for a feature that scatters as its zones say.
+/// [features] The variances (SI) of the feature's errors, if the study gives one of them a distribution of its own,
+/// such as a measured one. Empty for a feature that scatters only as its zones state.
 std::vector<OfErrors> own_variances(const Study& study, const std::vector<Feature>& features) {
   const auto by_zones = distributions_by_zones(study);
   std::vector<OfErrors> variances(features.size());
@@ -204,14 +205,14 @@ struct OverPoses {
   std::vector<double> at_worst{};  ///< [features] contribution of each feature to that worst case
 };
 
-/// How features scatter: as their zones say, or with variances of their own.
+/// How features scatter: as their zones state, or with variances of their own.
 struct FeatureScatter {
   drawing::ZoneScatter in_zones;
   std::vector<OfErrors> own;  ///< [features] see own_variances()
 };
 
-/// Adds pose m to the sums of response r, and sets the result at this pose. slopes: [features][components of the
-/// response].
+/// Adds the effects at pose m to the sums of response r, and sets the result at this pose. slopes:
+/// [features][components of the response].
 void add_pose(const std::vector<Feature>& features, const FeatureScatter& scatter,
               const std::vector<std::vector<OfErrors>>& slopes, std::size_t r, std::size_t m, OverPoses& sums,
               DrawingResult& result) {

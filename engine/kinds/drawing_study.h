@@ -9,7 +9,7 @@ namespace poesy {
 
 /// The effect of a drawing's features on the responses, to first order (DrawingResult). The slopes of the responses
 /// with respect to the features' errors are central differences with a step of a sixteenth of an error's standard
-/// deviation. Empty if the study draws no errors, or if no features scatter in zones.
+/// deviation. None if the study draws no errors, or if no feature scatters.
 std::optional<DrawingResult> drawing_result(const StudyRun& run);
 
 }  // namespace poesy

@@ -11,7 +11,7 @@ namespace {
 using calibration::Matrix;
 using calibration::Vector;
 
-constexpr double kUsualLength = 1e-3;  // m: scale of a length without a tolerance
+constexpr double kUsualLength = 1e-3;  // m: scale of a fitted length if an error in it has no tolerance
 
 Eigen::Index position(std::size_t at) { return static_cast<Eigen::Index>(at); }
 
@@ -35,15 +35,15 @@ Matrix covariance_of(const ErrorModel& errors, const std::vector<FactorIndex>& f
   return covariance;
 }
 
-/// The rows of the matrix F (FittedDirections) that belong to these errors.
+/// The rows of the matrix F (FittedDirections) for these errors.
 Matrix rows_of(const Matrix& F, const std::vector<FactorIndex>& factors) {
   Matrix rows(position(factors.size()), F.cols());
   for (std::size_t n = 0; n < factors.size(); ++n) rows.row(position(n)) = F.row(position(factors[n].value));
   return rows;
 }
 
-/// The matrix F (FittedDirections), [errors x fitted errors]: column j has the weights of the errors in fitted error j.
-/// A fitted error that is a single error has a unit column.
+/// [errors x fitted errors] The matrix F (FittedDirections): column j has the weights of the errors in fitted error j.
+/// For a fitted error that is a single error, one weight is 1 and the others are 0.
 Matrix columns_of(std::span<const FittedErrors> fit, std::size_t factors) {
   Matrix F = Matrix::Zero(position(factors), position(fit.size()));
   for (std::size_t j = 0; j < fit.size(); ++j) {
@@ -70,7 +70,7 @@ std::vector<FactorIndex> fitted_with_tolerance(const CalibrationTable& table) {
 }
 
 /// The matrix F (FittedDirections) of these fitted errors, with the scales, difference steps and prior of its columns.
-/// known: the mean and the covariance that the tolerances give; scales and prior are computed from these.
+/// known: the mean and the covariance that follow from the tolerances; scales and prior are computed from these.
 FittedColumns made_columns(std::span<const FittedErrors> fit, const CalibrationTable& table,
                            const ToleranceKnowledge& known, const calibration::ExactMachine& machine) {
   FittedColumns columns;

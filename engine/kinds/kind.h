@@ -26,8 +26,8 @@ struct StudyResult {
   std::any found;                         ///< the result, in the kind's own type, for instance SensitivityResult
   std::optional<LimitVerdicts> verdicts;  ///< verdicts on the limits that the study states; empty without limits
   std::vector<std::string> row_names;     ///< names of the rows of given errors, for verdicts that name a row
-  std::optional<Study> confirming = std::nullopt;       ///< a study that confirms the result; none if the kind makes
-                                                        ///< none
+  std::optional<Study> confirming =
+      std::nullopt;  ///< a study that confirms the result; none if the kind writes no such study
   std::optional<DrawingResult> drawing = std::nullopt;  ///< effects of a drawing's features; none if no features
                                                         ///< scatter in zones
   /// [machines] 1 if the machine is rejected, otherwise 0. Empty without limits or without RunOptions::keep_rejected.
@@ -41,7 +41,7 @@ struct StudyResult {
   }
 };
 
-/// A study with all that a run of it needs. Refers to all members.
+/// A study with everything that a run of it needs. Refers to all members.
 struct StudyRun {
   const Study& study;         ///< the study
   const Model& model;         ///< the model of the study's mechanism
@@ -68,30 +68,31 @@ struct RunKind {
 /// A function for Kind::most_shards if the shards of the kind are groups of poses.
 inline std::size_t shards_by_pose(const Study&, std::size_t poses) { return poses; }
 
-/// The given errors of a result whose errors were not drawn, and how `poesy replay` names its solves: by the pose, and
-/// by the number or the name of a row of errors. Refers to the result.
+/// The given errors of a result whose errors were not drawn, and how a user of `poesy replay` names a solve: by the
+/// pose, and by the number or the name of a row of errors. Refers to the result.
 struct GivenErrors {
   std::string_view word;           ///< what a named row is called in messages: "case"
   std::vector<std::string> names;  ///< names of the rows; empty if they have none
-  /// Number of solves at each pose, if a solve is named by its number. 0 if a solve is named by its row of errors.
+  /// Number of solves at each pose, if a solve is named by its number at the pose. 0 if it is named by its row of
+  /// errors.
   std::size_t samples = 0;
   Pairing pairing = Pairing::every_pose_with_every_row;  ///< how poses and rows are combined
-  std::span<const double> values;                        ///< errors, [rows x errors in the result], SI
+  std::span<const double> values;                        ///< [rows x errors in the result] values of the errors, SI
 };
 
 /// The options of `poesy tolerances`.
 struct TolerancesOptions {
   std::string result;                ///< path of the result
-  std::string response;              ///< the response for which tolerances are set; empty: not named
+  std::string response;              ///< name of the response for which tolerances are set; empty: the user names none
   std::optional<std::string> limit;  ///< limit on the root mean square of the response: "0.05 mm"
   /// Error relative to which tolerances of equal effect are set: "NAME" or "NAME=0.1 mm".
   std::optional<std::string> reference;
-  std::string folder;        ///< folder for the files; empty: RESULT_tolerances
+  std::string folder;        ///< folder for the files; empty: NAME_tolerances for the result NAME.h5
   bool extrapolate = false;  ///< whether to set tolerances even if a sensitivity index changes with the
                              ///< size of the error
 };
 
-/// Sets tolerances from a result: writes them into a folder with the studies that test them, and returns the output of
+/// Sets tolerances from a result: writes them into a folder, with the studies that test them. Returns the output of
 /// `poesy tolerances`, wrapped at `width` columns. Throws InputError, FileError.
 using SetTolerances = std::string (*)(const StoredResult& result, const TolerancesOptions& options,
                                       const Catalog& catalog, std::size_t width);

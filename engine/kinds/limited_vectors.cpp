@@ -7,7 +7,7 @@
 namespace poesy {
 namespace {
 
-/// The largest number of sums that the fits at all poses may hold.
+/// The largest number of sums that the fits at all poses may keep in memory.
 constexpr std::size_t kMostSums = std::size_t{4} << 20U;
 
 std::size_t components_of(const std::vector<Detail>& details) {
@@ -26,7 +26,8 @@ LimitedVectors::LimitedVectors(const Plan& plan, const Model& model, const Analy
   for (const ResponseLimit& limit : analysis.limits) {
     const Response& response = description.responses[limit.response];
     const bool is_centred = limit.allowed.is_spread() && !response.is_magnitude();
-    if (is_centred && !plan.per_pose().empty()) continue;  // a fit at each pose does not know the mean over the poses
+    if (is_centred && !plan.per_pose().empty())
+      continue;  // the mean over the poses is not known to a fit at a single pose
     LimitedVector vector{limit.response, limit.allowed, response.components, rows_, 0, is_centred};
     const std::size_t numbers = model.norm_of_details(limit.response, plan.poses()[PoseIndex(0)]).size();
     if (numbers > 0) {
@@ -40,8 +41,8 @@ LimitedVectors::LimitedVectors(const Plan& plan, const Model& model, const Analy
     vectors_.push_back(std::move(vector));
   }
   const std::size_t errors = plan.factors().size();
-  // Number of products of two errors that the fit at a pose sums. Without errors that machines draw anew at each pose,
-  // it sums none.
+  // Number of products of two errors whose sums the fit at a pose keeps. Without errors that machines draw anew at each
+  // pose, it keeps none.
   const std::size_t products = plan.per_pose().empty() ? 0 : errors * errors;
   if (plan.poses().size() * (rows_ * (errors + 1) + products) <= kMostSums) return;
   vectors_.clear();

@@ -17,12 +17,12 @@
 
 namespace poesy {
 
-/// How the machines of a study are calibrated: at which poses they are measured, with which noise, and what is fitted.
-/// Immutable, and shared by all threads.
+/// How the machines of a study are calibrated: at which poses they are measured, with which noise, and which errors are
+/// fitted. Immutable, and shared by all threads.
 class MachineCalibration {
  public:
-  /// Refers to the study and the model. poses: those of the study. Precondition: analysis.calibration is set. Throws
-  /// InputError if the measurements do not determine what is fitted, or if a pose cannot be measured.
+  /// Refers to the study and the model. poses: those of the study. Precondition: `analysis.calibration` is set. Throws
+  /// InputError if the measurements do not determine the fitted errors, or if a pose cannot be measured.
   MachineCalibration(const Study& study, const Model& model, const PoseSet& poses);
 
   /// This calibration for the machines of another study, which differs only in the sizes of its errors and in its seed.
@@ -35,24 +35,24 @@ class MachineCalibration {
   std::size_t values() const { return values_.size(); }            ///< The number of measured values.
   std::size_t measured_poses() const { return measured_.size(); }  ///< The number of poses that are measured.
   std::size_t fitted() const { return table().fit.size(); }        ///< The number of fitted errors.
-  /// The directions of errors that are fitted.
+  /// The fitted errors, as directions in the space of all errors.
   const calibration::FittedDirections& directions() const { return columns_.directions; }
   /// Prior knowledge of the errors; empty: none.
   const calibration::Prior& prior() const { return columns_.prior; }
   /// [values] Standard deviation by which the residual of each measured value is divided: the noise, or equal values if
   /// all noise is 0.
   const calibration::Vector& weights() const { return weights_; }
-  /// The polynomials from which the derivatives of the measurement are computed at any estimate.
+  /// The polynomials from which the derivatives of the measured values are computed at any estimate of the errors.
   const calibration::Expansion& expansion() const { return *expansion_; }
 
-  /// A measurement at the calibration's poses, in which all measured values are still 0. machine: solves the machines
+  /// A measurement at the calibration's poses, whose values are not yet set and are 0. machine: solves the machines
   /// that are measured.
   calibration::Measurement measurement(calibration::ExactMachine& machine) const;
-  /// An evaluator of calibrated machines, for one thread. It computes the responses of the model without those that the
+  /// An evaluator of calibrated machines, for one thread. It computes the model's own responses, without those that the
   /// study defines.
   std::unique_ptr<calibration::CorrectedEvaluator> corrected() const;
-  /// An evaluator of calibrated machines with these controllers. It computes all responses of the model, also those
-  /// that the study defines.
+  /// An evaluator of machines that have these controllers after calibration. It computes all responses, also those that
+  /// the study defines.
   std::unique_ptr<Evaluator> evaluator(calibration::Controllers controllers) const;
 
  private:
@@ -79,18 +79,17 @@ class MachineCalibration {
 /// The calibration of a study's machines; none if the study has no [analysis.calibration].
 std::optional<MachineCalibration> machine_calibration(const Study& study, const Model& model, const PoseSet& poses);
 
-/// What the calibration costs in addition to the solves of a study, as text for `poesy check`. each: "machine" or
-/// "case".
+/// A text for `poesy check` on the work that the calibration adds to the solves of a study. each: "machine" or "case".
 std::string calibration_cost_text(const MachineCalibration& calibration, std::string_view each);
 
 /// [all errors x samples] The values of all errors in the samples of a block, SI.
 calibration::Matrix all_errors(const SampleBlock& samples);
 
-/// Calibrates machines: measures each with noise, and fits its errors. Owns the scratch of one thread. The result for a
-/// machine depends only on the study, the machine's number and its errors.
+/// Calibrates machines: computes measured values of each, with noise, and fits its errors. Owns the scratch memory of
+/// one thread. The result for a machine depends only on the study, the machine's number and its errors.
 class MachineCalibrator {
  public:
-  /// The calibration must outlive this object and must not be moved.
+  /// The calibration must outlive this object, and must not be moved before.
   explicit MachineCalibrator(const MachineCalibration& calibration);
 
   /// Calibrates machines and returns their controllers. errors: [all errors x machines], SI. machines: the number of

@@ -22,7 +22,7 @@ namespace {
 constexpr std::array kAll{&kSensitivityKind, &kIdentificationKind, &kEvaluateKind, &kMonteCarloKind,
                           &kSobolKind,       &kAllocationKind,     &kCouplingKind};
 
-/// The order of the keys of [analysis] in the reference; a key that is not listed comes last.
+/// The order of the keys of [analysis] in the reference of study files; a key that is not listed comes last.
 constexpr std::array<std::string_view, 31> kKeys{
     "kind",      "factors",   "samples", "draws",        "calibrated", "conf_level", "background", "reference",
     "linearity", "quantiles", "groups",  "second_order", "design",     "replicates", "pose_share", "cases",

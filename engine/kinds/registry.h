@@ -11,7 +11,7 @@ namespace poesy {
 /// Every kind of study, in the order in which messages and help list them. There is no other list of kinds.
 std::span<const Kind* const> kinds();
 
-/// The part of each kind that reads study files.
+/// For each kind, the part that reads its study files.
 const StudyKinds& study_kinds();
 
 /// The kind with this name, including kinds that only results have; null if there is none.
@@ -20,7 +20,7 @@ const Kind* find_kind(std::string_view name);
 /// The kind of a study.
 const Kind& kind_of(const Study& study);
 
-/// The kind of a result. Precondition: the kind exists.
+/// The kind of a result. Precondition: this program has the kind.
 const Kind& kind_of(const StoredResult& result);
 
 /// The kinds whose solves `poesy replay` can repeat, as text for messages.

@@ -8,12 +8,12 @@
 #include "engine/kinds/kind.h"
 #include "engine/result/result_file.h"
 
-/// Functions on the results of every kind of study.
+/// Functions that write, read and export the results of every kind of study.
 namespace poesy {
 
-/// Writes the result of a study. found: in the kind's own type; it is moved, and its lists are freed as they are
-/// written. drawing: effects of a drawing's features, or null. The file is written under a temporary name, synced and
-/// renamed, so it appears complete or not at all. Throws FileError, and then an existing file is unchanged.
+/// Writes the result of a study. found: the result in the kind's own type; it is moved, and its lists are freed as they
+/// are written. drawing: effects of a drawing's features, or null. The file is written under a temporary name, synced
+/// and renamed, so it appears complete or not at all. Throws FileError, and then an existing file is unchanged.
 void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, std::any found,
                   const RunFacts& facts, const DrawingResult* drawing = nullptr);
 

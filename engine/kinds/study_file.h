@@ -10,7 +10,7 @@
 #include "engine/study/study.h"
 #include "engine/study/study_file.h"
 
-/// Functions that read and describe study files of every kind; engine/study/study_file.h describes them in full.
+/// Functions that read and describe study files of every kind; engine/study/study_file.h has the full descriptions.
 namespace poesy {
 
 /// Reads a study file.
@@ -33,9 +33,9 @@ struct StoredStudy {
 };
 
 /// Reads the study in a shard, which has all defaults filled in, with its poses. Opens no other file: files of poses,
-/// of a trajectory or of the mechanism need not exist. Do not select poses again from the study that is returned.
-/// Throws FileError with the shard's path if this program cannot read the text, or if the poses do not belong to the
-/// mechanism.
+/// of a trajectory or of the mechanism need not exist. Use the poses that are returned; do not select poses from the
+/// study again. Throws FileError with the shard's path if this program cannot read the text, or if the poses do not
+/// belong to the mechanism.
 StoredStudy stored_study(const StoredShard& shard, const Catalog& catalog);
 
 /// The study in a result, which has all defaults filled in, with its poses. Rejected poses are not listed. path: names

@@ -17,7 +17,7 @@ std::optional<StudyResult> run_study(const Study& study, const Model& model, con
   const StudyRun run{.study = study, .model = model, .poses = poses, .options = with_checkpoints};
   const RunKind& kind = kind_of(study).run;
   std::optional<StudyResult> result = kind.run(run);
-  // A kind that confirms its result changes the tolerances, so the study's drawing would not describe the result.
+  // A kind with RunKind::confirms changes the tolerances, so the study's own drawing would not describe the result.
   if (result && !kind.confirms) result->drawing = drawing_result(run);
   return result;
 }

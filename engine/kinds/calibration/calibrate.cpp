@@ -26,7 +26,8 @@ using calibration::Components;
 using calibration::Matrix;
 using calibration::Vector;
 
-constexpr double kStepOfTyped = 1e-6;  // difference step, as a share of a fitted error's scale
+constexpr double kStepOfTyped =
+    1e-6;  // step of the differences by which typed parameters are differentiated, as a share of a fitted error's scale
 
 Eigen::Index position(std::size_t at) { return static_cast<Eigen::Index>(at); }
 
@@ -47,7 +48,7 @@ std::vector<double> pose_of(const PoseSet& poses, std::size_t m) {
   return {pose.begin(), pose.end()};
 }
 
-/// The position of a measured quantity among the components of a displacement.
+/// The position of a measured quantity among the components of a displacement (kComponents).
 std::size_t component_of(const std::string& quantity) {
   return static_cast<std::size_t>(std::ranges::find(calibration::kComponents, quantity) -
                                   calibration::kComponents.begin());
@@ -64,10 +65,10 @@ std::optional<double> stated_sd(const CalibrationTable& table, const std::string
   return found == table.noise.end() ? std::nullopt : std::optional(found->sd);
 }
 
-/// The weights of the measured values: their noise, or equal weights if all noise is 0.
+/// Standard deviations by which the residuals of the measured values are divided: their noise, or 1 if all noise is 0.
 struct Weights {
   Vector sd;             ///< [values] standard deviation of each value, or 1
-  bool is_noise = true;  ///< whether `sd` is noise
+  bool is_noise = true;  ///< whether `sd` is the noise
 };
 
 Weights weights_of(const MachineToCalibrate& machine, const CalibrationTable& table) {
@@ -101,7 +102,7 @@ Weights weights_of(const MachineToCalibrate& machine, const CalibrationTable& ta
   return {Vector::Ones(weights.sd.size()), false};
 }
 
-/// The measured values in the form that the fit uses.
+/// The measured values of the table in the form that the fit uses. sd: standard deviation of each value.
 std::vector<calibration::MeasuredValue> measured_values(const MachineToCalibrate& machine, const Vector& sd) {
   std::vector<calibration::MeasuredValue> list;
   for (const MachineValue& value : machine.file.values) {
@@ -115,7 +116,7 @@ std::vector<calibration::MeasuredValue> measured_values(const MachineToCalibrate
   return list;
 }
 
-/// The calibration of one machine.
+/// Calibrates one machine from its table of measurements.
 class Calibration {
  public:
   explicit Calibration(const MachineToCalibrate& machine)
@@ -167,7 +168,7 @@ class Calibration {
   bool has_prior() const { return table_.prior == PriorKnowledge::tolerances; }
   std::size_t places() const { return numbers_of(frame()) + numbers_of(target()); }
 
-  /// The measured poses. The drives are those of the controller's present parameters.
+  /// The measured poses, with the drives that the controller's present parameters command there.
   std::vector<calibration::MeasuredPose> measured_poses() const {
     std::vector<calibration::MeasuredPose> poses;
     Vector present = Vector::Zero(position(table_.fit.size()));
@@ -185,8 +186,8 @@ class Calibration {
     return poses;
   }
 
-  /// Throws InputError if the measured values are too few for the numbers that are fitted. With a prior, they need only
-  /// be more than the numbers of frame and target.
+  /// Throws InputError if there are too few measured values for the numbers that are fitted. With a prior, they must
+  /// only be more than the numbers that place frame and target.
   void check_count() const {
     const std::size_t fitted = table_.fit.size() + places();
     const std::size_t measured = machine_.file.values.size();
@@ -202,8 +203,8 @@ class Calibration {
                      "measure at more poses, fit fewer, or take prior = \"tolerances\"");
   }
 
-  /// Throws InputError if a deviation in the platform's own frame is a length above a tenth of the mechanism's reach:
-  /// the unit of its column is wrong, and a fit to it takes minutes.
+  /// Throws InputError if a deviation of the platform is a length above a tenth of the mechanism's reach, in a known
+  /// frame: then the unit of its column is wrong, and a fit to it takes minutes.
   void check_deviations() const {
     constexpr double kMostOfReach = 0.1;
     if (frame() != calibration::Frame::known) return;
@@ -317,8 +318,8 @@ class Calibration {
     result.typed_sd = {{sd.size()}, sd};
   }
 
-  /// Estimates and covariance of all errors, fitted or not. If all noise is 0: only of the fitted errors, with
-  /// covariance 0. Empty if no estimate of all errors is found.
+  /// Estimates and covariance of all errors that have a tolerance or are fitted. If all noise is 0: only of the fitted
+  /// errors, with covariance 0. Empty if the fit of all errors does not converge.
   std::optional<calibration::Knowledge> knowledge_of_all() const {
     if (!weights_.is_noise) {
       const Eigen::Index all = fit_.theta.size() + fit_.phi.size();
@@ -364,9 +365,10 @@ class Calibration {
     if (const std::string unjudged = kept.not_judged(); !unjudged.empty()) made.warnings.push_back(unjudged);
   }
 
-  /// For each candidate pose, the derivatives of the values that would be measured there with respect to the fitted
-  /// numbers, divided by the noise. A matrix has one row for each quantity that the file measures (such as the height),
-  /// and a column for each fitted error and each number of frame and target. Distances are left out.
+  /// For each candidate pose, the derivatives of the values that would be measured there, divided by the noise, with
+  /// respect to the fitted numbers. A matrix has one row for each quantity that the file measures (such as the height),
+  /// and a column for each fitted error, divided by its scale, and each number that places frame and target. Distances
+  /// are left out.
   std::vector<Matrix> rows_of_candidates() {
     std::vector<calibration::MeasuredValue> kinds;
     for (const calibration::MeasuredValue& value : measurement_.values()) {
@@ -428,8 +430,8 @@ class Calibration {
     }
   }
 
-  /// The matrix Prior::root that the tolerances of the fitted errors give, even if the fit uses no prior. If some
-  /// fitted error has no tolerance, the scales of the columns take the place of tolerances.
+  /// The matrix Prior::root that follows from the tolerances of the fitted errors, even if the fit uses no prior. If
+  /// some fitted error has no tolerance, the scales of the fitted errors are used as tolerances.
   Matrix tolerances_of_fit() const {
     CalibrationTable with_prior = table_;
     with_prior.prior = PriorKnowledge::tolerances;

@@ -14,7 +14,7 @@
 
 namespace poesy {
 
-/// A parameter of the controller, computed from the fitted errors, for an operator to type in.
+/// A parameter of the controller that an operator types in, computed from the fitted errors.
 struct TypedNumber {
   std::string name;     ///< name in the controller
   std::string text;     ///< expression that computes it
@@ -37,9 +37,9 @@ struct MachineToCalibrate {
 
 /// The result of a calibration, and messages about it.
 struct Calibrated {
-  CalibrationResult result;           ///< the result, without the text and the hash of the table of measurements
-  bool converged = false;             ///< whether the fit converged
-  std::uint64_t solves = 0;           ///< how many times the mechanism was solved
+  CalibrationResult result;  ///< the result, in which the text and the hash of the table of measurements are not set
+  bool converged = false;    ///< whether the fit converged
+  std::uint64_t solves = 0;  ///< how many times the mechanism was solved
   std::vector<std::string> warnings;  ///< warnings, as sentences for people
 };
 

@@ -18,8 +18,8 @@ using calibration::Vector;
 
 constexpr Eigen::Index kMachines = 1000;
 
-/// Positions of the displacement components that form a response; empty if the response is not formed by such
-/// components.
+/// Positions of the components of the platform's displacement from which a response is computed; empty if it is not
+/// computed from them.
 std::vector<std::size_t> components_of(const ModelDescription& model, std::size_t response) {
   const Response& wanted = model.responses[response];
   std::vector<std::size_t> parts = wanted.components;
@@ -33,7 +33,7 @@ std::vector<std::size_t> components_of(const ModelDescription& model, std::size_
   return list;
 }
 
-/// [rows x machines] standard normal numbers.
+/// [rows x machines] Random numbers of the standard normal distribution.
 Matrix normal_scores(std::uint64_t seed, Eigen::Index rows) {
   Matrix scores(rows, kMachines);
   std::vector<double> uniforms(static_cast<std::size_t>(kMachines));

@@ -10,16 +10,16 @@
 
 namespace poesy {
 
-/// The probability that a calibrated machine keeps the limits of its study. It is estimated with 1000 machines, as the
-/// share that is within all limits. The machines are drawn from the estimated distribution of the machine's errors and
-/// solved exactly.
+/// The probability that a calibrated machine keeps the limits of its study. It is estimated as the share of 1000
+/// machines that keep all limits. Their errors are drawn from the estimated distribution of the machine's errors, and
+/// they are solved exactly.
 class KeptLimits {
  public:
-  /// Refers to the arguments. known: estimates and covariance of the machine's errors.
+  /// Draws the machines. known: estimates and covariance of the machine's errors.
   KeptLimits(const Study& study, const Model& model, const calibration::Knowledge& known);
 
-  /// Solves the machines at a pose. The controller moves the drives to where those of the perfect mechanism are at
-  /// `drive_at`.
+  /// Solves the machines at a pose. The controller moves the drives to the displacements that those of the perfect
+  /// mechanism have at `drive_at`.
   void add(calibration::ExactMachine& machine, std::span<const double> pose, std::span<const double> drive_at,
            const calibration::Corrected& corrected);
 
@@ -30,7 +30,7 @@ class KeptLimits {
   std::string not_judged() const { return not_judged_; }
 
  private:
-  /// A limit, and the displacement components that form its response.
+  /// A limit, and the components of the displacement from which its response is computed.
   struct Judged {
     ValueLimit allowed;
     std::vector<std::size_t> components;           ///< a single component, or those whose norm is the response

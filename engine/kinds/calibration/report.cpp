@@ -90,7 +90,8 @@ StudyWords words(const StoredResult& result) {
   return made;
 }
 
-/// If the measurements contradict the fitted errors, the answer says so first, because all else rests on them.
+/// The summary at the top of the report. If the measurements contradict the fitted errors, it says so first, because
+/// everything else depends on them.
 Answer answer(const StoredResult& result) {
   const CalibrationResult& found = calibration_of(result);
   Answer lines;
@@ -123,7 +124,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
           .quantities = {{"estimate", "estimate", std::move(units), std::move(values)}}};
 }
 
-/// A study cannot have this kind, so there is nothing to run.
+/// A study cannot be of kind `calibration`, so there is nothing to run.
 std::optional<StudyResult> run_nothing(const StudyRun&) { return std::nullopt; }
 
 AtPose nothing_at_pose(const Study&) { return {0.0, "values", 0.0, "solves"}; }

@@ -24,23 +24,23 @@ using Coordinate = Axis<"coordinate">;    ///< Coordinates of a pose.
 using Typed = Axis<"typed">;              ///< Parameters for the controller.
 }  // namespace axis
 
-/// The calibration of one machine, SI. NaN if a number is not determined or not known. In scaled numbers, each fitted
-/// error is divided by its scale.
+/// The calibration of one machine, SI. NaN if a number is not determined or not known. "In scaled numbers" means that
+/// each fitted error is divided by its scale.
 struct CalibrationResult {
   std::vector<NamedUnit> fitted;         ///< names and units of the fitted errors
   Array<double, axis::Fitted> estimate;  ///< estimated values of the fitted errors
   Array<double, axis::Fitted> sd;        ///< standard deviations of the estimates
   Array<double, axis::Fitted> low;       ///< lower ends of the confidence intervals of the estimates
   Array<double, axis::Fitted> high;      ///< upper ends of these intervals
-  /// Scale of each fitted error: its tolerance, or a usual size.
+  /// Scale of each fitted error: the standard deviation that the tolerances give it, or else a usual size.
   Array<double, axis::Fitted> scale;
-  std::uint64_t has_tolerances = 0;                            ///< 1 if all scales are tolerances, otherwise 0
+  std::uint64_t has_tolerances = 0;                            ///< 1 if all scales follow from tolerances, otherwise 0
   Array<double, axis::Fitted, axis::OtherFitted> covariance;   ///< covariance of the estimates
   Array<double, axis::Fitted, axis::OtherFitted> correlation;  ///< correlation of the estimates
-  /// Projector on the directions of fitted errors that the measurement cannot see, in scaled numbers.
+  /// Projector on the combinations of fitted errors that the measurement cannot determine, in scaled numbers.
   Array<double, axis::Fitted, axis::OtherFitted> null_projector;
-  Array<double, axis::Direction> singular_values;  ///< singular values of the scaled and weighted matrix of
-                                                   ///< derivatives, largest first
+  Array<double, axis::Direction> singular_values;  ///< singular values of the derivatives of the measured values,
+                                                   ///< divided by the noise, in scaled numbers; largest first
   double conf_level = 0.95;                        ///< confidence level of the intervals
   std::uint64_t has_prior = 0;                     ///< 1 if tolerances are used as prior knowledge, otherwise 0
   std::uint64_t noise_is_known = 1;                ///< 1 if the values have standard deviations, 0 if all noise is 0
@@ -58,21 +58,23 @@ struct CalibrationResult {
   std::uint64_t measured_poses = 0;          ///< number of rows of the table of measurements
   std::uint64_t distances = 0;               ///< number of distances among the values
 
-  double rms = kNaN;              ///< root mean square of residuals divided by the noise
-  double chi_square = kNaN;       ///< weighted sum of squared residuals, including the prior
-  std::uint64_t dof = 0;          ///< degrees of freedom of chi_square
-  double p = kNaN;                ///< p-value: probability of a larger chi_square if only noise remains
-  double outlier_limit = kNaN;    ///< a value is an outlier if the magnitude of its standardised residual is above this
-  std::uint64_t rank = 0;         ///< number of directions of fitted errors that the measurement sees
-  std::uint64_t frame_rank = 0;   ///< number of directions of frame and target that the measurement sees
-  std::uint64_t below_noise = 0;  ///< number of directions whose signal is below the noise
-  std::uint64_t steps = 0;        ///< number of steps of the fit
-  double O1 = kNaN;               ///< observability index of Borm and Menq (calibration/inference.h)
-  double O2 = kNaN;               ///< observability index of Driels and Pathre
-  double O3 = kNaN;               ///< observability index of Nahvi, Hollerbach and Hayward
-  double O4 = kNaN;               ///< observability index of Nahvi and Hollerbach
-  double O5 = kNaN;               ///< observability index of Sun and Hollerbach
-  double condition = kNaN;        ///< ratio of the largest to the smallest singular value that is seen
+  double rms = kNaN;            ///< root mean square of residuals divided by the noise
+  double chi_square = kNaN;     ///< weighted sum of squared residuals, including the prior
+  std::uint64_t dof = 0;        ///< degrees of freedom of chi_square
+  double p = kNaN;              ///< p-value: probability of a larger chi_square if only noise remains
+  double outlier_limit = kNaN;  ///< a value is an outlier if the magnitude of its standardised residual is above this
+  std::uint64_t rank = 0;       ///< number of independent combinations of fitted errors that the measurement determines
+  std::uint64_t frame_rank =
+      0;  ///< number of independent combinations of the numbers of frame and target that the measurement determines
+  std::uint64_t below_noise =
+      0;  ///< number of combinations of fitted errors whose effect on the measured values is below the noise
+  std::uint64_t steps = 0;  ///< number of steps of the fit
+  double O1 = kNaN;         ///< observability index of Borm and Menq (calibration/inference.h)
+  double O2 = kNaN;         ///< observability index of Driels and Pathre
+  double O3 = kNaN;         ///< observability index of Nahvi, Hollerbach and Hayward
+  double O4 = kNaN;         ///< observability index of Nahvi and Hollerbach
+  double O5 = kNaN;         ///< observability index of Sun and Hollerbach
+  double condition = kNaN;  ///< ratio of the largest singular value to the smallest one above rounding
 
   std::vector<std::string> frame_parts;  ///< names of the numbers that place frame and target
   Array<double, axis::FramePart> frame;  ///< estimates of these numbers
@@ -82,14 +84,14 @@ struct CalibrationResult {
   Array<double, axis::Pose, axis::Moved> left_sd;      ///< standard deviation of the remaining displacement
   std::vector<NamedUnit> drives;                       ///< names and units of the drives
   Array<double, axis::Pose, axis::Drive> drive_shift;  ///< change of each drive by the calibrated controller
-  std::uint64_t unfitted = 0;                          ///< number of errors with a tolerance minus number of fitted
-                                                       ///< errors; at least 0
-  double kept = kNaN;                                  ///< probability that the machine keeps all limits (KeptLimits)
+  std::uint64_t unfitted = 0;  ///< number of errors with a tolerance minus the number of fitted errors; 0 if negative
+  double kept = kNaN;          ///< probability that the calibrated machine keeps all limits (KeptLimits)
   std::uint64_t left_in_device_frame = 0;  ///< 1 if the remaining displacement is in the frame of the measuring device,
                                            ///< 0 if in the base frame
 
   Array<double, axis::Next, axis::Coordinate> next_pose;  ///< poses recommended for the next measurement
-  Array<double, axis::Next> gain;              ///< information that each pose adds to that of the poses before it, bits
+  Array<double, axis::Next>
+      gain;  ///< information in bits that each pose adds to the measurements and the poses before it
   Array<std::uint64_t, axis::Next> candidate;  ///< positions of these poses among the candidates
 
   std::vector<NamedUnit> typed;              ///< parameters for the controller; `description` is the expression

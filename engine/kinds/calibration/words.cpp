@@ -16,8 +16,9 @@
 namespace poesy {
 namespace {
 
-constexpr double kContradiction = 0.01;  // a smaller p-value is reported as a contradiction
-// Estimates are said to move together if the magnitude of their correlation is at least this.
+constexpr double kContradiction =
+    0.01;  // with a smaller p-value, a text says that the measurements contradict the fitted errors
+// A text says that estimates move together if the magnitude of their correlation is at least this.
 constexpr double kTogether = 0.95;
 constexpr std::size_t kAngles = 3;  // components of a displacement that are angles and come before the lengths
 
@@ -27,7 +28,7 @@ std::string some(const CalibrationResult& found, const std::vector<std::size_t>&
   return some_names(names, 18);
 }
 
-/// Sentences about the directions of fitted errors that the measurement cannot see.
+/// Sentences about the combinations of fitted errors that the measurement cannot determine.
 std::vector<std::string> unseen_notes(const CalibrationResult& found) {
   const auto k = static_cast<Eigen::Index>(found.fitted.size());
   calibration::Matrix projector(k, k);
@@ -85,7 +86,8 @@ std::vector<std::string> together_notes(const CalibrationResult& found) {
   return notes;
 }
 
-/// The root mean square over the poses of a component of the remaining displacement, including its uncertainty.
+/// The root mean square over the poses of a component of the displacement that remains after calibration, including its
+/// uncertainty.
 double left_rms(const CalibrationResult& found, std::size_t component) {
   double sum = 0.0;
   std::size_t poses = 0;
@@ -105,7 +107,7 @@ bool is_measured(const CalibrationResult& found, const std::string& component) {
   });
 }
 
-/// True if the chi-square test contradicts the fitted errors.
+/// Whether the measurements contradict the fitted errors by the chi-square test.
 bool is_contradicted(const CalibrationResult& found) {
   return found.noise_is_known != 0 && found.sd_is_estimated == 0 && found.dof > 0 && found.p < kContradiction;
 }
@@ -193,7 +195,7 @@ std::string kept_text(const CalibrationResult& found) {
 }
 
 std::string typed_text(const CalibrationResult& found) {
-  // The half-width of an interval over the standard deviation. This ratio is equal for all fitted errors.
+  // The half-width of an interval divided by the standard deviation. This ratio is the same for all fitted errors.
   double quantile = kNaN;
   for (std::size_t k = 0; k < found.estimate.size() && std::isnan(quantile); ++k) {
     quantile = (found.high(k) - found.estimate(k)) / found.sd(k);

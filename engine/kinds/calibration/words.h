@@ -12,11 +12,11 @@ namespace poesy {
 std::string measured_text(const CalibrationResult& found);
 /// The size of the residuals, and the result of the chi-square test. Empty if the noise is not known.
 std::string residual_text(const CalibrationResult& found);
-/// Sentences about the estimates: which are not determined, which are correlated, which are below the noise.
+/// Sentences that name the estimates that are not determined, that are correlated, or that are below the noise.
 std::vector<std::string> estimate_notes(const CalibrationResult& found);
 /// Sentences about the displacement that remains after calibration.
 std::vector<std::string> left_notes(const CalibrationResult& found);
-/// How probable it is that the machine keeps the limits; empty without limits.
+/// A text on the probability that the machine keeps the limits; empty without limits.
 std::string kept_text(const CalibrationResult& found);
 /// "to type in: delta_radius 95.0000 -> 95.1139 +- 0.1394 mm"; empty without numbers for the controller.
 std::string typed_text(const CalibrationResult& found);

@@ -15,36 +15,37 @@
 #include "engine/run/result.h"
 #include "engine/study/poses/pose_selection.h"
 
-/// Searches the worst case of error sources whose signs are unknown. Each block of errors (error_blocks) has its size
-/// with either sign, and a corner is a choice of all signs.
+/// Searches the worst case of error sources whose signs are unknown. Each block of errors (error_blocks()) has its size
+/// with either sign; a corner is a choice of the sign of each block.
 namespace poesy {
 
 namespace axis {
-using Block = Axis<"block">;  ///< Blocks of errors that move together.
+using Block = Axis<"block">;  ///< Blocks of errors that have the same sign.
 }  // namespace axis
 
 /// The sign of each block of errors in a subset of sources, '+' or '-'.
 using Signs = std::string;
 
-/// The blocks of each subset of sources, and the errors at each corner.
+/// The blocks of each subset of sources, and the errors that the blocks contain.
 struct CornerTable {
   CornerTable(const CouplingStudy& study, const ModelDescription& model);  ///< Lists the blocks of a study's sources.
 
-  std::vector<FactorIndex> factors;                ///< errors of the study (coupling_factors)
-  std::vector<std::vector<std::size_t>> blocks;    ///< blocks of all sources; a block is a list of positions in
-                                                   ///< `factors`
-  std::vector<std::vector<std::size_t>> subsets;   ///< [subsets] blocks of each subset, as positions in `blocks`
+  std::vector<FactorIndex> factors;              ///< errors of the study (coupling_factors)
+  std::vector<std::vector<std::size_t>> blocks;  ///< blocks of all sources; a block is a list of positions in `factors`
+  std::vector<std::vector<std::size_t>>
+      subsets;  ///< [subsets] blocks of each subset of sources, as positions in `blocks`
   std::vector<std::vector<double>> size_of_error;  ///< [sizes][errors] size of each error of the study, SI
 
   /// The sign of each error of the study at a corner of a subset: 1, -1, or 0 for errors outside the subset.
   std::vector<double> signs_of_errors(std::size_t subset, const Signs& signs) const;
 };
 
-/// The worst corners of a subset of sources at one size and pose. A corner is a choice of the sign of each block.
+/// The worst corners (choices of the sign of each block) of a subset of sources at one size and pose.
 struct WorstCorners {
-  std::vector<double> value;   ///< [responses] largest |response| over the solved corners; NaN if none was solved
-  std::vector<Signs> signs;    ///< [responses] signs at that corner; empty if none was solved
-  std::uint64_t tried = 0;     ///< number of corners that were tried
+  std::vector<double> value;  ///< [responses] largest |response| over the solved corners; NaN if none was solved
+  std::vector<Signs>
+      signs;                ///< [responses] signs of the blocks at the corner with this value; empty if none was solved
+  std::uint64_t tried = 0;  ///< number of corners that were tried
   std::uint64_t unsolved = 0;  ///< number of tried corners without a solution
   Signs first_unsolved = {};   ///< signs at the first corner without a solution; empty if there is none
 };
@@ -58,11 +59,11 @@ struct CornersAtPose {
 /// Searches the worst corners. For each response, the search tries the signs with which the effects of single blocks
 /// add up to first order, and the opposite signs. It does the same for sums and differences of responses with a sign
 /// that share a unit (ModelDescription::signed_headline), because a norm may be largest between the axes of its
-/// components. It also tries all signs positive. From the worst corner so far, it flips the sign of each block alone,
-/// until no flip makes the response worse by more than rounding. A corner counts if it is solved (model/status.h);
-/// otherwise it cannot be assembled, or its solution was not found. The result is not a bound: a subset with B blocks
-/// has 2^B corners, of which about B are tried for each response. The result depends only on the arguments. Owns the
-/// scratch memory of one thread.
+/// components. It also tries the corner with all signs positive. Then it flips the sign of each single block at the
+/// worst corner so far, until no flip makes the response worse by more than rounding. A corner counts if it is solved
+/// (model/status.h); otherwise it cannot be assembled, or its solution was not found. The result is not a bound: a
+/// subset with B blocks has 2^B corners, of which about B are tried for each response. The result depends only on the
+/// arguments. Owns the scratch memory of one thread.
 class CornerSearch {
  public:
   /// Refers to all arguments. rounding: [responses x sizes] see coupling_rounding().
@@ -80,8 +81,8 @@ class CornerSearch {
     /// [corners][responses] magnitude of each response; NaN if the corner is not solved.
     std::vector<std::vector<double>> magnitude;
 
-    /// The corner at which a response has the largest magnitude. A corner must be larger by more than rounding to
-    /// replace an earlier one.
+    /// Position of the corner at which a response has the largest magnitude. A corner must be larger by more than
+    /// rounding to replace an earlier one.
     std::size_t worst(std::size_t response, double rounding) const;
   };
   /// A weighted sum of responses, as pairs of response and weight.
@@ -92,7 +93,7 @@ class CornerSearch {
     std::size_t corner;
   };
 
-  /// [blocks x responses] The effect of each block of errors alone.
+  /// [blocks x responses] The responses if only the errors of one block are not zero.
   using BlocksAlone = Array<double, axis::Block, axis::Response>;
 
   static std::vector<Direction> directions(const ModelDescription& model);
@@ -101,7 +102,7 @@ class CornerSearch {
   void want_neighbours(std::size_t subset);
   void solve_wanted(std::size_t pose, std::size_t size, SolveCounts& solves);
   BlocksAlone blocks_alone(std::size_t pose, std::size_t size);
-  /// The errors of the next `count` samples, all set to zero, to be filled in.
+  /// The errors of the next `count` samples, set to zero, for the caller to fill in.
   ArrayView<double, axis::Factor, axis::Sample> next_samples(std::size_t count);
   /// Solves the first `count` samples at a pose and returns their responses.
   ArrayView<const double, axis::Response, axis::Sample> solve(std::size_t pose, std::size_t count);
@@ -123,7 +124,7 @@ class CornerSearch {
   std::vector<std::uint32_t> counts_;  ///< iterations of each of these samples
 };
 
-/// The expected number of corners that are solved for one size at one pose.
+/// The number of corners that are expected to be solved for one size at one pose.
 double expected_corners(const CornerTable& table, std::size_t responses);
 
 }  // namespace poesy

@@ -34,8 +34,8 @@ bool takes(const ErrorPattern& pattern, const Factor& factor) {
   return std::ranges::find(pattern.axes, factor.axis) != pattern.axes.end();
 }
 
-/// What the errors of a block have in common: limb, frame, dimension and axis. An element has its default value if the
-/// pattern does not divide a source by it.
+/// The limb, frame, dimension and axis that all errors of a block have in common. An element has its default value if
+/// the pattern does not divide a source by it.
 using BlockPlace = std::tuple<std::size_t, std::size_t, Dimension, std::string>;
 
 BlockPlace place_of(const Factor& factor, const ErrorPattern& pattern) {
@@ -63,12 +63,12 @@ void add_errors(const ErrorBlock& more, ErrorBlock& errors) {
   std::ranges::sort(errors);
 }
 
-/// The effects of a subset of sources at one pose. If an effect is NaN, so are all numbers that depend on it, except
-/// `largest`.
+/// The effects of a subset of sources at one size and pose. If an effect is NaN, so are all numbers that depend on it,
+/// except `largest`.
 struct Combination {
   double effect = 0.0;
   double sum = 0.0;
-  double magnitudes = 0.0;  ///< sum of |effect of a source|
+  double magnitudes = 0.0;  ///< sum of |effect of a source| over the sources
   double largest = 0.0;     ///< largest |effect of a source|
   double first_order_sum = 0.0;
   double squares = 0.0;
@@ -97,7 +97,8 @@ Combination combination(const CouplingRows& rows, std::size_t subset, std::span<
   return found;
 }
 
-/// The largest magnitude at these poses, and the first pose that has it; NaN and -1 if there are no poses.
+/// The largest magnitude of the values at these poses, and the first pose with this magnitude; NaN and -1 if there are
+/// no poses.
 std::pair<double, std::int64_t> largest_at(std::span<const double> values, std::span<const std::size_t> poses) {
   std::pair<double, std::int64_t> largest{kNaN, -1};
   for (const std::size_t m : poses) {
@@ -107,7 +108,7 @@ std::pair<double, std::int64_t> largest_at(std::span<const double> values, std::
   return largest;
 }
 
-/// The names of the sizes: "0.1 mm", or "0.1 mm, 0.1 deg" with lengths and angles.
+/// The names of the sizes of errors: "0.1 mm", or "0.1 mm, 0.1 deg" with lengths and angles.
 std::vector<std::string> size_names(const CouplingStudy& study) {
   std::vector<std::string> names;
   for (std::size_t z = 0; z < study.sizes(); ++z) {
@@ -124,7 +125,7 @@ Array<double, axis::Size> sizes_or_nan(const std::vector<double>& sizes, std::si
   return {{count}, sizes.empty() ? std::vector<double>(count, kNaN) : sizes};
 }
 
-/// A result with the names of its axes and with arrays of the right lengths.
+/// A result with the names on its axes, and with arrays of the right lengths whose numbers are not yet set.
 CouplingResult empty_result(const CouplingStudy& study, std::size_t responses, std::size_t poses) {
   CouplingResult found;
   found.size_names = size_names(study);
@@ -143,7 +144,8 @@ CouplingResult empty_result(const CouplingStudy& study, std::size_t responses, s
   return found;
 }
 
-/// Computes a result: the numbers at each pose for each response, size and subset, then their summaries.
+/// Computes a result from the solved sets of errors: first the numbers at each pose for each response, size and subset,
+/// then their summaries.
 class Composer {
  public:
   Composer(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model, NotConverged policy,
@@ -174,13 +176,13 @@ class Composer {
   }
 
  private:
-  /// [poses x rows] The response at each pose to each row of errors.
+  /// [poses x rows] One response at each pose to each set of errors (CouplingRows::errors).
   using Effects = Array<double, axis::Pose, axis::Sample>;
 
   std::size_t rows() const { return rows_.errors.size(); }
   std::size_t sample(std::size_t z, std::size_t n) const { return z * rows() + n; }
 
-  /// The effects of all rows at a size; NaN if a solve does not count.
+  /// The effects on a response of all sets of errors at a size; NaN if a solve does not count.
   Effects effects_of(std::size_t r, std::size_t z) const {
     Effects effects({evaluation_.poses(), rows()});
     for (std::size_t m = 0; m < evaluation_.poses(); ++m) {
@@ -247,8 +249,8 @@ class TwoStages {
     };
     return options;
   }
-  /// The options of the search for corners, the second stage. If the first stage reported nothing, it was complete in
-  /// the checkpoint.
+  /// The options of the second stage, the search for corners. If the first stage did not report progress, the
+  /// checkpoint contained all of it, so all its solves were made before this run.
   RunOptions of_corners() {
     RunOptions options = run_.options;
     const SolveCounts done = run_.checkpoints().solves();
@@ -290,7 +292,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   return StudyResult{std::move(found), std::nullopt, {}};
 }
 
-/// The work of the corner search, which is proportional to the number of sizes times poses.
+/// The expected work of the search for corners, which is proportional to the number of sizes times poses.
 WorkOutlook corner_work(const Study& study, const Model& model, const PoseSet& poses) {
   struct Trial {
     Trial(const Study& study, const Model& model, const PoseSet& poses)
@@ -381,7 +383,8 @@ CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& m
       for (const ErrorBlock& block : blocks) add_errors(block, rows.errors[k]);
     }
     std::vector<std::size_t>& own = rows.block_rows.emplace_back();
-    if (blocks.size() == 1) own.push_back(s);  // subset s has only this source, and so only this block
+    if (blocks.size() == 1)
+      own.push_back(s);  // subset s has only this source, which has only this block, so the block needs no further row
     for (const ErrorBlock& block : blocks) {
       if (blocks.size() == 1) break;
       own.push_back(rows.errors.size());

@@ -17,15 +17,15 @@
 
 namespace poesy {
 
-/// A source of errors: a set of errors whose effect is judged as one.
+/// A source of errors: errors whose joint effect the study computes.
 struct ErrorSource {
   std::string name;                  ///< name in tables; '+' joins it to the names of other sources
   std::vector<FactorIndex> factors;  ///< errors that the study names; the pattern may exclude some
 };
 
-/// Which errors of a source are not zero, and which of these have the same sign.
+/// A rule that states which errors of a source are not zero, and which of these have the same sign.
 struct ErrorPattern {
-  /// Which limbs or components have errors.
+  /// Which limbs, or which components of vectors, have errors.
   enum class Choice {
     all,         ///< all limbs or components, with the same sign
     some,        ///< only the named limbs or components, with the same sign
@@ -65,28 +65,30 @@ struct CouplingStudy {
 /// The kind of study that computes the effects of error sources of fixed size, alone and together.
 extern const StudyKind kCouplingStudy;
 
-/// Errors that have the same size and sign, while all others are zero; in the order of the model.
+/// Errors that have the same size and sign while all others are zero, in the order of the model.
 using ErrorBlock = std::vector<FactorIndex>;
 
 /// The blocks into which a pattern divides the errors of a source, ordered by limb, frame, dimension and axis. A source
 /// is one block, unless limbs or components are independent. Independent limbs give a block for each limb. Independent
-/// components give a block for each component of a vector and for each scalar, the same in all limbs. If both are
-/// independent, each error is a block. Empty if the pattern excludes all errors.
+/// components give a block for each component of a vector and for each scalar; such a block has the errors of all
+/// limbs. If both are independent, each error is a block. Empty if the pattern excludes all errors.
 std::vector<ErrorBlock> error_blocks(const ErrorSource& source, const ErrorPattern& pattern,
                                      const ModelDescription& model);
 
 /// All non-empty subsets of n sources, ordered by the number of sources, then by the sources: 0, 1, 2, 01, 02, 12, 012.
 std::vector<std::vector<std::size_t>> source_subsets(std::size_t sources);
 
-/// The sets of errors that are solved at each size. First come the subsets of sources, then the blocks of every source
-/// with more than one block. No set is solved twice.
+/// The sets of errors that are solved at each size. First come the subsets of sources, then the blocks of those sources
+/// that have more than one block. No set is solved twice.
 struct CouplingRows {
-  std::vector<std::vector<std::size_t>> subsets;     ///< [subsets] sources of each subset; row k is subset k
-  std::vector<std::vector<std::size_t>> block_rows;  ///< [sources] rows of each source's blocks
-  std::vector<ErrorBlock> errors;                    ///< [rows] errors of each row
+  std::vector<std::vector<std::size_t>>
+      subsets;  ///< [subsets] sources of each subset; row k has the errors of subset k
+  std::vector<std::vector<std::size_t>>
+      block_rows;                  ///< [sources] positions of the rows that have one block of the source each
+  std::vector<ErrorBlock> errors;  ///< [rows] errors of each row
 };
 
-/// The rows of a study. Precondition: no factor is in two sources.
+/// The rows of a study. Precondition: no error is in two sources.
 CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& model);
 
 /// The errors of all sources that the pattern does not exclude, in the order of the model.
@@ -126,7 +128,8 @@ struct CouplingResult {
   Curves cancellation;     ///< cancellation between sources, from 0 to 1
   Array<double, axis::Response, axis::Size> rounding;  ///< responses up to this magnitude are rounding
 
-  // Summaries over the poses at which all numbers above are known; NaN and pose -1 if there is no such pose.
+  // Summaries over the poses at which all numbers above are known. If there is no such pose, values are NaN and poses
+  // -1.
   Summary<std::uint64_t> count;                 ///< number of poses at which all numbers are known
   Summary<double> effect_max;                   ///< largest |effect|
   Summary<std::int64_t> effect_max_pose;        ///< first pose with the largest |effect|
@@ -137,17 +140,18 @@ struct CouplingResult {
   Summary<double> cancellation_max;             ///< largest cancellation
   Summary<std::int64_t> cancellation_max_pose;  ///< first pose with the largest cancellation
 
-  // The search for worst cases. Maxima are over all poses; NaN, pose -1 and signs 0 if no corner is solved.
+  // Results of the search for worst cases. Maxima are over all poses. If no corner is solved, values are NaN, poses -1
+  // and signs 0.
   Array<std::uint64_t, axis::Size, axis::Subset, axis::Pose> corners;  ///< number of corners that were tried
   /// Number of tried corners without a solution.
   Array<std::uint64_t, axis::Size, axis::Subset, axis::Pose> unsolved_corners;
   Summary<double> worst_case_max;             ///< largest worst case
   Summary<std::int64_t> worst_case_max_pose;  ///< first pose with the largest worst case
-  /// The sign of each error at that worst case: 1, -1, or 0 if the error is zero.
+  /// The sign of each error at the corner of the largest worst case: 1, -1, or 0 if the error is zero.
   Array<std::int64_t, axis::Response, axis::Size, axis::Subset, axis::Factor> worst_case_signs;
   /// First pose with a corner that is not solved; -1 if there is none.
   Array<std::int64_t, axis::Size, axis::Subset> unsolved_pose;
-  /// Sign of each error at the first corner that is not solved; 0 if there is none.
+  /// The sign of each error at the first corner that is not solved; 0 if all corners are solved.
   Array<std::int64_t, axis::Size, axis::Subset, axis::Factor> unsolved_signs;
   Array<SolveCounts, axis::Size, axis::Pose> solves;  ///< how the solves of all sets of errors and all corners ended
 
@@ -195,7 +199,7 @@ Array<double, axis::Response, axis::Size> coupling_rounding(const CouplingStudy&
 /// The names of the sources in each subset, joined: "FS", "T", "FS+T".
 std::vector<std::string> subset_names(std::span<const ErrorSource> sources);
 
-/// Positions of the responses on which the sources have no effect larger than rounding, at all sizes and poses at which
+/// Positions of the responses on which no source has an effect larger than rounding, at all sizes and poses at which
 /// the effects are known. Precondition: the effect of some source is known.
 std::vector<std::size_t> responses_without_effect(const CouplingResult& found);
 

@@ -65,7 +65,7 @@ const Fields<CouplingResult> kSizes{
     {"size_linear", &CouplingResult::linear, "m", "Size of errors that are lengths; NaN where there is none"},
     {"size_angular", &CouplingResult::angular, "rad", "Size of errors that are angles; NaN where there is none"}};
 
-/// For each subset in turn, a list over the sources: 1 if the source is in the subset, otherwise 0.
+/// [subsets x sources] 1 if the source is in the subset, otherwise 0.
 std::vector<std::uint8_t> members(std::size_t sources) {
   std::vector<std::uint8_t> list;
   for (const std::vector<std::size_t>& subset : source_subsets(sources)) {
@@ -74,8 +74,8 @@ std::vector<std::uint8_t> members(std::size_t sources) {
   return list;
 }
 
-/// Writes to the result file, for each error, the position of its source and of its block. The errors of a source are
-/// divided into blocks; those of a block move together.
+/// Writes to the result file, for each error, the positions of its source and of its block. The errors of a source are
+/// divided into blocks; those of a block have the same sign.
 void add_membership(ResultBuilder& result, const Study& study) {
   const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   std::map<FactorIndex, std::pair<std::size_t, std::size_t>> places;
@@ -104,10 +104,10 @@ void add_choices(ResultBuilder& result, const Study& study, const CouplingResult
   result.show_axes("/coupling", {"source", "factor"});
 }
 
-/// The lines of a table: one line for each size, subset and pose, or for each size, subset and error.
+/// The lines of a table: one for each size, subset and pose, or for each size, subset and error.
 using SubsetLines = AxisLayout<axis::Size, axis::Subset, axis::Pose>;
 
-/// Gives the table further columns with the sizes of the errors.
+/// Appends columns with the sizes of the errors to the table.
 void append_size_columns(CsvTable& table, const CouplingResult& found, const SubsetLines& lines) {
   const auto append = [&](std::string heading, const Array<double, axis::Size>& sizes) {
     table.columns.push_back(
@@ -117,7 +117,7 @@ void append_size_columns(CsvTable& table, const CouplingResult& found, const Sub
   append("size_angular [rad]", found.angular);
 }
 
-/// A table with `repeated` lines for each size and subset.
+/// A table with `repeated` lines for each size and subset, and with columns for both.
 CsvTable subset_table(const StoredResult& result, const std::string& name, std::size_t repeated) {
   const CouplingResult& found = coupling_of(result);
   const SubsetLines lines({found.size_names.size(), found.subsets.size(), repeated});
@@ -128,7 +128,8 @@ CsvTable subset_table(const StoredResult& result, const std::string& name, std::
   return table;
 }
 
-/// Adds to the table a column for each response and each field whose values do not follow from other columns.
+/// Adds to the table a column for each response and each field of this type of array, unless the values follow from
+/// other columns.
 template <class AnArray>
 void append_response_columns(CsvTable& table, const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
@@ -196,8 +197,8 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   add_solver(result, found.solves);
 }
 
-/// Completes a result of version 0.2.0. In its files, `worst_case` is the first-order sum, corners are missing, and
-/// rounding is computed from printed digits.
+/// Completes a result that was read from a file of version 0.2.0. In such a file, `worst_case` is the first-order sum,
+/// corners are missing, and rounding is computed from printed digits.
 void read_older(CouplingResult& found) {
   if (!found.first_order_sum.empty()) {
     const bool searched = has_worst_cases(found);

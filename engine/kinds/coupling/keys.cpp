@@ -62,7 +62,7 @@ void read_components(const StudyValue& value, Study& study, const Reading&) {
   if (pattern.axes.empty()) value.fail("is empty", "name components, e.g. [\"x\", \"z\"], or write \"all\"");
 }
 
-/// Throws InputError if an earlier source has one of these factors.
+/// Throws InputError if an earlier source also has one of these errors.
 void require_own_factors(const StudyValue& factors, const ErrorSource& source, std::span<const ErrorSource> others,
                          const ModelDescription& model) {
   for (const ErrorSource& other : others) {
@@ -100,7 +100,7 @@ ErrorSource read_source(const StudySection& section, std::span<const ErrorSource
   return source;
 }
 
-/// The sources that the model lists from the literature. Throws InputError at the section if it lists none.
+/// The error sources that the model lists from the literature. Throws InputError at the section if it lists none.
 std::vector<ErrorSource> usual_sources(const StudySection& analysis, const ModelDescription& model,
                                        const ErrorPattern& pattern) {
   constexpr std::string_view kNameThem =
@@ -165,7 +165,7 @@ std::string sizes_line(const Study& study) {
   return sizes.empty() ? "" : fmt::format("{} = {}\n", error_kind(kDimension), list_text(sizes));
 }
 
-/// Whether a listed source of the model has an error of this dimension.
+/// Whether some source that the model lists has an error of this dimension.
 bool has_source_of(const ModelDescription& model, Dimension dimension) {
   return std::ranges::any_of(model.sources, [&](const SourceSet& source) {
     return std::ranges::any_of(model.find_set(source.set)->factors,
@@ -225,7 +225,8 @@ void require_sizes(const StudySection& analysis, Dimension dimension, const Coup
                    "write sizes, e.g. " + key + " = [\"0.1 " + std::string(display_unit(dimension).name) + "\"]");
 }
 
-/// Refuses sizes of a dimension that no error of the sources has, not even an error that the pattern leaves at zero.
+/// Refuses sizes of a dimension (lengths or angles) if no error of the sources has this dimension. Errors that the
+/// pattern leaves at zero count as well.
 void refuse_idle_sizes(const StudySection& analysis, Dimension dimension, const CouplingStudy& study,
                        const ModelDescription& model) {
   const auto value = analysis.find(error_kind(dimension));
@@ -246,7 +247,8 @@ void require_equal_numbers(const StudyValue& angular, const CouplingStudy& study
                "a run takes one of each, so write as many");
 }
 
-/// Throws InputError if two sizes of the study are the same. value: the linear or the angular sizes.
+/// Throws InputError if two of the study's sizes are equal, for lengths and for angles. value: the linear or the
+/// angular sizes.
 void require_different_runs(const StudyValue& value, const CouplingStudy& study) {
   const auto same = [](const std::vector<double>& sizes, std::size_t a, std::size_t b) {
     return sizes.empty() || sizes[a] == sizes[b];
@@ -260,7 +262,8 @@ void require_different_runs(const StudyValue& value, const CouplingStudy& study)
   }
 }
 
-/// Sets the sources from the model if the study lists none. Throws InputError if an error of a source has no size.
+/// Sets the sources that the model lists, if the study lists none. Throws InputError if an error of a source has no
+/// size.
 void complete_sources(const StudySection& analysis, const ModelDescription& model, CouplingStudy& study) {
   if (!analysis.find("sources")) study.sources = usual_sources(analysis, model, study.pattern);
   for (const Dimension dimension : {Dimension::length, Dimension::angle}) {

@@ -56,7 +56,8 @@ std::string corner_text(const StoredResult& result, std::span<const std::int64_t
   return some_names(names, kMost);
 }
 
-/// The pose and the signs of the worst case of all sources together; empty if there is none or if it is rounding.
+/// A text on the worst case of all sources together, with its pose and the signs of the errors; empty if there is none
+/// or if it is rounding.
 std::string worst_corner_text(const StoredResult& result, std::size_t z, std::size_t r) {
   const CouplingResult& found = coupling_of(result);
   const std::size_t all = found.subsets.size() - 1;
@@ -66,7 +67,7 @@ std::string worst_corner_text(const StoredResult& result, std::size_t z, std::si
                      corner_text(result, found.worst_case_signs.row(r, z, all)));
 }
 
-/// The number of corners without a solution, and the first such corner; empty if there is none.
+/// A text on the number of corners without a solution, and on the first such corner; empty if there is none.
 std::string unsolved_text(const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
   const auto sum = [](const auto& counts) { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); };
@@ -104,7 +105,7 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
   return table;
 }
 
-/// Whether some shown response does not change with this source alone, at any pose and size.
+/// Whether some response of the summary does not change if only this source has errors, at any pose and size.
 bool does_nothing(const StoredResult& result, const std::string& source) {
   const CouplingResult& found = coupling_of(result);
   const auto k = static_cast<std::size_t>(std::ranges::find(found.subsets, source) - found.subsets.begin());
@@ -150,13 +151,13 @@ std::vector<std::string> notes(const StoredResult& result) {
   return list;
 }
 
-/// Which responses the figures show at each pose. Norms are left out: they have no sign and cannot show cancellation.
+/// The responses and poses that the figures show. Norms are left out: they have no sign and cannot show cancellation.
 ShownCells cells(const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
   return shown_cells(result, found.size_names.size() * (2 * found.subsets.size() + 3), result.signed_headline);
 }
 
-/// The curves of a coupling result, one panel for each response and size. Refers to its arguments.
+/// The curves of a coupling result over the poses, one panel for each response and size. Refers to its arguments.
 class Curves {
  public:
   Curves(const StoredResult& result, const PoseFigures& figures)
@@ -176,7 +177,7 @@ class Curves {
     for (Panel& panel : all.panels) panel.unit = "%";
     return all;
   }
-  /// The effect of all sources together at each pose, and their cancellation.
+  /// Fields for maps of the workspace: the effect of all sources together at each pose, and their cancellation.
   std::vector<Field> fields() const {
     std::vector<Field> list;
     for (const auto& [r, z] : panels()) {
@@ -317,7 +318,7 @@ std::vector<std::string> sized_subsets(const CouplingResult& coupling) {
   return list;
 }
 
-/// The answer at the top of the report, for the last size (which the page shows) and the first response.
+/// The summary at the top of the report, for the last size (which the page shows) and the first response.
 Answer answer(const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
   if (found.subsets.empty() || found.size_names.empty() || result.signed_headline.empty()) return {};
@@ -353,8 +354,8 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-/// The figure of merit: the largest effect of all sources together at the last size. It has no uncertainty, because
-/// errors are given.
+/// The number by which it is judged which of two results is better: the largest effect of all sources together at the
+/// last size. It has no uncertainty, because errors are given.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   const CouplingResult& found = coupling_of(result);
   if (name.empty() || found.effect_max.empty()) return {};

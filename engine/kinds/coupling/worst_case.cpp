@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// Reads or writes the signs of this number of blocks, or none.
+/// Reads or writes the signs of this number of blocks, or an empty list.
 void signs_state(Archive& archive, Signs& signs, std::size_t blocks) {
   archive.text(signs);
   const auto is_sign = [](char sign) { return sign == '+' || sign == '-'; };
@@ -29,7 +29,7 @@ void place_state(Archive& archive, WorstCases::Place& place, std::size_t poses, 
   archive.expect((place.pose < 0) == place.signs.empty(), "has a corner without a pose");
 }
 
-/// Keeps the place with the larger value; of equal values, the earlier one.
+/// Replaces `worst` by `later` if `later` has the larger value, or if `worst` is empty.
 void take_worse(WorstCases::Place& worst, WorstCases::Place later) {
   if (later.signs.empty() || (worst.pose >= 0 && !(later.value > worst.value))) return;
   worst = std::move(later);
@@ -43,7 +43,7 @@ std::pair<std::size_t, std::size_t> size_and_pose(const CornerTable& table, std:
   return {n % table.size_of_error.size(), n / table.size_of_error.size()};
 }
 
-/// The result of a unit of work, one size at one pose, in the form that ranks send to rank 0.
+/// The result of a unit of work (one size at one pose), as ranks send it to rank 0.
 struct CornerUnit : CornersAtPose {
   const CornerTable* table = nullptr;
 
@@ -113,8 +113,8 @@ struct CornerSums : WorstCases {
       for (std::size_t r = 0; r < value.length<axis::Response>(); ++r) archive.real(value(r, z, k, m));
     }
   }
-  /// Reads or writes a place. When it reads, take(place, read) merges the read place, which belongs to later units,
-  /// into the present one.
+  /// Reads or writes a corner and its pose. When it reads, take(place, read) merges what was read, which belongs to
+  /// later units, into the present one.
   template <class Take>
   void places_state(Archive& archive, std::size_t subset, Place& place, const Take& take) {
     Place read = archive.reads() ? Place() : place;

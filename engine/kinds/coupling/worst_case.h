@@ -11,9 +11,9 @@
 
 namespace poesy {
 
-/// The worst corners over all poses. Shapes as in CouplingResult.
+/// The worst corners over all poses. Arrays have the axes of those in CouplingResult.
 struct WorstCases {
-  /// A corner and where it was found.
+  /// A corner and the pose at which it was found.
   struct Place {
     double value = 0.0;      ///< |response| at the corner; 0 for a corner that is not solved
     std::int64_t pose = -1;  ///< pose; -1 if no corner was found

@@ -43,9 +43,9 @@ struct Evaluation {
   using OverPoses = Array<T, axis::Response, axis::Case>;
 
   EvaluationResult solves;  ///< outcomes of solves; a sample is a case, or a row of the error table
-  /// The model's additional outputs; solves.detail has their components, one after another.
+  /// The model's additional outputs; their components are in `solves.detail`, one after another.
   std::vector<Detail> details;
-  std::vector<std::string> joints;                       ///< names of the joints whose displacements `solves` has
+  std::vector<std::string> joints;                       ///< names of the joints whose displacements are in `solves`
   Pairing pairing = Pairing::every_pose_with_every_row;  ///< how poses and rows of errors are paired
   Array<double, axis::Row, axis::Factor> errors;         ///< [rows x all errors] errors that were given, SI
   RowLabels labels;                                      ///< labels of the rows; empty if the rows have none
@@ -59,12 +59,12 @@ struct Evaluation {
 /// The errors of named cases as a table: a row for each case, a column for each of the model's factors.
 ErrorTable case_table(std::span<const ErrorCase> cases);
 
-/// Joins the outcomes of run_evaluation() with the rows of errors that were solved.
+/// Makes an evaluation from the outcomes of run_evaluation() and the rows of errors that were solved.
 Evaluation evaluation(EvaluationResult solves, const ErrorTable& errors, Pairing pairing,
                       const ModelDescription& model);
 
-/// Joins the outcomes with the cases of case_table(), and computes summaries over the poses whose solves count (see
-/// counts()).
+/// Makes an evaluation from the outcomes for the rows of case_table(), and computes summaries over the poses whose
+/// solves count (see counts()).
 Evaluation evaluation_of_cases(EvaluationResult solves, std::span<const ErrorCase> cases, const ModelDescription& model,
                                NotConverged policy);
 
@@ -87,7 +87,7 @@ void write_evaluation(const std::string& path, const Study& study, const Selecte
 /// a note names the worst row.
 Table evaluation_table(const StoredResult& result);
 
-/// A response to one row of errors, over the poses at which it was solved. mean and extreme are NaN if no pose was
+/// A response to one row of errors, over the poses at which it was solved. `mean` and `extreme` are NaN if no pose was
 /// solved.
 struct RowOutcome {
   std::size_t solved = 0;  ///< number of solved poses
@@ -99,8 +99,8 @@ struct RowOutcome {
 /// The outcome of each row of errors, in order. Precondition: the rows of the evaluation have labels.
 std::vector<RowOutcome> row_outcomes(const Evaluation& found, std::size_t response);
 
-/// The position of the row whose extreme has the largest magnitude, the first of equal ones. Returns the number of rows
-/// if no row was solved.
+/// The position of the row whose `extreme` has the largest magnitude, the first of equal ones. The number of rows if no
+/// row was solved.
 std::size_t worst_row(const std::vector<RowOutcome>& outcomes);
 
 /// The row of errors that a solve used.

@@ -16,8 +16,7 @@ namespace {
 
 constexpr const char* kLabels = "/evaluate/label";
 
-/// The words in a file for how poses and rows of errors are paired.
-/// @{
+/// The words for Pairing in a result file: how poses and rows of errors are paired.
 constexpr const char* kRowByRow = "row-by-row";
 constexpr const char* kEveryPoseWithEveryRow = "every-pose-with-every-row";
 /// @}
@@ -30,8 +29,7 @@ const Fields<Evaluation> kCaseFields{
     {"max", &Evaluation::max, kResponseUnit, "Largest value over the poses that count"},
     {"count", &Evaluation::count, "1", "Poses that count: solved, or as not_converged has it"}};
 
-/// The order of solves in a file: pose by pose for a table, case by case for named cases.
-/// @{
+/// The order of solves in a file: pose by pose for a table of errors, case by case for named cases.
 using TableLayout = AxisLayout<axis::Pose, axis::Sample>;
 using CaseLayout = AxisLayout<axis::Case, axis::Pose>;
 /// @}
@@ -52,7 +50,7 @@ void add_values(ResultBuilder& result, const std::string& name, const Layout& la
       [&](std::size_t first, std::size_t second) { return std::apply(value, solve_at<Layout>(first, second)); }, label);
 }
 
-/// Reads a dataset with one value for each solve. set(pose, sample, value) takes it.
+/// Reads a dataset with one value for each solve, and calls set(pose, sample, value) with each.
 template <h5::Number T, class... A, class Set>
 void read_values(const h5::File& file, const std::string& name, const AxisLayout<A...>& layout, const Set& set) {
   const auto values = read_array<Array<T, A...>>(file, "/evaluate/" + name);
@@ -124,7 +122,7 @@ void read_detail_values(const h5::File& file, const AxisLayout<A...>& layout, Ev
   }
 }
 
-/// Reads what add_solves() writes. layout: the order of solves in the file.
+/// Reads what add_solves() wrote. layout: the order of solves in the file.
 template <class Layout>
 void read_solves(const h5::File& file, const std::vector<NamedUnit>& responses, const Layout& layout,
                  Evaluation& found) {
@@ -191,7 +189,7 @@ void add_errors(ResultBuilder& result, const Evaluation& found, const std::strin
   result.file().set_attribute(kLabels, "column", found.labels.column);
 }
 
-/// Throws h5::Error unless every verdict counts all rows of errors.
+/// Throws h5::Error unless every verdict was reached over all rows of errors.
 void check_rows(const std::vector<LimitVerdict>& limits, std::size_t rows) {
   const bool fits = std::ranges::all_of(limits, [rows](const LimitVerdict& one) { return one.tried == rows; });
   if (!fits) throw h5::Error("/limits/tried is not the number of rows of errors");
@@ -221,8 +219,8 @@ std::vector<std::string> component_units(const std::string& text, std::size_t co
   return list;
 }
 
-/// Sets the first cells of each line: the label of its row of errors, if rows have labels, and a number. row(line): the
-/// position of the row of errors.
+/// Sets the first cells of each line of a table: the label of its row of errors, if rows have labels, and a number.
+/// row(line): the position of the row of errors.
 template <class Row, class Number>
 void set_first_cells(CsvTable& table, const RowLabels& labels, const std::string& heading, const Row& row,
                      const Number& number) {
@@ -234,7 +232,7 @@ void set_first_cells(CsvTable& table, const RowLabels& labels, const std::string
   table.columns.push_back({heading, [number](std::size_t line) { return to_number(number(line)); }});
 }
 
-/// Gives the table further columns with the results of solves. solve(line): the pose and the sample of a line.
+/// Appends columns with the results of solves to the table. solve(line): the pose and the sample of a line.
 template <class Solve>
 void append_solve_columns(CsvTable& table, const StoredResult& result, const Solve& solve) {
   const Evaluation& found = evaluation_of(result);
@@ -355,7 +353,7 @@ CsvTable case_sum_table(const StoredResult& result) {
   return table;
 }
 
-/// The result of `poesy evaluate`, and the errors that are columns of its table. Refers to both.
+/// The result of `poesy evaluate`, and the errors in the columns of its table. Refers to both.
 struct TableOfErrors {
   std::span<const FactorIndex> factors;
   const Evaluation& found;

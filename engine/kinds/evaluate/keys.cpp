@@ -54,7 +54,7 @@ std::vector<const FactorSet*> sets_in_case(const StudySection& section, const Mo
   return sets;
 }
 
-/// The errors of a case. `linear` and `angular` apply to all errors of that dimension. Factor sets override them,
+/// The errors of a case. The keys `linear` and `angular` set all errors of that dimension. Factor sets override them,
 /// smaller sets override larger ones, and single factors override all.
 std::vector<double> read_case_errors(const StudySection& section, const ModelDescription& model,
                                      std::vector<double> errors) {
@@ -164,7 +164,7 @@ StudyTables case_tables() {
   return {cases, errors, of_set};
 }
 
-/// Checks the cases. The study's list of factors stays empty, because the cases state all errors.
+/// Checks that a study has cases. Its list of factors stays empty, because the cases state all errors.
 void complete_cases(Study& study, const Reading& reading) {
   study.analysis.factors.clear();
   if (reading.use == StudyUse::run) check_simulated(study, reading.root.section("analysis"));
@@ -174,7 +174,7 @@ void complete_cases(Study& study, const Reading& reading) {
 }
 
 /// Refuses an error that is too large. The message points at the key that sets the error, at the key for all errors of
-/// its dimension, or at the case if a factor set sets it.
+/// its dimension, or at the case if a factor set contains the error.
 [[noreturn]] void refuse_case(const StudySection& errors, const std::string& name, const Factor& factor,
                               const std::string& problem) {
   for (const std::string_view key : {std::string_view(factor.name), error_kind(factor.dimension)}) {

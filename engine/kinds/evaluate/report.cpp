@@ -19,7 +19,8 @@
 namespace poesy {
 namespace {
 
-/// Significant digits. They are more than those of estimates, because these numbers are solved for given errors.
+/// The number of significant digits in tables. Estimates are shown with fewer; these numbers are solved for given
+/// errors.
 constexpr int kDigits = 6;
 
 /// The mean and the extremes of a response over the solved samples; NaN if no sample is solved.
@@ -83,7 +84,7 @@ Table parts_table(const StoredResult& result) {
     const NamedUnit& response = result.responses[result.headline[h]];
     const std::vector<RowOutcome>& of = outcomes[h];
     const std::string_view unit = display(response).name;
-    // A narrow table omits columns with larger numbers first, so those of the last response.
+    // A narrow table omits columns with larger numbers first, so the columns of the last response are omitted first.
     const int dispensable = 3 * static_cast<int>(h);
     columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable + 2),
                        [&](std::size_t row) { return value_cell(of[row].mean, response, kDigits); }});
@@ -158,7 +159,7 @@ void add_cases(const StoredResult& result, const PoseFigures& figures, Page& pag
   figures.add_workspace(section, std::move(fields));
 }
 
-/// Quantiles of the solved values at these levels; NaN if no value was solved.
+/// Quantiles, at these levels, of the values that were solved; NaN if none was solved.
 std::vector<double> order_statistics(std::span<const double> all, std::span<const SolveStatus> status,
                                      std::span<const double> levels) {
   std::vector<double> values;
@@ -280,7 +281,7 @@ StudyWords words(const StoredResult& result) {
   return {.samples = counted(found.cases.size(), "case", "cases")};
 }
 
-/// The answer at the top of the report, for the response by which errors are ranked.
+/// The summary at the top of the report, for the response by which errors are ranked.
 Answer answer(const StoredResult& result) {
   const Evaluation& found = evaluation_of(result);
   const std::size_t r = response_named(result, default_ranking(result));
@@ -311,7 +312,8 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-/// The figure of merit: the largest magnitude of the response. It has no uncertainty, because errors are given.
+/// The number by which it is judged which of two results is better: the largest magnitude of the response. It has no
+/// uncertainty, because errors are given.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   if (name.empty()) return {};
   const std::size_t r = response_named(result, name);

@@ -42,7 +42,7 @@ const Fields<Coupling> kCouplingFields{
 
 bool by_group(const FieldRow<Identification>& field) { return field.name.ends_with("_by_group"); }
 
-/// Adds to the table a column for each pair of sizes, from a field with the axes group and factor.
+/// Appends to the table a column for each pair of sizes (group), from a field with the axes group and factor.
 void append_group_columns(CsvTable& table, const StoredResult& result, const std::string& prefix,
                           const FieldRow<Identification>& field) {
   for (std::size_t g = 0; g < identification_of(result).groups(); ++g) {

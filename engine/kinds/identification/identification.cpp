@@ -12,10 +12,11 @@
 namespace poesy {
 namespace {
 
-/// An error takes part in a deformation if setting it to zero reduces the deformation to at most this share.
+/// An error takes part in the deformation by several errors if setting it to zero reduces the deformation to at most
+/// this share.
 constexpr double kReduced = 0.1;
 
-/// Errors of one frame that are tried together, as positions among the factors.
+/// Errors of one frame that are solved together, as positions among the factors.
 using FrameErrors = std::vector<std::size_t>;
 
 /// [poses] The deformation at each pose with one set of errors; NaN if it is not solved.
@@ -47,7 +48,8 @@ class Identification {
   }
 
  private:
-  /// A set of errors. Its members have the sizes of the pair of sizes `group`; all other errors are zero.
+  /// A set of errors that are solved together. Its members have the sizes of the pair of sizes `group`; all other
+  /// errors are zero.
   struct ErrorSet {
     std::size_t group;
     FrameErrors members;
@@ -116,8 +118,8 @@ class Identification {
     return true;
   }
 
-  /// For each frame, the errors that do not deform alone at this pair of sizes. Frames with fewer than two such errors
-  /// are left out.
+  /// For each frame, the errors none of which alone deforms the mechanism at this pair of sizes. Frames with fewer than
+  /// two such errors are left out.
   std::vector<FrameErrors> frames(std::size_t group) const {
     std::map<std::pair<std::size_t, std::size_t>, FrameErrors> by_frame;
     for (std::size_t p = 0; p < found_.factors(); ++p) {
@@ -148,7 +150,8 @@ class Identification {
     return true;
   }
 
-  /// For a set that deforms, finds which errors take part and which pairs deform. Returns false if the run was stopped.
+  /// For errors that together deform the mechanism, finds which of them take part and which pairs deform it. Returns
+  /// false if the run was stopped.
   bool split(const ErrorSet& whole, const Deformations& with_all) {
     std::vector<ErrorSet> trials;
     for (const std::size_t p : whole.members) {
@@ -191,7 +194,7 @@ class Identification {
       name_members(whole.group, pair[0], pair[1]);
     }
     if (found_.couplings.size() > known) return true;
-    // If no pair deforms, more than two errors are needed.
+    // If no pair deforms the mechanism, more than two errors are needed for that.
     for (const std::size_t p : taking_part) found_.coupled_by_group(whole.group, p) = 1;
     return true;
   }

@@ -12,7 +12,7 @@
 
 namespace poesy {
 
-/// A pair of sizes at which identification tries errors.
+/// A pair of sizes, of lengths and of angles, that errors have when they are tried.
 struct ErrorSize {
   std::string name;  ///< name in tables
   double linear;     ///< size of errors that are lengths, m
@@ -28,16 +28,16 @@ struct IdentificationOptions {
 /// The kind of study that identifies which errors deform the mechanism at all.
 extern const StudyKind kIdentificationStudy;
 
-/// Two errors of one frame that deform together but not alone.
+/// Two errors of one frame that deform the mechanism only together.
 struct Coupling {
   std::size_t group;              ///< position of the pair of sizes
   std::size_t first;              ///< position of the first error among the factors
   std::size_t second;             ///< position of the second error among the factors
-  std::uint64_t deforming_poses;  ///< number of poses at which the two together deform
+  std::uint64_t deforming_poses;  ///< number of poses at which both together deform the mechanism
 };
 
 namespace axis {
-using SizeGroup = Axis<"group">;  ///< Pairs of sizes.
+using SizeGroup = Axis<"group">;  ///< Pairs of sizes, of lengths and of angles, at which errors are tried.
 }  // namespace axis
 
 /// Which errors deform the mechanism, for each group (a pair of sizes) and over the poses.
@@ -55,19 +55,18 @@ struct IdentificationResult {
   ByGroup<double> single_max;           ///< largest deformation by the error alone over the solved poses; NaN if none
                                         ///< is solved
   ByGroup<std::uint64_t> not_solved;    ///< number of poses without a solution for the error alone
-  /// Number of poses at which those errors of its frame that do not deform alone, tried together, deform by no more
-  /// than rounding.
+  /// Number of poses at which the errors of its frame, all except those that deform the mechanism alone, cause together
+  /// no deformation beyond rounding.
   ByGroup<std::uint64_t> coupled_below;
-  /// Number of poses at which setting the error to zero removes nine tenths of the deformation by these errors
-  /// together.
+  /// Number of poses at which the deformation by these errors falls to a tenth or less if this error is set to zero.
   ByGroup<std::uint64_t> coupled_reduced;
   /// 1 if the error alone deforms the mechanism, otherwise 0.
   ByGroup<std::uint8_t> single_by_group;
   /// 1 if the error deforms the mechanism, alone or together with other errors of its frame; otherwise 0.
   ByGroup<std::uint8_t> coupled_by_group;
-  /// 1 if single_by_group is 1 for some pair of sizes, otherwise 0.
+  /// 1 if `single_by_group` is 1 for some pair of sizes, otherwise 0.
   Array<std::uint8_t, axis::Factor> single;
-  /// 1 if coupled_by_group is 1 for some pair of sizes, otherwise 0.
+  /// 1 if `coupled_by_group` is 1 for some pair of sizes, otherwise 0.
   Array<std::uint8_t, axis::Factor> coupled;
   std::vector<Coupling> couplings;  ///< pairs that deform only together, ordered by group and position
   SolveCounts solves;               ///< how the solves of both stages ended
@@ -80,17 +79,17 @@ struct IdentificationResult {
 /// stopped.
 using SolveTable = std::function<std::optional<EvaluationResult>(const ErrorTable&)>;
 
-/// Identifies which errors deform the mechanism (Du et al. 2022, Section 5.1), for each group of sizes.
+/// Identifies which errors deform the mechanism (Du et al. 2022, Section 5.1), for each pair of sizes (group).
 ///
-/// Single stage: each error is tried alone. An error does not deform if the model's measure of deformation is at most
-/// rounding at a sufficient number of poses: pose_share of them, rounded to whole poses, at least one (657 of 692 at
-/// 0.95, as in the paper). A pose that was not solved counts as deformed, because it does not show that deformation is
-/// absent.
+/// Single stage: each error is tried while all others are zero. The error does not deform the mechanism if the model's
+/// measure of deformation is at most rounding at enough poses: `pose_share` of them, rounded to whole poses, at least
+/// one (657 of 692 at 0.95, as in the paper). A pose that was not solved counts as deformed, because it does not show
+/// that deformation is absent.
 ///
-/// Coupled stage: for each frame of a limb, all errors that do not deform alone are tried together. If they deform, all
-/// pairs of them are tried. A pair that deforms is a coupling, and the verdict names its angular error, or both errors
-/// if they have the same dimension. If no pair deforms, the verdict names all errors that take part. An error takes
-/// part if setting it to zero removes nine tenths of the deformation at pose_share of the poses.
+/// Coupled stage: for each frame of a limb, all errors that do not deform the mechanism alone are tried together. If
+/// they deform it, all pairs of them are tried. A pair that deforms it is a coupling, and the verdict names its angular
+/// error, or both errors if they have the same dimension. If no pair does, the verdict names all errors that take part.
+/// An error takes part if setting it to zero removes nine tenths of the deformation at `pose_share` of the poses.
 ///
 /// Precondition: the model has a measure of deformation.
 std::optional<IdentificationResult> identify(const Analysis& analysis, const ModelDescription& model,

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kIdentificationKeys{"factors", "pose_share", "groups"};
 
-/// The pair of sizes of errors in a study that states none.
+/// The pair of sizes in a study that states none: one display unit of length and one of angle.
 ErrorSize usual_group() { return {"group 1", display_unit(Dimension::length).si, display_unit(Dimension::angle).si}; }
 
 const InnerRows<ErrorSize>& group_keys() {

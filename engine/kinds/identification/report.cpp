@@ -77,7 +77,7 @@ std::vector<std::string> group_names(const StoredResult& result) {
   return names;
 }
 
-/// Converts numbers of poses to shares of all poses. but_these: if true, returns the shares of the other poses instead.
+/// Converts numbers of poses to shares of all poses. but_these: if true, to the shares of all other poses instead.
 std::vector<double> share_of_poses(const IdentificationResult& found,
                                    const IdentificationResult::ByGroup<std::uint64_t>& counts, bool but_these) {
   std::vector<double> list;
@@ -118,7 +118,7 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   for (const Table& table : tables) section.table(table);
 }
 
-/// The names of the errors with this verdict.
+/// The names of the errors whose verdict is `what`.
 std::vector<std::string> errors_that(const StoredResult& result, std::string_view what) {
   std::vector<std::string> names;
   for (std::size_t p = 0; p < identification_of(result).factors(); ++p) {

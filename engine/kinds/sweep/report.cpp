@@ -48,8 +48,8 @@ std::string unit_of_change(const SweepResult& found, std::size_t q) {
   return unit == "%" ? " percentage points" : unit.empty() ? "" : " " + unit;
 }
 
-/// Whether a design is "better" or "worse" than the first one, or "not told apart" if the interval of the change
-/// includes zero.
+/// The verdict on design d compared with the first one: "better", "worse", or "not told apart" if the interval of the
+/// change includes zero.
 std::string_view verdict_on_change(const SweepResult& found, std::size_t q, std::size_t d) {
   const double low = found.change_low(q, d);
   const double high = found.change_high(q, d);
@@ -58,7 +58,7 @@ std::string_view verdict_on_change(const SweepResult& found, std::size_t q, std:
   return (low > 0.0) == (found.most_is_best(q) != 0) ? "better" : "worse";
 }
 
-/// The design with the best value; none if all values are unknown.
+/// The design with the best value of figure of merit q; none if all values are unknown.
 std::optional<std::size_t> best_design(const SweepResult& found, std::size_t q) {
   std::optional<std::size_t> best;
   for (std::size_t d = 0; d < found.designs(); ++d) {
@@ -110,7 +110,7 @@ Cell change_cell(double change) {
   return cell;
 }
 
-/// What `run` and `show` print of the limits of one design; empty if it has none.
+/// The word that `poesy run` and `poesy show` print for the limits of one design; empty if it has no limits.
 std::string_view limits_word(std::string_view verdict) {
   if (verdict == "kept") return "PASS";
   if (verdict == "not kept") return "FAIL";
@@ -255,7 +255,7 @@ class Curves {
 
  private:
   std::vector<double> curve(std::span<const double> values, std::size_t c) const {
-    // The part of the values that fills the grid. A damaged file may have more designs.
+    // Only the values that fill the grid are used. A damaged file may have more designs.
     const std::span<const double> whole = values.first(grid_.points * grid_.curves);
     const ArrayView<const double, Axis<"point">, Axis<"curve">> grid(whole, {grid_.points, grid_.curves});
     std::vector<double> of_curve;
@@ -299,7 +299,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
   return all;
 }
 
-/// A study cannot have this kind, so there is nothing to run.
+/// A study cannot be of kind `sweep`, so there is nothing to run.
 std::optional<StudyResult> run_nothing(const StudyRun&) { return std::nullopt; }
 
 AtPose nothing_at_pose(const Study&) { return {0.0, "values", 0.0, "solves"}; }

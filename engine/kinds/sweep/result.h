@@ -18,8 +18,8 @@ using SweptKey = Axis<"key">;       ///< Keys that differ between designs.
 using Quantity = Axis<"quantity">;  ///< Figures of merit by which designs are compared.
 }  // namespace axis
 
-/// The result of a sweep over several designs. Numbers are in display units, as in the tables of
-/// figures of merit.
+/// The result of a sweep: figures of merit of several designs of a study. Numbers are in display units, as in the
+/// tables of figures of merit.
 struct SweepResult {
   using Numbers = Array<double, axis::Quantity, axis::Design>;  ///< a number for each figure of merit and design
 

@@ -47,14 +47,14 @@ std::vector<std::string> divided(std::string_view text, char sign) {
 }
 
 std::string with_unit_of(const SweptNumber& value) {
-  // Twelve digits hide the rounding errors of FROM + k STEP.
+  // Twelve digits hide the rounding errors of FROM + k STEP (the k-th value of a range).
   std::string text = fmt::format("{:.12g}", value.number);
   return value.unit.empty() ? text : text + " " + value.unit;
 }
 
 /// The values FROM, FROM + STEP, ... up to TO.
 std::vector<std::string> range(const std::string& text, const std::vector<std::string>& ends) {
-  constexpr double kSlack = 1e-9;  // allowance for the rounding of TO, as a share of a step
+  constexpr double kSlack = 1e-9;  // a value may exceed TO by this share of a step, because of rounding
   if (ends.size() != 3) refuse(text, "is neither a list nor a range of three numbers");
   const SweptNumber step = number_of(ends[2]);
   std::vector<double> numbers;

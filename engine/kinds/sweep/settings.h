@@ -19,9 +19,9 @@ struct SweptKey {
 /// The largest number of designs in a sweep.
 inline constexpr std::size_t kMostDesigns = 1000;
 
-/// Reads "KEY=FROM:TO:STEP" or "KEY=A,B,C". A unit after the last number applies to all numbers. A key that begins with
-/// "geometry." means "mechanism.geometry.". Commas within brackets, braces and quotes do not separate values. Throws
-/// InputError.
+/// Reads "KEY=FROM:TO:STEP" or "KEY=A,B,C". A unit after the last number applies to all numbers without a unit. A key
+/// that begins with "geometry." means "mechanism.geometry.". Commas within brackets, braces and quotes do not separate
+/// values. Throws InputError.
 SweptKey parse_swept(const std::string& text);
 
 /// The designs: all combinations of values, where the value of the last key changes fastest. Throws InputError if a key

@@ -53,7 +53,8 @@ class Comparer {
   Comparer(std::span<const SweptKey> keys, std::span<const SweptDesign> designs, std::string response)
       : keys_(keys), designs_(designs), response_(std::move(response)) {}
 
-  /// Adds the next design. rejected: 1 or 0 for each of its machines; empty if it has none.
+  /// Adds the next design. rejected: [machines] 1 if the machine is rejected, otherwise 0; empty if the design has no
+  /// machines.
   void add(const StoredResult& stored, std::vector<std::uint8_t> rejected) {
     const std::size_t d = found_.solves.size();
     const ReportKind& kind = kind_of(stored).report;
@@ -89,7 +90,7 @@ class Comparer {
         if (d == 0) found_.unit(k) = number.unit;
       }
     }
-    // Numbers with different units are NaN, because one axis could not show them.
+    // A number whose unit differs from that of the first design is NaN, because one axis could not show both.
     for (std::size_t d = 1; d < count; ++d) {
       for (std::size_t k = 0; k < keys_.size(); ++k) {
         if (number_of(found_.value(d, k)).unit != found_.unit(k)) found_.number(d, k) = kNaN;
@@ -99,7 +100,7 @@ class Comparer {
     found_.response = response_;
   }
 
-  /// Records the figures of merit and the machines of the first design.
+  /// Records the figures of merit of the first design and which of its machines are rejected.
   void begin(const StoredResult& stored, const std::vector<Merit>& merits, std::vector<std::uint8_t> rejected) {
     first_ = merits;
     const bool has_yield = stored.verdicts && stored.verdicts->yield;

@@ -12,7 +12,7 @@
 
 namespace poesy {
 
-/// A design of a sweep: a study with the poses that it selects.
+/// A design of a sweep: the study with other values of some keys, and its poses.
 struct SweptDesign {
   std::vector<GivenKey> given;  ///< keys and values that replace those of the study's file
   Study study;                  ///< the study with these values
@@ -20,7 +20,7 @@ struct SweptDesign {
 };
 
 /// Throws InputError, with the path of the study, if these designs cannot be compared: their kind has no figures of
-/// merit, or they differ in kind.
+/// merit, or they are of different kinds.
 void check_sweep(std::span<const SweptDesign> designs, const std::string& path);
 
 /// Runs the study of each design with the same draws, and compares each design with the first one. Returns nothing if

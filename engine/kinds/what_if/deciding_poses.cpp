@@ -8,7 +8,7 @@
 namespace poesy {
 namespace {
 
-/// Settings of the sliders at which poses are judged.
+/// [settings][sliders] Factors at which the sliders stand when poses are chosen.
 std::vector<std::vector<double>> settings(std::size_t sliders) {
   constexpr std::array kAlike{1.0, 0.25, 0.5, 0.75, 1.25, 1.5, 2.0};
   std::vector<std::vector<double>> list;
@@ -22,7 +22,8 @@ std::vector<std::vector<double>> settings(std::size_t sliders) {
   return list;
 }
 
-/// Chooses poses one after the other. Each is the pose that rejects most of the machines that no chosen pose rejects.
+/// Chooses poses one after the other: in each step the pose that rejects most of the machines that no chosen pose
+/// rejects.
 class PoseCover {
  public:
   /// rejected: [poses][settings x machines] 1 if the pose rejects the machine at the setting, otherwise 0.
@@ -64,7 +65,7 @@ class PoseCover {
 
   std::vector<std::vector<std::uint8_t>> rejected_;
   std::size_t machines_;
-  /// [settings x machines] 1 if a machine is rejected, but not at any of the poses that are already chosen.
+  /// [settings x machines] 1 if a machine is rejected, but at none of the poses chosen so far.
   std::vector<std::uint8_t> left_;
 };
 

@@ -9,7 +9,7 @@
 namespace poesy {
 namespace {
 
-constexpr double kStep = 0.5;  // step of a difference, in standard deviations
+constexpr double kStep = 0.5;  // step of the central differences, in standard deviations of the error
 
 }  // namespace
 

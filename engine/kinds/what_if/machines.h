@@ -15,12 +15,13 @@ namespace poesy {
 /// the plan, the model and the vectors. Precondition: the study draws errors per machine.
 class WhatIfMachines : private UnitSolver {
  public:
-  /// The components of all limited vectors (LimitedVector) at a pose, for each machine; NaN if it is not solved.
+  /// The components of all limited vectors (LimitedVector) at a pose, for each machine; NaN if the machine is not
+  /// solved.
   using Rows = Array<double, axis::VectorRow, axis::Sample>;
   /// The derivatives of these components with respect to each error.
   using Slopes = Array<double, axis::VectorRow, axis::Factor>;
 
-  /// machines: their number, at most Plan::kUnitSamples and Plan::samples().
+  /// machines: the number of machines, at most Plan::kUnitSamples and Plan::samples().
   WhatIfMachines(const Plan& plan, const Model& model, const LimitedVectors& vectors, std::size_t machines);
 
   std::size_t machines() const { return machines_; }  ///< The number of machines.
@@ -34,7 +35,7 @@ class WhatIfMachines : private UnitSolver {
   Slopes slopes(PoseIndex pose);
 
  private:
-  /// Solves the sets of errors in the first `count` columns of values_.
+  /// Solves the sets of errors in the first `count` columns of `values_`.
   Rows rows_of(PoseIndex pose, std::size_t count);
 
   const LimitedVectors* vectors_;

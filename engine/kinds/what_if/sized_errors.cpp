@@ -9,7 +9,7 @@
 namespace poesy {
 namespace {
 
-/// The size of an error, by the parameter of its distribution that the study states.
+/// The size of an error: the parameter of its distribution that the study states.
 WhatIfSize size_of(const Distribution& error, Dimension dimension) {
   const Unit& unit = display_unit(dimension);
   using enum Distribution::Shape;

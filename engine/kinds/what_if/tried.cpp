@@ -41,14 +41,15 @@ Eigen::Map<const RowMajor> part_of(const Rows& rows, const ScaledLimit& limit) {
   return {rows.row(limit.first).data(), static_cast<Eigen::Index>(limit.rows), columns};
 }
 
-/// The directions in which errors change a vector at one pose.
+/// The directions, in the space of a limited vector, in which errors change this vector at one pose.
 struct Directions {
   linalg::Matrix axes;  ///< [rows x rows] orthonormal columns; the direction with the largest effect is the last
   std::size_t count;    ///< number of directions with an effect of at least a millionth of the largest
 };
 
 Directions directions(const WhatIfMachines::Slopes& slopes, const ScaledLimit& limit, const Plan& plan) {
-  constexpr double kLeast = 1e-12;  // share of the largest squared effect
+  constexpr double kLeast =
+      1e-12;  // a direction counts if its squared effect is more than this share of the largest one
   linalg::Matrix effects = part_of(slopes, limit);
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {
     effects.col(static_cast<Eigen::Index>(p)) *= plan.distributions()[p].standard_deviation();
@@ -60,9 +61,9 @@ Directions directions(const WhatIfMachines::Slopes& slopes, const ScaledLimit& l
   return {std::move(axes), static_cast<std::size_t>(count)};
 }
 
-/// Reduces limited vectors to fewer components, with the same norms. `count` new components are along the directions in
-/// which errors change the vector. One more is the length of the remaining part, which errors do not change to first
-/// order.
+/// Replaces limited vectors by vectors with fewer components and the same norms. `count` new components are along the
+/// directions in which errors change the vector. One more is the length of the remaining part, which errors do not
+/// change to first order.
 struct FewerRows {
   std::vector<std::vector<Directions>> at;  ///< [limits][poses] directions at each pose
   std::vector<std::size_t> counts;          ///< [limits] largest number of directions at a pose; 0: all rows are kept

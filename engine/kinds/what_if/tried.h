@@ -36,12 +36,12 @@ struct TriedMachines {
 TriedMachines tried_machines(std::vector<std::size_t> poses, const Plan& plan, const LimitedVectors& vectors,
                              WhatIfMachines& machines);
 
-/// [machines] How far each machine is beyond its limits at a pose, in units of the limit that it exceeds most; negative
-/// if it is within all limits. Infinite if it is not solved.
+/// [machines] By how much each machine exceeds its worst limit at a pose, divided by the limit's scale; negative if it
+/// is within all limits. Infinite if it is not solved.
 std::vector<double> badness(const WhatIfMachines::Rows& rows, std::span<const ScaledLimit> limits);
 
-/// The limited vectors of each machine at pose k of `tried` if errors have other sizes, to first order. sizes: [errors]
-/// factors.
+/// The limited vectors of each machine at pose k of `tried` if the deviations of its errors are multiplied by these
+/// factors, to first order. sizes: [errors] factors.
 WhatIfMachines::Rows changed(const TriedMachines& tried, const WhatIfMachines& machines, std::size_t k,
                              std::span<const double> sizes);
 

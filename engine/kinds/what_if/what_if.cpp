@@ -20,12 +20,12 @@ namespace poesy {
 namespace {
 
 constexpr std::size_t kMostMachines = Plan::kUnitSamples;
-/// The largest number of values of limited vectors in a report: components times machines times poses. Each takes 4
-/// bytes.
+/// The largest number of components of limited vectors in a report, over all machines and poses. Each takes 4 bytes.
 constexpr std::size_t kMostNumbers = 60'000;
 constexpr std::size_t kMostPoses = 150;  // largest number of poses that are solved, so that a report takes seconds
 constexpr std::size_t kMostSliders = 10;
-// Largest error of the linear prediction, as a share of a limit. If the error is larger, there is no prediction.
+// The largest allowed error of the linear prediction, as a share of a limit. If the error is larger, there is no
+// prediction.
 constexpr double kMostLinearError = 0.5;
 
 /// The poses with the largest weights, at most kMostPoses, in ascending order.
@@ -37,7 +37,7 @@ std::vector<std::size_t> heaviest_poses(std::span<const double> weights) {
   return poses;
 }
 
-/// [errors] The share of each error in the mean squares of the limited vectors, summed over the limits, and over the
+/// [errors] The share of each error in the sum of the mean squares of the limited vectors over all limits, and over the
 /// poses with these weights. NaN if a derivative is unknown.
 std::vector<double> shares(const TriedMachines& tried, const Plan& plan, std::span<const double> pose_weights) {
   std::vector<double> list(plan.factors().size(), 0.0);
@@ -70,7 +70,7 @@ std::vector<double> rejects_at(const TriedMachines& tried) {
   return weights;
 }
 
-/// The groups of errors with the largest shares.
+/// The groups of errors that get a slider: those with the largest shares, at most kMostSliders.
 std::vector<SizedErrors> leading(const JudgedMachines& judged, const TriedMachines& tried, const Plan& plan) {
   const std::vector<double> of_each = shares(tried, plan, rejects_at(tried));
   std::vector<std::pair<double, std::size_t>> order;
@@ -89,9 +89,10 @@ std::vector<SizedErrors> leading(const JudgedMachines& judged, const TriedMachin
 
 /// How well the prediction agrees with exact solves of the same machines.
 struct Agreement {
-  double linear_error = 0.0;  ///< largest error of the linear prediction; see WhatIf
-  double unsolved = 0.0;      ///< largest share of machines that are solved at the study's sizes but not at changed
-                              ///< ones
+  double linear_error =
+      0.0;  ///< error of the linear prediction that the share `conf_level` of the machines does not exceed; see WhatIf
+  double unsolved = 0.0;  ///< largest share of machines that are solved at the study's sizes but not at changed
+                          ///< ones
 };
 
 /// [machines] The largest badness() of each machine over these poses.
@@ -145,7 +146,7 @@ bool may_be_predicted(const JudgedMachines& judged, const LimitedVectors& vector
 }
 
 /// Whether the model reaches these poses and the poses before them, from which solves may start. A result file may
-/// contain poses that it does not reach.
+/// contain poses that the model does not reach.
 bool are_reached(const JudgedMachines& judged, std::span<const std::size_t> poses) {
   return std::ranges::all_of(poses, [&](std::size_t m) {
     return !judged.model.unreachable(judged.poses[PoseIndex(m)]) &&

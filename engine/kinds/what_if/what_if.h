@@ -39,14 +39,15 @@ struct JudgedMachines {
 /// The factors that a slider can take, ascending: 0.25, 0.3, ..., 2.
 std::span<const double> what_if_factors();
 
-/// The errors that a reader of the report may change: each error of the study alone, but those of a feature of the
-/// drawing together. Errors without a size, and errors that machines draw anew at each pose, are left out.
+/// The groups of errors that a reader of the report may change: each error of the study is a group, but all errors of a
+/// feature of the drawing are one group. Errors without a size, and errors that machines draw anew at each pose, are
+/// left out.
 std::vector<SizedErrors> sized_errors(const Study& study, const PoseSet& poses);
 
 /// Predicts yields from the first machines of the study, which are solved again, and from derivatives at the mean
-/// errors. Ten errors can be changed: those that add most to the limited responses. The prediction is compared with
-/// exact solves of the same machines, with all sizes at their smallest and largest. None if a limit is over several
-/// poses, if the responses are not nearly linear, or if the model does not reach the poses.
+/// errors. At most ten groups of errors can be changed: those that add most to the limited responses. The prediction is
+/// compared with exact solves of the same machines, with all sizes at their smallest and at their largest. None if a
+/// limit is over several poses, if the responses are not nearly linear, or if the model does not reach the poses.
 std::optional<WhatIf> what_if(const JudgedMachines& judged, ArrayPool& pool);
 
 /// Adds to the page the section with the predicted yields, if there is a prediction. after: id of the section behind
