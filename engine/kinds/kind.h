@@ -28,8 +28,8 @@ struct StudyResult {
   std::vector<std::string> row_names;     ///< names of the rows of given errors, for verdicts that name a row
   std::optional<Study> confirming =
       std::nullopt;  ///< a study that confirms the result; none if the kind writes no such study
-  std::optional<DrawingResult> drawing = std::nullopt;  ///< effects of a drawing's features; none if no features
-                                                        ///< scatter in zones
+  std::optional<DrawingResult> drawing =
+      std::nullopt;  ///< effects of a drawing's features; none if no feature scatters
   /// [machines] 1 if the machine is rejected, otherwise 0. Empty without limits or without RunOptions::keep_rejected.
   /// Not part of a result file.
   std::vector<std::uint8_t> rejected = {};
@@ -65,13 +65,13 @@ struct RunKind {
   bool confirms = false;  ///< whether the result includes a study that confirms it
 };
 
-/// A function for Kind::most_shards if the shards of the kind are groups of poses.
+/// The value of RunKind::most_shards for kinds whose shards are groups of poses.
 inline std::size_t shards_by_pose(const Study&, std::size_t poses) { return poses; }
 
 /// The given errors of a result whose errors were not drawn, and how a user of `poesy replay` names a solve: by the
 /// pose, and by the number or the name of a row of errors. Refers to the result.
 struct GivenErrors {
-  std::string_view word;           ///< what a named row is called in messages: "case"
+  std::string_view word;           ///< word for a named row in messages: "case"
   std::vector<std::string> names;  ///< names of the rows; empty if they have none
   /// Number of solves at each pose, if a solve is named by its number at the pose. 0 if it is named by its row of
   /// errors.

@@ -19,7 +19,7 @@ struct Prices {
 
 /// The sizes that one process allows at which cost + price x size is least.
 struct ProcessResponse {
-  double size;              ///< best size, in [lo, hi]
+  double size;              ///< size at which cost + price x size is least, in [lo, hi]
   double cost;              ///< cost at these sizes
   double lagrangian;        ///< least value of cost + price x size, which is that at these sizes
   double inner_size = 0.0;  ///< size of a pair's inner part: within its bounds and at most share x size

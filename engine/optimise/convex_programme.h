@@ -18,8 +18,9 @@ struct ConvexSolution {
   std::vector<double> multiplier;  ///< [limits] multipliers of the limits that prove the lower bound
 };
 
-/// Solves the problem. sized: has one process for each part. working_set: limits that are likely to bind, with which
-/// the search for multipliers starts. None if the lowest tolerances break a limit.
+/// Finds the tolerances with the least cost. sized: the problem with only one process for each part. working_set:
+/// limits that are likely to be used up, with which the search for multipliers starts. None if the lowest tolerances
+/// break a limit.
 std::optional<ConvexSolution> solve_convex(const AllocationProblem& problem, const SizedProblem& sized,
                                            std::span<const std::size_t> working_set);
 

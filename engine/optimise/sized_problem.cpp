@@ -115,7 +115,7 @@ std::optional<std::size_t> tighten_bounds(SizedProblem& problem) {
   for (std::size_t i = 0; i < largest.size(); ++i) {
     if (is_in_pair(problem, i)) continue;
     auto& processes = problem.processes[i];
-    // The margin covers the rounding of lo and of the difference.
+    // The margin covers the rounding of `lo` and of the room that is left.
     const double most = largest[i] * (1.0 + 4.0 * kEpsilon);
     if (most == kInfinity) continue;
     std::erase_if(processes, [&](const SizedProcess& process) { return process.lo > most; });

@@ -8,8 +8,8 @@
 
 #include "engine/optimise/least_cost.h"
 
-/// The least-cost problem in terms of sizes (T^2, or T in the worst case), in which limits are linear. Each limit is
-/// divided by its room, so its room is 1.
+/// The least-cost problem in terms of sizes (T^2, or T for Stacking::worst_case), in which limits are linear. Each
+/// limit is divided by its room, so its room is 1.
 namespace poesy {
 
 /// The process of the inner part of a pair (Within). Bounds are sizes (T^2, or T for Stacking::worst_case).
@@ -58,7 +58,7 @@ double rounding_margin(std::size_t parts);
 /// The scalar product of two vectors, accumulated in eight partial sums.
 double dot(std::span<const double> a, std::span<const double> b);
 
-/// The whole problem in terms of sizes.
+/// The least-cost problem in terms of sizes (T^2, or T for Stacking::worst_case).
 struct SizedProblem {
   Stacking stacking;                   ///< how effects add up, which defines the size of a tolerance
   std::size_t limits;                  ///< L, the number of limits
@@ -93,7 +93,7 @@ std::vector<ProcessRange> all_processes(const SizedProblem& problem);
 /// with the least use differ from limit to limit.
 std::vector<double> lowest(const SizedProblem& problem, std::span<const ProcessRange> allowed);
 
-/// The least use of limit l by the allowed processes. lo: from lowest().
+/// The least share of the room of limit l that all parts together use with their allowed processes. lo: from lowest().
 double least_use(const SizedProblem& problem, std::size_t l, std::span<const ProcessRange> allowed,
                  std::span<const double> lo);
 

@@ -227,7 +227,7 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   add_failures(result, found.failures, {std::string(kAllFactors)}, found.total().not_converged());
 }
 
-/// Checks what tables and CSV files assume about a result. Throws h5::Error.
+/// Checks the properties of a result that tables and CSV files rely on. Throws h5::Error.
 void check(const Result& found) {
   check_names(found.part_names, "/part");
   check_names(found.part_unit, "/allocation/unit");
@@ -266,7 +266,7 @@ void read(const h5::File& file, StoredResult& result) {
   check(found);
   found.solves = read_solver<decltype(found.solves)>(file);
   found.certificate.solves = found.total();
-  // The addresses of the certificate's samples are those of the certificate's own study, which can replay them.
+  // The addresses of failed samples are valid in the certificate's own study, which can replay them.
   result.varied = {std::string(kAllFactors)};
   found.failures = read_failures(file, result);
   result.varied.clear();
@@ -310,7 +310,7 @@ CsvTable part_table(const Result& found) {
   return table;
 }
 
-/// A CSV table of each error's share of the mean square.
+/// A CSV table of each error's share of the mean square under the tightest limit.
 CsvTable error_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   CsvTable table = lines_of_factors(result, "allocation_errors");

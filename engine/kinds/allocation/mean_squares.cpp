@@ -20,7 +20,7 @@ namespace {
 /// The number of values of an error at which the mechanism is solved (nodes): mu - sigma, c and mu + sigma, with its
 /// mean mu, its standard deviation sigma and c = Distribution::centre().
 constexpr std::size_t kNodes = 3;
-constexpr std::size_t kDrawsOfPiece = 16;  ///< number of draws in a piece of work
+constexpr std::size_t kDrawsOfPiece = 16;  ///< number of draws of the other errors in a piece of work
 /// If a sample with one varied error is not solved, its response counts as this multiple of the limit.
 constexpr double kUnsolvedOverLimit = 10.0;
 constexpr double kLargestSum = 1e100;  ///< the largest sum of squares that a state may hold, so that slopes computed

@@ -32,9 +32,10 @@ class NearLimit {
   /// The expected number of rejects, among all machines, that a larger tolerance of a part adds. coarser: [chosen]
   /// loads of machines() with this larger tolerance.
   double added_rejects(std::span<const double> coarser) const;
-  /// The same number, estimated from antithetic pairs (e, -e) of the part's errors e, which have less variance.
-  /// Precondition: the errors are symmetric about zero. All arguments are loads [chosen] of machines(): with the larger
-  /// tolerance, with -e instead of e, and with both changes.
+  /// The expected number of rejects that a larger tolerance of a part adds, estimated from antithetic pairs (e, -e) of
+  /// the part's errors e, so that it has less variance. Precondition: the errors are symmetric about zero. All
+  /// arguments are loads [chosen] of machines(): with the larger tolerance, with -e instead of e, and with both
+  /// changes.
   double added_rejects(std::span<const double> coarser, std::span<const double> mirrored,
                        std::span<const double> mirrored_coarser) const;
 

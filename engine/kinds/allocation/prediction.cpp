@@ -36,7 +36,7 @@ void add_part(const AllocationResult& found, const ToleranceProgramme& programme
   for (const ErrorFactor& one : programme.weights(point, part).errors) {
     if (std::ranges::find(errors.slots, one.error) == errors.slots.end()) errors.slots.push_back(one.error);
   }
-  if (programme.is_void(point, part)) return;  // the drawing does not have it
+  if (programme.is_void(point, part)) return;  // the drawing does not contain this zone
   errors.name += (errors.name.empty() ? "" : ", ") + found.part_names[part];
   errors.sizes.push_back(size_of(found, part));
   if (!has_costs(found)) return;

@@ -20,7 +20,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// standard deviations of a normal error equal the dimension.
 constexpr double kShareOfPart = 0.25;
 
-/// The standard deviation that stands in for 0, m or rad. No solve can distinguish it from 0.
+/// The standard deviation (m or rad) that is used instead of 0. No solve can distinguish it from 0.
 constexpr double kPerfect = 1e-18;
 
 /// The largest tolerance that is physically possible, whatever the study states.
@@ -64,8 +64,8 @@ std::vector<Process> processes_of(const AllocatedPart& part, const Model& model)
   return {bounded(law, part.lo, part.hi)};
 }
 
-/// The shape of a distribution, scaled to this standard deviation and shifted by this mean, SI. Precondition: the shape
-/// is symmetric.
+/// A distribution of the same shape with this standard deviation and this shift of the mean, SI. Precondition: the
+/// shape is symmetric.
 Distribution error_of(const Distribution& shape, double sigma, double shift) {
   const double without_shift =
       std::sqrt(shape.standard_deviation() * shape.standard_deviation() - shape.shift() * shape.shift());
@@ -150,7 +150,7 @@ std::optional<Held> larger_than(const std::vector<Process>& list, const Held& fr
   return Held{list[*above].lo, *above};
 }
 
-/// If the cost is the same at every tolerance, restricts a process to its finest one.
+/// If the cost is the same at every tolerance, restricts a process to its finest tolerance.
 Process finest_if_constant(Process process) {
   if (process.cost.is_constant()) process.hi = process.lo;
   return process;

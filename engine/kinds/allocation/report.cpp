@@ -291,8 +291,9 @@ Comparable comparable(const StoredResult& result, const StoredResult& other) {
   return all;
 }
 
-/// The merit by which results are compared: the cost. The yield is not a merit, because both results certify it. The
-/// cost has no interval, because a result does not tell what other machines of the search would have given.
+/// The number by which it is judged which of two results is better: the cost. The yield is not used for this, because
+/// both results certify it. The cost has no interval, because a result does not tell what other machines of the search
+/// would have given.
 std::vector<Merit> merits(const StoredResult& result, std::string_view) {
   const Result& found = allocation_of(result);
   if (!has_costs(found)) return {};

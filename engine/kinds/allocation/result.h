@@ -24,7 +24,7 @@ namespace poesy {
 /// The cost of a tolerance T in SI units, as a law with parameters. The stated numbers are kept so that the study can
 /// be written again digit by digit.
 struct StatedCost {
-  /// The law, by its name in a study file.
+  /// The form of the cost as a function of T.
   enum class Law {
     none,              ///< no cost
     reciprocal,        ///< a + b / T
@@ -142,7 +142,7 @@ struct AllocationResult {
   std::vector<std::string> part_names;  ///< names of the parts
   Parts<std::string> part_members;      ///< names of a part's errors, separated by blanks
   Parts<std::string> part_unit;         ///< SI unit of T: "m" or "rad"
-  Parts<double> tolerance;              ///< tolerance T; the drawing states +-T
+  Parts<double> tolerance;              ///< tolerance T: the drawing states +-T, or T as the size of a zone
   Parts<double> sigma;                  ///< standard deviation of the errors about their mean
   Parts<double> sigmas;                 ///< number of sigma in T: T = shift + sigmas x sigma
   Parts<double> shift;                  ///< offset of the mean, in either direction, in the unit of T
@@ -176,7 +176,7 @@ struct AllocationResult {
   /// @}
 
   AtPoses multiplier;  ///< cost saved per unit by which the limit is wider at only this pose
-  AtPoses limit_use;   ///< predicted root mean square, divided by the one that the programme allows
+  AtPoses limit_use;   ///< predicted root mean square, divided by the largest one that the programme allows
   /// The limit, SI. For a limit that is not on a magnitude: the smallest distance, over the poses, from the response of
   /// the mechanism with perfect parts to the nearer end.
   Array<double, axis::Response> limit;

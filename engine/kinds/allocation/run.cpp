@@ -70,8 +70,8 @@ std::vector<double> mean_square_shares(const ToleranceProgramme& programme, cons
   return shares;
 }
 
-/// Divides a share among errors in proportion to variance times slope. weights: the errors with numbers proportional to
-/// their variances.
+/// Divides the share of parts in a mean square among their errors, in proportion to variance times MeanSquares::slope.
+/// weights: the errors with numbers proportional to their variances.
 void divide_share(std::span<const double> slopes, std::span<const ErrorFactor> weights, double of_parts,
                   Array<double, axis::Factor>& shares) {
   double sum = 0.0;
@@ -82,7 +82,7 @@ void divide_share(std::span<const double> slopes, std::span<const ErrorFactor> w
   }
 }
 
-/// Sets the results of each part.
+/// Sets the members of a result that have a value for each part.
 void add_parts(const SearchProblem& problem, const FoundTolerances& search, const ToleranceLimits& limits,
                AllocationResult& found) {
   const Study& study = problem.run.study;
@@ -143,7 +143,7 @@ Feature found_feature(const ToleranceProgramme& programme, const TolerancePoint&
   return feature;
 }
 
-/// Sets the results of zones.
+/// Sets the members of a result that describe tolerance zones.
 void add_zones(const SearchProblem& problem, const TolerancePoint& point, AllocationResult& found) {
   const ModelDescription& model = problem.run.study.model();
   const std::vector<AllocatedPart>& parts = problem.programme.parts();
@@ -177,7 +177,7 @@ void add_zones(const SearchProblem& problem, const TolerancePoint& point, Alloca
   }
 }
 
-/// Sets the results of each limit.
+/// Sets the members of a result that describe the limits.
 void add_limits(const SearchProblem& problem, const FoundTolerances& search, const ToleranceLimits& limits,
                 AllocationResult& found) {
   const Candidate& candidate = search.design.candidate;
@@ -345,7 +345,7 @@ Outlook allocation_outlook(const Study& study, const Model& model, const PoseSet
   const std::size_t rows = study.analysis.limits.size() * poses.size();
   const std::size_t loads = plan->samples() * sizeof(double);
   const std::size_t squares = 3 * rows * errors * sizeof(double);
-  // The use and the multiplier of each limit, and the pose's coordinates and condition number.
+  // The numbers at a pose: the use and the multiplier of each limit, the pose's coordinates and its condition number.
   const std::size_t of_pose = 2 * study.model().responses.size() + study.model().pose_coordinates.size() + 1;
   const std::size_t numbers = poses.size() * of_pose * sizeof(double);
   // The numbers and names of a part, and its text in the certificate's study.

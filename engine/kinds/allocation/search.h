@@ -38,14 +38,14 @@ AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t ma
 /// machines.
 std::uint64_t seed_of_others(const Study& study, SampleIndex set);
 
-/// What a search needs; it does not change between stages.
+/// The data that a search needs, which do not change between its stages.
 struct SearchProblem {
   /// Refers to the run.
   explicit SearchProblem(const StudyRun& study_run);
 
   const StudyRun& run;                            ///< the study, its model and how it is run
   const AllocationOptions& options;               ///< the options of the study
-  ToleranceProgramme programme;                   ///< the parts
+  ToleranceProgramme programme;                   ///< the parts whose tolerances are sought
   AllowedRejects allowed;                         ///< allowed rejects of as many machines as the study has samples
   std::optional<MachineCalibration> calibration;  ///< how the study's machines are calibrated; none: they are not
 

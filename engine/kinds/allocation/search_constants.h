@@ -19,9 +19,9 @@ inline constexpr std::size_t kMaxLinearisations = 6;
 /// percents.
 inline constexpr double kCostTolerance = 1e-3;
 
-/// The largest number of trials of machines in one loop. Make it larger where loops end before the deciding load is
-/// near 1. The load of a machine is its largest ratio of a response to its limit (MachineLoads). The deciding load is
-/// the largest load after those of the rejects that the design may have (deciding_load()).
+/// The largest number of trials of machines in one loop. Make it larger if loops end before the deciding load is near
+/// 1. The load of a machine is its largest ratio of a response to its limit (MachineLoads). The deciding load is the
+/// largest load after those of the rejects that the design may have (deciding_load()).
 inline constexpr std::size_t kMaxTrials = 12;
 /// How far the deciding load may be below 1. Loads are nearly proportional to tolerances, so a smaller value only helps
 /// if costs must be compared more finely.

@@ -117,7 +117,7 @@ void add_details(const Result& found, std::vector<FilledColumn>& columns) {
 /// Whether the part adds nothing to any mean square and has the largest tolerance that the search allows, so that this
 /// tolerance says nothing about the part.
 bool has_no_effect(const Result& found, std::size_t n) {
-  constexpr double kRounding = 1e-12;  // share of the mean square
+  constexpr double kRounding = 1e-12;  // a smaller share of the mean square is rounding
   return found.mean_square_share(n) < kRounding && found.bound(n) == static_cast<std::uint8_t>(AtBound::upper);
 }
 

@@ -20,7 +20,7 @@ struct ErrorFactor {
   double factor;      ///< the factor, finite; a negative factor mirrors the error
 };
 
-/// Factors on some errors, which express a changed tolerance or mirrored errors.
+/// Factors on some errors that describe a changed tolerance or mirrored errors.
 using Variation = std::vector<ErrorFactor>;
 
 /// [variations x machines] The loads (MachineLoads) of the listed machines if their errors are changed by one

@@ -107,7 +107,8 @@ Table cases_table(const StoredResult& result) {
   std::vector<FilledColumn> columns{
       {text_column("case", "case"), [&](std::size_t c) { return text_cell(found.cases[c]); }},
       {number_column("poses", "poses"), [&](std::size_t c) { return count_cell(found.count.all()[c]); }}};
-  // A narrow table omits columns with larger numbers first, so those of the last response. 0 is never omitted.
+  // A narrow table omits columns with larger numbers first, so the columns of the last response are omitted first.
+  // Those with the number 0 are never omitted.
   int dispensable = 0;
   for (const std::size_t r : result.headline) {
     const NamedUnit& response = result.responses[r];

@@ -107,7 +107,7 @@ std::string linear_note(const StoredResult& result, const YieldResult& yield, st
 /// A note on the mean of a response over the machines, which smaller errors do not change. Empty if the mean is hardly
 /// a part of the mean square, or if the file does not contain it.
 std::string offset_note(const StoredResult& result, const YieldResult& yield, std::size_t r) {
-  constexpr double kNoticeable = 0.001;  // least share of the whole mean square
+  constexpr double kNoticeable = 0.001;  // the note is given from this share of the mean square on
   if (!yield.has_offset() || !(yield.offset_share(r) >= kNoticeable)) return {};
   return fmt::format(
       "{}: not in these shares is its mean over the machines, {} as a root mean square over the poses: {} of the whole "

@@ -146,17 +146,17 @@ class MachineUnitEvaluator : private UnitSolver {
   std::unique_ptr<Evaluator> best_;
   std::unique_ptr<Evaluator> calibrated_;            ///< evaluator of the calibrated machines of the present unit
   std::vector<std::uint8_t> counts_;                 ///< whether each machine counts at the pose
-  Array<double, axis::Response, axis::Sample> sum_;  ///< sums over the poses
-  std::vector<double> kept_;                         ///< values of one response
-  bool is_fitted_ = false;                           ///< whether the present unit is fitted
+  Array<double, axis::Response, axis::Sample> sum_;  ///< sums of the machines' responses over the poses
+  std::vector<double> kept_;                         ///< values of one response that count, see only()
+  bool is_fitted_ = false;                           ///< whether the linear map is fitted to the present unit
   /// Additional outputs of the model at the present pose, if some limited vector is computed from them.
   Array<double, axis::DetailComponent, axis::Sample> details_;
   /// Components of the limited vectors at all poses, if the linear map is fitted to the unit.
   Array<double, axis::Pose, axis::VectorRow, axis::Sample> rows_;
-  std::vector<std::uint8_t> poses_beyond_;  ///< [machines] number of poses at which the machine breaks a limit: 0,
-                                            ///< 1, or 2 for more
+  std::vector<std::uint8_t> poses_beyond_;  ///< [machines] number of poses at which the machine breaks a limit or is
+                                            ///< not solved: 0, 1, or 2 for more
   /// [errors x machines] Errors that machines draw anew at each pose, at the first pose at which the machine breaks a
-  /// limit.
+  /// limit or is not solved.
   Array<double, axis::Factor, axis::Sample> deciding_;
 };
 

@@ -45,7 +45,8 @@ MemoryOutlook sum_of(const MemoryOutlook& a, const MemoryOutlook& b) {
 
 MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const Plan& plan) {
   const std::size_t responses = study.model().responses.size();
-  // Quantiles with both ends of their intervals, and for Judge::share the share_magnitude.
+  // Numbers computed from a sketch: quantiles with both ends of their intervals, and for Judge::share the
+  // share_magnitude.
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   const std::size_t of_sketch = 3 * asked.quantiles.size() + (asked.judge == Judge::share ? 1 : 0);
   const MemoryOutlook of_pose{responses * sizeof(Moments) + sizeof(FailedSamples) + sizeof(SolveCounts) + sizeof(Bytes),

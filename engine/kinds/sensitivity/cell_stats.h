@@ -10,8 +10,8 @@
 
 namespace poesy {
 
-/// Statistics of the samples in consecutive cells, for R responses. A cell is one error at one pose. Each response has
-/// its own list, so that its memory can be freed separately.
+/// Statistics of the samples in consecutive cells. A cell is one error at one pose. Each response has its own list, so
+/// that its memory can be freed separately.
 struct CellStats {
   std::vector<std::vector<Moments>> responses;  ///< [responses][cells] moments of the samples that count
   std::vector<SolveCounts> solves;              ///< [cells] how the solves ended

@@ -49,8 +49,8 @@ Common ranked_common(const StoredResult& a, const StoredResult& b) {
   return factors;
 }
 
-/// Appends to the page the section that shows at which poses the indices of two results, a and b, differ. Only for
-/// results at the same poses.
+/// Appends to the page the section that shows at which poses the indices of two results, a and b, differ. If the
+/// results are not at the same poses, the section only says so.
 void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
   if (!same_poses(a, b)) {
     page.add_section("where", "Where in the workspace they differ")

@@ -48,8 +48,9 @@ class PanelDesign {
   /// The number of units that contain the first `samples` samples of the study. Precondition: samples are independent.
   std::size_t units_for(std::size_t samples) const { return (samples + kUnitSamples - 1) / kUnitSamples; }
 
-  /// [samples] The uniforms of one error in the unit's samples. slot: position among the plan's factors. With random
-  /// draws, sample A equals the sample of a Monte Carlo study with draws per machine and the same seed.
+  /// [samples] The uniform numbers from which one error in the unit's samples is computed. slot: position among the
+  /// plan's factors. With random draws, sample A equals the sample of a Monte Carlo study with draws per machine and
+  /// the same seed.
   void fill(PanelSample which, std::size_t slot, const PanelUnit& unit, std::span<double> uniforms) const;
 
  private:

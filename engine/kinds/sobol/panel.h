@@ -84,7 +84,7 @@ struct PanelSums {
   std::vector<SolveCounts> solves;      ///< [poses] how the solves at each pose ended
   std::vector<FailedSamples> failed;    ///< [poses] first samples of A that were not solved
   std::vector<std::uint64_t> failures;  ///< [poses] number of samples of A that were not solved
-  std::uint64_t end = 0;                ///< upper bound of the numbers of samples: each is smaller than this
+  std::uint64_t end = 0;                ///< the numbers of all samples are below this
 
   /// Adds later samples of the same panel. Precondition: the samples of `later` come after those of this object.
   void merge(const PanelSums& later);

@@ -118,8 +118,9 @@ struct SobolResult {
   SobolIndices<axis::Response, axis::ErrorGroup> aggregated;
   /// Indices of vectors over all poses, from the traces of their covariances (Gamboa et al. 2014).
   SobolIndices<axis::SignedVector, axis::ErrorGroup> of_vectors;
-  Array<std::uint64_t, axis::Response, axis::ErrorGroup, axis::Pose> n;  ///< number of pairs of samples for at_poses
-  Array<double, axis::Response, axis::Pose> mean;                        ///< mean of the response
+  Array<std::uint64_t, axis::Response, axis::ErrorGroup, axis::Pose>
+      n;                                               ///< number of pairs of samples from which `at_poses` is computed
+  Array<double, axis::Response, axis::Pose> mean;      ///< mean of the response
   Array<double, axis::Response, axis::Pose> variance;  ///< variance of the response, of which the indices are shares
   Array<std::uint8_t, axis::Response> without_sign;    ///< 1 if no sample of the response was negative, otherwise 0
   /// Second-order indices of pairs of groups over all poses, without the first-order indices of the two groups.
