@@ -26,10 +26,10 @@ struct StudyResult {
   std::any found;                         ///< the result, in the kind's own type, for instance SensitivityResult
   std::optional<LimitVerdicts> verdicts;  ///< verdicts on the limits that the study states; empty without limits
   std::vector<std::string> row_names;     ///< names of the rows of given errors, for verdicts that name a row
-  std::optional<Study> confirming =
-      std::nullopt;  ///< a study that confirms the result; none if the kind writes no such study
-  std::optional<DrawingResult> drawing =
-      std::nullopt;  ///< effects of a drawing's features; none if no feature scatters
+  /// A study that confirms the result; none if the kind writes no such study.
+  std::optional<Study> confirming = std::nullopt;
+  /// Effects of a drawing's features; none if no feature scatters.
+  std::optional<DrawingResult> drawing = std::nullopt;
   /// [machines] 1 if the machine is rejected, otherwise 0. Empty without limits or without RunOptions::keep_rejected.
   /// Not part of a result file.
   std::vector<std::uint8_t> rejected = {};

@@ -26,8 +26,8 @@ LimitedVectors::LimitedVectors(const Plan& plan, const Model& model, const Analy
   for (const ResponseLimit& limit : analysis.limits) {
     const Response& response = description.responses[limit.response];
     const bool is_centred = limit.allowed.is_spread() && !response.is_magnitude();
-    if (is_centred && !plan.per_pose().empty())
-      continue;  // the mean over the poses is not known to a fit at a single pose
+    // The mean over the poses is not known to a fit at a single pose.
+    if (is_centred && !plan.per_pose().empty()) continue;
     LimitedVector vector{limit.response, limit.allowed, response.components, rows_, 0, is_centred};
     const std::size_t numbers = model.norm_of_details(limit.response, plan.poses()[PoseIndex(0)]).size();
     if (numbers > 0) {

@@ -11,8 +11,8 @@ namespace poesy {
 namespace {
 
 constexpr double kNegligible = 1e-9;  ///< a multiplier below this share of the sum of all multipliers counts as 0
-constexpr double kGoodGap =
-    1e-11;  ///< multipliers are improved only if the relative gap between cost and lower bound is above this
+/// Multipliers are improved only if the relative gap between cost and lower bound is above this.
+constexpr double kGoodGap = 1e-11;
 
 const Process& process_of(const AllocationProblem& problem, const SizedProblem& sized, std::size_t part) {
   return problem.parts[part][sized.processes[part].front().index];

@@ -102,8 +102,8 @@ void fix_free_pairs(SizedProblem& problem, std::vector<std::size_t>& unbounded) 
 
 std::optional<std::size_t> tighten_pair(SizedProblem& problem, const Within& pair, std::span<const double> left) {
   auto& processes = problem.processes[pair.outer];
-  std::vector<double>
-      most;  // [limits] how much the pair may use of each limit; the margins cover the rounding of both terms
+  // [limits] How much the pair may use of each limit; the margins cover the rounding of both terms.
+  std::vector<double> most;
   for (std::size_t l = 0; l < problem.limits; ++l) {
     most.push_back((least_use_of_pair(problem, pair, l) + left[l]) * (1.0 + 1e-9) + 4.0 * kEpsilon);
   }

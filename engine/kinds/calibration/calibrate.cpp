@@ -26,8 +26,8 @@ using calibration::Components;
 using calibration::Matrix;
 using calibration::Vector;
 
-constexpr double kStepOfTyped =
-    1e-6;  // step of the differences by which typed parameters are differentiated, as a share of a fitted error's scale
+// Step of the differences by which typed parameters are differentiated, as a share of a fitted error's scale.
+constexpr double kStepOfTyped = 1e-6;
 
 Eigen::Index position(std::size_t at) { return static_cast<Eigen::Index>(at); }
 

@@ -64,10 +64,10 @@ struct CalibrationResult {
   double p = kNaN;              ///< p-value: probability of a larger chi_square if only noise remains
   double outlier_limit = kNaN;  ///< a value is an outlier if the magnitude of its standardised residual is above this
   std::uint64_t rank = 0;       ///< number of independent combinations of fitted errors that the measurement determines
-  std::uint64_t frame_rank =
-      0;  ///< number of independent combinations of the numbers of frame and target that the measurement determines
-  std::uint64_t below_noise =
-      0;  ///< number of combinations of fitted errors whose effect on the measured values is below the noise
+  /// Number of independent combinations of the numbers of frame and target that the measurement determines.
+  std::uint64_t frame_rank = 0;
+  /// Number of combinations of fitted errors whose effect on the measured values is below the noise.
+  std::uint64_t below_noise = 0;
   std::uint64_t steps = 0;  ///< number of steps of the fit
   double O1 = kNaN;         ///< observability index of Borm and Menq (calibration/inference.h)
   double O2 = kNaN;         ///< observability index of Driels and Pathre
@@ -90,8 +90,8 @@ struct CalibrationResult {
                                            ///< 0 if in the base frame
 
   Array<double, axis::Next, axis::Coordinate> next_pose;  ///< poses recommended for the next measurement
-  Array<double, axis::Next>
-      gain;  ///< information in bits that each pose adds to the measurements and the poses before it
+  /// Information in bits that each pose adds to the measurements and the poses before it.
+  Array<double, axis::Next> gain;
   Array<std::uint64_t, axis::Next> candidate;  ///< positions of these poses among the candidates
 
   std::vector<NamedUnit> typed;              ///< parameters for the controller; `description` is the expression

@@ -16,8 +16,8 @@
 namespace poesy {
 namespace {
 
-constexpr double kContradiction =
-    0.01;  // with a smaller p-value, a text says that the measurements contradict the fitted errors
+// With a smaller p-value, a text says that the measurements contradict the fitted errors.
+constexpr double kContradiction = 0.01;
 // A text says that estimates move together if the magnitude of their correlation is at least this.
 constexpr double kTogether = 0.95;
 constexpr std::size_t kAngles = 3;  // components of a displacement that are angles and come before the lengths

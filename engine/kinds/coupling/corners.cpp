@@ -109,8 +109,8 @@ std::vector<CornerSearch::Direction> CornerSearch::directions(const ModelDescrip
       const std::size_t before = sums.size();
       for (std::size_t n = 0; n < before; ++n) {
         for (const double weight : {1.0, -1.0}) {
-          if (weight < 0.0 && sums[n].empty())
-            continue;  // not needed: for each sum, the opposite signs are tried as well
+          // Not needed: for each sum, the opposite signs are tried as well.
+          if (weight < 0.0 && sums[n].empty()) continue;
           Direction more = sums[n];
           more.emplace_back(r, weight);
           sums.push_back(std::move(more));

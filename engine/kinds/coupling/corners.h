@@ -32,8 +32,8 @@ struct CornerTable {
 
   std::vector<FactorIndex> factors;              ///< errors of the study (coupling_factors)
   std::vector<std::vector<std::size_t>> blocks;  ///< blocks of all sources; a block is a list of positions in `factors`
-  std::vector<std::vector<std::size_t>>
-      subsets;  ///< [subsets] blocks of each subset of sources, as positions in `blocks`
+  /// [subsets] Blocks of each subset of sources, as positions in `blocks`.
+  std::vector<std::vector<std::size_t>> subsets;
   std::vector<std::vector<double>> size_of_error;  ///< [sizes][errors] size of each error of the study, SI
 
   /// The sign of each error of the study at a corner of a subset: 1, -1, or 0 for errors outside the subset.
@@ -43,9 +43,9 @@ struct CornerTable {
 /// The worst corners (choices of the sign of each block) of a subset of sources at one size and pose.
 struct WorstCorners {
   std::vector<double> value;  ///< [responses] largest |response| over the solved corners; NaN if none was solved
-  std::vector<Signs>
-      signs;                ///< [responses] signs of the blocks at the corner with this value; empty if none was solved
-  std::uint64_t tried = 0;  ///< number of corners that were tried
+  /// [responses] Signs of the blocks at the corner with this value; empty if none was solved.
+  std::vector<Signs> signs;
+  std::uint64_t tried = 0;     ///< number of corners that were tried
   std::uint64_t unsolved = 0;  ///< number of tried corners without a solution
   Signs first_unsolved = {};   ///< signs at the first corner without a solution; empty if there is none
 };

@@ -383,8 +383,8 @@ CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& m
       for (const ErrorBlock& block : blocks) add_errors(block, rows.errors[k]);
     }
     std::vector<std::size_t>& own = rows.block_rows.emplace_back();
-    if (blocks.size() == 1)
-      own.push_back(s);  // subset s has only this source, which has only this block, so the block needs no further row
+    // Subset s has only this source, which has only this block, so the block needs no further row.
+    if (blocks.size() == 1) own.push_back(s);
     for (const ErrorBlock& block : blocks) {
       if (blocks.size() == 1) break;
       own.push_back(rows.errors.size());

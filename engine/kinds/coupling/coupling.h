@@ -81,10 +81,10 @@ std::vector<std::vector<std::size_t>> source_subsets(std::size_t sources);
 /// The sets of errors that are solved at each size. First come the subsets of sources, then the blocks of those sources
 /// that have more than one block. No set is solved twice.
 struct CouplingRows {
-  std::vector<std::vector<std::size_t>>
-      subsets;  ///< [subsets] sources of each subset; row k has the errors of subset k
-  std::vector<std::vector<std::size_t>>
-      block_rows;                  ///< [sources] positions of the rows that have one block of the source each
+  /// [subsets] Sources of each subset; row k has the errors of subset k.
+  std::vector<std::vector<std::size_t>> subsets;
+  /// [sources] Positions of the rows that have one block of the source each.
+  std::vector<std::vector<std::size_t>> block_rows;
   std::vector<ErrorBlock> errors;  ///< [rows] errors of each row
 };
 

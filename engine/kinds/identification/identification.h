@@ -51,10 +51,10 @@ struct IdentificationResult {
   double rounding = 0.0;             ///< deformations up to this magnitude are rounding
   std::uint64_t required_poses = 0;  ///< number of poses at which a verdict must hold
 
-  ByGroup<std::uint64_t>
-      single_below;            ///< number of poses at which the deformation by the error alone is at most rounding
-  ByGroup<double> single_max;  ///< largest deformation by the error alone over the solved poses; NaN if none
-                               ///< is solved
+  /// Number of poses at which the deformation by the error alone is at most rounding.
+  ByGroup<std::uint64_t> single_below;
+  ByGroup<double> single_max;         ///< largest deformation by the error alone over the solved poses; NaN if none
+                                      ///< is solved
   ByGroup<std::uint64_t> not_solved;  ///< number of poses without a solution for the error alone
   /// Number of poses at which the errors of its frame, all except those that deform the mechanism alone, cause together
   /// no deformation beyond rounding.
@@ -69,8 +69,8 @@ struct IdentificationResult {
   Array<std::uint8_t, axis::Factor> single;
   /// 1 if `coupled_by_group` is 1 for some pair of sizes, otherwise 0.
   Array<std::uint8_t, axis::Factor> coupled;
-  std::vector<Coupling>
-      couplings;       ///< pairs of errors that deform the mechanism only together, ordered by group and position
+  /// Pairs of errors that deform the mechanism only together, ordered by group and position.
+  std::vector<Coupling> couplings;
   SolveCounts solves;  ///< how the solves of both stages ended
 
   std::size_t groups() const { return single_by_group.length<axis::SizeGroup>(); }  ///< The number of groups.

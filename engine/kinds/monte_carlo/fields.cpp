@@ -109,8 +109,8 @@ void append_number_columns(CsvTable& table, const std::string& unit, const std::
     append_quantile(q, "_ci_low", shown.quantiles_ci_low);
     append_quantile(q, "_ci_high", shown.quantiles_ci_high);
   }
-  if (!shown.quantile_error.empty())
-    append("quantile_error", shown.quantile_error);  // files of version 0.2 have no quantile_error
+  // Files of version 0.2 have no quantile_error.
+  if (!shown.quantile_error.empty()) append("quantile_error", shown.quantile_error);
 }
 
 CsvTable response_table(const StoredResult& result, std::size_t r) {

@@ -33,10 +33,10 @@ std::string quantile_name(double level) {
 Table values_table(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const auto number = [&result](std::string name, std::string heading, const auto& values, int dispensable = 0) {
-    return FilledColumn{
-        number_column(std::move(name), std::move(heading), "", dispensable), [&result, &values](std::size_t r) {
-          return value_cell(values.row(r).back(), result.responses[r]);  // the highest quantile of the response
-        }};
+    return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
+                        [&result, &values](std::size_t r) {
+                          return value_cell(values.row(r).back(), result.responses[r]);  // highest quantile
+                        }};
   };
   const MachineValues& largest = machines_of(result).largest;
   const MachineValues& rms = machines_of(result).rms;

@@ -63,8 +63,8 @@ struct CalibrationCounts {
   std::uint64_t not_fitted = 0;    ///< machines that were not calibrated: they were not solved, or their fit did not
                                    ///< converge
   std::uint64_t uncalibrated = 0;  ///< rejects if no machine is calibrated
-  std::uint64_t best =
-      0;  ///< rejects after the best correction of the drives at each pose, if the model can compute it
+  /// Rejects after the best correction of the drives at each pose, if the model can compute it.
+  std::uint64_t best = 0;
 
   /// Adds the counts over other machines to these.
   void merge(const CalibrationCounts& other);

@@ -103,8 +103,8 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
     const std::size_t r = limit.response;
     set_estimate(good(counts.by_limit(r).strict), found.by_response, found.by_response_ci_low,
                  found.by_response_ci_high, r);
-    if (limit.allowed.is_spread())
-      continue;  // whether a spread over the poses keeps its limit is not decided at a single pose
+    // Whether a spread over the poses keeps its limit is not decided at a single pose.
+    if (limit.allowed.is_spread()) continue;
     std::ranges::transform(counts.at_pose.row(r), found.worst_pose_share.row(r).begin(),
                            [&](const Rejects& rejects) { return share(rejects.strict, n); });
   }

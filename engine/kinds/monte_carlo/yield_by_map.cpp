@@ -71,8 +71,8 @@ LinearLimits limits_of(const MachineTable& table, const LinearFit& fit) {
 }
 
 std::vector<std::optional<MappedError>> mapped_errors(const MachineTable& table) {
-  constexpr std::size_t kDegree =
-      2;  // degree of the polynomial that corrects for machines that the linear map judges wrongly
+  // Degree of the polynomial that corrects for machines that the linear map judges wrongly.
+  constexpr std::size_t kDegree = 2;
   std::vector<std::optional<MappedError>> errors;
   for (std::size_t p = 0; p < table.errors(); ++p) {
     errors.emplace_back();

@@ -56,8 +56,8 @@ class CellEvaluator {
 
   CellIndices operator()(std::size_t cell) {
     const WorkUnit unit = first_draws(*plan_, cell);
-    const UnitOutcomes found =
-        solve_.solve(unit, kScales);  // both sizes together, because a model prepares for a pose once
+    // Both sizes together, because a model prepares for a pose once.
+    const UnitOutcomes found = solve_.solve(unit, kScales);
     const std::size_t draws = kSigns * unit.count;
     const ArrayView<const double, axis::Response, ErrorSize, axis::Sample> responses(found.responses,
                                                                                      {responses_, kSizes, draws});

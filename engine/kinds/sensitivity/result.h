@@ -53,8 +53,8 @@ struct SeparationResult {
   Array<double, axis::Factor> removable;  ///< 1 - residual / effect, each as a root mean square over the poses
   /// 1 - residual / effect for all errors together, if they are independent and have the study's standard deviations.
   double removable_together = 0.0;
-  Array<std::string, axis::Factor>
-      published;  ///< class of each error in the literature; empty if the literature gives none
+  /// Class of each error in the literature; empty if the literature gives none.
+  Array<std::string, axis::Factor> published;
 };
 
 /// The result at a second fidelity of the model, from the same draws, and its comparison with the first; SI. See
@@ -121,8 +121,8 @@ struct SensitivityResult {
 
   // The following members are set by a run only. A result that was read from a file has them in StoredResult.
   std::vector<Failure> failures;  ///< first failed samples, ordered by error, pose and sample
-  std::optional<ConvergenceResult>
-      convergence;  ///< indices after each round of adaptive samples; set if the study has adaptive samples
+  /// Indices after each round of adaptive samples; set if the study has adaptive samples.
+  std::optional<ConvergenceResult> convergence;
 
   std::size_t responses() const { return global.length<axis::Response>(); }  ///< The number of responses.
   std::size_t factors() const { return global.length<axis::Factor>(); }      ///< The number of errors that vary.

@@ -118,8 +118,8 @@ struct SobolResult {
   SobolIndices<axis::Response, axis::ErrorGroup> aggregated;
   /// Indices of vectors over all poses, from the traces of their covariances (Gamboa et al. 2014).
   SobolIndices<axis::SignedVector, axis::ErrorGroup> of_vectors;
-  Array<std::uint64_t, axis::Response, axis::ErrorGroup, axis::Pose>
-      n;                                               ///< number of pairs of samples from which `at_poses` is computed
+  /// Number of pairs of samples from which `at_poses` is computed.
+  Array<std::uint64_t, axis::Response, axis::ErrorGroup, axis::Pose> n;
   Array<double, axis::Response, axis::Pose> mean;      ///< mean of the response
   Array<double, axis::Response, axis::Pose> variance;  ///< variance of the response, of which the indices are shares
   Array<std::uint8_t, axis::Response> without_sign;    ///< 1 if no sample of the response was negative, otherwise 0

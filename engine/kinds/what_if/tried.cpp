@@ -48,8 +48,8 @@ struct Directions {
 };
 
 Directions directions(const WhatIfMachines::Slopes& slopes, const ScaledLimit& limit, const Plan& plan) {
-  constexpr double kLeast =
-      1e-12;  // a direction counts if its squared effect is more than this share of the largest one
+  // A direction counts if its squared effect is more than this share of the largest one.
+  constexpr double kLeast = 1e-12;
   linalg::Matrix effects = part_of(slopes, limit);
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {
     effects.col(static_cast<Eigen::Index>(p)) *= plan.distributions()[p].standard_deviation();

@@ -89,8 +89,8 @@ std::vector<SizedErrors> leading(const JudgedMachines& judged, const TriedMachin
 
 /// How well the prediction agrees with exact solves of the same machines.
 struct Agreement {
-  double linear_error =
-      0.0;  ///< error of the linear prediction that the share `conf_level` of the machines does not exceed; see WhatIf
+  /// Error of the linear prediction that the share `conf_level` of the machines does not exceed; see WhatIf.
+  double linear_error = 0.0;
   double unsolved = 0.0;  ///< largest share of machines that are solved at the study's sizes but not at changed
                           ///< ones
 };
