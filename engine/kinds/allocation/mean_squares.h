@@ -32,7 +32,7 @@ inline constexpr std::size_t kDrawsAmongOthers = 64;
 /// first `draws` draws of the other errors. If errors interact in pairs, t - o is what the interactions of this error
 /// add. Each interaction belongs to two errors, so half of it is counted for each:
 ///
-/// value = y(c)^2 + sum of (o + t) / 2, slope = t / sigma^2.
+///     value = y(c)^2 + sum of (o + t) / 2,     slope = t / sigma^2.
 ///
 /// If errors do not interact, or if draws = 0, t = o, so the value has no sampling noise. For a limit on a spread, y is
 /// the response minus its mean over the poses, and t is always o. The response of a sample that is not solved counts as

@@ -190,7 +190,8 @@ struct AllocationResult {
   /// @{
   Array<double, axis::Response> limit_pose_share;
   Array<double, axis::Response> limit_is_spread;
-  /// @} Share of the mean square that belongs to no part, at the pose where the limit is used most: to the background,
+  /// @}
+  /// Share of the mean square that belongs to no part, at the pose where the limit is used most: to the background,
   /// to errors without a part, to noise of measurements and to interactions of errors. Empty in files of version 0.2.
   Array<double, axis::Response> fixed_share;
   Array<double, axis::Response> saving;  ///< cost saved if a limit is one percent wider at all poses, to first order

@@ -17,6 +17,7 @@ namespace {
 constexpr const char* kLabels = "/evaluate/label";
 
 /// The words for Pairing in a result file: how poses and rows of errors are paired.
+/// @{
 constexpr const char* kRowByRow = "row-by-row";
 constexpr const char* kEveryPoseWithEveryRow = "every-pose-with-every-row";
 /// @}
@@ -30,6 +31,7 @@ const Fields<Evaluation> kCaseFields{
     {"count", &Evaluation::count, "1", "Poses that count: solved, or as not_converged has it"}};
 
 /// The order of solves in a file: pose by pose for a table of errors, case by case for named cases.
+/// @{
 using TableLayout = AxisLayout<axis::Pose, axis::Sample>;
 using CaseLayout = AxisLayout<axis::Case, axis::Pose>;
 /// @}

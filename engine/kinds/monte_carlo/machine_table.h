@@ -52,6 +52,7 @@ class MachineTable {
   /// Whether unit n has the full number of machines.
   bool is_whole(std::size_t n) const { return unit(n).count == unit_machines(); }
   /// unit_machines() and units_for() for the number of poses and the calibration of this study.
+  /// @{
   std::size_t unit_machines() const {
     return unit_machines(plan_->poses().size(), calibration_ == nullptr ? UnitSize::usual : UnitSize::calibrated);
   }

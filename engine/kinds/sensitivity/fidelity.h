@@ -18,8 +18,9 @@ namespace poesy {
 /// responses of the same dimension. Therefore an error is not called nonlinear because of a response on which it hardly
 /// acts.
 ///
-/// discrepancy global index at the second fidelity - global index at the first relative_discrepancy discrepancy /
-/// effect nonlinearity root mean square over the poses of hypot(m1 - m2, s1 - s2) / sigma, over effect
+///     discrepancy           global index at the second fidelity - global index at the first
+///     relative_discrepancy  discrepancy / effect
+///     nonlinearity          root mean square over the poses of hypot(m1 - m2, s1 - s2) / sigma, over effect
 ///
 /// Here m is the mean of the response minus the response to the background alone, s is its standard deviation, and 1
 /// and 2 are the fidelities. Nonlinearity includes the shift of the mean, because a second-order effect shifts the mean
