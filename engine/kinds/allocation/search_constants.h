@@ -38,9 +38,9 @@ inline constexpr double kScreeningLoad = 0.75;
 inline constexpr std::size_t kPilotOf = 8;
 /// The smallest number of machines in a pilot that looks for rejects among machines that were screened out.
 inline constexpr std::size_t kMinPilot = 20'000;
-/// After a relative change of tolerances by more than this, effects are measured again; after such a change of the
-/// deciding load, all machines are tried again. Make it smaller for mechanisms whose effects change much between such
-/// tolerances.
+/// After a relative change of a tolerance by more than this, effects are measured again or all machines are tried
+/// again. The trials of a pilot end when the deciding load differs from 1 by less than this. Make it smaller for
+/// mechanisms whose effects change much between such tolerances.
 inline constexpr double kRelinearise = 0.1;
 /// Root mean squares do not show which parts cause rejects if the share of limits that they may use, so that the yield
 /// is kept, is smaller than this number times the share before machines were tried. Then the search tightens the parts
