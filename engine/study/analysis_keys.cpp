@@ -133,7 +133,8 @@ void read_samples(const StudyValue& value, Study& study, const Reading& reading)
             "write the level of the intervals once");
 }
 
-/// Writes each key of adaptive samples on its own line, so that comparing two studies line by line names the key.
+/// The key `samples` as lines of text. Each key of adaptive samples has its own line, so that a comparison of two
+/// studies line by line shows which key differs.
 std::string samples_lines(const Study& study) {
   const Analysis& analysis = study.analysis;
   if (!analysis.adaptive) return fmt::format("samples = {}\n", analysis.samples);
@@ -146,7 +147,7 @@ std::string shown_samples(const TemplateLines& lines, const Study&) {
          "# samples = " + lines.inline_table("analysis.samples") + "\n";
 }
 
-/// The line of the key `relative` of the background; empty if no constant error is a number without a unit.
+/// The line of the key `relative` of the background; empty if the value is 0.
 std::string relative_line(const Background& background) {
   return background.relative == 0.0 ? "" : "relative = " + shortest(background.relative) + "\n";
 }
@@ -200,8 +201,8 @@ std::string background_lines(const Study& study) {
          keys_text(background_keys(), background);
 }
 
-/// The template's lines of the background. They propose the set of constant errors that the kind suggests, if the model
-/// has this set.
+/// The template's lines of the key `background`. They show the kind's usual set of constant errors, or an example in a
+/// comment if the model lacks this set.
 std::string shown_background(const TemplateLines& lines, const Study& study) {
   const std::string_view held = study.analysis.kind->usual_background;
   return lines.explanation_lines("analysis", "background") + lines.keys_lines("analysis.background") +
@@ -310,13 +311,13 @@ std::vector<StudyRow> own_rows(const StudyKind& kind) {
   return kind.rows == nullptr ? std::vector<StudyRow>() : kind.rows();
 }
 
-/// Returns true if the kind has a key of this name itself, which replaces the shared one.
+/// Returns true if the kind has its own key of this name, which replaces the shared key.
 bool has_own_row(const StudyKind& kind, std::string_view name) {
   return std::ranges::count(own_rows(kind), name, &StudyRow::name) > 0;
 }
 
-/// Adds to each shared key of [analysis] the kinds for which it applies, and describes the key `kind`. In these lists,
-/// kinds that have the key `factors` come first.
+/// Completes the shared keys of [analysis]: lists for each key the kinds to which it applies, and describes the key
+/// `kind`. In these lists, kinds that have the key `factors` come first.
 void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   std::vector<const StudyKind*> listed(kinds.begin(), kinds.end());
   std::stable_partition(listed.begin(), listed.end(), [](const StudyKind* kind) { return kind->has_key("factors"); });
@@ -331,8 +332,8 @@ void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   for (const StudyKind* kind : kinds) row.value.words.push_back({kind->name, kind->asks});
 }
 
-/// The factors that vary by default, in words: "in a sensitivity study deforming, where the model has that set; else
-/// all".
+/// The factors that vary by default, in words: for each kind with a usual set of factors the name of this set, followed
+/// by the default if the model lacks the set.
 std::string usual_factors_text(std::span<const StudyKind* const> kinds) {
   std::string text;
   for (const StudyKind* kind : kinds) {
@@ -346,7 +347,7 @@ std::string usual_factors_text(std::span<const StudyKind* const> kinds) {
 
 namespace {
 
-/// Adds to `factors` those whose names match the pattern and that are not in the list yet.
+/// Adds to `factors` the model's factors whose names match the pattern and that are not in the list yet.
 void add_matching(const StudyValue& pattern, const Study& study, std::vector<FactorIndex>& factors) {
   const ModelDescription& model = study.model();
   bool any = false;

@@ -27,8 +27,8 @@ std::string line(std::string_view file, std::string_view column, Dimension dimen
       printable(file), printable(column), si_unit(dimension), found, printable(column), display_unit(dimension).name);
 }
 
-/// A clause that says by which factor a value exceeds the usual size. Both values are in SI. whose: what has the usual
-/// size, in words.
+/// A clause that says that a value is more than kFarBeyond times the size `usual`. Both are in SI. whose: what has the
+/// usual size, in words.
 std::string beyond_text(double value, Dimension dimension, double usual, std::string_view whose) {
   return fmt::format("one is {}, more than {} times {} ({})", readable_text({value, dimension}, kDigits), kFarBeyond,
                      whose, readable_text({usual, dimension}, kDigits));
@@ -54,7 +54,8 @@ double size_of_workspace(const ModelDescription& model) {
   return std::sqrt(squares);
 }
 
-/// The measured value minus the value without errors, SI; none if the value without errors needs a solve.
+/// The measured deviation or distance, or the measured coordinate minus the pose's coordinate, SI; none if the file's
+/// pose does not contain this coordinate.
 std::optional<double> departure(const MachineValue& value, const PoseTable& poses, const ModelDescription& model) {
   if (value.column != MachineColumn::actual) return value.value;
   const auto own = std::ranges::find(model.pose_coordinates, value.quantity, &PoseCoordinate::name);

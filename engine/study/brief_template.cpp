@@ -23,7 +23,8 @@ constexpr std::array<std::string_view, 9> kOftenChanged{"samples", "select", "co
 /// Keys that a short template leaves out even if they do not state a plain default.
 constexpr std::array<std::string_view, 3> kRarelyChanged{"title", "fidelity", "tolerance"};
 
-/// The explanation of the first key. It describes the template, because the key itself needs no explanation.
+/// The first key of a template, and the comment that follows it. The comment describes the whole template, because the
+/// first key needs no explanation.
 constexpr std::string_view kFirstKey = "format";
 constexpr std::string_view kAllKeys = "what is usually changed; every key with its explanation: poesy template --full";
 
@@ -73,7 +74,7 @@ std::string key_line(const StudyTable* table, std::string_view kind, std::string
   return explained(code, key->name == kFirstKey ? kAllKeys : first_clause(key->meaning));
 }
 
-/// A table of the short template: its header, and those of its lines that are shown.
+/// A table of the short template: its header, and the lines that the short template shows.
 struct Block {
   std::string_view header;  ///< "[poses]", "[[analysis.parts]]"; empty for the keys before the first table
   std::vector<std::string> lines = {};

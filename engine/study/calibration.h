@@ -19,9 +19,9 @@ namespace poesy {
 struct FittedErrors {
   std::string name;                       ///< name of the combination, or of the error if there is only one
   std::vector<FactorIndex> factors = {};  ///< fitted errors, at least one, all different
-  std::vector<double> weights = {};       ///< weight of each error: its SI unit per SI unit of the number; none is 0
-  Dimension dimension;                    ///< dimension of the number, which is that of the first error
-  Place place = {};                       ///< place of the error or combination in the key `fit`, for messages
+  std::vector<double> weights = {};  ///< weight of each error, unit of the error per unit of the number, SI; none is 0
+  Dimension dimension;               ///< dimension of the number, which is that of the first error
+  Place place = {};                  ///< place of the error or combination in the key `fit`, for messages
 };
 
 /// The unknown properties of the measuring device's frame.
@@ -85,7 +85,7 @@ struct CalibrationTable {
   /// Coordinates that the controller commands; empty: the model's pose coordinates.
   std::vector<std::string> coordinates = {};
   std::vector<std::vector<std::string>> motors = {};  ///< drives that move together; empty: each moves alone
-  /// [fitted numbers] The values of the fitted numbers that the controller corrected already while the machine was
+  /// [fitted numbers] The values of the fitted numbers for which the controller already corrected while the machine was
   /// measured, SI; empty: none.
   std::vector<double> present = {};
   std::vector<ControllerNumber> controller = {};  ///< numbers to type into the controller

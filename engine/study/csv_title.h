@@ -12,7 +12,7 @@ namespace poesy {
 /// The title of a column, split into name and unit: "z [mm]" has the name "z" and the unit "mm". A title without
 /// brackets has no unit.
 struct CsvTitle {
-  explicit CsvTitle(std::string_view text);  ///< text: a cell of the first line, which must outlive it.
+  explicit CsvTitle(std::string_view text);  ///< text: a cell of the first line, which must outlive this object.
 
   std::string_view name;                 ///< name without the unit
   std::optional<std::string_view> unit;  ///< unit as written; none if there are no brackets

@@ -19,8 +19,8 @@ namespace {
 
 using Shape = Distribution::Shape;
 
-/// The smallest size of an error, SI. The effect of such an error may be mere rounding, far smaller than the error;
-/// even the fourth power of this effect is far above the smallest double.
+/// The smallest size of an error, SI. The effect of such an error may be mere rounding, which is far smaller than the
+/// error. Even then, the fourth power of the effect is far above the smallest double.
 constexpr double kSmallest = 1e-30;
 
 /// The largest number of values of a measured distribution. Every result stores them, so they must stay few.
@@ -72,7 +72,8 @@ Distribution centred_distribution_of(const Parameters& parameters) {
   return measured;
 }
 
-/// Describes a key that is the size of an error. read_size: StudyValue::positive_quantity or half_width.
+/// Describes a key that states the size of an error. read_size: reads the value, StudyValue::positive_quantity or
+/// half_width.
 KeyValue<Parameters> size_at(double Parameters::*member, double (StudyValue::*read_size)(Dimension) const) {
   const auto read = [=](const StudyValue& value, Parameters& parameters) {
     parameters.*member = (value.*read_size)(parameters.dimension);
@@ -288,7 +289,8 @@ struct StatedError {
   friend bool operator==(const StatedError&, const StatedError&) = default;
 };
 
-/// Computes mean and size of a distribution from the key `limits`. Throws InputError if other keys state them, too.
+/// Computes mean and size of a distribution from the key `limits`. Throws InputError if other keys state the mean or
+/// the size, too.
 void take_limits(const StudySection& section, Parameters& parameters) {
   const bool is_normal = parameters.shape == Shape::normal;
   if (!parameters.limits) {
@@ -364,7 +366,7 @@ void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
 }
 
 /// The value in [errors.override] for a factor. A key is for the factor if it is the factor's name or a pattern that
-/// matches the name. If several keys are, the last one in the file counts.
+/// matches the name. If several keys are for the factor, the last one in the file counts.
 std::optional<StudyValue> override_of(const StudySection& overrides, const std::string& factor) {
   const auto place = [](const StudyValue& value) { return std::pair(value.place().line, value.place().column); };
   std::optional<StudyValue> last;
@@ -390,8 +392,8 @@ void check_override(const StudySection& overrides, const Study& study) {
   overrides.allow(known, "factor");
 }
 
-/// Reads a value of [errors.override]. usual: what holds for the error without this value. A table that has only the
-/// key `draws` keeps the usual distribution.
+/// Reads a value of [errors.override]. usual: distribution and draws of the error if it had no value in
+/// [errors.override]. A table that has only the key `draws` keeps the usual distribution.
 StatedError read_own_error(const StudyValue& value, Dimension dimension, StudyUse use, const StatedError& usual,
                            std::vector<std::string>& doubts) {
   if (!value.is_section() || value.section().keys() != std::vector<std::string>{"draws"}) {
@@ -414,8 +416,7 @@ void read_override(const StudyValue& value, Study& study, const Reading& reading
   }
 }
 
-/// The largest number of values of given machines, whose errors a table states. Every result stores these values, so
-/// they must stay few.
+/// The largest number of values in a table of given machines. Every result stores these values, so they must stay few.
 constexpr std::size_t kMostGiven = 200'000;
 
 /// A table of given machines in a study: the errors of each machine, which are not drawn.
@@ -568,9 +569,9 @@ std::string error_text(const StatedError& error, Dimension dimension, ValueText 
   return text + " }";
 }
 
-/// Distribution and draws that most factors of this dimension have. Factors whose distribution follows from a tolerance
-/// zone, and factors of given machines, do not count. The resolved text states the result once, as `linear` or
-/// `angular`.
+/// The distribution that most factors of this dimension have, and whether most draw it at each pose. Factors whose
+/// distribution follows from a tolerance zone, and factors of given machines, do not count. The resolved text states
+/// the result once, as `linear` or `angular`.
 StatedError commonest_error(const Study& study, Dimension dimension) {
   const std::vector<Factor>& factors = study.model().factors;
   const std::vector<std::optional<Distribution>> zones = distributions_by_zones(study);
@@ -811,7 +812,8 @@ void check_sizes_of_features(const Study& study, const Reading& reading) {
   }
 }
 
-/// The advice for an error that is too large: another unit if it is in m or rad, deviations if it is measured.
+/// The advice for an error that is too large. If its value is in m or rad, write another unit; if its values are
+/// measured, give deviations instead of sizes.
 static std::string smaller_remedy(const StudyValue& value, std::string_view key) {
   std::string remedy(kTooLargeRemedy);
   if (key == "column" || key == "values") return "give deviations from the nominal size, not sizes";

@@ -140,7 +140,8 @@ bool has(const std::vector<FileColumn>& columns, FileColumn::Role role) {
   return std::ranges::find(columns, role, &FileColumn::role) != columns.end();
 }
 
-/// Throws InputError for columns without a use, and for columns that need another one that is missing.
+/// Throws InputError if no column has measured values, if a standard deviation belongs to no measured column, or if a
+/// column needs another one that is missing.
 void check_columns(const std::vector<FileColumn>& columns, const Place& header) {
   using Role = FileColumn::Role;
   if (std::ranges::none_of(columns, &FileColumn::is_measured)) {

@@ -43,7 +43,7 @@ struct MachineFile {
   std::string name_of(const MachineValue& value) const;
 };
 
-/// The responses that a column deviation_RESPONSE can have: the components of the platform's displacement that the
+/// The responses R for which a column deviation_R may exist: the components of the platform's displacement that the
 /// model reports.
 std::vector<std::string_view> measurable(const ModelDescription& model);
 
@@ -52,7 +52,8 @@ std::vector<std::string_view> measurable(const ModelDescription& model);
 /// - deviation_R for a response R,
 /// - actual_C for a coordinate C, which is one of x, y, z, tip_x, tip_y and tip_z,
 /// - sd_R, sd_C and sd_distance for standard deviations,
-/// - name for the name of the row; distance, with to for the name of the row to which the distance is measured.
+/// - `name` for the name of the row,
+/// - `distance` for a measured distance, together with `to` for the name of the row to which the distance is measured.
 ///
 /// A title may have a unit in brackets; numbers without a unit are SI. A cell that is empty or has the text nan is a
 /// missing value.

@@ -16,8 +16,8 @@ std::size_t slots_of(const Analysis& analysis) {
   return analysis.kind->varies == Varies::together ? 1 : analysis.factors.size();
 }
 
-/// The positions of these factors among the factors that the analysis varies. Precondition: the analysis varies all of
-/// them.
+/// The indices of these factors in the list of factors that the analysis varies. Precondition: the analysis varies all
+/// of them.
 std::vector<std::size_t> slots_of(std::span<const FactorIndex> factors, const Analysis& analysis) {
   std::vector<std::size_t> slots;
   for (const FactorIndex factor : factors) {

@@ -18,13 +18,13 @@ namespace poesy {
 
 /// The smallest piece of scheduled work: consecutive samples of one slot (see Plan) at one pose.
 struct WorkUnit {
-  std::size_t slot;   ///< position of the varied factor in Plan::factors(); 0 if all vary together
-  PoseIndex pose;     ///< position among the study's poses
+  std::size_t slot;   ///< index of the varied factor in Plan::factors(); 0 if all vary together
+  PoseIndex pose;     ///< index of the pose in the study's list of poses
   SampleIndex first;  ///< first sample of the unit
   std::size_t count;  ///< number of samples
 };
 
-/// A block of correlated errors in a plan. Each slot is the position of an error in Plan::factors().
+/// A block of correlated errors in a plan. Each slot is the index of an error in Plan::factors().
 struct CorrelatedSlots {
   /// Slots of the block's errors.
   std::vector<std::size_t> slots;
@@ -33,7 +33,7 @@ struct CorrelatedSlots {
 
 /// The errors of a feature that are drawn together from its tolerance zone.
 struct ZoneSlots {
-  /// Slots of the feature's errors (positions in Plan::factors()), in the order of Feature::errors().
+  /// Slots of the feature's errors (indices in Plan::factors()), in the order of Feature::errors().
   std::vector<std::size_t> slots;
   drawing::ZoneDraws draws;  ///< draws these errors
 };
@@ -50,8 +50,8 @@ class Plan {
   /// The number of units for this number of samples in a cell. The last unit may be smaller.
   static constexpr std::size_t units_for(std::size_t samples) { return (samples + kUnitSamples - 1) / kUnitSamples; }
 
-  /// Makes the plan of a study of drawn errors at these poses, and copies what it needs. Precondition: the study has a
-  /// kind.
+  /// Makes the plan of a study of drawn errors at these poses. Copies what it needs of the study. Precondition: the
+  /// study has a kind.
   Plan(const Study& study, PoseSet poses);
 
   /// The number of slots: the number of factors if they vary one by one, 1 if all vary together.
@@ -73,14 +73,14 @@ class Plan {
   Plan with_samples(std::size_t samples) const;  ///< The same plan with another number of samples in a cell.
   std::uint64_t seed() const { return seed_; }   ///< The seed of the draws.
   Draws draws() const { return draws_; }         ///< Whether errors are drawn for each pose or for each machine.
-  /// The positions in factors(), ascending, of those errors that a machine draws anew at each pose. The list is empty
-  /// if draws() is Draws::per_pose, because in that case every error is drawn at each pose.
+  /// The indices in factors(), ascending, of those errors that a machine draws anew at each pose. The list is empty if
+  /// draws() is Draws::per_pose, because in that case every error is drawn at each pose.
   std::span<const std::size_t> per_pose() const { return per_pose_; }
-  /// Returns true if machines draw factors()[slot] anew at each pose. In this function and those below, `slot` is a
-  /// position in factors() even if all factors vary together.
+  /// Returns true if machines draw factors()[slot] anew at each pose. In this function and those below, `slot` is an
+  /// index in factors() even if all factors vary together.
   bool is_per_pose(std::size_t slot) const;
-  /// The address of the random numbers (the stream) for factors()[slot] at a pose. A machine uses those of the first
-  /// pose at every pose, except for its per_pose() errors.
+  /// The address of the random numbers (the stream) for factors()[slot] at a pose. For an error that a machine does not
+  /// draw anew, every pose has the address of the first pose.
   StreamAddress address(std::size_t slot, PoseIndex pose) const {
     const bool is_fixed = draws_ == Draws::per_machine && !is_per_pose(slot);
     return {seed_, Purpose::error_samples, factors_[slot], is_fixed ? PoseIndex(0) : pose};
@@ -90,7 +90,7 @@ class Plan {
   /// error, its uniforms follow from the rank of each value among the values of all machines.
   void draw_uniforms(std::size_t slot, PoseIndex pose, SampleIndex first, std::span<double> row) const;
   const PoseSet& poses() const { return poses_; }  ///< The poses, in the order of the study.
-  /// The factors that vary, as positions among the model's factors.
+  /// The factors that vary, as indices in the model's list of factors.
   std::span<const FactorIndex> factors() const { return factors_; }
   /// The distributions of the varied factors, in the order of factors().
   std::span<const Distribution> distributions() const { return distributions_; }

@@ -118,7 +118,7 @@ std::string shown_tolerance(const TemplateLines& lines, const Study& study) {
   return lines.explained("solver", "tolerance", "tolerance = " + shortest(study.model().tolerance));
 }
 
-/// The resolved text has the key only where it is not the default, so that other studies keep their text.
+/// The key `series` in the resolved text; empty for the default value, so that studies with this value keep their text.
 std::string series_line(const Study& study) { return study.solver.series ? "" : "series = false\n"; }
 
 std::string shown_series(const TemplateLines& lines, const Study& study) {

@@ -134,7 +134,8 @@ std::unique_ptr<Model> build_uncorrected(const MechanismChoice& mechanism) {
   } catch (const std::invalid_argument& reason) {
     MechanismChoice without_points = mechanism;
     without_points.points.clear();
-    // Throws if the geometry is impossible with the usual points, too.
+    // Throws if the geometry is impossible with the model's own points, too; otherwise the study's points are the
+    // problem.
     static_cast<void>(build_uncorrected(without_points));
     throw InputError(
         mechanism.points_place, reason.what(),

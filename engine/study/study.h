@@ -37,7 +37,7 @@ struct MechanismChoice {
   /// The entry of the catalog, which must outlive the study, or the entry that `file` or `with_responses` owns.
   const CatalogEntry* entry = nullptr;
   std::vector<double> geometry;  ///< values of the geometry parameters, SI, in the order of the model's description
-  std::size_t fidelity = 0;      ///< position among the model's fidelities; 0 if it offers no choice
+  std::size_t fidelity = 0;      ///< index in the model's list of fidelities; 0 if it offers no choice
   Place place;                   ///< place of the section [mechanism], for messages about the whole geometry
   /// A second fidelity, which is solved with the same draws and compared with the first one; none: only one is solved.
   std::optional<std::size_t> compared = std::nullopt;
@@ -71,7 +71,7 @@ struct ErrorModel {
   /// other errors once.
   std::vector<FactorIndex> per_pose = {};
   /// The errors of given machines, which are not drawn: row s of the table is machine s. Errors without a column in the
-  /// table are drawn. For the others, by_factor has the values of the column as a distribution.
+  /// table are drawn. For errors with a column, `by_factor` has the values of the column as a distribution.
   std::optional<ErrorTable> machines = {};
 
   bool is_per_pose(FactorIndex factor) const;  ///< Returns true if a machine draws this error anew at each pose.
@@ -105,7 +105,7 @@ struct AdaptiveSamples {
 
 /// A limit on a response.
 struct ResponseLimit {
-  std::size_t response;  ///< position among the model's responses
+  std::size_t response;  ///< index in the model's list of responses
   ValueLimit allowed;    ///< range of allowed values, SI
 };
 
@@ -113,7 +113,7 @@ struct ResponseLimit {
 /// number of responses.
 std::vector<ValueLimit> limits_by_response(std::span<const ResponseLimit> limits, std::size_t responses);
 
-/// Returns true if any of the limits is on several poses of a machine together, such as a spread
+/// Returns true if any of the limits is a limit on the values at several poses of a machine together, such as a spread
 /// (ValueLimit::is_over_poses).
 bool any_over_poses(std::span<const ResponseLimit> limits);
 
@@ -192,7 +192,7 @@ struct Study {
 };
 
 std::string_view name(PoseSelection::Select select);  ///< The word in a study file for a way to select poses.
-std::string_view name(Draws draws);                   ///< The word in a study file for when errors are drawn.
+std::string_view name(Draws draws);                   ///< The word for this value in a study file.
 std::string_view name(Judge judge);                   ///< The word in a study file for a statistic.
 /// All values of Judge, in their order.
 inline constexpr std::array kJudges{Judge::rms, Judge::share, Judge::yield};

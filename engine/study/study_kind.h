@@ -37,7 +37,7 @@ struct Reading {
   const std::string* mechanism_text = nullptr;
 };
 
-/// What the readers of keys need besides the value, if they need nothing.
+/// The type of the additional argument of readers that need only the value of the key.
 struct Nothing {};
 
 using StudyRow = Key<Study, Reading>;    ///< A key of a study's own tables: description and functions.
@@ -52,7 +52,7 @@ using InnerRows = Keys<Object, Nothing>;
 /// Which factors of a study vary at the same time.
 enum class Varies {
   none,        ///< every error has fixed values
-  one_by_one,  ///< each alone, while the others are constant; drawn from its distribution
+  one_by_one,  ///< factors vary one after the other, each drawn from its distribution while the others are constant
   together     ///< all together, drawn from their distributions
 };
 
@@ -72,8 +72,8 @@ struct Refusal {
 
 /// What study files need to know of a kind of study.
 struct StudyKind {
-  std::string_view name;                   ///< the word in a study file
-  std::string_view asks;                   ///< what the kind asks, as a clause: "what each error does on its own"
+  std::string_view name;  ///< the word in a study file
+  std::string_view asks;  ///< what a study of this kind finds out, as a clause: "what each error does on its own"
   std::span<const std::string_view> keys;  ///< keys of [analysis] that the kind has, in the order of templates
   Varies varies = Varies::none;            ///< how factors vary
   bool compares_fidelities = false;        ///< true if the kind can compare two fidelities
@@ -83,7 +83,7 @@ struct StudyKind {
   bool decides_by_samples = false;      ///< true if changing `samples` invalidates a checkpoint
   std::string_view usual_factors = {};  ///< set of factors if a study names none; "all" for a model without it
   std::string_view usual_background = {};  ///< set of constant errors in templates, for models that have it
-  std::string_view overrides = {};         ///< where a constant error may get another value: "a case sets"
+  std::string_view overrides = {};         ///< who may give a constant error another value, in words: "a case sets"
   /// The rows of [analysis] that only this kind has. A row with the name of a shared key replaces this key.
   std::vector<StudyRow> (*rows)() = nullptr;
   StudyTables (*tables)() = nullptr;  ///< tables inside [analysis] that only this kind has
@@ -95,7 +95,7 @@ struct StudyKind {
   void (*complete)(Study& study, const Reading& reading) = nullptr;
   /// Throws InputError if an error in the kind's own keys is too large for this model (Model::error_bound).
   void (*check_errors)(const StudySection& analysis, const Study& study, const Model& model) = nullptr;
-  AtPose (*at_pose)(const Study& study);  ///< the size of a study at each pose
+  AtPose (*at_pose)(const Study& study);  ///< numbers of values and solves of a study at each pose
   /// Turns a study of this kind into one that judges whether machines reach this yield; null: the kind judges no
   /// machines.
   void (*ask_yield)(Study& study, double yield) = nullptr;
@@ -222,7 +222,7 @@ std::string named_file(const StudyValue& value);
 std::vector<FactorIndex> read_factors(const StudyValue& value, const Study& study);
 /// The advice "'poesy models MECHANISM' lists them": MECHANISM is the file of the study's mechanism, or its name.
 std::string listed_by_models(const Study& study);
-/// Reads the key `name`, or returns `usual` if the section has none. Throws InputError if the name is taken.
+/// Reads the key `name`; returns `usual` if the section lacks this key. Throws InputError if the name is taken.
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual);
 /// The factors as TOML: the name of their set in quotes, or a list of names.
 std::string factors_text(std::span<const FactorIndex> factors, const ModelDescription& model);

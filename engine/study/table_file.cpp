@@ -136,8 +136,7 @@ std::string one_of(const std::vector<Names>& headers) {
   return fmt::format("{}", fmt::join(list, " | "));
 }
 
-/// The position in `headers` of the set that has exactly these columns, in any order. Throws InputError if there is
-/// none.
+/// The index in `headers` of the set that has exactly these columns, in any order. Throws InputError if there is none.
 std::size_t header_of(const Names& columns, const std::vector<Names>& headers, const std::string& path) {
   const Names* unfinished = nullptr;
   for (std::size_t k = 0; k < headers.size(); ++k) {
@@ -161,7 +160,7 @@ struct Rows {
   std::vector<std::string> labels;  ///< labels of the rows; empty if the table has no column of labels
   /// Line of each label; the labels are views of the lines.
   std::map<std::string_view, std::size_t, std::less<>> line_of;
-  std::set<std::string_view> texts;  ///< columns with text
+  std::set<std::string_view> texts;  ///< names of the columns of text in which a cell has a letter
 };
 
 double number(const CsvCell& cell, const TableColumn& column) {
@@ -202,7 +201,7 @@ void read_label(const CsvCell& cell, const TableColumn& column, Rows& rows) {
   rows.labels.emplace_back(cell.text);
 }
 
-/// Checks a number (SI) in a row; n is its position among the row's numbers. Throws InputError if it is not allowed
+/// Checks a number (SI) in a row. n: index of the number in the row. Throws InputError if the number is not allowed
 /// there.
 using CheckCell = std::function<void(const Place& place, std::size_t n, const TableColumn& column, double value)>;
 
@@ -291,7 +290,7 @@ TimedPoints read_points(CsvLines& lines, const std::string& path, const ModelDes
   const Names columns = names_of_numbers(all);
   const std::vector<Names> headers = possible_headers(model, timed);
   const std::size_t kind = header_of(columns, headers, path);
-  std::vector<std::size_t> order;  // position in the file of each coordinate's column
+  std::vector<std::size_t> order;  // index in the file of each coordinate's column
   for (const std::string_view name : headers[kind]) {
     order.push_back(static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin()));
   }

@@ -159,8 +159,8 @@ std::string shown_zones(const TemplateLines& lines, const Study& study) {
 }
 
 /// The distribution of one error of a feature. sigma: standard deviation of the error, m. The distribution has the
-/// shape of the scatter if the error is drawn alone. It is normal for a clearance, and for errors that are drawn
-/// together with others of the feature.
+/// shape of the scatter if the error is drawn independently of other errors. It is normal for a clearance, and for
+/// errors that are drawn together with others of the feature.
 Distribution distribution_of(const Feature& feature, const ZoneScatter& scatter, double sigma) {
   const bool has_shape = !feature.clearance && !drawing::are_drawn_together(feature, scatter);
   if (has_shape && scatter.shape == ScatterShape::uniform) {

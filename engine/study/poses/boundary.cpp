@@ -14,10 +14,10 @@
 namespace poesy {
 namespace {
 
-/// Scaled coordinates are equal up to rounding if they differ by less than this.
+/// Two scaled coordinates that differ by less than this are equal up to rounding.
 constexpr double kRounding = 1e-12;
 
-/// The number of intervals of a chord in which the search looks for a change of feasibility.
+/// The number of intervals into which a chord is divided to find changes of feasibility.
 constexpr std::size_t kScanIntervals = 32;
 
 constexpr double kGoldenRatio = 0.6180339887498949;

@@ -72,7 +72,7 @@ void read_count(const StudyValue& value, Study& study, const Reading&) {
   selection.count = static_cast<std::size_t>(product);
 }
 
-/// Reads the key for a file of poses, and the file itself unless the study is read with StudyUse::evaluate.
+/// Reads the key with the name of a pose file, and the file itself unless the study is read with StudyUse::evaluate.
 void read_pose_file(const StudyValue& value, Study& study, const Reading& reading) {
   study.poses.file = value.text();
   if (reading.use == StudyUse::evaluate) return;
@@ -154,7 +154,8 @@ void read_curve(const StudySection& section, const StudyValue& value, const Mode
   trajectory.time = part_of(section, trajectory, {curve.start, curve.end}, "curve '" + curve.name + "'");
 }
 
-/// Reads the key for the file of a trajectory, and the file itself unless the study is read with StudyUse::evaluate.
+/// Reads the key with the name of a trajectory's file, and the file itself unless the study is read with
+/// StudyUse::evaluate.
 void read_curve_file(const StudySection& section, const ModelDescription& model, const Reading& reading,
                      Trajectory& trajectory) {
   section.refuse("origin", "a trajectory from a file, whose points are as they are");

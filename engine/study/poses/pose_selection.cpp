@@ -85,7 +85,8 @@ SelectedPoses grid_poses(const PoseSelection& selection, const Model& model, con
   }
 }
 
-/// The candidates of a search for the boundary are no measure of the workspace.
+/// Returns the poses with the number of candidates set to 0: how many candidates a boundary search rejects says nothing
+/// about the workspace.
 SelectedPoses without_candidates(SelectedPoses selected) {
   selected.candidates = 0;
   return selected;
@@ -115,10 +116,10 @@ bool some_out_of_reach(std::span<const RejectedPoses> rejected) {
 }
 
 std::string rejected_text(std::span<const RejectedPoses> rejected, std::size_t candidates) {
-  constexpr std::size_t kMost = 3;  // reasons in words, besides reach
+  constexpr std::size_t kMost = 3;  // largest number of reasons in the sentence, without "out of reach"
   if (rejected.empty() || candidates == 0) return {};
   std::size_t all = 0;
-  std::size_t out_of_reach = 0;  // why differs from pose to pose
+  std::size_t out_of_reach = 0;  // the exact reason differs from pose to pose, so only the number is stated
   std::size_t others = 0;
   std::vector<std::string> reasons;
   for (const RejectedPoses& one : rejected) {

@@ -87,14 +87,14 @@ struct Trajectory {
 };
 
 /// The points of a trajectory. A curve gives points at evenly spaced times, including both ends. A file gives its own
-/// points, or points that are interpolated at evenly spaced times. Interpolation treats each coordinate alone: it is a
-/// modified Akima spline through four or more points, or straight lines through two or three. Precondition: the file
-/// was opened, and the times are inside its range.
+/// points, or points that are interpolated at evenly spaced times. Each coordinate is interpolated independently of the
+/// others, by a modified Akima spline through four or more points, or by straight lines through two or three.
+/// Precondition: the file was opened, and the times are inside its range.
 TimedPoints sampled(const Trajectory& trajectory, const ModelDescription& model);
 
 /// The range in which a joint's displacement from home must be, including both ends.
 struct JointLimit {
-  std::size_t joint;  ///< position among the model's joints
+  std::size_t joint;  ///< index in the model's list of joints
   Range range;        ///< range of the displacement, SI
   Place place;        ///< place in the study, for messages
 };
@@ -128,14 +128,14 @@ struct RejectedPoses {
   std::size_t count;   ///< number of poses
 };
 
-/// What the reason of a pose begins with if the mechanism cannot reach it.
+/// The beginning of RejectedPoses::reason for poses that the mechanism cannot reach.
 inline constexpr std::string_view kOutOfReach = "out of reach: ";
 
-/// Whether some of these poses are out of reach of the mechanism, and not only refused by limits of the study.
+/// Returns true if the mechanism cannot reach some of these poses, so that not only limits of the study reject poses.
 bool some_out_of_reach(std::span<const RejectedPoses> rejected);
 
-/// A sentence on the poses of a workspace that are not in a study: how many of how many, and why. Empty if there are
-/// none. candidates: number of poses that the search examined; 0 if it is not known, and the sentence is empty.
+/// A sentence on the poses of a workspace that are not in a study: how many of the examined poses, and why. Empty if
+/// there are none. candidates: number of poses that the search examined; if it is 0 (not known), the sentence is empty.
 std::string rejected_text(std::span<const RejectedPoses> rejected, std::size_t candidates);
 
 /// The poses of a selection, and the poses that it rejected.
@@ -143,10 +143,10 @@ struct SelectedPoses {
   PoseSet poses;                        ///< selected poses
   std::vector<double> condition;        ///< condition number at each pose; see Model::condition
   std::vector<RejectedPoses> rejected;  ///< numbers of rejected poses by reason, most frequent first
-  /// Number of poses that an interior or grid search examined; 0 for other selections. A search for the boundary
-  /// rejects poses in any workspace, because it looks for those where reach ends.
+  /// Number of poses that an interior or grid search examined; 0 for other selections. A boundary search rejects poses
+  /// in any workspace, so its numbers say nothing about the workspace.
   std::uint64_t candidates = 0;
-  std::vector<double> time;  ///< [M] s, time of each pose of a trajectory, ascending; else empty
+  std::vector<double> time;  ///< [poses] time of each pose of a trajectory, s, ascending; empty for other selections
 };
 
 /// The progress of a search for poses.

@@ -42,7 +42,7 @@ class Workspace {
   const Model* model_;
 };
 
-/// Thrown to end a search that the watcher stopped; the select_poses() with a watcher catches it.
+/// Thrown to end a search that the watcher stopped. The overload of select_poses() with a watcher catches it.
 struct SearchStopped {};
 
 /// Reports the progress of a search to `watch`, if it is not empty. Throws SearchStopped if `watch` returns false.
@@ -72,8 +72,8 @@ class PoseCollector {
   void keep_first(std::size_t count);                 ///< Keeps only the first `count` poses.
   /// Keeps `count` of the poses, evenly spread over their order. Precondition: count <= kept().
   void thin_to(std::size_t count);
-  /// Throws the InputError that the box gives fewer poses than wanted. workspace_place: place of this error if no
-  /// candidate was rejected.
+  /// Throws an InputError that says that the box gives fewer poses than wanted. workspace_place: place of this error if
+  /// no candidate was rejected.
   [[noreturn]] void fail(const Place& workspace_place) const;
   SelectedPoses result() &&;  ///< The kept poses, and the numbers of rejected poses by reason, most frequent first.
 
