@@ -74,7 +74,7 @@ ByteSource Checkpoints::source_of(std::size_t stage) const {
   return [&kept](ByteWriter& to) { to.raw(kept.bytes); };
 }
 
-/// Saves the states of all stages. state: the present state of the stage that began last; null if keep() has it.
+/// Saves the states of all stages. state: the present state of the stage that began last; null if keep() has stored it.
 void Checkpoints::save_all(const ByteSource* state) {
   if (!save_) return;
   std::vector<ByteSource> all;

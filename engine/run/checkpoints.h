@@ -44,11 +44,12 @@ class Checkpoints {
   void merged(const ByteSource& state) {
     if (due_ && due_()) save(state);
   }
-  /// Records that the stage or one of its rounds has ended: complete, or stopped. solves: all solves of the run,
-  /// including those of the earlier run that it continues.
+  /// Records that the stage or one of its rounds has ended. complete: false if the run was stopped. solves: all solves
+  /// of the run, including those of the earlier run that it continues.
   void end(bool complete, const SolveCounts& solves);
   /// Keeps the final state of the stage: a small one in memory, a large one in a checkpoint that is written now. If the
-  /// disk has no room for the checkpoint, the state stays in memory, because the result may be smaller.
+  /// disk has no room for the checkpoint, the state stays in memory, because the smaller result may still have room on
+  /// the disk.
   void keep(const ByteSource& state);
   /// Writes a checkpoint after the run was stopped in work that comes after the stages. Such work has no state of its
   /// own.
@@ -115,9 +116,9 @@ class Stage {
     if (checkpoints_ != nullptr) checkpoints_->merged(state);
   }
 
-  /// Ends the stage or one of its rounds. If it was stopped, a checkpoint is written. If it is complete, all other
-  /// ranks take the state of rank 0 by restore(state). solves(): all solves of the run, including those of the earlier
-  /// run that it continues.
+  /// Ends the stage or one of its rounds. complete: false if the run was stopped; a checkpoint is then written. If the
+  /// stage is complete, all other ranks take the state of rank 0 by restore(state). solves(): all solves of the run,
+  /// including those of the earlier run that it continues.
   template <class Solves, class Restore>
   void end(bool complete, const Solves& solves, const ByteSource& state, const Restore& restore) {
     const bool follows = team_ != nullptr && !team_->leads();

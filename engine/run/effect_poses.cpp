@@ -14,7 +14,7 @@ constexpr std::size_t kMostBytes = std::size_t{2} << 20U;
 
 std::vector<PoseIndex> effect_poses(std::size_t poses, std::size_t responses, std::size_t errors) {
   const std::size_t bytes = 2 * sizeof(double) * kEffectBins * std::max<std::size_t>(1, responses * errors);
-  // Minus 2, because a study of machines has two further sums.
+  // 2 is subtracted, because a study of machines has two further sums of this size.
   const std::size_t fit = std::max<std::size_t>(kMostBytes / bytes, 3) - 2;
   const std::size_t count = std::min({poses, kMostEffectPoses, fit});
   std::vector<PoseIndex> list;

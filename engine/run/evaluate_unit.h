@@ -109,13 +109,13 @@ class UnitSolver {
   /// For errors that a machine draws anew at each pose, replaces their rows in values_ [factors x samples] by the draws
   /// at the unit's pose.
   void draw_per_pose(const WorkUnit& unit);
-  /// Uses the evaluator `other` for all further solves, until the next call of this function. It must outlive these
-  /// solves. null: uses the model's own evaluator again.
+  /// Uses the evaluator `other`, which must outlive these solves, for all further solves until the next call of this
+  /// function. null: uses the model's own evaluator again.
   void solve_by(Evaluator* other) { other_ = other; }
   /// The first `count` samples of the present draws of all factors. Their pose is not set.
   SampleBlock drawn(std::size_t count) const;
-  /// Solves the first [varied x count] values at a pose. details: memory for the model's additional outputs, see
-  /// OutcomeBlock; empty if they are not wanted.
+  /// Solves the first [varied x count] numbers of values_ at a pose. range: the largest magnitude to expect of an
+  /// error. details: memory for the model's additional outputs, see OutcomeBlock; empty if they are not wanted.
   UnitOutcomes solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range,
                      std::span<double> details = {});
 
@@ -147,7 +147,7 @@ class UnitEvaluator : private UnitSolver {
   UnitOutcomes solve(const WorkUnit& unit, std::span<const double> scales);
 
  private:
-  std::vector<std::size_t> kept_;    ///< positions of the samples that count in statistics
+  std::vector<std::size_t> kept_;    ///< indices in the unit of the samples that count in statistics
   std::vector<std::size_t> points_;  ///< numbers of samples after which indices are recorded
 };
 

@@ -52,8 +52,8 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
 
 /// Judges each limit by an evaluation, row by row. A row of errors is a machine. The row is within a limit if the limit
 /// allows the deciding number of the row (ValueLimit::deciding), and if each solve of the row counts (see counts()). A
-/// limit is kept if every row is within it. Precondition: if rows are paired with poses, no limit is on several poses
-/// together.
+/// limit is kept if every row is within it. Precondition: if rows are paired with poses, no limit is on the values at
+/// several poses together.
 LimitVerdicts judge_rows(std::span<const ResponseLimit> limits, const EvaluationResult& found, Pairing pairing,
                          NotConverged policy);
 

@@ -19,8 +19,8 @@
 namespace poesy {
 
 /// Calls work(worker, n) for n = 0 .. count - 1 on a pool of threads, where each thread has its own worker. Calls
-/// finish(n, output) in the order of n. At any time a few outputs for each thread are unfinished. Returns false when
-/// stopped. With a team, work is done on all ranks, and finish is called only on rank 0 (run_over_ranks);
+/// finish(n, output) in the order of n. At any time, only a few outputs for each thread wait for finish(). Returns
+/// false when stopped. With a team, work is done on all ranks, and finish is called only on rank 0 (run_over_ranks);
 /// state(archive, n, output) writes an output on another rank, and reads it into an empty output on rank 0.
 template <class MakeWorker, class Work, class Finish, class State>
 bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_worker, Work work, Finish finish,

@@ -36,7 +36,7 @@ struct WorkOutlook {
   /// Does the piece that begins at the share `at` of the work, 0 <= at < 1, on the calling thread. Returns the piece's
   /// share of the work.
   std::function<double(double at)> do_piece;
-  double times = 1.0;  ///< number of times that the study does this work
+  double times = 1.0;  ///< number of times that the study does the whole work
   /// Called once before the first piece; its time does not count. May be empty.
   std::function<void()> prepare = {};
 };

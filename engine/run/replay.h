@@ -20,9 +20,9 @@ struct ReplayedSample {
   std::uint32_t iterations = 0;                 ///< iterations of the solver that the run used
 };
 
-/// Draws and solves one sample of the study again, with the same bits as in a run. slot: position among the study's
-/// factors; 0 if all errors vary together. Precondition: a sensitivity or Monte Carlo study, and a model that reaches
-/// the pose.
+/// Draws and solves one sample of the study again, with the same bits as in a run. slot: index in the list of the
+/// study's factors; 0 if all errors vary together. Precondition: a sensitivity or Monte Carlo study, and a model that
+/// reaches the pose.
 ReplayedSample replay_sample(const Study& study, const Model& model, const PoseSet& poses, std::size_t slot,
                              PoseIndex pose, SampleIndex sample);
 

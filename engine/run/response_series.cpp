@@ -12,7 +12,7 @@ namespace {
 /// The permitted error of a response by series, as a share of its largest magnitude at the nodes.
 constexpr double kPrecise = 1e-14;
 
-/// The relative rounding of squares at the nodes, and of a series through them.
+/// The relative rounding errors of squares at the nodes, and of a series through these squares.
 constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 double largest_magnitude(std::span<const double> values) {
@@ -49,7 +49,8 @@ bool ResponseSeries::form(double range, std::span<const double> solved) {
   return is_certified(solved);
 }
 
-/// Returns true if the response is the norm of signed responses, in all solves. A response of one's own may weigh them.
+/// Returns true if the response is the norm of signed responses, in all solves. A user's own response may weigh its
+/// components, so that it is not their norm.
 bool ResponseSeries::is_norm(std::size_t r, std::span<const double> solved) const {
   const std::vector<std::size_t>& components = responses_[r].components;
   const auto has_sign = [&](std::size_t c) { return c < r && rows_[c].form == Form::itself; };
@@ -78,7 +79,7 @@ bool ResponseSeries::form_row(std::size_t r, std::span<const double> all) {
   std::ranges::copy(solved.first(kNodes), values.begin());
   double precise = row.precise;
   if (responses_[r].is_magnitude()) {
-    const bool is_zero = solved[kNodes] <= row.precise;  // without the error
+    const bool is_zero = solved[kNodes] <= row.precise;  // true if the response is 0 without the error
     row.form = is_zero ? Form::root_over_error : Form::root;
     for (std::size_t k = 0; k < kNodes; ++k) {
       values[k] = square(is_zero ? values[k] / ChebyshevSeries::nodes()[k] : values[k]);
@@ -107,7 +108,7 @@ bool ResponseSeries::is_certified(std::span<const double> solved) {
   return true;
 }
 
-/// Computes a response that is the norm of others, in all rows `responses` [R x B].
+/// Computes a response that is the norm of other responses, in all rows `responses` [R x B].
 void ResponseSeries::take_norm(std::size_t r, std::span<double> responses) const {
   const std::size_t count = x_.size();
   const ArrayView<double, axis::Response, axis::Sample> all(responses, {rows_.size(), count});
@@ -120,8 +121,8 @@ void ResponseSeries::take_norm(std::size_t r, std::span<double> responses) const
   for (double& value : values) value = std::sqrt(value);
 }
 
-/// Replaces the values of a series by the response, which is their root. The error of a root y is that of its square
-/// over 2 y.
+/// Replaces the values of a series, which are squares, by the response, which is their root. The error of a root y is
+/// the error of y^2 divided by 2 y.
 void ResponseSeries::take_root(const Row& row, std::span<double> values) {
   for (std::size_t b = 0; b < values.size(); ++b) {
     const double size = row.form == Form::root_over_error ? std::abs(x_[b]) : 1.0;

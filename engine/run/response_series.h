@@ -19,8 +19,8 @@ namespace poesy {
 class ResponseSeries {
  public:
   static constexpr std::size_t kNodes = ChebyshevSeries::kNodes;  ///< solves from which the series are formed
-  static constexpr std::size_t kChecks = 8;                       ///< solves that certify them
-  static constexpr std::size_t kSolves = kNodes + kChecks;        ///< all solves of a cell
+  static constexpr std::size_t kChecks = 8;                       ///< further solves that certify the series
+  static constexpr std::size_t kSolves = kNodes + kChecks;        ///< all solves for one pose and error
 
   /// Copies what it needs of the model.
   explicit ResponseSeries(const Model& model);
@@ -34,7 +34,7 @@ class ResponseSeries {
   /// rounding (Model::rounding()). The series must not be evaluated then.
   bool form(double range, std::span<const double> solved);
 
-  /// Computes the responses [R x B] at these errors [B]. Adds to `left` the positions of errors that must be solved
+  /// Computes the responses [R x B] at these errors [B]. Adds to `left` the indices of errors that must be solved
   /// instead: those beyond the range, and those at which the root of a series is not precise.
   void evaluate(std::span<const double> errors, std::span<double> responses, std::vector<std::size_t>& left);
 

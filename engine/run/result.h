@@ -23,7 +23,7 @@ constexpr bool counts(SolveStatus status, NotConverged policy) {
   return solved(status) || (policy == NotConverged::include && usable(status));
 }
 
-/// How samples ended and the iterations of their solves, summed over samples.
+/// Counts of how samples ended, and of the iterations of their solves.
 struct SolveCounts {
   /// The number of samples for each SolveStatus, in the order of the enum.
   std::array<std::uint64_t, kStatusNames.size()> by_status{};
@@ -34,7 +34,7 @@ struct SolveCounts {
   std::uint64_t total() const;
   /// The number of samples whose solves did not converge, for any reason.
   std::uint64_t not_converged() const;
-  /// The number of samples without a fixed point, because the machine cannot be assembled.
+  /// The number of samples without a solution, because the machine cannot be assembled.
   std::uint64_t not_assembled() const { return by_status[static_cast<std::size_t>(SolveStatus::not_assembled)]; }
   /// The number of samples that were computed from certified series instead of solved.
   std::uint64_t by_series() const { return by_status[static_cast<std::size_t>(SolveStatus::by_series)]; }
@@ -87,8 +87,8 @@ class FailedSamples {
 
 /// Says which sample was not solved, and how its solve ended.
 struct Failure {
-  std::size_t slot;     ///< position among the study's factors; 0 if all vary together
-  PoseIndex pose;       ///< position among the study's poses
+  std::size_t slot;     ///< index in the list of the study's factors; 0 if all vary together
+  PoseIndex pose;       ///< index in the list of the study's poses
   FailedSample failed;  ///< the sample, and how it ended
 
   /// Returns true if both name the same sample with the same status.
@@ -133,7 +133,7 @@ struct ConvergenceResult {
 
 /// The verdict on a limit of a response (engine/run/evaluation.h). SI.
 struct LimitVerdict {
-  std::size_t response = 0;  ///< position among the responses
+  std::size_t response = 0;  ///< index in the list of responses
   ValueLimit limit = 0.0;    ///< limit that the study states
   /// Number that is compared with the limit: a magnitude for a limit on magnitudes, a spread for a limit on the spread,
   /// otherwise a value. Infinite or NaN if too few samples were solved.
@@ -197,7 +197,7 @@ struct RunFacts {
   double checkpoint_seconds = 0.0;  ///< part of the wall time that checkpoints took
   /// Samples that the whole run solved, including those of the earlier runs that it continues.
   std::uint64_t solves = 0;
-  std::uint64_t by_series = 0;  ///< samples that it computed from certified series instead
+  std::uint64_t by_series = 0;  ///< samples that the whole run computed from certified series instead of solving them
 
   std::uint64_t samples() const { return solves + by_series; }  ///< All samples.
 };

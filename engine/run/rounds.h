@@ -34,7 +34,7 @@ class Rounds {
   /// The rule that decides after each round whether an error (slot) needs more samples.
   struct Rule {
     std::size_t responses;              ///< number of responses
-    std::vector<std::size_t> deciding;  ///< positions of the responses that decide
+    std::vector<std::size_t> deciding;  ///< indices of the responses that decide
     double conf_level;                  ///< level of the intervals of estimates
     /// [responses x slots] Magnitude of rounding; a quantity below it counts as known well enough.
     std::vector<double> rounding;

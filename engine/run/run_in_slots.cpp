@@ -38,7 +38,7 @@ inline void publish() {}
 inline void receive() {}
 #endif
 
-/// Makes the writes in one Block visible to each Block that begins later, after its end. Used around objects of oneTBB,
+/// Makes the writes during one Block visible to each Block that begins after its end. Used around objects of oneTBB,
 /// because their memory moves from thread to thread inside the allocator of oneTBB.
 class Block {
  public:
@@ -48,8 +48,8 @@ class Block {
   Block& operator=(const Block&) = delete;
 };
 
-/// An object whose destructor tells the sanitizer that all earlier Blocks have ended. It runs on return or on an
-/// exception.
+/// An object whose destructor tells the sanitizer that all earlier Blocks have ended, whether the function returns or
+/// throws.
 class Waiting {
  public:
   Waiting() = default;

@@ -17,13 +17,13 @@ inline bool stopped(const RunOptions& options) {
   return options.stop != nullptr && options.stop->load(std::memory_order_relaxed);
 }
 
-/// The number of a piece of work, and a place (slot) for its output that is free.
+/// The number of a piece of work, and a free place (slot) for its output.
 struct Ticket {
   std::size_t n;     ///< number of the piece of work
   std::size_t slot;  ///< place for its output
 };
 
-/// A function that returns one ticket after another, then nothing. Never called from two threads at once.
+/// A function that returns one ticket after another, and none after the last. Never called from two threads at once.
 using TicketSource = std::function<std::optional<Ticket>()>;
 
 /// The number of places for outputs (slots) that run_in_slots() uses: a few for each thread.

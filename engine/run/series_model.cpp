@@ -52,14 +52,14 @@ class SeriesEvaluator final : public Evaluator {
   }
 
  private:
-  /// Outcomes of samples that are solved besides those of a block.
+  /// Outcomes of solves at a few errors, such as the nodes of the series.
   struct Solved {
     std::vector<double> responses;
     std::vector<SolveStatus> status;
     std::vector<std::uint32_t> iterations;
   };
 
-  /// Solves these errors instead of those of the block. The range is unknown to the solver, because few samples do not
+  /// Solves these errors instead of those of the block. The solver is not told the range, because so few samples do not
   /// repay its preparations for a range.
   Solved solve(SampleBlock samples, std::span<const double> errors) {
     samples.values = errors;

@@ -21,7 +21,7 @@ struct Shard {
   std::size_t index = 0;  ///< number of the shard, from 0
   std::size_t count = 1;  ///< number of all shards
 
-  /// The numbers among 0 .. all - 1 that belong to this shard. The ranges of all shards follow each other without gap.
+  /// The numbers among 0 .. all - 1 that belong to this shard. Each shard begins where the previous one ends.
   NumberRange of(std::size_t all) const { return {begin(index, all), begin(index + 1, all)}; }
 
  private:

@@ -190,8 +190,8 @@ class UnitFold {
   const Job& job_;
   NumberRange units_;  ///< units of the shard
   std::size_t next_ = 0;
-  std::size_t begun_ = 0;  ///< units merged when the round began
-  std::size_t end_ = 0;    ///< end of the round
+  std::size_t begun_ = 0;  ///< number of the round's first unit
+  std::size_t end_ = 0;    ///< number of the round's last unit, plus 1
   Sums sums_;              ///< sums of whole units
   SolveCounts solved_;     ///< solves of whole units
   std::optional<Unit> last_;

@@ -19,8 +19,8 @@
 namespace poesy {
 namespace {
 
-/// The number of work units that a rank has in advance for each of its threads: kAhead at first, kMostAhead at most.
-/// The number grows if the rank solves units faster than messages are exchanged.
+/// A rank has up to kAhead work units in advance for each of its threads, later up to kMostAhead. The number doubles
+/// each time the rank returns all its outputs within kQuick.
 constexpr std::size_t kAhead = 4;
 constexpr std::size_t kMostAhead = 128;
 constexpr std::chrono::milliseconds kQuick{3};
@@ -131,12 +131,12 @@ class RankPool {
   }
 
   SlotOf slot_of_;
-  std::size_t low_;  ///< the pool asks for more work when no more than this number of pieces wait
+  std::size_t low_;  ///< the pool asks for more work when at most this number of pieces wait
   std::mutex mutex_;
   std::condition_variable given_;
   std::condition_variable hungry_;
   std::deque<NumberRange> ranges_;
-  std::size_t left_ = 0;  ///< numbers left in the ranges
+  std::size_t left_ = 0;  ///< number of pieces of work left in the ranges
   bool hungry_now_ = false;
   bool closed_ = false;
   std::atomic<bool> failed_{false};
@@ -144,7 +144,7 @@ class RankPool {
   std::thread thread_;  ///< last, because its thread uses all other members
 };
 
-/// What rank 0 does in a stage.
+/// The work of rank 0 in a stage: hands out pieces of work to all ranks, and merges the outputs in order.
 class Leader {
  public:
   Leader(std::size_t count, const RunOptions& options, const SlotWork& work)
@@ -180,8 +180,8 @@ class Leader {
 
  private:
   struct Rank {
-    std::size_t threads = 0;  ///< 0 until the rank has said that it is ready
-    std::size_t given = 0;    ///< numbers that were handed out to the rank and whose outputs it has not returned
+    std::size_t threads = 0;  ///< number of threads; 0 until the rank has said that it is ready
+    std::size_t given = 0;    ///< number of pieces of work handed out to the rank and not yet returned as outputs
     std::size_t ahead = kAhead;
     std::chrono::steady_clock::time_point given_at;  ///< time of the last assignment
   };
@@ -256,8 +256,8 @@ class Leader {
     }
   }
 
-  /// Hands out numbers of work units to a rank. Towards the end each rank gets fewer at a time, so that all ranks end
-  /// at about the same time.
+  /// Hands out pieces of work to a rank. Towards the end each rank gets fewer at a time, so that all ranks end at about
+  /// the same time.
   void hand_out(std::size_t to) {
     Rank& rank = ranks_[to];
     const std::size_t left = count_ - next_to_give_;
@@ -295,11 +295,12 @@ class Leader {
   std::vector<std::size_t> bytes_;  ///< [slots] bytes of the output in this place, if another rank sent it
   std::size_t waiting_bytes_ = 0;
   std::mutex mutex_;
-  std::vector<std::size_t> delivered_;  ///< numbers that the pool delivered
+  std::vector<std::size_t> delivered_;  ///< numbers of the pieces of work that the pool delivered
   RankPool pool_;                       ///< last, because its threads use all other members
 };
 
-/// What every other rank does in a stage.
+/// The work of each rank except rank 0 in a stage: does the pieces of work that rank 0 hands out, and sends their
+/// outputs.
 class Follower {
  public:
   Follower(const RunOptions& options, const SlotWork& work)
@@ -387,7 +388,7 @@ class Follower {
   std::size_t taken_ = 0;  ///< number of pieces of work that the pool has taken
   /// True if the stage is complete, as the end message says; none before that message.
   std::optional<bool> complete_;
-  std::size_t given_ = 0;  ///< numbers received from rank 0
+  std::size_t given_ = 0;  ///< number of pieces of work received from rank 0
   std::mutex mutex_;
   ByteWriter outputs_;
   std::size_t waiting_ = 0;  ///< number of outputs in the unsent message
