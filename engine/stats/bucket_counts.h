@@ -41,8 +41,8 @@ class BucketCounts {
   void add(std::span<const double> values);
   /// Adds the counts of another object, exactly. Preconditions: the same scale; reach() made room.
   void merge(const BucketCounts& other);
-  /// Replaces the scale by the next coarser one, and the counts by those that this scale would have given from the
-  /// beginning. Precondition: there is a coarser scale.
+  /// Replaces the scale by the next coarser one, and the counts by those of the coarser scale. Precondition: there is a
+  /// coarser scale.
   void coarsen();
   /// The counts of the magnitudes, with values of both signs together. extremes: the extremes of the magnitudes. Takes
   /// memory for each page between them.
@@ -57,7 +57,7 @@ class BucketCounts {
   static BucketCounts read(ByteReader& from, const Extremes& extremes);
 
  private:
-  /// The pages of the values of one sign: where counts_ has them.
+  /// The pages of the values of one sign, with their places in counts_.
   struct Side {
     std::uint64_t first = 0;  ///< number of the first page
     /// Places of the pages first, first + 1, ... in counts_; kNowhere for pages without counts.
@@ -66,11 +66,11 @@ class BucketCounts {
   static constexpr std::uint16_t kNowhere = 0xffff;
 
   std::uint64_t count_at(std::size_t at) const { return counts_[at] + (wraps_.empty() ? 0 : wraps_[at] << 16U); }
-  /// The position in counts_ of the counts of this page. Makes an empty page if none is stored yet.
+  /// The index in counts_ of the first count of this page. Makes an empty page if none is stored yet.
   std::size_t place(Side& side, std::uint64_t page);
   std::uint16_t new_page();  ///< Makes an empty page and returns its number among the stored pages.
   void add_at(std::size_t at, std::uint64_t count);
-  /// Records that the 16-bit count at this position has overflowed `times` times.
+  /// Records that the 16-bit count at this index has overflowed `times` times.
   void wrap(std::size_t at, std::uint64_t times);
   void merge_side(Side& side, const BucketCounts& other, const Side& others);
   std::vector<Filled> filled(std::size_t sign) const;

@@ -63,7 +63,8 @@ RankInterval quantile_ranks(std::uint64_t n, double q, double conf_level) {
   if (n == 0) return {0, 1};
   const Binomial below(static_cast<double>(n), q);
   const double beyond = 0.5 * (1.0 - conf_level);
-  // With B draws below the quantile: P(B < low) < beyond and P(B >= high) <= beyond.
+  // Let B be the number of draws below the quantile. The ranks are such that P(B < low) < beyond and P(B >= high) <=
+  // beyond.
   const double low = quantile(below, beyond);
   const double high = quantile(complement(below, beyond)) + 1.0;
   return {static_cast<std::uint64_t>(low), static_cast<std::uint64_t>(high)};
@@ -81,7 +82,7 @@ Histogram histogram(std::span<const Bucket> buckets, std::size_t bins) {
   POESY_EXPECTS(bins >= 3 && !buckets.empty());
   const std::vector<double> even = even_edges(buckets, bins - 1);
   Histogram filled{{buckets.front().lower}, {}};
-  std::uint64_t open = 0;  // values in the bin that is being filled
+  std::uint64_t open = 0;  // number of values in the bin that is being filled
   const auto end_at = [&](double edge) {
     if (edge <= filled.edges.back()) return;  // the bin would have no width
     filled.edges.push_back(edge);
@@ -99,7 +100,7 @@ Histogram histogram(std::span<const Bucket> buckets, std::size_t bins) {
   end_at(last);
   filled.edges.resize(bins + 1, last);
   filled.counts.resize(bins, 0);
-  filled.counts.back() += open;  // happens if all values are the same
+  filled.counts.back() += open;  // adds the remaining values, which exist if all values are the same
   return filled;
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kNodes = ChebyshevSeries::kNodes;
 constexpr std::size_t kTail = 3;    ///< number of the last coefficients that show convergence
-constexpr std::size_t kLanes = 32;  ///< positions at which a series is summed together
+constexpr std::size_t kLanes = 32;  ///< number of points at which a series is summed at the same time
 
 /// T_n at the nodes, [n x node].
 using Polynomials = std::array<std::array<double, kNodes>, kNodes>;
@@ -31,7 +31,7 @@ const Polynomials& polynomials() {
   return table;
 }
 
-/// Sums a series at kLanes positions by Clenshaw's recurrence.
+/// Sums a series at kLanes points by Clenshaw's recurrence.
 POESY_EACH_INSTRUCTION_SET void sum_lanes(const double* terms, std::size_t count, const double* x, double* sums) {
   std::array<double, kLanes> last{};
   std::array<double, kLanes> before{};

@@ -21,9 +21,10 @@ class ChebyshevSeries {
   /// are below the rounding of the largest.
   explicit ChebyshevSeries(std::span<const double> values);
 
-  /// The largest of the last coefficients before terms were left out: how far the series has not converged.
+  /// The largest magnitude of the last coefficients, before terms were left out. It is small if the series has
+  /// converged.
   double tail() const { return tail_; }
-  /// The values at the positions x [B] in [-1, 1]. A value does not depend on the other positions.
+  /// The values at the points x [B] in [-1, 1]. A value does not depend on the other points.
   void evaluate(std::span<const double> x, std::span<double> values) const;
 
  private:

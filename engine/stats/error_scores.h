@@ -58,11 +58,11 @@ class PolynomialScore {
   /// distinct points. Precondition: weights are positive and sum to 1; at least two distinct points.
   PolynomialScore(std::span<const double> points, std::span<const double> weights, std::size_t degree = kDegree);
 
-  double sigma() const { return sigma_; }            ///< The standard deviation of the points: t.
-  double operator()(double error) const;             ///< The score S.
-  double growth(double error) const;                 ///< The growth score.
-  double parabola(double error) const;               ///< The part of S up to degree 2.
-  ScoreMoments moments() const { return moments_; }  ///< The moments of S over the distribution of the error.
+  double sigma() const { return sigma_; }  ///< The size t of the error: standard deviation of the points.
+  double operator()(double error) const;   ///< The score S(error).
+  double growth(double error) const;       ///< The growth score: the counterpart of S for growth by kErrorGrowth.
+  double parabola(double error) const;     ///< The part of the score S(error) up to degree 2.
+  ScoreMoments moments() const { return moments_; }  ///< The moments of the score over the distribution of the error.
   ScoreMoments growth_moments() const { return growth_moments_; }  ///< The moments of the growth score.
 
  private:
@@ -94,13 +94,13 @@ struct BlockScore {
 /// The score of one error; std::monostate if it is not known.
 using ErrorScore = std::variant<std::monostate, NormalScore, PolynomialScore, BlockScore>;
 
-/// The size t of the error, by which a yield is differentiated; 0 if the score is not known.
+/// The size t of the error, by which a yield is differentiated: `sigma` of its score; 0 if the score is not known.
 double size_of(const ErrorScore& score);
 
 /// A block of k correlated normal errors e_i = c_i + t_i z_i, whose scores z have the correlation R. The score by the
 /// size t_i, for constant R and constant sizes of the other errors, is z_i (R^-1 z)_i - 1.
 struct NormalBlock {
-  std::vector<std::size_t> errors;  ///< [k] positions among all errors; each of them has a BlockScore
+  std::vector<std::size_t> errors;  ///< [k] indices among all errors; each of these errors has a BlockScore
   std::vector<double> triangle;     ///< [k x k] Cholesky factor L with L L^T = R, row-major
 
   /// Replaces the normal scores z [k] of a machine by z_i (R^-1 z)_i - 1.
@@ -113,8 +113,8 @@ struct ErrorScores {
   std::vector<NormalBlock> blocks = {};  ///< blocks of correlated errors; no error is in two blocks
 };
 
-/// The moments of the score of one error, given by its position. For an error i of a NormalBlock they are E[S^2] = 1 +
-/// r and E[S^3] = 2 + 6 r with r = (R^-1)_ii, because S + 1 is a product of two normals with variances 1 and r and
+/// The moments of the score of one error, given by its index. For an error i of a NormalBlock they are E[S^2] = 1 + r
+/// and E[S^3] = 2 + 6 r with r = (R^-1)_ii, because S + 1 is a product of two normals with variances 1 and r and
 /// covariance 1. Precondition: the error has a PolynomialScore or a BlockScore.
 ScoreMoments score_moments(const ErrorScores& scores, std::size_t error);
 /// The moments of the growth score of one error. For an error of a NormalBlock the growth score is approximated by (g -

@@ -40,7 +40,7 @@ struct Strata {
   Vector spread;     ///< variance of the error within the bin
   Vector asymmetry;  ///< third central moment of the error within the bin
   /// One bit for each bin: 1 if the error decreases from this bin to the next, which are then not neighbours. This
-  /// happens where the two halves of a shifted distribution meet.
+  /// happens between the two halves of a shifted distribution.
   std::uint32_t ends = 0;
 
   Eigen::Index bins() const { return count.size(); }
@@ -125,8 +125,8 @@ Matrix form_of_lines(const Strata& strata) {
 /// The sum of a_ij b_ij v_i v_j over i and j.
 double product(const Matrix& a, const Matrix& b, const Vector& v) { return v.dot(a.cwiseProduct(b) * v); }
 
-/// Sets `signal` and `noise`. lines, steps: the matrices of the quadratic forms `between` and `total` in the means of
-/// the bins.
+/// Sets `signal` and `noise`. lines, steps: the matrices of the quadratic forms that give `between` and `total` from
+/// the means of the bins.
 void set_normal_parts(const Strata& strata, const Matrix& lines, const Matrix& steps, BinnedVariance& found) {
   const Vector& of_mean = strata.of_mean;
   const Vector a = lines * strata.mean;

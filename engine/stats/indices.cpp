@@ -118,8 +118,8 @@ Interval spread_interval(const PoseStatistics& s, double z) {
   return {std::sqrt(std::max(middle - half, 0.0)), std::sqrt(std::max(middle + half, 0.0))};
 }
 
-/// The distance from mean + spread to one end of the interval of this sum. of_mean, of_spread: the same distances for
-/// the mean alone and for the spread alone (Zou and Donner 2008, with a correlation).
+/// The distance from mean + spread to one end of the interval of this sum. of_mean, of_spread: the distance from the
+/// mean to this end of its own interval, and the same for the spread (Zou and Donner 2008, with a correlation).
 double recovered(double of_mean, double of_spread, double correlation) {
   const double sum = square(of_mean) + square(of_spread) + 2.0 * correlation * of_mean * of_spread;
   return std::sqrt(std::max(sum, 0.0));

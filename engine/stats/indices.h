@@ -75,10 +75,10 @@ double index_rounding(double response_rounding, double sigma);
 /// larger size. linear, angular: the sizes of the length errors (m) and angle errors (rad); NaN if there are none. SI.
 double size_rounding(double response_rounding, double linear, double angular);
 
-/// While P errors vary together, a response does not count as varying if its standard deviation is at most this value,
-/// because rounding alone may cause that. The value is the root of the sum of (index_rounding() sigma)^2 over the
-/// errors, because independent effects add in this way. So if no error alone has an effect on a response, all together
-/// count as having none. sigma: [errors]. All numbers are SI.
+/// While several errors vary together, a response does not count as varying if its standard deviation is at most this
+/// value, because rounding alone may cause that. The value is the root of the sum of (index_rounding() sigma)^2 over
+/// the errors, because independent effects add in this way. So if every error alone has no effect on a response, all
+/// errors together count as having none. sigma: [errors]. All numbers are SI.
 double joint_rounding(double response_rounding, std::span<const double> sigma);
 
 /// Whether a response does not vary: none of its standard deviations (for instance at several poses) is more than

@@ -47,9 +47,9 @@ struct LinearLimit {
 /// millionth of the largest are dropped.
 LinearLimit with_fewest_rows(const LinearLimit& limit);
 
-/// Predicts which machines are good, for limits on vectors that are linear in the errors. For each error of a machine
-/// it also finds the range in which the machine is good if its other errors do not change. The range is an interval,
-/// because the errors that keep a limit form a convex set.
+/// Predicts which machines are good (keep all limits), for limits on vectors that are linear in the errors. For each
+/// error of a machine it also finds the range in which the machine is good if its other errors do not change. The range
+/// is an interval, because the errors that keep a limit form a convex set.
 class LinearLimits {
  public:
   /// errors: the number of errors. limits: the limits at all poses.

@@ -71,7 +71,7 @@ class MainEffectSums {
   void add_counts(const EffectBins& bins, std::span<const std::uint8_t> counts);
   void add_moments(std::span<const double> responses, std::span<const std::uint8_t> counts);
   std::array<BinSums, kEffectBins> bins_of(std::size_t response, std::size_t error) const;
-  /// The position in sums_ of the first row of sums for this response and error.
+  /// The index in sums_ of the first row of sums for this response and error.
   std::size_t first_row(std::size_t response, std::size_t error) const;
   static std::size_t place(std::size_t response);
   void check() const;  ///< Throws BytesError for sums that no samples can have.

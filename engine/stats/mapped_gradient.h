@@ -15,12 +15,12 @@ namespace poesy {
 /// An error for which MappedGradient finds the gradient of the yield.
 struct MappedError {
   ErrorRange range;       ///< distribution of the error
-  PolynomialScore score;  ///< score of degree 2, used for machines that the map judges wrongly
+  PolynomialScore score;  ///< score of degree 2, used for machines that the linear map judges wrongly
 };
 
-/// The gradient of the yield by the sizes of errors of any distribution. A linear map (LinearLimits) predicts which
-/// machines are good. With G = 1 for a good machine, H = 1 for a machine that the map predicts to be good, and t the
-/// size of an error,
+/// The gradient of the yield by the sizes of errors of any distribution. A linear map from the errors to the limited
+/// vectors (LinearLimits) predicts which machines are good. With G = 1 for a good machine, H = 1 for a machine that the
+/// map predicts to be good, and t the size of an error,
 ///
 ///     dP(G)/dt = dP(H)/dt + d(P(G) - P(H))/dt
 ///
@@ -38,11 +38,11 @@ class MappedGradient {
   void add(std::span<const double> errors, std::span<const std::uint8_t> rejected);
 
   std::uint64_t machines() const { return machines_; }    ///< The number of machines that were added.
-  std::uint64_t misjudged() const { return misjudged_; }  ///< The number of these machines that the map judges wrongly.
+  std::uint64_t misjudged() const { return misjudged_; }  ///< The number of machines that LinearLimits misjudges.
 
-  /// dY/dt, the derivative of the yield Y by the size t of one error. The interval is skewed_mean() over the machines,
-  /// with the second and third moments of four more machines that the map misjudges, drawn from all machines.
-  /// Preconditions: the error is a MappedError; 0 < conf_level < 1.
+  /// dY/dt, the derivative of the yield Y by the size t of one error. The interval is skewed_mean() over the machines.
+  /// Its second moment includes four more machines that the map misjudges (kAddedRejects), with the mean square of the
+  /// score over all machines. Preconditions: the error is a MappedError; 0 < conf_level < 1.
   Estimate gradient(std::size_t error, double conf_level) const;
   /// The change of the yield if the size t of one error grows by the factor kErrorGrowth, with the interval and
   /// preconditions of gradient().

@@ -10,15 +10,15 @@
 namespace poesy {
 
 /// The share of each error in the scatter of a vector, to first order. The scatter is the mean square of the vector
-/// about its mean over the machines, summed over all poses. The scatters of independent errors add in a linear vector,
-/// whatever their distributions. Means do not add so: those of several errors may cancel each other, so the square of
+/// about its mean over the machines, summed over all poses. If the vector is linear in independent errors, their parts
+/// of the scatter add, whatever their distributions. Their parts of the mean may cancel each other, so the square of
 /// the vector's mean is not divided among errors.
 struct MeanSquareShares {
   std::vector<Estimate> each;  ///< [errors] share of each error in the scatter; NaN if it is correlated with others
   /// The share of the scatter that is linear in the errors. The rest of it cannot be attributed to single errors.
   double linear = 0.0;
   double offset = 0.0;        ///< root mean square over the poses of the vector's mean, in the vector's unit
-  double offset_share = 0.0;  ///< share of the squared mean in the whole mean square, which is squared mean and scatter
+  double offset_share = 0.0;  ///< squared mean over the whole mean square (squared mean plus scatter)
 };
 
 /// Data of an error and of its effect on a vector.

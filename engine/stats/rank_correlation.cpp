@@ -41,7 +41,7 @@ double correlation(const std::vector<double>& x, const std::vector<double>& y) {
   return xy / std::sqrt(xx * yy);
 }
 
-/// The values of x and y at the positions where both are known.
+/// The values of x and y at the indices where both are known.
 std::pair<std::vector<double>, std::vector<double>> known(std::span<const double> x, std::span<const double> y) {
   POESY_EXPECTS(x.size() == y.size());
   std::pair<std::vector<double>, std::vector<double>> both;

@@ -7,18 +7,19 @@
 
 namespace poesy {
 
-/// Which of several quantities are told to differ from zero, by Holm's steps (1979, Scand. J. Stat. 6, 65-70). With a
-/// probability of conf_level none of the quantities that are zero is told, also if they depend on each other.
+/// Finds which of several quantities are shown to differ from zero, by Holm's steps (1979, Scand. J. Stat. 6, 65-70);
+/// the result is true for these. With a probability of at least conf_level it is true for none of the quantities that
+/// are zero, also if they depend on each other.
 ///
-/// estimates: with intervals of skewed_mean() (yield_gradient.h) at conf_level and with this freedom. A NaN is not
-/// tested and not told. bounds: the least and the largest end that an interval may have. An end at its bound was moved
-/// there; the distance of the other end is then used for both. None is told if freedom < 1. Precondition: 0 <
-/// conf_level < 1.
+/// estimates: with intervals of skewed_mean() (yield_gradient.h) at conf_level and with these degrees of freedom. The
+/// result is false for NaN. bounds: the least and the largest end that an interval may have. An end at its bound was
+/// moved there; the distance of the other end is then used for both. The result is false for all if freedom < 1.
+/// Precondition: 0 < conf_level < 1.
 ///
 /// A step needs the interval at a higher level, which follows from the one at conf_level: the difference of the
 /// distances from the estimate to both ends grows with the square of Student's quantile, and so does their product. An
 /// end that would move by less than in proportion to the quantile is moved in proportion. This makes the interval
-/// wider, so fewer quantities are told.
+/// wider, so the result is true for fewer quantities.
 std::vector<bool> told_together(std::span<const Estimate> estimates, const Interval& bounds, double freedom,
                                 double conf_level);
 

@@ -34,11 +34,12 @@ struct ResponseStudy {
 
 /// The error relative to which equal-effect tolerances are set.
 struct ReferenceError {
-  std::size_t factor;  ///< position among the errors of the study
+  std::size_t factor;  ///< number of the error in the study's list of errors, from 0
   double tolerance;    ///< tolerance of this error, SI
 };
 
-/// The position of the error with the smallest effect, index x sigma, that is not zero; none if no error has an effect.
+/// The number (in the list, from 0) of the error with the smallest effect that is not zero. The effect is index x
+/// sigma. None if no error has an effect.
 std::optional<std::size_t> smallest_effect(std::span<const double> index, std::span<const double> sigma);
 
 /// [errors] t_p = (mu_ref / mu_p) t_ref, which gives every error the effect of the reference (Du et al. 2022, Section
@@ -54,8 +55,8 @@ struct MeanSquare {
 
   /// The sum of effects_p t_p^2. Errors without effect do not count, even if their tolerance is infinite.
   double growth(std::span<const double> tolerances) const;
-  /// The mean square if some errors keep fixed sizes: their part becomes background. errors: positions of these errors.
-  /// sizes: [errors] standard deviations, of which only those of `errors` are used.
+  /// The mean square if some errors keep fixed sizes: their part becomes background. errors: numbers of these errors in
+  /// the list, from 0. sizes: [errors] standard deviations, of which only those of `errors` are used.
   MeanSquare holding(std::span<const std::size_t> errors, std::span<const double> sizes) const;
   /// The mean square with these tolerances [errors].
   double at(std::span<const double> tolerances) const { return background + growth(tolerances); }

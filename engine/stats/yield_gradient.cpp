@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// The positions of the rejected machines in a block.
+/// The indices of the rejected machines in a block.
 std::vector<std::size_t> places(std::span<const std::uint8_t> rejected) {
   std::vector<std::size_t> found;
   for (std::size_t b = 0; b < rejected.size(); ++b) {

@@ -91,7 +91,7 @@ class ScoreSums {
   /// Whether this error alone causes the rejects, so that its PolynomialScore leaves out a large part.
   bool dominates(std::size_t error, const Estimate& score) const;
   /// Adds to the sums the scores of a block of correlated errors for the rejected machines. errors: as in add(). count:
-  /// number of machines. rejects: positions of the rejected machines.
+  /// number of machines. rejects: indices of the rejected machines.
   void add_block(const NormalBlock& block, std::span<const double> errors, std::size_t count,
                  std::span<const std::size_t> rejects);
 
