@@ -49,7 +49,7 @@ using Component = Axis<"component">;  ///< Components of a vector.
 using Joint = Axis<"joint">;          ///< Joints that have a displacement.
 }  // namespace axis
 
-/// The lengths of the axes of an array, and the positions of its elements. Elements are row-major: the last axis varies
+/// The lengths of the axes of an array, and the order of its elements. Elements are row-major: the last axis varies
 /// fastest.
 template <NamedAxis... Axes>
 class AxisLayout {
@@ -67,7 +67,7 @@ class AxisLayout {
   const Lengths& lengths() const { return lengths_; }  ///< The lengths of all axes.
   /// The number of elements.
   std::size_t elements() const { return product(lengths_); }
-  /// The positions, on each axis, of the element with this number in row-major order.
+  /// The index on each axis of the element with this number in row-major order.
   Lengths positions(std::size_t place) const {
     Lengths at{};
     for (std::size_t k = kAxes; k-- > 0; place /= lengths_[k]) at[k] = place % lengths_[k];
@@ -83,7 +83,7 @@ class AxisLayout {
   }
 
  protected:
-  /// The elements at these positions on the first axes, as a range in row-major order: the number of the first element,
+  /// The elements at these indices on the first axes, as a range in row-major order: the number of the first element,
   /// and how many elements there are.
   template <std::integral... Positions>
   std::pair<std::size_t, std::size_t> part(Positions... positions) const {
@@ -118,13 +118,13 @@ class ArrayView : public AxisLayout<Axes...> {
     POESY_EXPECTS(elements.size() == Layout::product(lengths));
   }
 
-  /// The element at these positions, one for each axis.
+  /// The element at these indices, one for each axis.
   template <std::integral... Positions>
   T& operator()(Positions... at) const {
     static_assert(sizeof...(Positions) == Layout::kAxes, "a position is needed for each axis");
     return elements_[Layout::part(at...).first];
   }
-  /// The elements at these positions on the first axes, row-major along the others.
+  /// The elements at these indices on the first axes, row-major along the others.
   template <std::integral... Positions>
   std::span<T> row(Positions... at) const {
     const auto [first, count] = Layout::part(at...);
@@ -157,7 +157,7 @@ class Array : public AxisLayout<Axes...> {
   std::size_t size() const { return elements_.size(); }  ///< The number of elements.
   bool empty() const { return elements_.empty(); }       ///< Returns true if there are no elements.
 
-  /// The element at these positions, one for each axis.
+  /// The element at these indices, one for each axis.
   /// @{
   template <std::integral... Positions>
   T& operator()(Positions... at) {
@@ -169,7 +169,7 @@ class Array : public AxisLayout<Axes...> {
   }
   /// @}
 
-  /// The elements at these positions on the first axes, row-major along the others.
+  /// The elements at these indices on the first axes, row-major along the others.
   /// @{
   template <std::integral... Positions>
   std::span<T> row(Positions... at) {

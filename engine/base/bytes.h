@@ -72,7 +72,7 @@ Bytes bytes_of(const ByteSource& source);       ///< All bytes that the source w
 /// ByteWriter cannot write, and allocates no more memory than the remaining bytes can fill.
 class ByteReader {
  public:
-  /// A reader of `bytes`, which must outlive it.
+  /// A reader of `bytes`, which must outlive the reader.
   explicit ByteReader(std::span<const std::byte> bytes) : left_(bytes) {}
 
   std::uint64_t number();                          ///< Reads a whole number (LEB128).

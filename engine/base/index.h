@@ -5,21 +5,21 @@
 
 namespace poesy {
 
-/// A position in a list. Positions in different kinds of lists have different types, so that they cannot be mixed up.
+/// An index in a list. Indices in different kinds of lists have different types, so that they cannot be mixed up.
 template <class List>
 struct Index {
-  std::size_t value = 0;  ///< position, from 0
+  std::size_t value = 0;  ///< index, from 0
 
   constexpr Index() = default;
-  /// Explicit, so that a plain number does not become a position by accident.
+  /// Explicit, so that a plain number does not become an index by accident.
   constexpr explicit Index(std::size_t position) : value(position) {}
-  /// Compares two positions in the same kind of list.
+  /// Compares two indices in the same kind of list.
   friend constexpr auto operator<=>(const Index&, const Index&) = default;
 };
 
-/// Position of an error in the list of all errors (factors) of its model.
+/// Index of an error in the list of all errors (factors) of its model.
 using FactorIndex = Index<struct FactorList>;
-using PoseIndex = Index<struct PoseList>;  ///< Position of a pose in a study's pose set.
+using PoseIndex = Index<struct PoseList>;  ///< Index of a pose in a study's pose set.
 /// Number of a sample in the sequence of draws of one factor at one pose.
 using SampleIndex = Index<struct SampleList>;
 

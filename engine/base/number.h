@@ -9,7 +9,7 @@ namespace poesy {
 /// A number in a table. Whole numbers have types of their own, because a double is exact only up to 2^53.
 using Number = std::variant<double, std::int64_t, std::uint64_t>;
 
-/// Converts a value to a number: a flag to 0 or 1, an enumeration to its position.
+/// Converts a value to a number: a flag to 0 or 1, an enumeration to its underlying value.
 template <class Value>
 Number to_number(const Value& value) {
   if constexpr (std::is_same_v<Value, Number>) {

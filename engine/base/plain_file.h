@@ -29,8 +29,8 @@ class PlainFile {
   int error() const { return error_; }  ///< errno of opening; EINVAL if there is something other than a plain file
   /// @}
 
-  /// Reads from position `at` until `to` is full or the file ends. Returns the number of bytes; none on a disk error,
-  /// with the reason in errno. It never blocks, even for special files that look plain, such as /proc/kmsg.
+  /// Reads from byte `at` of the file until `to` is full or the file ends. Returns the number of bytes; none on a disk
+  /// error, with the reason in errno. It never blocks, even for special files that look plain, such as /proc/kmsg.
   /// Precondition of this and the functions below: is_open().
   std::optional<std::size_t> read(std::uintmax_t at, std::span<std::byte> to) const;
   /// Passes the whole file to take(), piece by piece. Returns false on a disk error, with the reason in errno.

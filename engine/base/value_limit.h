@@ -26,8 +26,8 @@ class ValueLimit {
   bool is_spread() const { return is_spread_; }  ///< Returns true if the spread over the poses is limited.
   /// Returns true if the limit is on the magnitude of a value.
   bool is_magnitude() const { return from_ == -to_ && !is_spread_; }
-  /// Returns true if the limit is on several poses of a machine together, so that one pose does not show whether it is
-  /// kept.
+  /// Returns true if the limit is on the values at several poses of a machine together, so that one pose does not show
+  /// whether the machine keeps the limit.
   bool is_over_poses() const { return is_spread_ || share_ < 1.0; }
   /// Returns true if the limit is on the magnitude at each pose, which is the simplest form.
   bool is_plain() const { return is_magnitude() && share_ == 1.0; }

@@ -87,7 +87,7 @@ class LuFactors6 {
  public:
   using Matrix6 = Eigen::Matrix<double, 6, 6>;  ///< type of the matrix
   using Vector6 = Eigen::Matrix<double, 6, 1>;  ///< type of a right-hand side or a solution
-  using Places = Eigen::Matrix<int, 6, 1>;      ///< type of a list of row positions, counted from 0
+  using Places = Eigen::Matrix<int, 6, 1>;      ///< type of a list of row numbers, counted from 0
 
   explicit LuFactors6(const Matrix6& A);  ///< Factors A, which may be singular.
 
@@ -95,7 +95,7 @@ class LuFactors6 {
   Matrix6 inverse() const;                ///< The inverse of A. Precondition: A is not singular.
   double determinant() const;             ///< The determinant of A.
   Vector6 pivots() const { return factors_.diagonal(); }  ///< The diagonal of U.
-  const Places& row_places() const { return places_; }    ///< The position to which P moves each row of A.
+  const Places& row_places() const { return places_; }    ///< The number of the row to which P moves each row of A.
 
  private:
   Matrix6 factors_;  ///< L below the diagonal (the diagonal of L is 1), and U on and above it

@@ -69,7 +69,7 @@ bool is_symmetric(Distribution::Shape shape) {
   return shape != Distribution::Shape::measured && shape != Distribution::Shape::given;
 }
 
-/// The quantile at the share u of values that are equally likely.
+/// The quantile at the share u of a list of ascending, equally likely values.
 double value_of_share(std::span<const double> values, double u) {
   const auto place = static_cast<std::size_t>(u * static_cast<double>(values.size()));
   return values[std::min(place, values.size() - 1)];

@@ -34,8 +34,9 @@ class Distribution {
   /// kLeastMeasured values, finite and not all equal.
   static Distribution measured(std::vector<double> values);
 
-  /// The given values themselves, all equally likely. They are the errors of machines that are given in a table instead
-  /// of drawn. The standard deviation is that of the values (n - 1). At least two values, finite, not all equal.
+  /// A distribution in which each of the given values is equally likely. They are the errors of machines that are given
+  /// in a table instead of drawn. The standard deviation is that of the values (n - 1). There must be at least two
+  /// values, finite and not all equal.
   static Distribution given(std::vector<double> values);
 
   /// The same shape with a shifted mean: half of all errors scatter about -shift, half about +shift (m or rad, >= 0).
@@ -71,8 +72,8 @@ class Distribution {
   /// 0 < u < 1.
   double quantile(double u) const;
   void transform(std::span<double> uniforms) const;  ///< Replaces each uniform number u by quantile(u).
-  /// Replaces each normal score z (a standard normal) by the error with the same share below it: centre + sigma z for
-  /// the normal shape, otherwise quantile(Phi(z)).
+  /// Replaces each normal score z (a standard normal) by the error with the same share of errors below it: centre +
+  /// sigma z for the normal shape, otherwise quantile(Phi(z)).
   void transform_scores(std::span<double> scores) const;
 
   /// The given values, ascending; empty for other shapes.

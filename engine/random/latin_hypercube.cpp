@@ -17,7 +17,7 @@ constexpr std::size_t kRounds = 8;
 /// The least number of bits of the Feistel network. With fewer bits, the permutations are not equally likely.
 constexpr unsigned kFewestBits = 10;
 
-/// A random permutation of the strata 0 .. n - 1. Each of its values can be computed alone, without storing the others.
+/// A random permutation of the strata 0 .. n - 1. Each value is computed without the others, and none is stored.
 class Permutation {
  public:
   Permutation(const StreamAddress& address, std::uint64_t strata)
@@ -86,7 +86,7 @@ void LatinHypercube::fill(const DesignColumn& column, SampleIndex first, std::sp
   fill_uniforms(address, first, uniforms);
   for (std::size_t k = 0; k < uniforms.size(); ++k) {
     const auto stratum = static_cast<double>(permutation(first.value + k));
-    // A position near the end of its stratum would be rounded to the next stratum.
+    // A place near the end of its stratum would be rounded to the next stratum.
     const double place = std::min(stratum + uniforms[k], std::nextafter(stratum + 1.0, 0.0));
     uniforms[k] = place / n;
   }

@@ -43,7 +43,7 @@ class NormalCopula {
 /// conditional distribution is normal with mean R_ds R_ss^-1 z_s and covariance R_dd - R_ds R_ss^-1 R_sd.
 class ConditionalScores {
  public:
-  /// shared, drawn: positions of errors in the copula; each error is in exactly one of the two lists.
+  /// shared, drawn: indices of errors in the copula; each error is in exactly one of the two lists.
   ConditionalScores(const NormalCopula& copula, std::span<const std::size_t> shared,
                     std::span<const std::size_t> drawn);
 

@@ -138,7 +138,7 @@ constexpr std::array<std::uint64_t, kMask> kBits = [] {
   return bits;
 }();
 
-/// Marks the shares outside the middle: bit k of masks[n] is 1 for such a share at position 64 n + k.
+/// Marks the shares outside the middle: bit k of masks[n] is 1 if shares[64 n + k] is outside.
 POESY_EACH_INSTRUCTION_SET void mark_tails(Normal normal, const double* shares, std::size_t count,
                                            std::uint64_t* masks) {
   for (std::size_t begin = 0; begin < count; begin += kMask) {

@@ -80,7 +80,7 @@ void SmoothedValues::add_pieces() {
   std::ranges::sort(spreads, {}, [](const Spread& spread) { return std::pair(spread.low, spread.high); });
   std::ranges::sort(ends);
   ends.erase(std::ranges::unique(ends).begin(), ends.end());
-  double below = 0.0;  // number of values below the knot; a value counts by the part of its range that is below
+  double below = 0.0;  // number of values below the knot; a value counts by the share of its range that is below
   const auto add_knot = [&](double x) {
     knots_.push_back(x);
     shares_.push_back(below);

@@ -24,8 +24,8 @@ enum class Purpose : std::uint64_t {
 struct StreamAddress {
   std::uint64_t seed = 0;                    ///< seed of the study
   Purpose purpose = Purpose::error_samples;  ///< use of the draws; draws for different purposes are independent
-  FactorIndex factor;                        ///< position among all factors of the model
-  PoseIndex pose;                            ///< position among the study's poses
+  FactorIndex factor;                        ///< index in the list of all factors of the model
+  PoseIndex pose;                            ///< index in the list of the study's poses
 };
 
 /// The 64 random bits at an address and sample. A pure function: word (sample mod 4) of Philox4x64-10 (Salmon et al.

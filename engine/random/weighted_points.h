@@ -7,7 +7,7 @@
 
 namespace poesy {
 
-/// The largest degree of a polynomial whose mean is exact over weighted points.
+/// The points of weighted_points() give exact means of polynomials up to this degree.
 inline constexpr std::size_t kExactDegree = 19;
 
 /// Points that represent a distribution: sum of weights[k] f(points[k]) is the mean of f.

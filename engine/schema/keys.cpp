@@ -49,7 +49,8 @@ std::string as_sentence(std::string_view clause) {
 
 constexpr std::size_t kColumns = 120;
 
-/// A paragraph as comment lines of TOML. Lines after the first are indented by two more columns.
+/// A paragraph as comment lines of TOML, indented by `indent` columns. Lines after the first are indented by two more
+/// columns.
 std::string paragraph(std::string_view text, std::size_t indent) {
   const std::size_t margin = indent + 2;
   std::string out;

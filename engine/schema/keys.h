@@ -134,8 +134,8 @@ std::string inline_table(const std::vector<Named>& things, Value value) {
   return text + " }";
 }
 
-/// Calls read(k, value) for each thing whose name is a key of the section, in the order of the things; k is the
-/// position of the thing. Throws InputError for other keys. what: what the keys name, for messages.
+/// Calls read(k, value) for each thing whose name is a key of the section, in the order of the things; k is the index
+/// of the thing. Throws InputError for other keys. what: what the keys name, for messages.
 template <class Named, class Read>
 void read_named(const StudySection& section, const std::vector<Named>& things, std::string_view what, Read read) {
   section.allow(names(things), what);
@@ -162,11 +162,11 @@ NumberBounds between_0_and_1(std::string_view example);
 /// Reads a number within the bounds. Throws InputError at the value's place for a number outside.
 double read_number(const StudyValue& value, const NumberBounds& bounds);
 
-/// How the value of a key is read into an object and written from it, and which values a file may have.
+/// Describes how the value of a key is read into an object and written from it, and which values a file may have.
 template <class Object>
 struct KeyValue {
-  std::string type;                   ///< type for readers: "integer", "length", "list of numbers", ...
-  std::string bounds = {};            ///< bounds for readers: "at least 1"; empty if the type has no further bounds
+  std::string type;                   ///< type for users: "integer", "length", "list of numbers", ...
+  std::string bounds = {};            ///< bounds for users: "at least 1"; empty if the type has no further bounds
   std::vector<StudyWord> words = {};  ///< words that the key accepts; empty if it accepts other values
   /// Stores the value; none if the key has a reader (Key::reader).
   std::function<void(const StudyValue&, Object&)> read = {};
@@ -196,7 +196,7 @@ struct Key {
   void (*reader)(const StudyValue& value, Object& object, const Scope& scope) = nullptr;
   /// Writes the key's lines of the resolved text, if they are not just "KEY = VALUE". The text may be empty.
   std::string (*lines)(const Object& object) = nullptr;
-  int late = 0;  ///< position in the resolved text: keys with a larger number come later
+  int late = 0;  ///< order in the resolved text: keys with a larger number come later
   /// Writes the key's lines of a template for this object, if they do not just show the default. The text may be empty.
   std::string (*shown)(const TemplateLines& lines, const Object& object) = nullptr;
   bool commented = false;  ///< true if a template shows the default as a comment
@@ -244,8 +244,8 @@ std::string usual_text(const KeyValue<Object>& value) {
 template <class... Path>
 using OwnerOf = decltype(detail::owner_of(Path()...));
 
-/// How the value of a key is read into a member of an object, and written from it. path: pointers to members that lead
-/// from the object to this member. read: converts a StudyValue to the member's value. text: writes this value as TOML.
+/// Makes a KeyValue for a member of an object. path: pointers to members that lead from the object to this member.
+/// read: converts a StudyValue to the member's value. text: writes this value as TOML.
 template <class Read, class Text, class... Path>
 KeyValue<OwnerOf<Path...>> value_at(std::string type, std::string_view bounds, Read read, Text text, Path... path) {
   using Object = OwnerOf<Path...>;
@@ -259,14 +259,14 @@ KeyValue<OwnerOf<Path...>> value_at(std::string type, std::string_view bounds, R
           .text = [=](const Object& object) { return text(detail::at(object, path...)); }};
 }
 
-/// How a key stores a text. path: pointers to members, as for value_at().
+/// The KeyValue of a text. path: pointers to members, as for value_at().
 template <class... Path>
 auto text_at(Path... path) {
   return value_at(
       "text", "", [](const StudyValue& value) { return value.text(); }, in_quotes, path...);
 }
 
-/// How a key stores a whole number from `least` to `most`. path: pointers to members, as for value_at().
+/// The KeyValue of a whole number from `least` to `most`. path: pointers to members, as for value_at().
 template <class... Path>
 auto whole_at(std::int64_t least, std::int64_t most, Path... path) {
   const auto read = [=](const StudyValue& value) { return value.whole_number(least, most); };
@@ -274,14 +274,14 @@ auto whole_at(std::int64_t least, std::int64_t most, Path... path) {
   return value_at("integer", "at least " + std::to_string(least), read, text, path...);
 }
 
-/// How a key stores a number without a unit, within bounds. path: pointers to members, as for value_at().
+/// The KeyValue of a number without a unit, within bounds. path: pointers to members, as for value_at().
 template <class... Path>
 auto number_at(const NumberBounds& bounds, Path... path) {
   const auto read = [=](const StudyValue& value) { return read_number(value, bounds); };
   return value_at("number", bounds.words, read, shortest, path...);
 }
 
-/// How a key stores a quantity of this dimension, SI. path: pointers to members, as for value_at().
+/// The KeyValue of a quantity of this dimension, SI. path: pointers to members, as for value_at().
 template <class... Path>
 auto quantity_at(Dimension dimension, Path... path) {
   const auto read = [=](const StudyValue& value) { return value.quantity(dimension); };
@@ -289,7 +289,7 @@ auto quantity_at(Dimension dimension, Path... path) {
   return value_at(std::string(name(dimension)), "", read, text, path...);
 }
 
-/// How a key stores a quantity of this dimension above zero, SI. path: pointers to members, as for value_at().
+/// The KeyValue of a quantity of this dimension above zero, SI. path: pointers to members, as for value_at().
 template <class... Path>
 auto positive_at(Dimension dimension, Path... path) {
   const auto read = [=](const StudyValue& value) { return value.positive_quantity(dimension); };
@@ -304,8 +304,8 @@ struct WordFor {
   std::string_view meaning;  ///< what the value means, as a clause
 };
 
-/// How a key stores a value of an enumeration, which a file states as one of these words. path: pointers to members, as
-/// for value_at().
+/// The KeyValue of an enumeration whose values a file states as one of these words. path: pointers to members, as for
+/// value_at().
 template <class Enum, class... Path>
 auto word_at(std::vector<WordFor<Enum>> words, Path... path) {
   std::vector<std::string_view> known;

@@ -51,7 +51,7 @@ class StudyValue {
   /// Reads one of these words, and returns its index.
   std::size_t word(std::span<const std::string_view> words) const;
   StudySection section() const;  ///< Reads a table.
-  /// Reads a list. The full name of each element ends with its position: "pairs[0]".
+  /// Reads a list. The full name of each element ends with its index: "pairs[0]".
   std::vector<StudyValue> list() const;
   /// Reads a list of `size` elements. Throws InputError with this remedy if the number differs.
   std::vector<StudyValue> list(std::size_t size, std::string_view remedy) const;

@@ -3,7 +3,7 @@
 namespace poesy {
 namespace {
 
-/// A position in a text.
+/// A place in a text, with its line and column.
 class Cursor {
  public:
   explicit Cursor(std::string_view text) : text_(text) {}
@@ -25,7 +25,7 @@ class Cursor {
     }
   }
 
-  /// The quote at this position: three equal characters, or one.
+  /// The quote at this place: three equal characters, or one.
   OpenQuote quote() const {
     const std::string_view three = text_.substr(at_, 3);
     const bool is_long = three.size() == 3 && three[1] == three[0] && three[2] == three[0];

@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kPrevious = "previous";
 constexpr std::string_view kOrigin = "origin";
 
-/// What the readers of these keys need besides the value.
+/// The type of the additional argument of readers that need only the value of the key.
 struct Nothing {};
 
 const Keys<OwnResponse, Nothing>& response_keys() {
@@ -80,7 +80,7 @@ std::optional<std::size_t> find_response(const ModelDescription& model, const st
 /// A point with three responses that are its displacement.
 struct ReportedPoint {
   std::string name;
-  /// Positions of the responses that are the displacement along the base's x, y and z.
+  /// Indices of the responses that are the displacement along the base's x, y and z.
   std::array<std::size_t, 3> responses;
 };
 
@@ -151,7 +151,7 @@ class OwnReader {
     if (direction) read_direction(*direction, section.require("point", "name it: point = \"origin\""), own);
   }
 
-  /// The position of the response of this name. Throws InputError at the value if there is no such response.
+  /// The index of the response of this name. Throws InputError at the value if there is no such response.
   std::size_t response_of(const StudyValue& value, const std::string& name) const {
     const std::optional<std::size_t> found = find_response(model_, name);
     if (found) return *found;

@@ -63,7 +63,7 @@ toml::table parsed(const std::string& text, const std::string& path, std::string
   }
 }
 
-/// A number as the file writes it; empty if the number is not found. lines: lines of the file. begin: position of the
+/// A number as the file writes it; empty if the number is not found. lines: lines of the file. begin: place of the
 /// number, with the column counted in characters.
 std::string_view written_number(const std::vector<std::string_view>& lines, const toml::source_position& begin) {
   if (begin.line == 0 || begin.line > lines.size()) return {};
