@@ -76,11 +76,11 @@ class CorrectedEvaluator final : public Evaluator {
   DriveCorrection correction_;
   Frame frame_;
   Controllers controllers_;
-  /// [responses] Position in kComponents of each response; none for a response that is not a component of the
+  /// [responses] Index in kComponents of each response; none for a response that is not a component of the
   /// displacement.
   std::vector<std::optional<std::size_t>> component_;
   std::map<std::vector<double>, CommandedPose> poses_;
-  std::vector<FactorIndex> all_;  ///< positions of all errors of the model
+  std::vector<FactorIndex> all_;  ///< all errors of the model
 };
 
 }  // namespace poesy::calibration

@@ -13,11 +13,11 @@ namespace poesy::calibration {
 /// one for each coordinate of a pose.
 using CoordinateError = std::function<Vector(const Placement& nominal, const Displacement& displacement)>;
 
-/// Commanded coordinates that are components of a displacement, given by positions in kComponents. If one angle is
-/// among them, all three must be.
+/// Commanded coordinates that are components of a displacement, given by indices in kComponents. If one angle is among
+/// them, all three must be.
 CoordinateError coordinates_of_components(std::vector<std::size_t> positions);
 
-/// A commanded pose, and how the commanded coordinates change as the pose changes near it.
+/// A commanded pose, with the derivatives of the platform's placement and of the commanded coordinates at this pose.
 struct CommandedPose {
   std::vector<double> pose;  ///< commanded coordinates, SI
   Placement nominal;         ///< placement of the perfect mechanism's platform at the pose

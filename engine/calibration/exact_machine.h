@@ -74,7 +74,7 @@ class ExactMachine {
  private:
   const Model* model_;
   std::unique_ptr<Evaluator> evaluator_;
-  std::array<std::size_t, 6> responses_;  ///< positions of the first six of kComponents among the responses
+  std::array<std::size_t, 6> responses_;  ///< indices of the responses that are the first six of kComponents
   std::vector<double> no_errors_;
   std::vector<FactorIndex> all_;
   Matrix3 home_;

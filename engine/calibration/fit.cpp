@@ -12,9 +12,9 @@ namespace {
 
 constexpr int kMostSteps = 30;
 constexpr int kMostHalvings = 20;
-constexpr double kShortest = 1e-9;  // the iteration ends if the step of the scaled numbers is below this
-// A step that changes all values together by less than this share of their noise moves each estimate by at most this
-// share of its standard deviation.
+constexpr double kShortest = 1e-9;  // the iteration ends if every scaled number changes by less than this in a step
+// The iteration also ends if a step changes all values together by less than this share of their noise. Such a step
+// moves each estimate by at most this share of its standard deviation.
 constexpr double kShortestInNoise = 1e-8;
 // The same bound if derivatives come from an expansion, which is not exact: used instead of kShortestInNoise.
 constexpr double kShortestByExpansion = 1e-5;
@@ -22,11 +22,11 @@ constexpr double kRounding = 1e-15;  // m or rad: rounding of an exact solve
 // A sum of squares that grows by less than this share counts as not growing.
 constexpr double kRoundingOfSum = 1e-10;
 constexpr double kGrowthByExpansion = 1e-6;  // used instead of kRoundingOfSum with an expansion
-constexpr double kRankOfFrame = 1e-9;        // smallest pivot relative to the largest, among columns of norm 1
+constexpr double kRankOfFrame = 1e-9;        // singular values and pivots below this share of the largest count as 0
 // m, rad or a slope: step of each number of phi (see Derivatives) for finite differences
 constexpr double kStepOfPlace = 1e-4;
 // Step of a fitted number for finite differences, as a share of the machine's reach or in rad. The error of truncation
-// (fourth power of the step) and the error of rounding (of a solve, over the step) are both below 1e-12.
+// (fourth power of the step) is below 1e-13, and the error of rounding (of a solve, over the step) is about 2e-12.
 constexpr double kStep = 5e-4;
 
 /// The points of a central difference of fourth order, in steps, and their weights.

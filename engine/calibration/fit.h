@@ -88,7 +88,7 @@ struct FitProblem {
 
 /// The estimate and its diagnostics.
 struct FitResult {
-  bool converged = false;   ///< whether the last step was below 1e-9 of the scale, or 1e-8 of the noise
+  bool converged = false;   ///< whether the iteration ended because a step was small enough (kShortest in fit.cpp)
   bool solved = true;       ///< whether all machines on the way were solved; if not, nothing else is valid
   std::size_t steps = 0;    ///< number of steps made
   Vector theta;             ///< [numbers] fitted numbers of the errors, SI

@@ -45,11 +45,12 @@ struct Inference {
   double rms = kNaN;       ///< root mean square of the residuals over their standard deviations
   Vector leverage;         ///< [values] diagonal of the projector on the fitted values
   Vector standardised;     ///< [values] residuals over their own standard deviations; NaN for an unchecked value
-  /// [values] Statistic of the outlier test. If the noise is estimated, it is estimated here without the value itself.
+  /// [values] Statistic of the outlier test. If the noise is estimated, this test estimates it from the other values
+  /// only.
   Vector outlier_score;
   double outlier_limit = kNaN;         ///< a value whose |outlier_score| exceeds this is an outlier
-  std::vector<std::size_t> outliers;   ///< positions of the outliers, largest score first
-  std::vector<std::size_t> unchecked;  ///< positions of values that no other value checks
+  std::vector<std::size_t> outliers;   ///< indices of the outliers, largest score first
+  std::vector<std::size_t> unchecked;  ///< indices of values that no other value checks
   std::size_t below_noise = 0;         ///< number of singular values below 1 (effects below the noise)
   ObservabilityIndices indices;        ///< observability indices of the first `rank` singular values
 };
@@ -63,7 +64,7 @@ Matrix null_projector(const ScaledFit& fit);
 
 /// Fitted numbers that the measurements cannot tell apart: a connected block of the null space's projector.
 struct Confounded {
-  std::vector<std::size_t> numbers;  ///< positions of the fitted numbers
+  std::vector<std::size_t> numbers;  ///< indices of the fitted numbers
   std::size_t directions = 0;        ///< number of undetermined directions among them
 };
 

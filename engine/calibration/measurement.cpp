@@ -10,8 +10,8 @@
 namespace poesy::calibration {
 namespace {
 
-constexpr std::size_t kFirstLength = 3;  ///< position in kComponents of the first length
-constexpr std::size_t kFirstOfTip = 6;   ///< position in kComponents of the first coordinate of the tool point
+constexpr std::size_t kFirstLength = 3;  ///< index in kComponents of the first length
+constexpr std::size_t kFirstOfTip = 6;   ///< index in kComponents of the first coordinate of the tool point
 constexpr Eigen::Index kZ = 2;
 
 /// The axis of a component: 0, 1 or 2.

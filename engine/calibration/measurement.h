@@ -12,15 +12,15 @@ namespace poesy::calibration {
 enum class Measured {
   deviation,  ///< a component of the platform's displacement from its commanded pose
   actual,     ///< a coordinate of P or of the tool point
-  distance    ///< the distance between two positions of the tool point (of P if there is no tool), at two poses
+  distance    ///< the distance between the places of the tool point (of P if there is no tool) at two poses
 };
 
 /// A measured value.
 struct MeasuredValue {
   Measured what;              ///< kind of quantity
-  std::size_t row;            ///< position of the pose among the poses
-  std::size_t other = 0;      ///< position of the second pose, for a distance
-  std::size_t component = 0;  ///< position in kComponents, for a deviation or an actual coordinate
+  std::size_t row;            ///< index of the pose in the list of poses
+  std::size_t other = 0;      ///< index of the second pose, for a distance
+  std::size_t component = 0;  ///< index in kComponents, for a deviation or an actual coordinate
   double value = 0.0;         ///< measured value, SI
   double sd = 0.0;            ///< standard deviation, SI
 };
@@ -51,7 +51,7 @@ struct MeasuredPose {
 /// same point.
 class Measurement {
  public:
-  /// machine: must outlive this object. poses: reachable. values: `row` and `other` are positions in `poses`.
+  /// machine: must outlive this object. poses: reachable. values: `row` and `other` are indices in `poses`.
   Measurement(ExactMachine& machine, std::vector<MeasuredPose> poses, std::vector<MeasuredValue> values, Frame frame,
               Target target);
 

@@ -9,7 +9,7 @@ namespace poesy::calibration {
 
 /// A pose that is worth measuring.
 struct NextPose {
-  std::size_t candidate;  ///< position among the candidates
+  std::size_t candidate;  ///< index in the list of candidates
   /// Information about the fitted numbers, in bits, in addition to that of the poses chosen before.
   double gain;
 };

@@ -14,7 +14,7 @@ namespace {
 using std::numbers::pi;
 using std::numbers::sqrt2;
 
-/// The probability that a standard normal is within +-k.
+/// The probability that a standard normal number is between -k and k.
 double in_interval(double k) { return std::erf(k / sqrt2); }
 
 /// The probability that a point with two (three) independent standard normal coordinates is in a disc (ball) of radius
@@ -27,9 +27,9 @@ double integral(const F& f, double from, double to) {
   return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(f, from, to, 15, 1e-12);
 }
 
-/// The probability that both ends of an axis are within k of their nominal position. Each coordinate of an end has
-/// standard deviation 1. correlation: that of the same coordinate at both ends. Given one end, the other end is normal
-/// about `correlation` times the first one.
+/// The probability that both ends of an axis are within a distance k of their nominal places. Each coordinate of an end
+/// has standard deviation 1. correlation: that of the same coordinate at both ends. Given one end, the other end is
+/// normal about `correlation` times the first one.
 double ends_inside(double k, double correlation, bool one_direction) {
   const double rest = std::sqrt(std::max(0.0, (1.0 - correlation) * (1.0 + correlation)));
   if (rest < 1e-6) return one_direction ? in_interval(k) : in_disc(k);

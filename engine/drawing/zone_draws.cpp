@@ -162,7 +162,8 @@ ZoneDraws::Errors ZoneDraws::uniform_axis(const Errors& u) const {
   const double radius = 0.5 * feature_.location->size;
   const double most = std::min(2.0, feature_.orientation ? feature_.orientation->size / radius : 2.0);
   if (feature_.one_direction) {
-    // The density of the lean falls linearly, because the range of middles that stay inside does.
+    // The density of the lean falls linearly, because the range of middles that keep both ends inside becomes shorter
+    // linearly.
     const double share = std::abs(between(u[1])) * most * (1.0 - 0.25 * most);
     const double lean = 2.0 * share / (1.0 + std::sqrt(1.0 - share));
     return {radius * between(u[0]) * (1.0 - 0.5 * lean), std::copysign(radius * lean, u[1] - 0.5)};

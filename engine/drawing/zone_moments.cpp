@@ -31,7 +31,7 @@ struct Density {
   }
 };
 
-/// Integrals of a density over all positions of a feature within its zones.
+/// Integrals of a density over all middles and tilts with which a feature is within its zones.
 struct Integrals {
   double one = 0.0;
   double middle = 0.0;  ///< integral of the squared middle, summed over its coordinates

@@ -14,8 +14,8 @@ FeatureSigmas scatter_sigmas(const Feature& feature, const ZoneScatter& scatter)
 /// zone of orientation.
 bool can_touch(const Feature& feature);
 
-/// The largest value (m) of an error that is the only error of its feature. For a lean and for a distance it is the
-/// size of the zone, for other errors half of it.
+/// The largest value (m) of an error if it is the only error of its feature. For a lean and for a distance it is the
+/// size of the zone, for other errors half of the size.
 double half_width_alone(const Feature& feature);
 
 }  // namespace poesy::drawing

@@ -19,7 +19,8 @@ double tilt_of_orientation(FeatureKind kind) {
   return kind == FeatureKind::round ? 0.5 : 0.5 / sqrt2;
 }
 
-/// The standard deviation of the middle in a zone of location, if the tilt has a zone of orientation of this width.
+/// The standard deviation of the middle in a zone of location, if the tilt is limited by a zone of orientation of this
+/// width.
 double middle_beside(double location, double orientation, double sigmas) {
   return std::sqrt((location - orientation) * (location + orientation)) / (2.0 * sigmas);
 }

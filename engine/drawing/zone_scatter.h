@@ -15,9 +15,9 @@ enum class ScatterShape {
   inspected  ///< normal, but features outside their zones are rejected
 };
 
-/// How the extreme points of features (ends of axes, corners of planes) scatter in their zones. Features use a zone of
-/// location and a zone of orientation independently. Under normal scatter, the errors that displace an extreme point
-/// contribute equally to its variance.
+/// The scatter of the extreme points of features (ends of axes, corners of planes) in their zones. The scatter in a
+/// zone of location and that in a zone of orientation are independent. Under normal scatter, the errors that displace
+/// an extreme point contribute equally to its variance.
 struct ZoneScatter {
   ScatterShape shape = ScatterShape::normal;  ///< distribution of the extreme points
   /// Half a zone, in standard deviations of a coordinate of an extreme point. Applies to `normal` and `inspected`.
@@ -47,7 +47,8 @@ struct FeatureSigmas {
 /// with a clearance has the mean square that follows from the clearance.
 FeatureSigmas feature_sigmas(const Feature& feature, double sigmas);
 
-/// The largest useful zone of orientation, as a share of the zone of location. A wider one limits nothing more.
+/// The largest useful zone of orientation, as a share of the zone of location. A wider zone does not limit the feature
+/// further.
 double widest_orientation(FeatureKind kind);
 
 }  // namespace poesy::drawing

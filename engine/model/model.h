@@ -34,7 +34,7 @@ struct Factor {
 struct FactorSet {
   std::string name;                  ///< name in study files
   std::string description;           ///< explanation for users
-  std::vector<FactorIndex> factors;  ///< positions of the factors in the model's list, ascending
+  std::vector<FactorIndex> factors;  ///< indices of the factors in the model's list, ascending
 };
 
 /// A scalar that the model computes for every pose and sample.
@@ -47,11 +47,12 @@ struct Response {
   /// mean zero. It is 1 if the response is linear in the errors or the norm of a linear function, because mean squares
   /// add in these cases. It is larger if the response is a mean of several norms, or the largest of them.
   double mean_square_bound = 1.0;
-  /// If the response is the norm of a vector of responses: positions of the components among the model's responses.
+  /// If the response is the norm of a vector of responses: indices of the components in the model's list of responses.
   std::vector<std::size_t> components = {};
   /// True if the response is never below zero although it has no components, such as an energy.
   bool has_no_sign = false;
-  /// True if the response is a difference to its value at another pose of the same machine.
+  /// True if the response is the difference between a value at one pose and the value at another pose of the same
+  /// machine.
   bool is_relative = false;
 
   /// Returns true if the response is never below zero.
@@ -84,7 +85,7 @@ struct PoseChart {
 struct NamedCurve {
   std::string name;         ///< name in study files
   std::string description;  ///< explanation for users
-  std::size_t chart;        ///< chart of the curve: position in ModelDescription::charts
+  std::size_t chart;        ///< chart of the curve: index in ModelDescription::charts
   double start;             ///< beginning of the whole curve, s
   double end;               ///< end of the whole curve, s
   /// The default point that is added to the curve: chart coordinates, SI.
@@ -110,7 +111,7 @@ struct GeometryParameter {
 /// The response that shows whether an error deforms the mechanism, instead of only moving the platform as a perfect
 /// mechanism moves.
 struct DeformationMeasure {
-  std::size_t response;  ///< position among the responses
+  std::size_t response;  ///< index in the list of responses
   double rounding;       ///< largest value that rounding alone may give, SI
 };
 
@@ -171,7 +172,7 @@ struct ModelDescription {
   std::string title;                             ///< title with its source
   std::vector<GeometryParameter> geometry;       ///< parameters that a study may change
   std::vector<PoseCoordinate> pose_coordinates;  ///< coordinates, in the order of the numbers of a pose
-  std::vector<Factor> factors;         ///< all errors; the random numbers of an error depend on its position here
+  std::vector<Factor> factors;         ///< all errors; the random numbers of an error depend on its index here
   std::vector<FactorSet> factor_sets;  ///< sets that a study may name; a set called "all" has every factor
   std::vector<Feature> features = {};  ///< features of parts, with the tolerances of their drawings
   std::vector<Response> responses;     ///< responses, in the order of OutcomeBlock::responses
@@ -193,14 +194,14 @@ struct ModelDescription {
   std::vector<NamedCurve> curves;                   ///< trajectories of the literature
   std::optional<SeparationDescription> separation;  ///< none: the model does not separate its errors
   std::vector<SourceSet> sources;     ///< default sources of a coupling study; no factor is in two sources
-  std::vector<std::size_t> headline;  ///< positions of the responses that a summary shows; empty: all of them
+  std::vector<std::size_t> headline;  ///< indices of the responses that a summary shows; empty: all of them
   /// The joints of a mechanism from a file, as lines of text for users; empty for other mechanisms.
   std::string structure = {};
   /// The responses that a summary of a coupling study shows. They have signs, because a norm cannot show which effects
   /// cancel. Empty: the headline.
   std::vector<std::size_t> signed_headline;
 
-  /// The position of the factor of this name; none if there is no such factor.
+  /// The index of the factor of this name; none if there is no such factor.
   std::optional<FactorIndex> find_factor(std::string_view factor_name) const;
   const FactorSet* find_set(std::string_view set_name) const;  ///< Null if there is no set of that name.
 };
@@ -357,7 +358,7 @@ class StudyValue;  ///< The value of a key in a study or mechanism file (engine/
 /// A mechanism that a study may name.
 struct CatalogEntry {
   ModelDescription description;  ///< description, with the published geometry
-  /// Builds the mechanism. geometry: values of description.geometry, in that order (SI). fidelity: position among
+  /// Builds the mechanism. geometry: values of description.geometry, in that order (SI). fidelity: index in
   /// description.fidelities, 0 if there is no choice. Throws std::invalid_argument with a clause that names the
   /// parameter and the rule it breaks.
   std::function<std::unique_ptr<Model>(std::span<const double> geometry, std::size_t fidelity)> build;

@@ -102,7 +102,7 @@ class OwnRows {
   std::size_t all() const { return responses_ + own_->size(); }
   /// The reference poses of the relative responses, each once. An empty pose means the previous pose.
   const std::vector<std::vector<double>>& references() const { return references_; }
-  /// The position of the previous pose in references(); none if no response is relative to it.
+  /// The index of the previous pose in references(); none if no response is relative to it.
   std::optional<std::size_t> previous() const {
     const auto found = std::ranges::find_if(references_, &std::vector<double>::empty);
     if (found == references_.end()) return std::nullopt;
@@ -115,7 +115,7 @@ class OwnRows {
   }
 
   /// Subtracts the responses `there` at a reference pose from those rows of responses that are relative to this pose.
-  /// reference: position of the pose in references(). If `there` is empty, sets these rows to 0.
+  /// reference: index of the pose in references(). If `there` is empty, sets these rows to 0.
   void subtract(std::span<double> rows, std::size_t reference, std::span<const double> there,
                 std::size_t samples) const {
     for (std::size_t k = 0; k < own_->size(); ++k) {
@@ -129,7 +129,7 @@ class OwnRows {
     }
   }
 
-  /// Computes the responses that are not relative themselves once more, because their terms may be relative.
+  /// Computes once more the responses that are not relative to a pose themselves, because their terms may be relative.
   void form_the_rest(std::span<double> rows, std::size_t samples) const {
     for (std::size_t k = 0; k < own_->size(); ++k) {
       if (!(*own_)[k].relative_to) form((*own_)[k], rows, row(rows, k, samples));

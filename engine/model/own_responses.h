@@ -11,7 +11,7 @@ namespace poesy {
 
 /// A term of a response that a user defines: another response times a weight.
 struct ResponseTerm {
-  std::size_t response;  ///< position in the list of the model's responses followed by the user's earlier ones
+  std::size_t response;  ///< index in the list of the model's responses followed by the user's earlier ones
   double weight = 1.0;   ///< factor by which the response is multiplied, SI
   Dimension weighed_in = Dimension::number;  ///< dimension of the weight: number or length
 };

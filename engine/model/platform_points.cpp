@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kRows = 4;  // rows of each point among the responses: x, y, z, position
+constexpr std::size_t kRows = 4;  // number of responses of each point: x, y, z and position (their norm)
 
 /// The vector from the platform's origin to a point, in the base's axes (m). place: the point in the platform's frame.
 /// R: base_R_platform.
@@ -45,7 +45,7 @@ std::array<double, 3> cross(const std::array<double, 3>& a, const std::array<dou
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// The position of the response of this name. Precondition: the model has this response.
+/// The index of the response of this name. Precondition: the model has this response.
 std::size_t row_of(const ModelDescription& model, std::string_view name) {
   const auto found = std::ranges::find(model.responses, name, &Response::name);
   POESY_EXPECTS(found != model.responses.end());
@@ -162,8 +162,8 @@ class PointedModel final : public ForwardingModel {
   PlatformOrientation orientation_;
   bool is_linear_;
   ModelDescription description_;
-  std::size_t x_;      ///< position of the response x; y and z follow
-  std::size_t theta_;  ///< position of the response theta_x; theta_y and theta_z follow
+  std::size_t x_;      ///< index of the response x; y and z follow
+  std::size_t theta_;  ///< index of the response theta_x; theta_y and theta_z follow
 };
 
 class PointsEvaluator final : public Evaluator {

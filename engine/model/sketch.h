@@ -22,8 +22,8 @@ struct SketchedJoint {
   /// True if the frame from this joint to the next one, or to the platform, has errors; for the first joint also true
   /// if the joint itself or the base has errors.
   bool has_errors;
-  std::size_t first = 1;   ///< position in the limb of the frame of the joint's first axis
-  std::size_t frame = 1;   ///< position in the limb of the frame that has its origin at the joint
+  std::size_t first = 1;   ///< index in the limb's frames: the frame of the joint's first axis
+  std::size_t frame = 1;   ///< index in the limb's frames: the frame that has its origin at the joint
   std::string drive = {};  ///< name of the drive; empty if the joint has none
 };
 
@@ -40,7 +40,7 @@ using SketchTwist = std::array<double, 6>;
 /// means the base, and the number after the last joint means the platform.
 struct SketchedError {
   std::size_t limb;    ///< limb, counted from 0
-  std::size_t frame;   ///< position of the error's frame in the limb's list of Sketch::frames
+  std::size_t frame;   ///< index of the error's frame in the limb's list of Sketch::frames
   std::size_t axis;    ///< axis of that frame: 0, 1 or 2
   bool turns;          ///< true: rotation about the axis; false: displacement along it
   std::size_t after;   ///< joint, or base, before the error
@@ -57,7 +57,7 @@ struct SketchedBody {
   SketchVector origin;  ///< origin of the body's frame
 };
 
-/// The bodies at the ends of a limb, as positions among Sketch::bodies.
+/// The bodies at the ends of a limb, as indices in Sketch::bodies.
 struct SketchedEnds {
   std::size_t from = 0;  ///< body where the limb begins; 0: the base
   std::size_t to = 1;    ///< body where the limb ends; 1: the platform
@@ -74,7 +74,7 @@ struct SketchedFeature {
   std::string name;   ///< name on the drawing, such as "rail"
   std::string zones;  ///< tolerances as text, such as "position 0.05 mm to A|B"; empty: none
   std::size_t limb;   ///< limb, counted from 0
-  std::size_t frame;  ///< position of the part's frame in the limb's list of Sketch::frames
+  std::size_t frame;  ///< index of the part's frame in the limb's list of Sketch::frames
   /// Shape in the frame of the part (m): the ends of an axis, the corners of a plane in order, or one point.
   std::vector<SketchVector> outline;
 };
