@@ -13,7 +13,7 @@ std::string sentence(const std::string& place, std::string_view problem, std::st
     text += "; ";
     text += remedy;
   }
-  return printable_line(text);  // the text may quote file names and user input with escapes or line ends
+  return printable_line(text);  // the text may quote file names and user input with control characters or line ends
 }
 
 }  // namespace

@@ -9,11 +9,11 @@
 
 namespace poesy::drawing {
 
-/// Whether ZoneDraws must draw the errors of a feature under this scatter. It must if the errors depend on each other,
-/// or if a single error has no distribution of its own (ScatterShape::boundary).
+/// Returns true if ZoneDraws must draw the errors of a feature under this scatter. It must if the errors depend on each
+/// other, or if a single error has no distribution of its own (ScatterShape::boundary).
 bool are_drawn_together(const Feature& feature, const ZoneScatter& scatter);
 
-/// Whether a feature with these errors (m, in the order of Feature::errors()) is inside its zones.
+/// Returns true if a feature with these errors (m, in the order of Feature::errors()) is inside its zones.
 bool is_inside(const Feature& feature, std::span<const double> errors);
 
 /// Draws the errors of one feature together.

@@ -10,8 +10,8 @@ namespace poesy::drawing {
 /// clearance. See theory.md, features and zones. Precondition: for ScatterShape::boundary, can_touch().
 FeatureSigmas scatter_sigmas(const Feature& feature, const ZoneScatter& scatter);
 
-/// Whether ScatterShape::boundary is defined for a feature with these zones: an axis, a point or a distance, without a
-/// zone of orientation.
+/// Returns true if ScatterShape::boundary is defined for a feature with these zones: an axis, a point or a distance,
+/// without a zone of orientation.
 bool can_touch(const Feature& feature);
 
 /// The largest value (m) of an error if it is the only error of its feature. For a lean and for a distance it is the

@@ -25,11 +25,11 @@ struct ZoneScatter {
   std::optional<double> within{};  ///< the share of extreme points inside the zone, from which `sigmas` is computed
                                    ///< instead
 
-  bool is_normal() const { return shape == ScatterShape::normal; }  ///< Whether errors are independent normals.
-  /// Whether the distribution has normals, which `sigmas` or `within` scale.
+  bool is_normal() const { return shape == ScatterShape::normal; }  ///< Returns true if errors are independent normals.
+  /// Returns true if the distribution has normals, which `sigmas` or `within` scale.
   bool has_sigmas() const { return is_normal() || shape == ScatterShape::inspected; }
 
-  bool operator==(const ZoneScatter&) const = default;  ///< Whether both give errors the same distribution.
+  bool operator==(const ZoneScatter&) const = default;  ///< Returns true if both give errors the same distribution.
 };
 
 /// Half a zone of this feature, in standard deviations of a coordinate. If `within` is set, the result depends on

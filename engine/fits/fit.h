@@ -10,7 +10,7 @@ struct SizeLimits {
   double lower;  ///< lower limit, m
   double upper;  ///< upper limit, m; at least `lower`
 
-  friend bool operator==(const SizeLimits&, const SizeLimits&) = default;  ///< Whether both limits are equal.
+  friend bool operator==(const SizeLimits&, const SizeLimits&) = default;  ///< Returns true if both limits are equal.
 };
 
 /// The clearance of a hole and a shaft of one nominal size: the diameter of the hole minus that of the shaft. Each
@@ -24,9 +24,9 @@ struct Fit {
 };
 
 /// The limits of a nominal size with its tolerance class, such as "217 h6". The size is in millimetres unless a unit of
-/// length follows the number: "0.5 in H7". Known are holes H and shafts d, e, f, g, h (ISO 286-1:2010, Tables 2 to 5)
-/// of sizes up to 500 mm, in the grades that ISO 286-1 has for the size. Throws std::invalid_argument with a clause
-/// that says what is wrong and what is known: "'217 k6' ...".
+/// length follows the number: "0.5 in H7". The known classes are holes H and shafts d, e, f, g, h (ISO 286-1:2010,
+/// Tables 2 to 5) of sizes up to 500 mm, in the grades that ISO 286-1 has for the size. Throws std::invalid_argument
+/// with a clause that says what is wrong and what is known: "'217 k6' ...".
 SizeLimits size_limits(std::string_view text);
 
 /// The fit of a hole and a shaft, such as "8 H7/g6". Units, known classes and failures are those of size_limits().

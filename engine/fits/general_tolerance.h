@@ -2,7 +2,8 @@
 
 #include <optional>
 
-/// General tolerances: what a drawing means by "ISO 2768" where it states no tolerance.
+/// General tolerances: the tolerances of ISO 2768, which hold where a drawing with a note "ISO 2768" states no
+/// tolerance.
 namespace poesy {
 
 /// The classes of ISO 2768-1, from fine to very coarse.

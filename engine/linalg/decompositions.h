@@ -75,7 +75,7 @@ struct EigenDecomposition {
   Matrix vectors;  ///< orthonormal columns, in the order of the values
 };
 
-/// The decomposition of a symmetric matrix, and its eigenvalues alone.
+/// The decomposition of a symmetric matrix, and a function for its eigenvalues only.
 /// @{
 EigenDecomposition eigen_decomposition(const ConstMatrix& A);
 Vector eigenvalues(const ConstMatrix& A);  ///< The eigenvalues, smallest first.

@@ -18,7 +18,7 @@ enum class FeatureKind { axis, rectangle, round, point, distance };
 /// The property of a feature that a tolerance zone limits.
 enum class ZoneClass {
   location,     ///< the position of the feature, and with it the orientation
-  orientation,  ///< the orientation alone
+  orientation,  ///< only the orientation
   size          ///< the length of a distance
 };
 
@@ -55,7 +55,7 @@ struct Feature {
   /// Errors that turn the feature: lean_x and lean_y of an axis; lift_x and lift_y of a plane face.
   std::vector<FactorIndex> tilt = {};
   std::optional<Zone> location = {};     ///< zone that limits the location; for a distance, the tolerance
-  std::optional<Zone> orientation = {};  ///< zone that limits the orientation alone
+  std::optional<Zone> orientation = {};  ///< zone that limits only the orientation
   /// Clearance of the axis of a pin that is loose in its bore. Such a feature has no zones. The place of the pin in the
   /// bore changes from pose to pose.
   std::optional<Clearance> clearance = {};

@@ -55,7 +55,7 @@ class ForwardingModel : public Model {
   virtual std::unique_ptr<Evaluator> formed(std::unique_ptr<Evaluator> evaluator) const { return evaluator; }
 
  protected:
-  /// Model: the other model, not null.
+  /// model: the model to wrap, not null.
   explicit ForwardingModel(std::shared_ptr<const Model> model) : model_(std::move(model)) {
     POESY_EXPECTS(model_ != nullptr);
   }

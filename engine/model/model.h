@@ -149,7 +149,7 @@ struct SolverOptions {
     gauss_newton  ///< the published iteration
   };
 
-  Method method = Method::newton;  ///< a model that has only one iteration ignores this
+  Method method = Method::newton;  ///< ignored by models that have only one kind of iteration
   /// A solve has converged when no component of the residual (in some models, of the platform's motion) changes by more
   /// than this in an iteration (rad, m). With the metric "platform", the changes of bodies and joints must be below
   /// this times the mechanism's reach. Default 1e-15, Du et al. 2022, Section 5.1; the default of a study is

@@ -32,8 +32,8 @@ struct OwnResponse {
   bool is_norm;                     ///< true: root of the sum of the squares of the terms; false: sum of the terms
   std::vector<ResponseTerm> terms;  ///< terms, at least one; each response once
   std::string description = {};     ///< explanation for users; empty: the list of the terms
-  /// The pose to which the response is relative; none: it is absolute. Only a sum whose terms are absolute may have
-  /// one. A response relative to the previous pose is 0 at the first pose.
+  /// The pose to which the response is relative; none: the response is absolute. Only a sum whose terms are absolute
+  /// may be relative to a pose. A response relative to the previous pose is 0 at the first pose.
   std::optional<ReferencePose> relative_to = {};
 };
 
@@ -50,7 +50,8 @@ ModelDescription described(ModelDescription model, const std::vector<OwnResponse
 /// the place of the pose in the study, if a response is relative to a pose that the model does not reach.
 std::unique_ptr<Model> with_responses(std::unique_ptr<Model> model, std::vector<OwnResponse> own);
 
-/// The catalog entry with the user's responses. The entries for other metrics and loads that it links do not get them.
+/// The catalog entry with the user's responses. The linked entries for other metrics and loads do not get these
+/// responses.
 CatalogEntry with_responses(CatalogEntry entry, const std::vector<OwnResponse>& own);
 
 }  // namespace poesy

@@ -66,10 +66,10 @@ class Distribution {
   /// The measured values and how they are smoothed; none for other shapes.
   const std::optional<SmoothedValues>& parts() const { return parts_; }
 
-  /// The value below which a share u of all draws lies. For a shifted distribution quantile(u) is another function,
-  /// which also turns a uniform u into a draw: -shift + q(2u) for u < 1/2, else shift + q(2u - 1), where q is the
-  /// quantile without the shift. This function increases with u on either side of 1/2, and falls at 1/2. Precondition:
-  /// 0 < u < 1.
+  /// The value below which a share u of all draws lies. For a shifted distribution, quantile(u) is not this value, but
+  /// another function that also turns a uniform u into a draw: -shift + q(2u) for u < 1/2, else shift + q(2u - 1),
+  /// where q is the quantile without the shift. This function increases with u on either side of 1/2, and falls at 1/2.
+  /// Precondition: 0 < u < 1.
   double quantile(double u) const;
   void transform(std::span<double> uniforms) const;  ///< Replaces each uniform number u by quantile(u).
   /// Replaces each normal score z (a standard normal) by the error with the same share of errors below it: centre +
@@ -79,7 +79,7 @@ class Distribution {
   /// The given values, ascending; empty for other shapes.
   std::span<const double> given_values() const { return given_; }
 
-  /// Whether shape, parameters, shift, centre and measured values are the same.
+  /// Returns true if shape, parameters, shift, centre and measured values are the same.
   friend bool operator==(const Distribution&, const Distribution&) = default;
 
  private:

@@ -24,7 +24,7 @@ class SmoothedValues {
   std::span<const double> values() const { return values_; }            ///< [n] The values in their original order.
   std::span<const double> half_widths() const { return half_widths_; }  ///< [n] The half-width w of each value.
   double mean() const { return mean_; }                                 ///< The mean of the values, and also of draws.
-  /// The standard deviation of draws; to rounding, that of the values.
+  /// The standard deviation of draws, which is that of the values up to rounding.
   double standard_deviation() const { return deviation_; }
   double least() const { return knots_.front(); }    ///< The smallest possible draw.
   double greatest() const { return knots_.back(); }  ///< The largest possible draw.
@@ -40,7 +40,7 @@ class SmoothedValues {
   /// The share of all draws below x, plus half of the share equal to x.
   double share(double x) const;
 
-  /// Whether the values are the same, in the same order.
+  /// Returns true if the values are the same, in the same order.
   friend bool operator==(const SmoothedValues& a, const SmoothedValues& b) { return a.values_ == b.values_; }
 
  private:

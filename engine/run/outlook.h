@@ -61,8 +61,8 @@ struct WorkSeconds {
   double merging = 0.0;  ///< work of one thread at a time
   double by_one = 0.0;   ///< work of one thread, afterwards
 
-  /// Seconds for the whole study with these threads, of which one at a time merges. share: the part of all solves that
-  /// the study makes, below 1 if adaptive samples end early.
+  /// Seconds for the whole study with these threads, of which one at a time merges. share: number of solves that the
+  /// study makes, as a share of the largest number; below 1 if adaptive samples end early.
   double on(std::size_t threads, double share = 1.0) const;
 };
 

@@ -247,8 +247,8 @@ class CellSums {
     return Plan::units_for(samples);
   }
 
-  Store whole_;  ///< [cells of the shard] sums of the units of full size; without cells before the first one
-  Store parts_;  ///< [cells of the shard] sums of smaller last units; without cells before the first one
+  Store whole_;  ///< [cells of the shard] sums of the units of full size; no cells before the first such unit
+  Store parts_;  ///< [cells of the shard] sums of smaller last units; no cells before the first such unit
 };
 
 }  // namespace poesy

@@ -107,12 +107,12 @@ void append_failures(std::size_t slot, PoseIndex pose, const FailedSamples& cell
 /// two forms: the two ends of an interval, or a half-width, which is the larger distance to an end. The members of the
 /// unused form are empty.
 struct EstimateCourse {
-  std::vector<std::uint64_t> samples;   ///< [numbers of samples] samples at each pose, ascending
+  std::vector<std::uint64_t> samples;   ///< numbers of samples at each pose after which estimates were made, ascending
   std::vector<double> value;            ///< [responses x slots x numbers of samples] estimates; NaN if not known
   std::vector<double> ci_low = {};      ///< [like value] lower ends of the intervals, or empty
   std::vector<double> ci_high = {};     ///< [like value] upper ends of the intervals, or empty
   std::vector<double> half_width = {};  ///< [like value] half-widths of the intervals, or empty
-  double conf_level = 0.95;             ///< level of the intervals
+  double conf_level = 0.95;             ///< confidence level of the intervals
 };
 
 /// How the adaptive sampling of a study ended (engine/run/rounds.h). A slot is one error that varies alone, or all
@@ -128,7 +128,7 @@ struct ConvergenceResult {
   std::vector<std::uint8_t> reached;  ///< [responses x slots] 1 if the half-width at the end is small enough, else 0
   /// [responses x slots] half-width over |quantity| at the end; NaN for 0 / 0.
   std::vector<double> relative_half_width;
-  std::vector<std::uint64_t> samples;  ///< [slots] samples at each pose while this error varies
+  std::vector<std::uint64_t> samples;  ///< [slots] number of samples at each pose while the slot's errors vary
 };
 
 /// The verdict on a limit of a response (engine/run/evaluation.h). SI.
@@ -158,7 +158,7 @@ struct YieldVerdict {
   };
   Decision decision = Decision::not_asked;  ///< decision on the wanted yield
   double asked = 0.0;                       ///< wanted yield; 0: none
-  double conf_level = 0.95;                 ///< level of the interval and of each bound
+  double conf_level = 0.95;                 ///< confidence level of the interval and of each bound
   double value = 0.0;                       ///< yield: share of the machines that are not rejects
   double ci_low = 0.0;                      ///< lower end of the two-sided interval of `value`
   double ci_high = 0.0;                     ///< upper end of the two-sided interval of `value`

@@ -35,7 +35,7 @@ class Rounds {
   struct Rule {
     std::size_t responses;              ///< number of responses
     std::vector<std::size_t> deciding;  ///< indices of the responses that decide
-    double conf_level;                  ///< level of the intervals of estimates
+    double conf_level;                  ///< confidence level of the intervals of estimates
     /// [responses x slots] Magnitude of rounding; a quantity below it counts as known well enough.
     std::vector<double> rounding;
   };
@@ -48,7 +48,7 @@ class Rounds {
   std::size_t samples(std::size_t slot) const { return samples_[slot]; }
   /// The number of work units of one error (slot) at each pose at the end of this round.
   std::size_t units(std::size_t slot) const;
-  /// Returns true if one error (slot) may have `units` work units at a pose in this round.
+  /// Returns true if `units` is a possible number of merged work units of one error (slot) at a pose in this round.
   bool may_hold(std::size_t slot, std::size_t units) const;
   /// The expected number of solves of the whole study. It is computed from the half-widths so far, which decrease with
   /// the square root of the number of samples. It is at least the number of solves of this round. Before the first

@@ -37,7 +37,7 @@ class WaitingThreads {
     for (const pthread_t thread : threads_) ::pthread_join(thread, nullptr);
   }
 
-  /// 0 if all threads were created; otherwise the errno that says why not.
+  /// 0 if all threads were created; otherwise the errno of the failure.
   int reason() const { return reason_; }
 
  private:
@@ -55,7 +55,7 @@ class WaitingThreads {
   std::atomic<bool> over_{false};
 };
 
-/// 0 if `threads` threads can exist at once; otherwise the errno that says why not.
+/// 0 if `threads` threads can exist at once; otherwise the errno of the failure.
 int problem_of(std::size_t threads) {
   constexpr std::size_t kRoom = std::size_t{2} << 20U;
   constexpr std::size_t kRoomOfThread = std::size_t{1} << 18U;

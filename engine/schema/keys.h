@@ -99,7 +99,7 @@ class TemplateLines {
   std::string inline_table(std::string_view table) const;
   /// The example of a key.
   std::string_view example(std::string_view table, std::string_view key) const;
-  std::string_view meaning(std::string_view table) const;  ///< What a table is for.
+  std::string_view meaning(std::string_view table) const;  ///< The meaning of a table, from its description.
 
  private:
   const StudyTable& table(std::string_view path) const;

@@ -8,8 +8,8 @@ namespace poesy {
 
 /// A quote that opens a string of a TOML text.
 struct OpenQuote {
-  std::size_t line;        ///< counts from 1
-  std::size_t column;      ///< counts from 1, in characters
+  std::size_t line;        ///< line of the quote, from 1
+  std::size_t column;      ///< column of the quote in characters, from 1
   std::string_view quote;  ///< one of " ' """ '''; a view of the text
 
   /// True if the string that the quote opens must end on the same line.

@@ -265,7 +265,7 @@ class OwnReader {
     });
   }
 
-  /// Throws InputError if a term is a response that is relative to a pose, or that depends on one.
+  /// Throws InputError if a term is a response that is relative to a pose, or that depends on such a response.
   void check_terms(const StudyValue& value, const OwnResponse& own) const {
     for (const ResponseTerm& term : own.terms) {
       if (!model_.responses[term.response].is_relative) continue;

@@ -57,12 +57,12 @@ void BucketCounts::add(std::span<const double> values) {
   for (std::size_t first = 0; first < values.size(); first += kPiece) {
     const std::span piece = std::span(keys).first(std::min(kPiece, values.size() - first));
     scale_.keys(values.subspan(first, piece.size()), piece);
-    // Finds the places of many counts before it changes them. Counts are seldom in the cache; this way several are
-    // fetched at a time.
+    // Finds the indices of many counts before it changes the counts. Counts are seldom in the cache; in this way
+    // several are fetched at the same time.
     std::size_t counted = 0;
     for (const std::uint64_t key : piece) {
       const std::uint64_t bucket = key & ~BucketScale::kSign;
-      // The sign is as good as random, so a branch on it would be slow. The bucket is found without one.
+      // The sign is as good as random, so a branch on it would be slow. The count is found without such a branch.
       const bool zero = bucket < BucketScale::kFirstNormal;
       zeros_ += zero ? 1 : 0;
       if (zero) continue;

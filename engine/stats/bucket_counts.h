@@ -77,7 +77,7 @@ class BucketCounts {
   void write_page(std::size_t begin, ByteWriter& to) const;  ///< Writes the counts of a page.
 
   BucketScale scale_;
-  std::array<Side, 2> sides_;          ///< sides above and below zero
+  std::array<Side, 2> sides_;          ///< pages of values above and below zero
   std::vector<std::uint16_t> counts_;  ///< [pages x kPageBuckets] counts modulo 2^16, to save memory
   std::vector<std::uint64_t> wraps_;   ///< overflows of each count; empty if there were none
   std::uint64_t zeros_ = 0;

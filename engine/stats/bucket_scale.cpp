@@ -14,8 +14,8 @@ namespace {
 static_assert(std::numeric_limits<double>::is_iec559);
 
 constexpr int kFractionBits = 52;
-/// The number of leading bits of the fraction by which buckets differ: kCoarseBits below the octave of the scale,
-/// kEvenBits in this octave.
+/// The number of leading bits of a double's fraction that determine the bucket: kCoarseBits below the octave of the
+/// scale, kEvenBits in this octave.
 constexpr int kCoarseBits = 7;
 constexpr int kEvenBits = kCoarseBits + 1;
 constexpr std::uint64_t kHidden = std::uint64_t{1} << kFractionBits;

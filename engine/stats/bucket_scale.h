@@ -28,8 +28,8 @@ struct Extremes {
   static Extremes of(std::span<const double> values);
   void merge(const Extremes& other);  ///< Adds other extremes, exactly and in any order.
 
-  bool has_above() const { return least_above <= max; }   ///< Whether there is a value above zero.
-  bool has_below() const { return least_below <= -min; }  ///< Whether there is a value below zero.
+  bool has_above() const { return least_above <= max; }   ///< Returns true if there is a value above zero.
+  bool has_below() const { return least_below <= -min; }  ///< Returns true if there is a value below zero.
 
   /// Reads or writes all members except `count`. Throws BytesError for extremes that `count` values cannot have.
   void state(Archive& archive);
@@ -58,9 +58,9 @@ class BucketScale {
 
   /// The octave from which all buckets have the same width, as a biased exponent of a double.
   unsigned octave() const { return octave_; }
-  bool is_coarsest() const { return octave_ == kCoarsest; }         ///< Whether there is no coarser scale.
+  bool is_coarsest() const { return octave_ == kCoarsest; }         ///< Returns true if there is no coarser scale.
   BucketScale coarser() const { return BucketScale(octave_ + 1); }  ///< The next coarser scale, with twice the width.
-  bool operator==(const BucketScale& other) const = default;        ///< Whether all buckets are equal.
+  bool operator==(const BucketScale& other) const = default;        ///< Returns true if all buckets are equal.
   /// The first of the buckets that have equal widths.
   std::uint64_t first_even() const { return std::uint64_t{octave_} << 7; }
   /// The page of the next coarser scale that contains a page.
@@ -86,9 +86,9 @@ struct PageRange {
 /// The pages that the values above zero need. If `below` is true: the pages that the values below zero need.
 PageRange pages_spanned(const Extremes& extremes, const BucketScale& scale, bool below);
 
-/// Whether a scale can be used for values with these extremes: both signs together span at most kMostPagesSpanned
-/// pages, and keys() accepts the values. If a scale fits, all coarser scales fit. A scale that does not fit does not
-/// fit after more values were added either.
+/// Returns true if a scale can be used for values with these extremes: both signs together span at most
+/// kMostPagesSpanned pages, and keys() accepts the values. If a scale fits, all coarser scales fit. A scale that does
+/// not fit does not fit after more values were added either.
 bool fits(const BucketScale& scale, const Extremes& extremes);
 /// The finest scale that fits values with these extremes; the coarsest scale if none fits.
 BucketScale finest_fitting(const Extremes& extremes);

@@ -12,7 +12,7 @@ namespace poesy {
 namespace {
 
 constexpr std::size_t kNodes = ChebyshevSeries::kNodes;
-constexpr std::size_t kTail = 3;    ///< number of the last coefficients that show convergence
+constexpr std::size_t kTail = 3;    ///< number of last coefficients that show whether a series has converged
 constexpr std::size_t kLanes = 32;  ///< number of points at which a series is summed at the same time
 
 /// T_n at the nodes, [n x node].

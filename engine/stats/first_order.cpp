@@ -163,7 +163,7 @@ void set_tails(const Strata& strata, const Moments& all, BinnedVariance& found) 
   double fourth = all.kurtosis() * square(square(deviation));
   double third = all.skewness() * cube(deviation);
   double of_lines = 0.0;  // estimate of E[d k3(u)] from the straight lines
-  double of_rest = 0.0;   // the same for the deviations from the lines, if their skewness were 1
+  double of_rest = 0.0;   // estimate from the deviations from the lines, if their skewness were 1
   double rest = 0.0;
   for (Eigen::Index b = 0; b < strata.bins(); ++b) {
     const double d = strata.mean[b] - centre;

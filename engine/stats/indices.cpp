@@ -98,8 +98,8 @@ PoseStatistics statistics_over(std::span<const LocalIndex> poses) {
           .covariance = 2.0 * vd_sum / (m * freedom)};
 }
 
-/// Whether noise alone would give at least this spread with a probability above `level`. Without true spread, seen2 is
-/// distributed as noise2 / f times a chi-square with f = 2 noise2^2 / noise_variance degrees of freedom
+/// Returns true if noise alone would give at least this spread with a probability above `level`. Without true spread,
+/// seen2 is distributed as noise2 / f times a chi-square with f = 2 noise2^2 / noise_variance degrees of freedom
 /// (Satterthwaite).
 bool may_be_noise(const PoseStatistics& s, double level) {
   if (s.seen2 == 0.0) return true;
@@ -143,7 +143,7 @@ Estimate without_noise(std::span<const LocalIndex> poses, double conf_level) {
   return {centre, {std::max(low, 0.0), centre + up}};
 }
 
-/// Whether there is a pose, and every pose has an index and a standard error.
+/// Returns true if there is a pose, and every pose has an index and a standard error.
 bool is_known(std::span<const LocalIndex> poses) {
   return !poses.empty() && std::ranges::all_of(poses, [](const LocalIndex& pose) {
     return std::isfinite(pose.value) && std::isfinite(pose.standard_error);

@@ -51,8 +51,8 @@ Estimate corrected_global_index(std::span<const LocalIndex> poses, double conf_l
 /// An index counts as valid for all sizes of its error if it changes by at most this share at a tenth of the size.
 inline constexpr double kIndexHolds = 0.02;
 
-/// Whether an index is known to change with the size of its error. change: (index at a tenth of the size) / index - 1;
-/// NaN if not known.
+/// Returns true if an index is known to change with the size of its error. change: (index at a tenth of the size) /
+/// index - 1; NaN if not known.
 bool changes_with_size(double change);
 
 // The following functions tell indices from rounding. If an effect is no larger than the rounding errors of solves, its
@@ -81,16 +81,16 @@ double size_rounding(double response_rounding, double linear, double angular);
 /// errors together count as having none. sigma: [errors]. All numbers are SI.
 double joint_rounding(double response_rounding, std::span<const double> sigma);
 
-/// Whether a response does not vary: none of its standard deviations (for instance at several poses) is more than
-/// rounding, and at least one is known. Check this before computing shares of its variance. rounding: see
+/// Returns true if a response does not vary: none of its standard deviations (for instance at several poses) is more
+/// than rounding, and at least one is known. Check this before computing shares of its variance. rounding: see
 /// joint_rounding().
 bool is_constant(std::span<const double> deviations, double rounding);
 
-/// Whether an index is more than rounding; false for NaN. rounding: see index_rounding().
+/// Returns true if an index is more than rounding; false for NaN. rounding: see index_rounding().
 bool has_effect(double index, double rounding = kIndexRounding);
 
-/// Whether an error is too small to decide if it has an effect: its index is rounding, and even an index of interest
-/// would be. rounding: see index_rounding().
+/// Returns true if an error is too small to decide if it has an effect: its index is rounding, and even an index of
+/// interest would be. rounding: see index_rounding().
 bool is_too_small_to_tell(double index, double rounding);
 
 /// The index with rounding removed: the index itself if the error has an effect, 0 if it has none, NaN if the error is

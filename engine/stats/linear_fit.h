@@ -46,7 +46,7 @@ class LinearFitSums {
 
   std::uint64_t machines() const { return machines_; }  ///< The number of machines that count.
 
-  /// The fit. None if there are fewer than 2 (P + 1) machines for P errors, because these say too little about
+  /// The fit. None if there are fewer than 2 (P + 1) machines for P errors, because so few say too little about
   /// residuals.
   std::optional<LinearFit> fit() const;
 

@@ -36,7 +36,7 @@ class ErrorRange {
 /// A limit at one pose on a vector offset + slope e, which is linear in the errors e. The limit is on the norm of the
 /// vector, or on its value if it has only one component.
 struct LinearLimit {
-  std::size_t rows;  ///< components of the vector
+  std::size_t rows;  ///< number of components of the vector
   /// Limit on the norm if it is a limit on magnitudes; otherwise limit on the value of the only component.
   ValueLimit limit;
   std::vector<double> offset;  ///< [components] the vector for zero errors, SI

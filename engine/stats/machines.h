@@ -19,7 +19,7 @@ struct Rejects {
   std::uint64_t strict = 0;   ///< number of rejects if unsolved samples are rejects
   std::uint64_t lenient = 0;  ///< number of rejects if unsolved samples are no rejects; at most `strict`
 
-  friend bool operator==(const Rejects&, const Rejects&) = default;  ///< Whether both are equal.
+  friend bool operator==(const Rejects&, const Rejects&) = default;  ///< Returns true if both are equal.
 };
 
 /// The numbers of rejected machines. A response without a limit has an infinite limit. So it rejects only machines with
@@ -40,7 +40,8 @@ struct MachineCounts {
   static MachineCounts of_none(std::size_t responses, std::size_t poses);
   void state(Archive& archive);  ///< Reads or writes every count. Precondition: the arrays have their lengths.
 
-  friend bool operator==(const MachineCounts&, const MachineCounts&) = default;  ///< Whether all counts are equal.
+  /// Returns true if all counts are equal.
+  friend bool operator==(const MachineCounts&, const MachineCounts&) = default;
 };
 
 /// Collects the outcomes of a block of machines, pose after pose. Memory: 17 bytes for each response of a machine, for
@@ -61,9 +62,10 @@ class MachineBlock {
   std::size_t poses() const { return at_pose_.size(); }    ///< The number of poses that were added.
   MachineCounts counts() const;                            ///< The counts over these poses.
 
-  /// [machines] 1 if the machine is rejected (strict), else 0. ScoreSums takes this.
+  /// [machines] 1 if the machine is rejected (strict), else 0; an argument of ScoreSums::add().
   std::vector<std::uint8_t> rejected() const;
-  /// [machines] 1 if all samples of the machine count, else 0. MainEffectSums takes this for numbers of whole machines.
+  /// [machines] 1 if all samples of the machine count, else 0. For numbers that a machine has over all its poses, it is
+  /// the argument `counts` of MainEffectSums::add().
   std::span<const std::uint8_t> solved() const { return solved_; }
   /// Largest magnitudes over the poses; NaN if the machine is not solved at each of them.
   Array<double, axis::Response, axis::Sample> largest() const;

@@ -51,8 +51,9 @@ std::vector<double> only_counting(std::span<const double> values, std::span<cons
   return kept;
 }
 
-/// Whether samples in a bin can give these sums. square: mean square of (response - shift) over all samples. Where
-/// blocks with different shifts are merged, the rounding errors of the sums are in proportion to this mean square.
+/// Returns true if samples in a bin can give these sums. square: mean square of (response - shift) over all samples.
+/// Where blocks with different shifts are merged, the rounding errors of the sums are in proportion to this mean
+/// square.
 bool possible(const BinSums& bin, double square) {
   constexpr double kRounding = 1e-9;
   if (bin.count == 0.0) return bin.sum == 0.0 && bin.square == 0.0;

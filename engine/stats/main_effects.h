@@ -10,9 +10,9 @@
 #include "engine/stats/first_order.h"
 #include "engine/stats/moments.h"
 
-/// The effect of each error alone, from the samples of any Monte Carlo run. Samples are divided into bins of the
-/// uniform number u from which an error was drawn. The means of the bins show the response as a function of that error
-/// while all others vary.
+/// The main effect of each error, from the samples of any Monte Carlo run. Samples are divided into bins of the uniform
+/// number u from which an error was drawn. The means of the bins show the response as a function of that error while
+/// all others vary.
 namespace poesy {
 
 /// The bin of each sample of a block, for each error. If the same machines are used at all poses, the bins are the same

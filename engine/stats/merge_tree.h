@@ -34,7 +34,7 @@ class MergeTree {
     return digits;
   }
 
-  /// Adds the next leaves. Precondition: they follow those that are already there, if any.
+  /// Adds the next leaves. Precondition: they follow the leaves that the tree already has.
   void add(Node node) {
     POESY_EXPECTS(nodes_.empty() || node.first == end());
     nodes_.push_back(std::move(node));
@@ -48,7 +48,7 @@ class MergeTree {
   /// Adds one leaf.
   void add(std::size_t leaf, Sum sum) { add(Node{leaf, 1, std::move(sum)}); }
 
-  bool empty() const { return nodes_.empty(); }                             ///< Whether no leaf was added.
+  bool empty() const { return nodes_.empty(); }                             ///< Returns true if no leaf was added.
   std::size_t first() const { return empty() ? 0 : nodes_.front().first; }  ///< The first leaf; 0 if there are none.
   /// The number of the last leaf plus 1; 0 if there are none.
   std::size_t end() const { return empty() ? 0 : nodes_.back().first + nodes_.back().leaves; }
@@ -110,7 +110,7 @@ class MergeTree {
     archive.expect(is_node(node.first, node.leaves), "has sums of no whole branch");
     archive.object(node.sum);
   }
-  /// Whether b is the next branch after a in the same larger branch.
+  /// Returns true if b is the next branch after a in the same larger branch.
   static bool goes_on(const Node& a, const Node& b) {
     const bool is_branch = branch_of(b.leaves) == b.leaves;
     return is_branch && branch_of(a.leaves) == b.leaves && a.first % (b.leaves * kBranches) == 0;

@@ -58,7 +58,7 @@ class MarkedPages {
   };
 
   BucketScale scale_;
-  std::array<Side, 2> sides_;  ///< sides above and below zero
+  std::array<Side, 2> sides_;  ///< pages of values above and below zero
 };
 
 /// The finest scale that a sketch may use for these numbers.

@@ -51,7 +51,7 @@ PowerSums power_sums(std::span<const std::size_t> rejects, const Score score) {
 
 constexpr Estimate kUnknown{kNaN, {kNaN, kNaN}};
 
-/// Whether the mean over the rejects is negative, by Student's test at 99 %. Precondition: rejects > 1.
+/// Returns true if the mean over the rejects is negative, by Student's test at 99 %. Precondition: rejects > 1.
 bool is_below_zero(const PowerSums& powers, std::uint64_t rejects) {
   constexpr double kLevel = 0.99;
   const auto k = static_cast<double>(rejects);
@@ -104,7 +104,7 @@ ScoreSums::ScoreSums(ErrorScores scores)
 void ScoreSums::add(std::span<const double> errors, std::span<const std::uint8_t> rejected) {
   const std::size_t count = rejected.size();
   POESY_EXPECTS(errors.size() == slope_.size() * count);
-  const std::vector<std::size_t> rejects = places(rejected);  // usually few, so only these are added
+  const std::vector<std::size_t> rejects = places(rejected);  // usually few, so only their scores are added
   for (std::size_t p = 0; p < slope_.size(); ++p) {
     const std::span<const double> row = errors.subspan(p * count, count);
     if (const auto* normal = std::get_if<NormalScore>(&scores_.each[p])) {

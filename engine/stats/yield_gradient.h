@@ -88,7 +88,7 @@ class ScoreSums {
   /// The mean score of one error over all machines; good machines have the score 0.
   Estimate mean_score(std::size_t error, double conf_level) const;
   Estimate mean_growth(std::size_t error, double conf_level) const;
-  /// Whether this error alone causes the rejects, so that its PolynomialScore leaves out a large part.
+  /// Returns true if this error alone causes the rejects, so that its PolynomialScore leaves out a large part.
   bool dominates(std::size_t error, const Estimate& score) const;
   /// Adds to the sums the scores of a block of correlated errors for the rejected machines. errors: as in add(). count:
   /// number of machines. rejects: indices of the rejected machines.

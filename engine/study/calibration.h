@@ -47,8 +47,8 @@ enum class PriorKnowledge {
 
 /// What is known about the standard deviations of measured values.
 enum class NoiseLevel {
-  given,     ///< the stated standard deviations hold
-  estimated  ///< the stated ones hold up to one common factor, which the fit estimates from its residual
+  given,     ///< the stated standard deviations are right
+  estimated  ///< stated standard deviations are right up to a common factor, which the fit estimates from its residual
 };
 
 /// The standard deviation of the measurements of one quantity.
@@ -80,7 +80,7 @@ struct CalibrationTable {
   std::size_t repeats = 1;                             ///< number of measurements that are averaged to one value
   MeasuringFrame frame = MeasuringFrame::known;        ///< unknown properties of the measuring device's frame
   MeasuredTarget target = MeasuredTarget::known;       ///< unknown properties of the measured point of the platform
-  PriorKnowledge prior = PriorKnowledge::none;         ///< what is known of the fitted errors beforehand
+  PriorKnowledge prior = PriorKnowledge::none;         ///< what is known of the fitted errors before the measurement
   NoiseLevel sd = NoiseLevel::given;  ///< how well the standard deviations of measured values are known
   /// Coordinates that the controller commands; empty: the model's pose coordinates.
   std::vector<std::string> coordinates = {};

@@ -30,7 +30,7 @@ constexpr std::size_t kMostMeasured = 10'000;
 struct Parameters {
   Shape shape = Shape::normal;
   double sigma = 0.0;       ///< standard deviation before the distribution is cut off, SI; 0 if the shape has none
-  double half_width = 0.0;  ///< largest size of the error before shift and mean, SI; 0 if the shape has none
+  double half_width = 0.0;  ///< largest magnitude before shift and mean are added, SI; 0 if the shape has none
   double shift = 0.0;       ///< half of the errors scatter about -shift, half about +shift; SI
   double mean = 0.0;        ///< mean, SI
   /// Ends of the distribution, SI. If they are stated, take_limits() computes the mean, and half_width or (for a normal

@@ -49,7 +49,8 @@ struct MechanismChoice {
   std::vector<OwnResponse> responses = {};  ///< responses that the study defines; they follow those of the mechanism
   /// The catalog entry with the study's own responses, to which `entry` points; null if the study defines no responses.
   std::shared_ptr<const CatalogEntry> with_responses = nullptr;
-  /// True if responses are those that remain after the best correction by the actuators (Model::calibrated_evaluator).
+  /// True if the study reports the responses that remain after the best correction by the actuators
+  /// (Model::calibrated_evaluator).
   bool calibrated = false;
   Place calibrated_place = {};  ///< place of the key `calibrated`, for messages
 };
@@ -64,7 +65,8 @@ struct CorrelatedErrors {
 /// The distributions of the errors.
 struct ErrorModel {
   std::vector<Distribution> by_factor;  ///< distribution of each factor of the model
-  /// How the errors of features scatter in their tolerance zones; none: like other errors that are lengths.
+  /// How the errors of features scatter in their tolerance zones; none: they have the distribution of other length
+  /// errors.
   std::optional<drawing::ZoneScatter> zones = {};
   std::vector<CorrelatedErrors> correlated = {};  ///< blocks of correlated errors; each factor is in at most one block
   /// Errors that a machine draws anew at each pose, ascending, if draws are Draws::per_machine. A machine draws all
@@ -231,7 +233,7 @@ std::optional<std::string> beyond_bound(const Model& model, FactorIndex factor, 
 /// mm and 1 deg". Errors that vary and errors of size zero are left out. Empty if no error remains.
 std::string held_errors_text(const Study& study);
 
-/// One line that says that responses are those after calibration; empty if the study's machines are not calibrated.
+/// One line that says that and how the study's machines are calibrated; empty if they are not calibrated.
 std::string calibration_text(const Study& study);
 
 }  // namespace poesy

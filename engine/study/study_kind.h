@@ -78,11 +78,11 @@ struct StudyKind {
   Varies varies = Varies::none;            ///< how factors vary
   bool compares_fidelities = false;        ///< true if the kind can compare two fidelities
   Draws draws = Draws::per_pose;           ///< when errors are drawn if the study does not state it
-  bool draws_machines_anew = false;     ///< true if it tries several sets of machines, so that no machines can be given
-  bool has_pose_before = false;         ///< true if the same errors are solved at all poses for any value of `draws`
-  bool decides_by_samples = false;      ///< true if changing `samples` invalidates a checkpoint
-  std::string_view usual_factors = {};  ///< set of factors if a study names none; "all" for a model without it
-  std::string_view usual_background = {};  ///< set of constant errors in templates, for models that have it
+  bool draws_machines_anew = false;        ///< true if the kind tries several sets of machines; none can be given then
+  bool has_pose_before = false;            ///< true if all poses have the same errors for any value of `draws`
+  bool decides_by_samples = false;         ///< true if changing `samples` invalidates a checkpoint
+  std::string_view usual_factors = {};     ///< set of factors if a study names none; without this set, all
+  std::string_view usual_background = {};  ///< set of constant errors in templates, for models with this set
   std::string_view overrides = {};         ///< who may give a constant error another value, in words: "a case sets"
   /// The rows of [analysis] that only this kind has. A row with the name of a shared key replaces this key.
   std::vector<StudyRow> (*rows)() = nullptr;

@@ -29,8 +29,8 @@ constexpr std::chrono::milliseconds kQuick{3};
 constexpr std::size_t kMostSlots = 65536;
 /// The largest number of bytes of outputs that wait on rank 0 to be merged in order.
 constexpr std::size_t kMostWaitingBytes = std::size_t{256} << 20U;
-/// Outputs are collected in a message, which is sent when it has kSendBytes bytes, or kSendEvery after the last one was
-/// sent.
+/// Outputs are collected in a message. It is sent when it has kSendBytes bytes, or when the time kSendEvery has passed
+/// since the previous message.
 constexpr std::size_t kSendBytes = std::size_t{16} << 10U;
 constexpr std::chrono::microseconds kSendEvery{500};
 
@@ -87,7 +87,7 @@ class RankPool {
     given_.notify_one();
   }
 
-  /// Waits until the pool needs more work soon, but at most this long.
+  /// Waits until the pool will soon need more work, but at most this long.
   void wait(std::chrono::microseconds at_most) {
     std::unique_lock lock(mutex_);
     hungry_.wait_for(lock, at_most, [&] { return hungry_now_; });
@@ -141,7 +141,7 @@ class RankPool {
   bool closed_ = false;
   std::atomic<bool> failed_{false};
   std::exception_ptr problem_;
-  std::thread thread_;  ///< last, because its thread uses all other members
+  std::thread thread_;  ///< declared last, because its thread uses all other members
 };
 
 /// The work of rank 0 in a stage: hands out pieces of work to all ranks, and merges the outputs in order.

@@ -45,14 +45,14 @@ class Ranks {
 /// engine/base/bytes.h.
 enum class RankMessage : std::uint64_t {
   study,      ///< rank 0 to all: text that describes the study and the program
-  agreed,     ///< to rank 0: this rank has the same study; its number of threads
-  begin,      ///< rank 0 to all: a stage begins; its number, and its state as a block
-  ready,      ///< to rank 0: this rank is ready for the stage; number of the stage, number of threads
-  range,      ///< rank 0 to one: work to do, as the first number and how many numbers
-  outputs,    ///< to rank 0: pairs of a number and its output as a block, to the end of the message
-  end,        ///< rank 0 to all: 1 if the stage is complete, else 0; its state as a block
-  leaving,    ///< to rank 0: reason, text; this rank cannot go on
-  dismissed,  ///< rank 0 to all: exit code; the run is over
+  agreed,     ///< to rank 0: this rank has the same study. Content: its number of threads
+  begin,      ///< rank 0 to all: a stage begins. Content: its number, and its state as a block
+  ready,      ///< to rank 0: this rank is ready for the stage. Content: numbers of the stage and of threads
+  range,      ///< rank 0 to one: work to do. Content: number of the first piece of work, and number of pieces
+  outputs,    ///< to rank 0: outputs. Content: the number of each piece of work, and its output as a block
+  end,        ///< rank 0 to all: the stage ends. Content: 1 if it is complete, else 0; its state as a block
+  leaving,    ///< to rank 0: this rank cannot go on. Content: LeaveReason, and text
+  dismissed,  ///< rank 0 to all: the run is over. Content: exit code
   gone        ///< to rank 0: the last message of this rank
 };
 

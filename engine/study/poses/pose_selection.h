@@ -125,7 +125,7 @@ struct PoseSelection {
 /// The number of poses that were refused for one reason.
 struct RejectedPoses {
   std::string reason;  ///< the reason in words: "q_1_3 above 80 mm"
-  std::size_t count;   ///< number of poses
+  std::size_t count;   ///< number of poses that were refused for this reason
 };
 
 /// The beginning of RejectedPoses::reason for poses that the mechanism cannot reach.

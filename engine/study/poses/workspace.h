@@ -111,8 +111,8 @@ SelectedPoses trajectory_poses(const PoseSelection& selection, const Model& mode
 /// a line crosses the boundary of the feasible set is a pose. To find these points, the part of the line in the box is
 /// divided into 32 intervals. If feasibility differs at the ends of an interval, bisection refines the crossing to
 /// rounding and keeps the feasible side. A pose on a face of the box is exactly on this face. The search may miss a
-/// feasible piece or a gap that is shorter than an interval, and it leaves out pieces shorter than rounding. The
-/// numbers of rejected poses include the ends of the intervals.
+/// feasible piece or an infeasible gap that is shorter than an interval, and it leaves out pieces shorter than
+/// rounding. The numbers of rejected poses include the ends of the intervals.
 ///
 /// Throws InputError if max(20 000, 100 count) lines do not give enough poses, if kMostInVain examined points in a row
 /// give no pose, or if poses coincide up to rounding.
