@@ -12,7 +12,7 @@
 
 namespace poesy::calibration {
 
-/// The controllers of B calibrated machines.
+/// The controllers of several calibrated machines, one for each machine.
 struct Controllers {
   Matrix errors;  ///< [all errors x machines] errors that each controller corrects, SI; NaN if the machine was not
                   ///< calibrated

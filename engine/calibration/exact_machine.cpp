@@ -29,7 +29,7 @@ Matrix3 axes_of(const Sketch& sketch) {
   return axes;
 }
 
-/// The largest distance between any two of the points P and the joints, m.
+/// The largest distance between two points, m: two joints, or a joint and the point P.
 double reach_of(const Sketch& sketch) {
   std::vector<Vector3> points{vector_of(sketch.platform)};
   for (const auto& limb : sketch.limbs) {

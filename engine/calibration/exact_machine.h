@@ -58,7 +58,7 @@ class ExactMachine {
   /// The model that is solved: solving_model() of the given model, without responses that a study adds to it.
   const Model& model() const { return *model_; }
   Evaluator& evaluator() { return *evaluator_; }            ///< The evaluator of the model.
-  std::size_t errors() const { return no_errors_.size(); }  ///< F, the number of all errors of the model.
+  std::size_t errors() const { return no_errors_.size(); }  ///< The number of all errors of the model.
   double reach() const { return reach_; }                   ///< Largest distance between joints and P at home, m.
   std::uint64_t solves() const { return solves_; }          ///< The number of sets of errors that were solved so far.
 

@@ -12,7 +12,7 @@ namespace poesy::calibration {
 /// directions: the errors are F theta.
 struct FittedDirections {
   Matrix F;      ///< [all errors x numbers] directions as columns, SI
-  Vector scale;  ///< [numbers] unit d of each scaled number, which is its tolerance, SI
+  Vector scale;  ///< [numbers] tolerance of each number, SI; a scaled number is the number over its tolerance
   Vector step;   ///< [numbers] step of each number for finite differences, SI: see difference_steps()
 };
 
@@ -30,8 +30,8 @@ Vector difference_steps(const ExactMachine& machine, const Matrix& F);
 /// The derivatives of the measured values h(F theta, phi). theta are the fitted numbers, and F theta the errors of the
 /// machine (FittedDirections). phi are the numbers of the measuring device's frame and of the target (Measurement).
 struct Derivatives {
-  Matrix errors;  ///< [values x numbers] with respect to theta
-  Matrix places;  ///< [values x places] with respect to phi
+  Matrix errors;  ///< [values x numbers] derivatives with respect to theta
+  Matrix places;  ///< [values x places] derivatives with respect to phi
 };
 
 /// The measured values as a function of theta, the fitted numbers of the errors, and phi, the numbers of the measuring
@@ -89,7 +89,7 @@ struct FitProblem {
 /// The estimate and its diagnostics.
 struct FitResult {
   bool converged = false;   ///< whether the iteration ended because a step was small enough (kShortest in fit.cpp)
-  bool solved = true;       ///< whether all machines on the way were solved; if not, nothing else is valid
+  bool solved = true;       ///< whether all machines of the iteration were solved; if not, nothing else is valid
   std::size_t steps = 0;    ///< number of steps made
   Vector theta;             ///< [numbers] fitted numbers of the errors, SI
   Vector phi;               ///< [places] fitted numbers of the frame and the target

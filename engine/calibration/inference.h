@@ -65,7 +65,7 @@ Matrix null_projector(const ScaledFit& fit);
 /// Fitted numbers that the measurements cannot tell apart: a connected block of the null space's projector.
 struct Confounded {
   std::vector<std::size_t> numbers;  ///< indices of the fitted numbers
-  std::size_t directions = 0;        ///< number of undetermined directions among them
+  std::size_t directions = 0;        ///< number of undetermined directions of these numbers
 };
 
 /// The groups of confounded numbers, ordered by their first number.

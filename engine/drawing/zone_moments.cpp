@@ -34,8 +34,8 @@ struct Density {
 /// Integrals of a density over all middles and tilts with which a feature is within its zones.
 struct Integrals {
   double one = 0.0;
-  double middle = 0.0;  ///< integral of the squared middle, summed over its coordinates
-  double tilt = 0.0;    ///< integral of the squared tilt, summed over its coordinates
+  double middle = 0.0;  ///< integral of density times squared middle, summed over its coordinates
+  double tilt = 0.0;    ///< integral of density times squared tilt, summed over its coordinates
 };
 
 template <class F>

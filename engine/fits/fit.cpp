@@ -88,7 +88,7 @@ std::optional<ItGrade> grade_of(std::string_view digits) {
 /// The distance of a shaft's zone below the nominal size, m. letter: d to h.
 double distance_of(char letter, double metres) {
   if (letter == 'h') return 0.0;
-  const double size = metres * 1e3 * (1.0 - 1e-12);  // a size in metres may be rounded up past a step
+  const double size = metres * 1e3 * (1.0 - 1e-12);  // rounding may put a size in metres just above a step
   const auto step = std::ranges::find_if(kSteps, [&](const DistanceStep& one) { return size <= one.up_to; });
   return step->micrometre[static_cast<std::size_t>(letter - 'd')] / 1e6;
 }

@@ -45,7 +45,7 @@ std::string it_grade_name(ItGrade grade) {
 }
 
 std::optional<double> it_grade_width(double nominal_size, ItGrade grade) {
-  const double size = nominal_size * 1e3 * (1.0 - 1e-12);  // a size in metres may be rounded up past a step
+  const double size = nominal_size * 1e3 * (1.0 - 1e-12);  // rounding may put a size in metres just above a step
   if (!(size > 0.0) || (grade >= ItGrade::it14 && size <= 1.0)) return std::nullopt;
   auto place = static_cast<std::size_t>(grade);
   double micrometre = 1.0;

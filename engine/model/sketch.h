@@ -30,7 +30,7 @@ struct SketchedJoint {
 /// A frame of a limb: the frame of the base, of an axis of a joint (after the joint has moved), or of the platform.
 struct SketchedFrame {
   SketchVector origin;               ///< origin, m
-  std::array<SketchVector, 3> axes;  ///< x, y and z; z is the axis of the joint
+  std::array<SketchVector, 3> axes;  ///< directions of the axes x, y and z; z is the axis of the joint
 };
 
 /// A small motion of the platform as a twist [omega; v] at the base's origin (rad, m).

@@ -57,9 +57,9 @@ struct Outlook {
 
 /// Seconds that one thread takes for each kind of work in an outlook.
 struct WorkSeconds {
-  double shared = 0.0;   ///< work of all threads
-  double merging = 0.0;  ///< work of one thread at a time
-  double by_one = 0.0;   ///< work of one thread, afterwards
+  double shared = 0.0;   ///< seconds for Outlook::shared, the work of all threads
+  double merging = 0.0;  ///< seconds for Outlook::merging, the work of one thread at a time
+  double by_one = 0.0;   ///< seconds for Outlook::by_one, the work of only one thread
 
   /// Seconds for the whole study with these threads, of which one at a time merges. share: number of solves that the
   /// study makes, as a share of the largest number; below 1 if adaptive samples end early.

@@ -199,7 +199,7 @@ class CellSums {
   }
 
  protected:
-  /// The position of the unit's cell in the plan.
+  /// The number of the unit's cell in the plan.
   std::size_t cell_of(const WorkUnit& unit) const { return unit.slot * plan_->poses().size() + unit.pose.value; }
   /// The store to which a unit of this size is added.
   const Store& store_of(const WorkUnit& unit) const { return unit.count == Plan::kUnitSamples ? whole_ : parts_; }

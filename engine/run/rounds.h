@@ -93,7 +93,7 @@ class Rounds {
   std::size_t max_;
   std::vector<std::size_t> milestones_;  ///< numbers of samples after which the rounds decide
   std::vector<Row> rows_;                ///< estimates of the rounds that have ended
-  std::vector<std::size_t> samples_;     ///< [slots] samples of each error at a pose in this round
+  std::vector<std::size_t> samples_;     ///< [slots] number of samples of each error at a pose at the end of this round
   std::vector<bool> ended_;              ///< [slots] true if the error needs no more samples
 };
 

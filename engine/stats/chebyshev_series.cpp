@@ -15,7 +15,7 @@ constexpr std::size_t kNodes = ChebyshevSeries::kNodes;
 constexpr std::size_t kTail = 3;    ///< number of last coefficients that show whether a series has converged
 constexpr std::size_t kLanes = 32;  ///< number of points at which a series is summed at the same time
 
-/// T_n at the nodes, [n x node].
+/// The values of the Chebyshev polynomials T_n at the nodes, [n x node].
 using Polynomials = std::array<std::array<double, kNodes>, kNodes>;
 
 const Polynomials& polynomials() {

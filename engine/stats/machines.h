@@ -38,7 +38,7 @@ struct MachineCounts {
 
   /// Counts of zero machines, with room for these responses and poses.
   static MachineCounts of_none(std::size_t responses, std::size_t poses);
-  void state(Archive& archive);  ///< Reads or writes every count. Precondition: the arrays have their lengths.
+  void state(Archive& archive);  ///< Reads or writes every count. Precondition: the arrays have their final lengths.
 
   /// Returns true if all counts are equal.
   friend bool operator==(const MachineCounts&, const MachineCounts&) = default;

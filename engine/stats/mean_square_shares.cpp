@@ -12,7 +12,7 @@ namespace {
 /// The factor by which the least-squares variance of a slope is multiplied; mean_square_shares() gives the reason.
 constexpr double kSquaredRest = 5.0;
 
-/// Sums over the rows of a vector.
+/// Sums over the components of a vector, which are rows of a fit.
 struct Sums {
   double square = 0.0;  ///< sum of the squared slopes of one error
   double noise = 0.0;   ///< sum of the variances of these slopes
@@ -37,7 +37,7 @@ double together(const LinearFit& fit, std::span<const std::size_t> rows, std::si
 
 double square_of(double value) { return value * value; }
 
-/// The sum over the rows of the squared means, less the bias from their noise.
+/// The sum of the squared means of the rows, minus the bias from the noise of the means.
 double squared_means(const LinearFit& fit, std::span<const std::size_t> rows) {
   double sum = 0.0;
   for (const std::size_t k : rows) sum += square_of(fit.offset[k]) - fit.rest[k] / static_cast<double>(fit.machines);

@@ -77,7 +77,7 @@ class QuantileSketch {
 
   Extremes extremes_;
   std::vector<double> values_;  ///< values, while there are at most kMostExact
-  BucketCounts counts_;         ///< counts of the values, once there are more
+  BucketCounts counts_;         ///< counts of the values in buckets, once there are more than kMostExact
 };
 
 }  // namespace poesy

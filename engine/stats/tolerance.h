@@ -80,8 +80,8 @@ std::vector<double> tolerances_within(const MeanSquare& response, std::span<cons
 
 /// Tolerances of all errors for one response.
 struct Tolerances {
-  std::optional<ReferenceError> reference;  ///< reference of equal_effect
-  std::vector<double> equal_effect;         ///< [errors] tolerances relative to the reference; NaN without one
+  std::optional<ReferenceError> reference;  ///< reference error of equal_effect
+  std::vector<double> equal_effect;         ///< [errors] tolerances relative to the reference; NaN without a reference
   /// [errors] Shares in the mean square, for the sizes of the errors in the study.
   std::vector<double> mean_square_share;
   MeanSquare mean_square;  ///< mean square of the response as a function of the tolerances

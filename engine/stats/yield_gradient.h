@@ -46,7 +46,7 @@ inline constexpr std::uint64_t kFewRejects = 20;
 Estimate skewed_mean(const PowerSums& powers, std::uint64_t machines, const ScoreMoments& added, double freedom,
                      double conf_level);
 
-/// The gradient of the yield Y, the share of good machines, by the size t of each of P errors. It comes from the run
+/// The gradient of the yield Y, the share of good machines, by the size t of each error. It comes from the run
 /// that gives the yield, without a further solve. With the score S of an error (error_scores.h),
 ///
 ///     dY/dt = -E[1_reject S] / t
@@ -66,7 +66,7 @@ class ScoreSums {
   void merge(const ScoreSums& other);
 
   std::uint64_t machines() const { return machines_; }  ///< The number of machines that were added.
-  std::uint64_t rejects() const { return rejects_; }    ///< The number of rejects among them.
+  std::uint64_t rejects() const { return rejects_; }    ///< The number of rejects among these machines.
 
   /// [errors] dY/dt, per unit of the error (1/m, 1/rad). The interval is skewed_mean() over all machines, where good
   /// ones have the score 0, with Student's quantile for the number of rejects. Of 95 % intervals, 93 to 95 % contained

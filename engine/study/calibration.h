@@ -84,13 +84,13 @@ struct CalibrationTable {
   NoiseLevel sd = NoiseLevel::given;  ///< how well the standard deviations of measured values are known
   /// Coordinates that the controller commands; empty: the model's pose coordinates.
   std::vector<std::string> coordinates = {};
-  std::vector<std::vector<std::string>> motors = {};  ///< drives that move together; empty: each moves alone
+  std::vector<std::vector<std::string>> motors = {};  ///< groups of drives that move together; empty: none do
   /// [fitted numbers] The values of the fitted numbers for which the controller already corrected while the machine was
   /// measured, SI; empty: none.
   std::vector<double> present = {};
   std::vector<ControllerNumber> controller = {};  ///< numbers to type into the controller
   std::size_t next = 0;                           ///< number of poses to propose for the next measurement
-  /// Poses from which the proposed ones are chosen; none: the study's poses.
+  /// Poses from which the poses to propose are chosen; none: the study's poses.
   std::optional<PoseSelection> candidates = std::nullopt;
   /// Errors that the study varies and for which [errors] states a distribution, ascending.
   std::vector<FactorIndex> with_tolerance = {};

@@ -569,9 +569,9 @@ std::string error_text(const StatedError& error, Dimension dimension, ValueText 
   return text + " }";
 }
 
-/// The distribution that most factors of this dimension have, and whether most draw it at each pose. Factors whose
-/// distribution follows from a tolerance zone, and factors of given machines, do not count. The resolved text states
-/// the result once, as `linear` or `angular`.
+/// The distribution that most factors of this dimension have, and whether it is drawn at each pose or once for each
+/// machine. Factors whose distribution follows from a tolerance zone, and factors of given machines, do not count. The
+/// resolved text states the result once, as `linear` or `angular`.
 StatedError commonest_error(const Study& study, Dimension dimension) {
   const std::vector<Factor>& factors = study.model().factors;
   const std::vector<std::optional<Distribution>> zones = distributions_by_zones(study);

@@ -233,7 +233,7 @@ std::optional<std::string> beyond_bound(const Model& model, FactorIndex factor, 
 /// mm and 1 deg". Errors that vary and errors of size zero are left out. Empty if no error remains.
 std::string held_errors_text(const Study& study);
 
-/// One line that says that and how the study's machines are calibrated; empty if they are not calibrated.
+/// One line that says how the study's machines are calibrated; empty if they are not calibrated.
 std::string calibration_text(const Study& study);
 
 }  // namespace poesy

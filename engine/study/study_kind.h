@@ -22,8 +22,8 @@ inline constexpr std::string_view kBothFidelities = "both";
 
 /// Limits on the size of a study: far larger than useful studies, and safe for memory and arithmetic.
 inline constexpr std::int64_t kMostPoses = 10'000'000;
-inline constexpr std::int64_t kMostCells = 10'000'000;              ///< numbers in a result for one response
-inline constexpr std::int64_t kMostSolves = 1'000'000'000'000'000;  ///< solves of a run
+inline constexpr std::int64_t kMostCells = 10'000'000;  ///< largest number of values in a result for one response
+inline constexpr std::int64_t kMostSolves = 1'000'000'000'000'000;  ///< largest number of solves of a run
 
 struct StudyKinds;
 
@@ -53,7 +53,7 @@ using InnerRows = Keys<Object, Nothing>;
 enum class Varies {
   none,        ///< every error has fixed values
   one_by_one,  ///< factors vary one after the other, each drawn from its distribution while the others are constant
-  together     ///< all together, drawn from their distributions
+  together     ///< all factors vary together, drawn from their distributions
 };
 
 /// The number of values and solves of a study at each pose, with words that say how these numbers are computed.
@@ -106,7 +106,7 @@ struct StudyKind {
 
 /// The kinds of studies in a program, and all tables of their study files.
 struct StudyKinds {
-  std::vector<const StudyKind*> all;  ///< in the order in which users see them; the first one is the default
+  std::vector<const StudyKind*> all;  ///< kinds, in the order in which users see them; the first one is the default
   StudyTables tables;                 ///< all tables of a study file, with all keys
 };
 

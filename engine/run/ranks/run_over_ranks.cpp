@@ -296,7 +296,7 @@ class Leader {
   std::size_t waiting_bytes_ = 0;
   std::mutex mutex_;
   std::vector<std::size_t> delivered_;  ///< numbers of the pieces of work that the pool delivered
-  RankPool pool_;                       ///< last, because its threads use all other members
+  RankPool pool_;                       ///< declared last, because its threads use all other members
 };
 
 /// The work of each rank except rank 0 in a stage: does the pieces of work that rank 0 hands out, and sends their
@@ -395,7 +395,7 @@ class Follower {
   std::size_t waiting_bytes_ = 0;
   std::size_t delivered_ = 0;
   std::chrono::steady_clock::time_point last_sent_;
-  RankPool pool_;  ///< last, because its threads use all other members
+  RankPool pool_;  ///< declared last, because its threads use all other members
 };
 
 }  // namespace

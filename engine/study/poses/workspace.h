@@ -91,7 +91,7 @@ class PoseCollector {
   std::vector<double> condition_;
   std::map<std::string, Count> rejected_;
   std::size_t tested_ = 0;
-  std::size_t in_vain_ = 0;  ///< candidates since the last pose that was kept
+  std::size_t in_vain_ = 0;  ///< number of candidates since the last pose that was kept
 };
 
 /// The poses of a selection from a file; see select_poses().
