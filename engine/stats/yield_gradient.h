@@ -46,8 +46,8 @@ inline constexpr std::uint64_t kFewRejects = 20;
 Estimate skewed_mean(const PowerSums& powers, std::uint64_t machines, const ScoreMoments& added, double freedom,
                      double conf_level);
 
-/// The gradient of the yield Y, the share of good machines, by the size t of each error. It comes from the run
-/// that gives the yield, without a further solve. With the score S of an error (error_scores.h),
+/// The gradient of the yield Y, the share of good machines, by the size t of each error. It comes from the run that
+/// gives the yield, without a further solve. With the score S of an error (error_scores.h),
 ///
 ///     dY/dt = -E[1_reject S] / t
 ///
