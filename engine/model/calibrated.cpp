@@ -27,7 +27,8 @@ class CalibratedModel final : public ForwardingModel {
 std::unique_ptr<Model> calibrated(std::unique_ptr<Model> model) {
   POESY_EXPECTS(model != nullptr);
   if (model->calibrated_evaluator({}) == nullptr) {
-    throw std::invalid_argument("model \"" + model->description().name + "\" has no actuated directions apart");
+    throw std::invalid_argument("model \"" + model->description().name +
+                                "\" does not separate actuated from constrained directions");
   }
   return std::make_unique<CalibratedModel>(std::move(model));
 }

@@ -9,8 +9,9 @@ namespace poesy {
 
 /// The text that describes the responses of a calibrated study to users, as a noun phrase.
 inline constexpr std::string_view kLeftByCalibration =
-    "what the best correction of the actuators leaves, the best that any choice of drive offsets at each pose could "
-    "do; no real calibration reaches that";
+    "what the best correction of the actuators leaves, with drive offsets chosen anew at each pose; no real "
+    "calibration "
+    "is so good";
 
 /// A model with the calibrated_evaluator() of the given model as its evaluator. Its responses are those that remain
 /// after the best correction of the actuators. It has no trace, because a trace shows uncorrected errors. Throws

@@ -22,7 +22,8 @@ const Keys<OwnResponse, Nothing>& response_keys() {
   static const Keys<OwnResponse, Nothing> keys{
       .paths = {"response"},
       .meaning =
-          "A response of one's own, formed from those of the mechanism before anything is counted. It has `norm`, "
+          "A response that you define from those of the mechanism. It is computed for each sample, before statistics. "
+          "It has `norm`, "
           "`sum` or `direction`, and may be named wherever a response may, also in those behind it.",
       .rows = {
           Row{.name = "name",

@@ -338,9 +338,9 @@ std::string usual_factors_text(std::span<const StudyKind* const> kinds) {
   std::string text;
   for (const StudyKind* kind : kinds) {
     if (kind->usual_factors.empty()) continue;
-    text += fmt::format("in a {} study {}, where the model has that set; ", kind->name, kind->usual_factors);
+    text += fmt::format("in a {} study the set `{}` if the model has it; ", kind->name, kind->usual_factors);
   }
-  return text + (text.empty() ? "all" : "else all");
+  return text + (text.empty() ? "all" : "otherwise all");
 }
 
 }  // namespace

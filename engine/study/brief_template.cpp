@@ -26,7 +26,8 @@ constexpr std::array<std::string_view, 3> kRarelyChanged{"title", "fidelity", "t
 /// The first key of a template, and the comment that follows it. The comment describes the whole template, because the
 /// first key needs no explanation.
 constexpr std::string_view kFirstKey = "format";
-constexpr std::string_view kAllKeys = "what is usually changed; every key with its explanation: poesy template --full";
+constexpr std::string_view kAllKeys =
+    "the keys that are usually changed; every key with its explanation: poesy template --full";
 
 bool is_in(std::span<const std::string_view> names, std::string_view name) {
   return std::ranges::find(names, name) != names.end();

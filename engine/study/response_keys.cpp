@@ -39,7 +39,7 @@ void check_other_poses(const Study& study, const Reading& reading) {
   if (is_machine && anew != varied.end() && relative != study.model().responses.end()) {
     throw InputError(reading.root.section("errors").place(),
                      "machines draw '" + study.model().factors[anew->value].name + "' anew at each pose, and '" +
-                         relative->name + "' is less its value at another pose",
+                         relative->name + "' is the difference from its value at another pose",
                      "name errors without it in analysis.factors, or leave out draws = \"per pose\" or this response");
   }
   if (is_machine || study.analysis.kind->has_pose_before) return;

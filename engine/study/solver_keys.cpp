@@ -37,11 +37,12 @@ std::string points_text(std::span<const PlatformPoint> points, ValueText value) 
   return list_text(list);
 }
 
-/// Throws InputError if the model has no metric, because the responses of such a model weigh no angles against lengths.
+/// Throws InputError if the model has no metric, because the responses of such a model do not combine angles with
+/// lengths.
 void require_metric(std::string_view key, const Study& study, const Reading& reading) {
   if (!study.model().metric.empty()) return;
   reading.root.section("solver").refuse(
-      key, "model \"" + study.model().name + "\", whose responses weigh no angles against lengths");
+      key, "model \"" + study.model().name + "\", whose responses do not combine angles with lengths");
 }
 
 /// Reads the key `metric`, and replaces the mechanism's catalog entry by the one with this metric.

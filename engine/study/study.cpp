@@ -196,7 +196,7 @@ std::string calibration_text(const Study& study) {
   return fmt::format(
       "calibrated: {}{} of each machine {} fitted to measured {} at {}; responses are what its controller leaves",
       fmt::join(fitted, ", "), more == 0 ? "" : fmt::format(" and {} more", more), table.fit.size() == 1 ? "is" : "are",
-      fmt::join(table.measured, ", "), table.poses ? "poses of their own" : "the study's poses");
+      fmt::join(table.measured, ", "), table.poses ? "separate poses" : "the study's poses");
 }
 
 }  // namespace poesy

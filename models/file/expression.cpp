@@ -244,7 +244,7 @@ class Parser {
       const auto& [length, angle, mass, time] = x.powers;
       const bool odd_angle = angle % 2 != 0 && x.powers.only_angle();
       if (length % 2 != 0 || mass % 2 != 0 || time % 2 != 0 || odd_angle) {
-        fail(at, "takes the root of " + dimension_text(x), "the root of a square has a meaning: sqrt(a * a)");
+        fail(at, "takes the root of " + dimension_text(x), "take the root of a square, for instance sqrt(a * a)");
       }
       return {std::sqrt(x.si), {length / 2, angle / 2, mass / 2, time / 2}, x.any};
     }

@@ -230,7 +230,7 @@ void check_shape(const FeatureLines& feature) {
   const bool is_rectangle = feature.kind == FeatureWord::plane && !feature.diameter;
   for (const ZoneLines& zone : feature.zones) {
     if (is_rectangle && (zone.key == "runout" || zone.key == "total_runout")) {
-      fail("has " + std::string(zone.key) + ", for which a pointer turns on a round face", "write its diameter");
+      fail("has " + std::string(zone.key) + ", which is measured on a round face", "write its diameter");
     }
   }
 }
@@ -240,8 +240,8 @@ const Keys<ClearanceLines, Nothing>& clearance_keys() {
   static const Keys<C, Nothing> keys{
       .paths = {"limb.clearances"},
       .meaning =
-          "The clearance of a pin in the bore of a joint: errors NAME_x, NAME_y, NAME_lean_x and NAME_lean_y as of an "
-          "axis, which a machine has anew at each pose.",
+          "The clearance of a pin in the bore of a joint: errors NAME_x, NAME_y, NAME_lean_x and NAME_lean_y like "
+          "those of an axis, drawn anew at each pose.",
       .rows = {
           needed("name", kept("text", read_name, &C::axis, &FeatureLines::name), "\"play\"",
                  "Its name, once among clearances and features of a limb."),

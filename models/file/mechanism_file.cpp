@@ -123,7 +123,8 @@ const Keys<JointLines, Nothing>& joint_keys() {
                    kept(
                        "true or false", [](const StudyValue& value) { return value.yes_or_no(); }, &J::reaction),
                    "`false`",
-                   "Whether what its side of `from` exerts on that of `to` is a response, where there is stiffness.")}};
+                   "`true`: the force and the moment that the side of `from` exerts on that of `to` are responses "
+                   "(needs stiffness).")}};
   return keys;
 }
 

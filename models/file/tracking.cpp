@@ -230,11 +230,11 @@ std::string Tracker::why(const State& state, Ending ending, double share) const 
       }
     }
   }
-  if (ending == Ending::restless) return where + "there the idle freedom at " + blamed + " has no definite position";
+  if (ending == Ending::restless) return where + "there the pose does not determine the idle freedom at " + blamed;
   return where + "there the mechanism comes to a singular pose, " +
          (by_ == Given::drives
               ? "in which its drives do not hold it"
-              : "a limb is stretched, folded or has its axes in line, or the coordinates follow from each other") +
+              : "a limb is stretched, folded or has its axes in line, or one coordinate depends on the others") +
          ", and " + blamed + " moves most";
 }
 

@@ -111,7 +111,7 @@ std::vector<FactorSet> factor_sets() {
   const auto role = [](Role wanted) { return [wanted](const Entry& entry) { return entry.role == wanted; }; };
   return {
       subset("all", "all sources that have an effect", [](const Entry& entry) { return entry.role != Role::none; }),
-      subset("compensable", "sources that calibration can remove, by the paper; c in truth only in part",
+      subset("compensable", "sources that calibration can remove, by the paper; c, in fact, only in part",
              role(Role::compensable)),
       subset("non-compensable", "sources that manufacture and assembly must keep small", role(Role::non_compensable)),
       subset("platform-hinges", "hinge positions of both platforms, a and c (FS)",

@@ -55,7 +55,7 @@ class WrongWords(ProgramTest):
         self.write("study.toml", STUDY.replace("direction = [0, 0, 1]", 'direction = [0, 0, 1]\nrelative_to = "previous"'))
         done = self.poesy("check", "study.toml")
         self.assertEqual(done.returncode, 2)
-        self.assertIn(b"machines draw 'play_x_1' anew at each pose, and 'lift' is less its value at another pose; name errors "
+        self.assertIn(b"machines draw 'play_x_1' anew at each pose, and 'lift' is the difference from its value at another pose; name errors "
                       b"without it in analysis.factors", done.stderr)
 
 

@@ -89,7 +89,8 @@ TEST(Calibrated, IsRefusedByOtherKindsAndOtherModels) {
   refused("kind = \"monte-carlo\"\ndraws = \"per pose\"\ncalibrated = ^\"yes\"\n", kCatalog,
           {"analysis.calibrated", "true or false"});
   refused("kind = \"monte-carlo\"\ndraws = \"per pose\"\ncalibrated = ^true\n", test::fake_catalog(),
-          {"analysis.calibrated is true, but model \"fake\" has no actuated directions apart", "leave it out"});
+          {"analysis.calibrated is true, but model \"fake\" does not separate actuated from constrained directions",
+           "leave it out"});
 }
 
 TEST(Calibrated, IsShownByTemplatesOfModelsThatCanBe) {

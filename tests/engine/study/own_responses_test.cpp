@@ -303,7 +303,8 @@ TEST(RelativeResponses, TakeNoErrorsThatAreDrawnAnewAtEachPose) {
   const auto study = [&](const std::string& responses) { return read(responses, kMachines + errors); };
   EXPECT_EQ(test::refusal_of([&] { study(kRise); }), "");
   const std::string refusal = test::refusal_of([&] { study(kRise + std::string(kZero)); });
-  EXPECT_NE(refusal.find("machines draw 'a_x_1' anew at each pose, and 'rise' is less its value at another pose"),
+  EXPECT_NE(refusal.find(
+                "machines draw 'a_x_1' anew at each pose, and 'rise' is the difference from its value at another pose"),
             std::string::npos)
       << refusal;
 }

@@ -246,7 +246,7 @@ TEST(Features, AreRefusedWithPlaceAndRemedy) {
            "name of its own"},
           {"parallelism = { zone = \"0.01 mm\", datums = \"A\" } },\n  { name = \"rail\"",
            "runout = { zone = \"0.01 mm\", datums = \"A\" } },\n  { name = \"rail\"",
-           "m.toml:18:3: limb[0].features[0] 'face' has runout, for which a pointer turns on a round face; write its "
+           "m.toml:18:3: limb[0].features[0] 'face' has runout, which is measured on a round face; write its "
            "diameter"},
           {"at = [\"R\", 0, \"300 mm\"]", "shape = \"planes\", at = [\"R\", 0, \"300 mm\"]",
            "m.toml:19:3: limb[0].features[1] 'rail' has zones between planes; write along = \"x\" or \"y\""},

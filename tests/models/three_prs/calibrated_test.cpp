@@ -269,9 +269,9 @@ TEST(CalibratedStudy, HasAYieldNoLower) {
 
 TEST(CalibratedStudy, IsRefusedWhereNoActuatedDirectionsAreApart) {
   for (const char* model : {"2upr-rpu", "xy-3-prs"}) {
-    test::expect_input_error(
-        [&] { study_of(model, "calibrated = true\n"); }, {"study.toml", 12, 14},
-        {"analysis.calibrated is true", model, "has no actuated directions apart", "leave it out"});
+    test::expect_input_error([&] { study_of(model, "calibrated = true\n"); }, {"study.toml", 12, 14},
+                             {"analysis.calibrated is true", model,
+                              "does not separate actuated from constrained directions", "leave it out"});
   }
 }
 
