@@ -36,11 +36,11 @@ std::vector<std::string> names_of(const std::vector<NamedUnit>& things);  ///< T
 /// A list of names that is cut after `most` names: "a, b, c and 3 more".
 std::string some_names(const std::vector<std::string>& names, std::size_t most = 5);
 
-/// For each name that two lists have in common: its position in the first list, and its position in the second list.
+/// For each name that two lists have in common: its index in the first list, and its index in the second list.
 /// The pairs are in the order of the first list.
 using Common = std::vector<std::pair<std::size_t, std::size_t>>;
 
-/// Finds the names that both lists have.
+/// Finds the names that are in both lists.
 Common common(const std::vector<std::string>& a, const std::vector<std::string>& b);
 
 /// The names in `these` that are not in `others`.
@@ -61,7 +61,7 @@ std::string place_text(const StoredResult& result, std::size_t pose);
 
 /// A column of words. dispensable: see Column::dispensable; the same in the functions below.
 Column text_column(std::string name, std::string heading, int dispensable = 0);
-/// A column of numbers. unit: unit of all numbers; empty if they have none, or not the same.
+/// A column of numbers. unit: unit of all numbers; empty if the numbers have no unit, or have different units.
 Column number_column(std::string name, std::string heading, std::string_view unit = "", int dispensable = 0);
 Column percent_column(std::string name, std::string heading, int dispensable = 0);  ///< A column of shares, in percent.
 
@@ -71,12 +71,12 @@ struct FilledColumn {
   std::function<Cell(std::size_t)> cell;  ///< makes the cell for the thing with this index
 };
 
-/// Adds these columns to a table, and a row for each of these indices of things.
+/// Adds these columns to a table, and a row for each index in `positions`. The columns' functions make the row's cells.
 void fill(Table& table, const std::vector<std::size_t>& positions, const std::vector<FilledColumn>& columns);
 
-/// A column with the names of things. word: heading of the column. The result refers to the things.
+/// A column with the names of things. word: heading of the column. `things` must outlive the returned column.
 FilledColumn name_column(const std::vector<NamedUnit>& things, const std::string& word);
-/// A column with the units in which results show things. The result refers to the things.
+/// A column with the units in which results show things. `things` must outlive the returned column.
 FilledColumn unit_column(const std::vector<NamedUnit>& things);
 
 std::vector<std::size_t> positions(std::size_t count);  ///< The indices 0, 1, ..., count - 1.
@@ -87,12 +87,12 @@ Cell number_cell(double value, int digits = 4);  ///< A cell with a number to th
 Cell value_cell(double si, const NamedUnit& named, int digits = 4);
 Cell count_cell(std::uint64_t count);  ///< A cell with a whole number, with all its digits.
 Cell percent_cell(double share);       ///< A cell with a share, for a percent_column().
-/// A cell with a sensitivity index, or with an end of its interval, shown as index * scale. A value below `rounding`
-/// (stats/indices.h) is shown as 0. If the value cannot be distinguished from rounding, the cell has the text kTooSmall
-/// and no number.
+/// A cell with a sensitivity index, or with an end of its interval, shown as index * scale. An index whose magnitude is
+/// below `rounding` (see index_rounding()) is shown as 0. If rounding would also hide an index that is large enough to
+/// matter (is_too_small_to_tell()), the cell has the text kTooSmall and no number.
 Cell index_cell(double index, double scale, double rounding);
 
-/// The text for an index that cannot be distinguished from rounding.
+/// The text of an index_cell() if rounding hides the index.
 inline constexpr std::string_view kTooSmall = "rounding";
 
 /// A value that study_setting() returns, for people: without quotes and braces, quantities in mm and deg.

@@ -15,8 +15,8 @@
 namespace poesy {
 namespace {
 
-/// The directions in names of errors: a feature's error is named by the feature's label, a direction, and the limb's
-/// number.
+/// The directions in the names of a feature's errors. Such a name is the feature's label, a direction, and the limb's
+/// number: "rail_lean_x_1".
 constexpr std::array<std::string_view, 8> kDirections{"", "_x", "_y", "_z", "_lean_x", "_lean_y", "_lift_x", "_lift_y"};
 
 /// A zone as text: "position 0.05 A|B"; "-" if the feature has no such zone.
@@ -26,7 +26,7 @@ std::string zone_text(const std::string& key, double size, const std::string& da
   return fmt::format("{}{:.6g}{}", is_size ? "+-" : key + " ", 1e3 * size, datums == "-" ? "" : " " + datums);
 }
 
-/// The number of errors of a feature that are measured. q: position of the feature in the result.
+/// The number of errors of a feature that are drawn from measured parts. q: index of the feature in the result.
 std::size_t measured_errors(const StoredResult& result, std::size_t q) {
   const std::string& label = result.drawing->label(q);
   const std::string limb = result.drawing->names[q].substr(std::min(label.size(), result.drawing->names[q].size()));
@@ -38,8 +38,9 @@ std::size_t measured_errors(const StoredResult& result, std::size_t q) {
   return static_cast<std::size_t>(std::ranges::count_if(result.measured.names, is_of_feature));
 }
 
-/// Returns true if the zones of a feature are between two planes, so that their size is no diameter: always for a
-/// plane, for an axis or a point if errors in only one of the directions x and y exist.
+/// Returns true if the zones of a feature are between two planes, so that their size is no diameter. The zones of a
+/// plane always are. Those of an axis or a point are if it has errors in only one of the directions x and y. q: index
+/// of the feature in the result.
 bool is_between_planes(const StoredResult& result, std::size_t q) {
   const DrawingResult& found = *result.drawing;
   const std::string& kind = found.kind(q);

@@ -16,7 +16,7 @@
 namespace poesy {
 namespace {
 
-/// The keys of [errors] that give all errors of a dimension one distribution.
+/// The keys of [errors] that set the distribution of all lengths, all angles, or all numbers without unit.
 constexpr std::array<std::string_view, 3> kOfDimensions{"linear", "angular", "relative"};
 
 /// Returns true if the study sets errors by their dimension alone: no zones, overrides, parts, machines or

@@ -105,14 +105,16 @@ std::vector<Cell> row_of(const Merit& first, const Merit& merit, std::size_t res
   return row;
 }
 
-/// How many times as many samples tell this change from zero, if it is as large as found; an interval narrows with the
-/// square root of their number. NaN if the change is zero or exact.
+/// The factor by which the number of samples must grow until the interval of this change excludes zero, if the change
+/// keeps its value. The width of an interval falls with the square root of the number of samples. NaN if the change is
+/// zero or exact.
 double times_as_many(const MeritChange& change) {
   const double nearer = change.value > 0.0 ? change.value - change.low : change.high - change.value;
   return change.value == 0.0 || change.low == change.high ? kNaN : std::pow(nearer / change.value, 2);
 }
 
-/// What would tell a result from the first one. Empty if they are told apart, or if more samples do not help.
+/// A note on how many more samples would show whether a result is better than the first one. Empty if this is already
+/// certain, or if more samples do not help.
 std::string remedy_text(const Merit& first, const Merit& merit, std::size_t result) {
   constexpr double kTooMany = 1e4;
   const MeritChange change = change_of(first, merit);

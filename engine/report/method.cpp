@@ -30,7 +30,7 @@ std::string errors_sentence(const StoredResult& result, const StudyWords& words)
   return fmt::format("{} drawn{}.", text, sizes.empty() ? "" : fmt::format(" ({})", fmt::join(sizes, "; ")));
 }
 
-/// The readable values of these keys in the sections whose names begin so, each value once.
+/// The readable values of these keys in all sections whose names begin with `section`, each value once.
 std::vector<std::string> settings_of(const StoredResult& result, std::string_view section,
                                      std::initializer_list<std::string_view> keys) {
   std::vector<std::string> values;
@@ -42,7 +42,7 @@ std::vector<std::string> settings_of(const StoredResult& result, std::string_vie
   return values;
 }
 
-/// What a study states of the zones of a drawing and, for an allocation, of the tolerances of parts.
+/// Sentences on how the study reads the zones of a drawing and, in an allocation, the tolerances of parts.
 std::string zones_sentence(const StoredResult& result) {
   const std::string zones = setting(result, "errors", "zones");
   const std::vector<std::string> parts = settings_of(result, "analysis.parts", {"sigmas", "cpk"});
@@ -55,7 +55,7 @@ std::string zones_sentence(const StoredResult& result) {
 
 constexpr std::size_t kMostNamed = 5;  // errors that a sentence names
 
-/// "Measured errors: leg_1 (11 parts, mean 0.01 mm)."
+/// The sentence on measured errors: "Measured errors: leg_1 (11 parts, mean 0.01 mm)."
 std::string measured_sentence(const StoredResult& result) {
   const MeasuredErrors& found = result.measured;
   std::vector<std::string> errors;
@@ -66,7 +66,7 @@ std::string measured_sentence(const StoredResult& result) {
   return errors.empty() ? std::string() : fmt::format("Measured errors: {}.", some_names(errors, kMostNamed));
 }
 
-/// "Means that the study states: offset 0.05 mm."
+/// The sentence on the means of errors: "Means that the study states: offset 0.05 mm."
 std::string means_sentence(const StoredResult& result) {
   std::vector<std::string> errors;
   for (std::size_t p = 0; p < result.factor_mean.size(); ++p) {
@@ -77,7 +77,8 @@ std::string means_sentence(const StoredResult& result) {
                         : fmt::format("Means that the study states: {}.", some_names(errors, kMostNamed));
 }
 
-/// "Background, the same in all machines: 12 errors, linear = 0.1 mm, angular = 0.01 deg."
+/// The sentence on background errors: "Background, the same in all machines: 12 errors, linear = 0.1 mm, angular = 0.01
+/// deg."
 std::string background_sentence(const StoredResult& result) {
   const std::string factors = study_setting(result.study_text, "analysis.background", "factors");
   if (factors.empty()) return {};

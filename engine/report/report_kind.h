@@ -19,11 +19,11 @@ struct StudyWords {
   bool draws = false;                   ///< true if errors were drawn from distributions
   bool from_tables = false;             ///< true if errors, or measurements of them, came from a table
   bool own_poses = true;                ///< true if the poses are those of the study
-  std::string samples = {};             ///< number of samples at each pose, as text; empty: that of the study
+  std::string samples = {};             ///< number of samples at each pose, as text; empty: [analysis] samples
   std::vector<std::string> sizes = {};  ///< sizes of the errors, if they are not drawn
   /// Sizes with which errors are drawn, if the kind chose them itself; empty: those of [errors].
   std::vector<std::string> drawn = {};
-  std::optional<std::uint64_t> seed = {};  ///< the seed of the samples, if it is not that of [run]
+  std::optional<std::uint64_t> seed = {};  ///< the seed of the samples, if it differs from [run] seed
 };
 
 /// What a report needs from a kind of study. Each kind of study has one such object. A member that is null has no

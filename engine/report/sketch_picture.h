@@ -29,8 +29,8 @@ struct PartShares {
 /// of a joint also has the joint's true point in data-at, and the attributes data-limb and data-joint.
 /// @{
 /// The picture for a page that sets colours and turns the picture. The width of links grows with their shares, and the
-/// CSS variable --share of links and joints is their share in percent of the largest. mark: position of the error whose
-/// frame is drawn; a position beyond the errors draws none.
+/// CSS variable --share of links and joints is their share in percent of the largest. mark: index of the error whose
+/// frame is drawn; with an index beyond the errors, no frame is drawn.
 std::string turnable_sketch(const Sketch& sketch, const SketchView& view, const PartShares& shares, std::size_t mark);
 /// The picture for a separate file, with the style sheet kSketchStyle. Each limb has a colour, a ring marks joints
 /// whose frames have errors, and drives have their names.

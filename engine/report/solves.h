@@ -56,7 +56,8 @@ struct SecondFidelity {
   std::size_t errors = 0;           ///< number of all errors
 };
 
-/// A number of samples as text: "2 000 samples" if some of them are by series, otherwise "2 000 solves".
+/// A number of samples as text: "2 000 samples" if series gave the responses of some of them, otherwise "2 000 solves".
+/// by_series: number of samples whose responses a series gave.
 std::string counted_samples(std::uint64_t count, std::uint64_t by_series);
 
 /// Counts of how solves ended, by row and pose. A row is an error, a case or a size; there is only one row if the
@@ -69,7 +70,7 @@ struct SolveTally {
   std::optional<SecondFidelity> second = std::nullopt;  ///< set if the result compares two fidelities
 
   SolveCounts total() const;                   ///< The counts of all solves; with two fidelities, those of the first.
-  std::size_t cells_by_series() const;         ///< The number of rows at a pose with samples by series.
+  std::size_t cells_by_series() const;         ///< The number of cells with samples whose responses a series gave.
   std::vector<double> shares() const;          ///< [rows x M] The share that did not converge; NaN without solves.
   std::vector<double> shares_by_row() const;   ///< [rows] The share that did not converge; NaN without solves.
   std::vector<double> shares_by_pose() const;  ///< [M] The share that did not converge; NaN without solves.

@@ -52,7 +52,7 @@ struct Table {
   bool ranked = false;                       ///< true if the rows are ranked errors
 };
 
-/// A width for output that is not a terminal: no column is removed.
+/// The `width` with which no column is removed, for output that is not a terminal.
 inline constexpr std::size_t kUnlimitedWidth = std::numeric_limits<std::size_t>::max();
 
 /// The number of characters of a number from its decimal point, or from its exponent if it has no point: 3 in "4.25". 0

@@ -41,7 +41,8 @@ std::string rule(const LimitVerdicts& verdicts) {
       percent_text(verdicts.share));
 }
 
-/// The row of errors and the pose at which a limit's value was found; empty if the value is over all poses.
+/// The row of errors and the pose at which a limit's value was found, in words; empty if the value is one over all
+/// poses.
 std::string place(const StoredResult& result, const LimitVerdict& verdict) {
   if (!verdict.pose) return {};
   const bool named = verdict.row && !result.row_names.empty();
@@ -129,8 +130,8 @@ constexpr double kUsualYield = 0.9973;
 
 constexpr std::size_t kMostShown = 5;
 
-/// The positions in an array [responses x errors] of those quantities of deciding responses that did not reach the
-/// wanted interval, the widest interval first.
+/// The indices, in an array [responses x slots], of those quantities whose intervals did not become as narrow as the
+/// study asks for, the widest interval first. Only the responses in Settling::responses count.
 std::vector<std::size_t> not_reached(const ConvergenceResult& found, const Settling& settling) {
   const std::size_t slots = found.samples.size();
   std::vector<std::size_t> list;

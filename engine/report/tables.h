@@ -58,7 +58,7 @@ void keep_first(std::size_t most, std::span<Table> tables);
 /// The quantities of a result that become more exact as the number of samples grows.
 struct Settling {
   std::string_view quantities;         ///< name of the quantities: "global indices"
-  std::vector<std::string> slots;      ///< names of the errors
+  std::vector<std::string> slots;      ///< names of errors that vary alone, or "all errors" if all vary together
   std::vector<std::size_t> responses;  ///< responses whose quantities decide when adaptive samples end
 };
 
@@ -67,27 +67,27 @@ struct Settling {
 /// fixed.
 std::optional<Table> convergence_table(const StoredResult& result, const Settling& settling);
 
-/// A sentence with the number of quantities with an interval that is wider than the study asks for. Empty if there are
-/// none, or if the number of samples was fixed.
+/// A sentence with the number of quantities whose intervals are wider than the study asks for. Empty if there are none,
+/// or if the number of samples was fixed.
 std::string not_settled_text(const StoredResult& result, const Settling& settling);
 
 /// The verdict on the limit of a response; null if the study does not limit it.
 const LimitVerdict* verdict_on(const StoredResult& result, std::size_t response);
 
-/// A table of the yield with its interval and the verdict, followed by the yield under each limit alone. Precondition:
-/// verdicts.yield is set.
+/// A table of the yield with its interval and the verdict, followed by the yield for each limit as if it were the only
+/// one. Precondition: verdicts.yield is set.
 Table yield_table(const StoredResult& result, const LimitVerdicts& verdicts);
 
-/// A table of the errors that are drawn from measured parts: the number of parts, and the scatter of parts and of
-/// draws. None if there are no such errors.
+/// A table of the errors that are drawn from measured parts: the number of parts, and the scatter of the parts and of
+/// the values that are drawn. None if there are no such errors.
 std::optional<Table> measured_table(const StoredResult& result);
 
-/// A table of errors whose mean the study states, and of those that a machine draws anew at each pose. None if there
-/// are no such errors.
+/// A table of the errors whose mean the study states, and of the errors that a machine draws anew at each pose. None if
+/// there are no such errors.
 std::optional<Table> stated_table(const StoredResult& result);
 
-/// Sentences on the largest yield that can be shown with the smallest number of measured parts of an error. asked: the
-/// yield that the study asks for. Precondition: some errors are drawn from measured parts.
+/// Sentences on the largest yield that so few measured parts can prove; the error with the fewest parts decides. asked:
+/// the yield that the study asks for. Precondition: some errors are drawn from measured parts.
 std::string few_parts_text(const StoredResult& result, double conf_level, double asked);
 
 /// A table with PASS or FAIL and the value for each limit. If a yield is judged (Judge::yield), it is yield_table().
@@ -102,7 +102,7 @@ struct RankedResult {
   SolveCounts solves;          ///< how all solves ended
 };
 
-/// Two rankings of the same errors by their effects, with the sizes of the errors in each study.
+/// Two rankings of the same errors by their effects if the errors have the sizes of each study.
 struct TwoRankings {
   Table table;  ///< rank and effect of each error in the results A and B, ordered by the results of A
   double tau;   ///< Kendall's tau of the effects; NaN if not known

@@ -32,7 +32,7 @@ Comparable kept_part(const Comparable& from, const Kept& options, const Kept& it
   part.options = picked(from.options, options);
   part.items = picked(from.items, items);
   if (!from.totals.empty()) part.totals = picked(from.totals, options);
-  Kept cells;  // positions in an array [options x items] of `from`
+  Kept cells;  // indices of the kept elements in an array [options x items] of `from`
   for (const std::size_t option : options) {
     for (const std::size_t item : items) cells.push_back(option * from.items.size() + item);
   }
@@ -48,7 +48,7 @@ Comparable kept_part(const Comparable& from, const Kept& options, const Kept& it
   return part;
 }
 
-/// The positions of the common names in the first list if `first` is true, otherwise in the second list.
+/// The indices of the common names in the first list if `first` is true, otherwise in the second list.
 Kept positions_in(const Common& both, bool first) {
   Kept kept;
   for (const auto& [of_a, of_b] : both) kept.push_back(first ? of_a : of_b);

@@ -146,7 +146,7 @@ struct Scatter {
 struct PicturedError {
   std::string name;   ///< name of the error
   std::string words;  ///< place and axis of the error, in words
-  std::size_t frame;  ///< position of the error's frame among the frames of all limbs
+  std::size_t frame;  ///< index of the error's frame among the frames of all limbs
   std::size_t axis;   ///< axis of the frame: 0, 1 or 2 for x, y or z
   bool turns;         ///< true if the error is a rotation about the axis, false if it is a displacement along it
   std::string size;   ///< size of the error in the figure, with the unit; empty if it is not known
@@ -182,7 +182,7 @@ struct WhatIfSize {
 struct WhatIfSlider {
   std::string name;                 ///< name of the error, the feature or the part
   std::vector<WhatIfSize> sizes;    ///< sizes in the study
-  std::vector<std::size_t> errors;  ///< positions among the errors in WhatIf::deviations
+  std::vector<std::size_t> errors;  ///< indices of these errors in WhatIf::deviations
   std::vector<double> costs = {};   ///< cost at each of WhatIf::factors; empty: the study states no cost
 };
 
@@ -204,17 +204,20 @@ struct WhatIf {
   std::vector<WhatIfLimit> limits;
   std::size_t machines = 0;  ///< number of machines
   std::size_t poses = 0;     ///< number of poses
-  /// [poses x components x machines] The components with the errors of the study; NaN if a machine is not solved.
+  /// [poses x components x machines] Values of the components if the errors have the study's sizes; NaN if a machine is
+  /// not solved.
   ArrayName components = {};
-  ArrayName deviations = {};  ///< [errors x machines] deviations of the errors from their means
+  ArrayName deviations = {};  ///< [errors x machines] deviations of the errors from their means at the study's sizes
   ArrayName slopes = {};      ///< [poses x components x errors] derivatives of the components by the errors
   double yield = 0.0;         ///< yield of the study
   double yield_low = 0.0;     ///< lower end of the interval of the study's yield
   double yield_high = 0.0;    ///< upper end of the interval of the study's yield
   double quantile = 0.0;      ///< standard normal quantile for the confidence level of the intervals
-  /// Estimated error of the prediction: the error in a machine's distance to its limit if all sizes change by 100 %.
+  /// Estimated error of a linearly predicted component if all sizes of errors change by 100 %, as a share of the limit.
+  /// The error of smaller changes is proportional to the change.
   double linear_error = 0.0;
-  /// Share of machines that are rejected only at one of the study's other poses, or because they are not solved.
+  /// Share of machines that the prediction takes for good although the study rejects them at a pose that is not in
+  /// `components`, or although they cannot be solved at other sizes of errors.
   double missed = 0.0;
   double other_costs = 0.0;  ///< cost of the parts that have no slider
 };

@@ -44,7 +44,7 @@ struct NumberColumn {
 NumberColumn column_of_numbers(const Table& table, std::size_t c) {
   std::vector<Cell> cells;
   for (const std::vector<Cell>& row : table.rows) cells.push_back(row[c]);
-  constexpr int kShareDigits = 3;  // digits of a share, or above 90 % of its difference from 100 %
+  constexpr int kShareDigits = 3;  // significant digits of a share; above 90 %, of its difference from 100 %
   const bool shares = table.columns[c].unit == "%";
   NumberColumn column{printed_numbers(cells, shares ? kShareDigits : 0)};
   for (const PrintedNumber& one : column.cells) column.longest_tail = std::max(column.longest_tail, one.tail);

@@ -19,7 +19,7 @@ namespace poesy {
 
 struct ReportKind;
 
-/// A result, with the model and the study of its mechanism if they can be made again.
+/// A result, with its study and the model of its mechanism if they can be made again from the result file.
 struct ReportedResult {
   StoredResult stored;                           ///< content of the result file
   std::string path;                              ///< path of the result file
@@ -29,10 +29,10 @@ struct ReportedResult {
 
 /// The names of those things that are at these indices.
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions);
-/// The positions of the headline's responses (those that a summary shows). The response that ranks errors
+/// The indices of the headline's responses (those that a summary shows). The response that ranks errors
 /// (default_ranking()) comes first, and responses that do not vary come last.
 std::vector<std::size_t> headline_order(const StoredResult& result);
-/// The positions of all responses: those of the headline in headline_order(), followed by the others, except that all
+/// The indices of all responses: those of the headline in headline_order(), followed by the others, except that all
 /// responses that do not vary come last.
 std::vector<std::size_t> response_order(const StoredResult& result);
 
@@ -78,7 +78,7 @@ class PoseFigures {
   /// The object refers to `result` and `page`. shown: the responses and poses that figures show.
   PoseFigures(const StoredResult& result, ShownCells shown, Page& page);
 
-  /// The positions of the responses that are shown.
+  /// The indices of the responses that are shown.
   const std::vector<std::size_t>& responses() const { return shown_.responses; }
   void add_note(Section& section) const;  ///< Adds a note to the section if responses or poses are left out.
   /// Adds values / unit at the shown poses to the page's arrays. values: values at all poses [rows x all poses].
@@ -112,12 +112,12 @@ class PoseFigures {
   ShownCells shown_;
 };
 
-/// The course with both ends of all intervals. If the course has half-widths instead of the ends, the ends are computed
-/// from them.
+/// Gives the estimates of a course both ends of their intervals. If the course has half-widths instead of the ends, the
+/// ends are computed from them.
 EstimateCourse with_ends(EstimateCourse course);
 
-/// The curve of one quantity over the number of samples, with its interval, in units of `unit`. at: position of the
-/// quantity in the course. array: name of the stored arrays.
+/// The curve of the estimates of one quantity over the number of samples, with their intervals, in units of `unit`. at:
+/// index of the quantity in the course. array: beginning of the names of the stored arrays.
 Series series_of(const EstimateCourse& course, std::size_t at, double unit, std::string label, const std::string& array,
                  ArrayPool& pool);
 
@@ -150,8 +150,8 @@ void add_responses(const StoredResult& result, Page& page);
 /// the same explanation if a reader points at a name.
 void add_glossary(const StoredResult& result, Page& page);
 
-/// Adds to the page the section on solves that did not converge. It has how solves ended, their numbers by row (an
-/// error, case or size) and pose, and the listed failures with the commands that replay them.
+/// Adds to the page the section on solves that did not converge. The section says how solves ended, shows how many did
+/// not converge for each row (an error, case or size) and pose, and lists failures with the commands that replay them.
 void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& page);
 
 /// Adds to the page the section on what was run, for one result or for several results side by side. For several

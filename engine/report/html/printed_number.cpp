@@ -32,8 +32,8 @@ int digits_of(std::string_view text) {
 /// A number with this many significant digits, including trailing zeros.
 std::string with_digits(double value, int digits) { return fmt::format("{:#.{}g}", value, digits); }
 
-/// The largest number of digits, up to `most`, to which zeros can be appended to the cell's text so that it is still
-/// correctly rounded.
+/// The number of significant digits, at most `most`, that the cell's text can have if zeros are appended to it and it
+/// must still be the cell's number, correctly rounded.
 int full_digits(const Cell& cell, int most) {
   const int shown = digits_of(cell.text);
   const double as_shown = std::strtod(cell.text.c_str(), nullptr);

@@ -12,7 +12,7 @@ namespace poesy {
 /// The cell of a table as a page prints it.
 struct PrintedNumber {
   std::string text;        ///< text as printed, UTF-8
-  std::size_t tail = 0;    ///< number of characters from the decimal point, or from the power of ten
+  std::size_t tail = 0;    ///< number of characters from the decimal point, or from the power of ten, to the end
   bool is_number = false;  ///< true if the cell has a number; otherwise the text is unchanged and `tail` is 0
 };
 

@@ -128,7 +128,7 @@ Answer answer(const ReportKind& kind, const StoredResult& result) {
   return lines;
 }
 
-/// Adds to the page the section with pictures of the mechanism, the places of the errors, and the mechanism's file.
+/// Adds to the page the section with pictures of the mechanism, the places of its errors, and the mechanism's file.
 void add_mechanism(const ReportKind& kind, const ReportedResult& result, Page& page) {
   Section section("mechanism", "The mechanism");
   const ErrorShares shares = kind.error_shares == nullptr ? ErrorShares() : kind.error_shares(result.stored);

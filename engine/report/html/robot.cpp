@@ -51,7 +51,7 @@ bool finite(const Sketch& sketch) {
          });
 }
 
-/// The position of the largest number, or of the smallest if `sign` is -1; none if all numbers are unknown.
+/// The index of the largest number, or of the smallest if `sign` is -1; none if all numbers are unknown.
 std::optional<std::size_t> extreme(std::span<const double> values, double sign) {
   std::optional<std::size_t> found;
   for (std::size_t m = 0; m < values.size(); ++m) {
@@ -202,7 +202,7 @@ void add_frames(const Sketch& sketch, std::vector<double>& to) {
   }
 }
 
-/// The position of an error's frame among the frames of all limbs.
+/// The index of an error's frame among the frames of all limbs.
 std::size_t frame_number(const Sketch& sketch, const SketchedError& error) {
   std::size_t number = error.frame;
   for (std::size_t i = 0; i < error.limb; ++i) number += sketch.frames[i].size();

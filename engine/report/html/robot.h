@@ -18,7 +18,7 @@ struct ErrorShares {
   /// The word for errors that are ranked together, "group" or "part"; each of them has an equal part of their share.
   /// Empty: each error is ranked alone.
   std::string joined = {};
-  /// What at_poses is, in words: "the effect of all errors on gap"; empty: there are no such values.
+  /// Words for the quantity `at_poses`: "the effect of all errors on gap"; empty: there are no such values.
   std::string pose_what = {};
   std::vector<double> at_poses = {};  ///< [poses of the result] quantity by which poses are chosen
 };
@@ -40,7 +40,8 @@ std::optional<Sketch> sketch_at(const Model& model, std::span<const double> pose
 /// The title of a picture: "Pose 4 (z -195 mm): WHY".
 std::string pose_title(const StoredResult& result, std::size_t pose, const std::string& why);
 
-/// The legend of the colours as HTML. what: what the colours show, in words. least, largest: labels of the two ends.
+/// The legend of the colours as HTML. what: words for the quantity that the colours show. least, largest: labels of the
+/// two ends.
 std::string colour_legend(const std::string& what, const std::string& least, const std::string& largest);
 
 /// Adds to a section pictures of the mechanism at home and at extreme poses (largest effect, condition number or
