@@ -81,7 +81,7 @@ SelectedPoses measured_poses(const std::string& path, const MachineFile& file, c
   return poses;
 }
 
-/// The given poses, each once.
+/// The given poses without repetitions.
 SelectedPoses without_repetition(const SelectedPoses& poses) {
   std::vector<double> values;
   SelectedPoses once;

@@ -18,7 +18,7 @@ std::optional<std::uint64_t> whole_number(std::string_view text);
 std::uint64_t parse_whole_number(const std::string& text, const std::string& option, std::uint64_t least,
                                  std::uint64_t most);
 
-/// An example of a command line in help, with what it shows.
+/// An example of a command line in help, with its purpose.
 struct Example {
   std::string about;
   std::string line;
@@ -50,15 +50,15 @@ class Command : public CLI::App {
   /// The commands of this program, in the order in which they were added.
   std::vector<const Command*> commands() const;
 
-  /// Adds an option ("-o,--output") or a positional argument ("study") that has a value. value: what help calls the
-  /// value.
+  /// Adds an option ("-o,--output") or a positional argument ("study") that has a value. value: word for the value in
+  /// help.
   template <class Variable>
   CLI::Option* add_value(const std::string& name, Variable& variable, const std::string& value,
                          const std::string& about) {
     return add_option(name, variable, about)->type_name(value);
   }
-  /// Adds an option or a positional argument that is a whole number from `least` to `most`. value: what help calls the
-  /// number.
+  /// Adds an option or a positional argument that is a whole number from `least` to `most`. value: word for the number
+  /// in help.
   template <class Number>
   CLI::Option* add_whole_number(const std::string& name, Number& number, const std::string& value,
                                 const std::string& about, std::uint64_t least, std::uint64_t most) {
@@ -94,7 +94,7 @@ std::vector<std::string> names_of(const CLI::Option& option);
 /// The names of all options of a command.
 std::vector<std::string> option_names(const CLI::App& command);
 
-/// What help calls an option's value: "RESULT.h5". Empty for a flag.
+/// The word for an option's value in help: "RESULT.h5". Empty for a flag.
 std::string value_of(const CLI::Option& option);
 
 /// Returns true if an option takes several values.

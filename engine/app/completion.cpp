@@ -53,7 +53,8 @@ std::vector<std::string_view> words_for(const std::string& value, const Command&
   return words;
 }
 
-/// How a script completes the value of an option. What help calls the value tells what the value is.
+/// How a script completes the value of an option. The word for the value in help ("DIR") tells what kind of value it
+/// is.
 Offer offer_for(const CLI::Option& option, const Command& program) {
   const std::string value = value_of(option);
   if (value == "DIR") return {"folders", "_files -/"};

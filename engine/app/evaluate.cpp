@@ -80,8 +80,8 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
   return poses;
 }
 
-/// The poses of the file that the user names, or those that the study selects; none if the user stopped the search for
-/// them.
+/// The poses of the file that the user names, or, if the user names none, the poses that the study selects; none if the
+/// user stopped the search for them.
 std::optional<SelectedPoses> poses_of(const EvaluateOptions& options, const Study& study, const Model& model) {
   if (!options.poses.empty()) return read_reachable_poses(options.poses, model);
   auto poses = find_poses(study, model, {.quiet = options.quiet, .stop = &catch_interrupts()});
@@ -96,7 +96,7 @@ int interrupted() {
   return kInterrupted;
 }
 
-/// Prints the frames of the mechanism at these poses, without errors, and solves nothing.
+/// Prints the frames of the mechanism without errors at these poses.
 int print_frames(const EvaluateOptions& options, const Model& model, const PoseSet& poses) {
   if (std::ranges::find(kForms, options.frames) == kForms.end()) {
     throw InputError({}, "--frames: '" + printable(options.frames) + "' is not a form of a table",

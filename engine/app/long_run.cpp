@@ -14,7 +14,7 @@ namespace poesy::app {
 
 double seconds_of_long_run(const Study& study, const Model& model, const PoseSet& poses, std::size_t threads,
                            std::size_t runs) {
-  // With fewer draws a run is short: a solve takes far less than a second, and nearly all solves are solves of draws.
+  // With fewer draws a run is short: nearly every solve belongs to a draw, and a solve takes far less than a second.
   constexpr double kFewDraws = 1e7;
   // The first estimate is from single pieces of work and so is rough; a run below this limit is surely shorter than
   // kLongRun.

@@ -34,7 +34,7 @@ RunTime time_of(const std::vector<StoredShard>& shards) {
   return sum;
 }
 
-/// The largest value of one of the facts about runs among all shards.
+/// The largest value among all shards of one fact about their runs. fact: pointer to the member with this fact.
 std::size_t most(const std::vector<StoredShard>& shards, std::size_t RunFacts::*fact) {
   std::size_t largest = 0;
   for (const StoredShard& shard : shards) largest = std::max(largest, shard.facts.*fact);

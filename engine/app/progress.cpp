@@ -88,8 +88,8 @@ std::string within(std::size_t width, std::string line) {
   return line.size() <= width ? std::move(line) : std::string();
 }
 
-/// A line with the percentage, a bar, the details and the time left. The bar takes all free columns except a few,
-/// because the text of the time left may become longer. Empty if there is too little room.
+/// A line with the percentage, a bar, `details` (rate and number of failed solves) and the time left. The bar takes all
+/// free columns except a few, because the text of the time left may become longer. Empty if there is too little room.
 std::string with_bar(const ProgressFacts& facts, const std::string& details, std::size_t width) {
   const std::string begin = stage_text(facts) + fmt::format("{:5.1f} % ", percent_done(facts.progress));
   const std::string left = left_text(facts);

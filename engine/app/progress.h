@@ -56,8 +56,8 @@ struct ProgressFacts {
 /// A line of progress as text: "43.2 % done, 7.21 M samples/s, 12 not converged (0.0012 %), 1 min 20 s left".
 std::string plain_line(const ProgressFacts& facts);
 
-/// A line of progress with a bar, in at most `width` columns of one byte each. If there is too little room, the bar is
-/// shortened first. If that is not enough, the details are left out, and after them the time left.
+/// A line of progress with a bar, in at most `width` columns of one byte each. If there is too little room, the bar
+/// becomes shorter, and then parts of the line are left out. The percentage stays longest.
 std::string live_line(const ProgressFacts& facts, std::size_t width);
 
 /// The progress of a search for poses as text: "looking for poses: 12 of 100 found, 34000 candidates".

@@ -41,8 +41,8 @@ void check_number(const ReplayOptions& options, const std::string& what, std::si
          count == 1 ? "the only number is 0" : fmt::format("give a number from 0 to {}", count - 1));
 }
 
-/// The position of the name options.factor in a list of known names. Throws InputError if the list lacks it. what: what
-/// the names are, for messages.
+/// The index of the name options.factor in a list of known names. Throws InputError if the list lacks it. what: word
+/// for one of the names, for messages.
 std::size_t position_of(const ReplayOptions& options, const std::string& what, const std::vector<std::string>& known) {
   const auto found = std::ranges::find(known, options.factor);
   if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
@@ -73,7 +73,7 @@ ReplayedSample replay_drawn(const ReplayOptions& options, const StoredResult& re
   return replay_sample(stored.study, model, stored.poses.poses, slot, PoseIndex(options.pose), sample);
 }
 
-/// The position of the row of given errors that the command line names.
+/// The index of the row of given errors that the command line names.
 std::size_t row_of(const ReplayOptions& options, const GivenErrors& given) {
   if (given.samples == 0) refuse_sample(options, fmt::format("a {} has no samples", given.word));
   const std::size_t position = position_of(options, std::string(given.word), given.names);

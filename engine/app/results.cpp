@@ -49,8 +49,8 @@ std::string cpu_name() {
   return "unknown";
 }
 
-/// Advice on options with which fewer samples may fail. It names the solver's method only for the metric "published"
-/// and for mechanisms without a metric, because the method matters only for these.
+/// Advice on options with which fewer samples may fail. It mentions [solver] method only for the metric "published" and
+/// for mechanisms without a metric, because the method matters only for these.
 std::string advice(const Study& study, const SolveCounts& solves) {
   if (mostly_impossible(solves)) return std::string(kAssemblyAdvice);
   const std::string& metric = study.model().metric;

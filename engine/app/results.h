@@ -20,7 +20,8 @@ namespace poesy::app {
 
 /// The facts about a run that has just ended on this machine. wall_seconds: duration of the run, s.
 RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solves);
-/// The number of samples, and of those that were solved if series replaced others: "2000 solves".
+/// The number of samples of a run: "2000 solves". If series gave the responses of some samples: "2000 samples (40
+/// solved, the others by series)".
 std::string samples_text(const RunFacts& facts);
 
 /// Options of the search for poses.

@@ -169,8 +169,8 @@ int explained_interruption(const ResumableRun& resumable) {
   return kInterrupted;
 }
 
-/// Says which poses of the workspace are not in the study: a warning if the mechanism does not reach some of them,
-/// otherwise a note, because the study's own limits reject them.
+/// Says how many poses of the workspace are not in the study, and why. This is a warning if the mechanism does not
+/// reach some of them. Otherwise it is a note, because the study asked for their rejection.
 void say_rejected(const SelectedPoses& poses, bool quiet) {
   const std::string text = rejected_text(poses.rejected, poses.candidates);
   if (text.empty()) return;

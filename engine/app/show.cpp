@@ -81,8 +81,8 @@ void show_alone(const std::string& response, StoredResult& result) {
   result.headline = result.signed_headline = {static_cast<std::size_t>(at)};
 }
 
-/// Notes on the mechanism's numbers and, unless a table of errors was solved, on calibration and constant errors. Empty
-/// if this program cannot read the result's study.
+/// The remarks of the mechanism (Model::remarks()) and, unless a table of errors was solved, notes on calibration and
+/// constant errors. Empty if this program cannot read the result's study.
 std::string study_lines(const StoredResult& result, std::size_t width) {
   const std::optional<Study> study = study_in(result, registry());
   if (!study) return {};

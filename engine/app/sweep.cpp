@@ -83,7 +83,7 @@ auto naming(std::span<const GivenKey> given, const Act& act) {
   }
 }
 
-/// The study with the values of a design in place of its own.
+/// The study of options.study, in which keys have the values of a design instead of their own.
 Study study_with(const SweepOptions& options, std::span<const GivenKey> given) {
   Study study = naming(given, [&] { return read_study(options.study, registry(), StudyUse::run, given); });
   if (options.seed) study.seed = *options.seed;

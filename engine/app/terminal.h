@@ -20,7 +20,7 @@ enum ExitCode : int {
   kLimitNotKept = 6
 };
 
-/// The number of columns of a terminal if its width is not known, and of help.
+/// The number of columns that output uses if the width of the terminal is not known.
 inline constexpr std::size_t kUsualWidth = 80;
 
 /// The present width of a terminal in columns. descriptor: file descriptor of the terminal. Returns 0 if the descriptor

@@ -54,7 +54,7 @@ class ResultBuilder {
 
   h5::File& file() { return file_; }  ///< The file, for groups and attributes.
 
-  /// Adds an axis: the dimension scale /name, with a value for each of its positions.
+  /// Adds an axis: the dimension scale /name, with a value for each index along the axis.
   template <h5::Element T>
   void add_axis(const std::string& name, const std::vector<T>& values, const Label& label) {
     axis_length_[name] = values.size();
@@ -73,8 +73,8 @@ class ResultBuilder {
     write(path, shape(axes), values, label);
     attach(path, axes);
   }
-  /// Adds a dataset of numbers that are computed while they are written. element(at): the number at this position,
-  /// row-major.
+  /// Adds a dataset of numbers that are computed while they are written. element(at): the number at this row-major
+  /// index.
   template <h5::Number T, class ElementAt>
   void add_computed(const std::string& path, const Axes& axes, const ElementAt& element, const Label& label) {
     file_.write_slices<T>(path, shape(axes), [&](std::size_t first, std::span<T> to) {
@@ -93,8 +93,8 @@ class ResultBuilder {
   void add(const std::string& path, const Array<T, A...>& array, const Label& label) {
     add(path, array.axis_names(), array.all(), label);
   }
-  /// Adds a dataset along the axes of a layout, of numbers that are computed while they are written.
-  /// element(positions...): the number at these positions.
+  /// Adds a dataset along the axes of a layout, of numbers that are computed while they are written. element(): takes
+  /// an index for each axis, and returns the number there.
   template <h5::Number T, class... A, class ElementAt>
   void add_computed(const std::string& path, const AxisLayout<A...>& layout, const ElementAt& element,
                     const Label& label) {

@@ -120,7 +120,7 @@ struct StoredResult {
   /// The errors that samples vary: names of errors that vary alone, or kAllFactors if all vary together. Empty if
   /// nothing was drawn.
   std::vector<std::string> varied;
-  std::vector<Failure> failures;  ///< first failures; Failure::slot is a position in `varied`
+  std::vector<Failure> failures;  ///< first failures; Failure::slot is an index in `varied`
   /// How adaptive samples converged; none if the number of samples was fixed.
   std::optional<ConvergenceResult> convergence;
   std::optional<LimitVerdicts> verdicts;  ///< verdicts on the limits; none if the study states no limits

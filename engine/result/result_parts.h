@@ -116,8 +116,8 @@ std::vector<SolveNumber> solve_numbers(std::span<const SolveCounts> solves);
 /// Adds to the table a column for each number of solve_numbers(); line n shows the n-th cell. Refers to the solves.
 void append_solve_columns(CsvTable& table, std::span<const SolveCounts> solves);
 
-/// Adds to the result file which samples failed first. slots: names of what varies (StoredResult::varied). total:
-/// number of all failures. Precondition: add_solver() was called.
+/// Adds to the result file the list of the first failed samples. slots: names in StoredResult::varied, to which
+/// Failure::slot refers. total: number of all failures. Precondition: add_solver() was called.
 void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, const std::vector<std::string>& slots,
                   std::uint64_t total);
 /// Reads the list of failures. result: must have `varied` and `poses` already.
@@ -141,7 +141,7 @@ struct CourseWords {
   std::string samples_axis;              ///< name of the axis of numbers of samples
   std::string samples_description;       ///< description of that axis
   std::string csv;                       ///< beginning of the names of the course's CSV files
-  std::string csv_slot;                  ///< heading of the column that names what varies
+  std::string csv_slot;                  ///< heading of the column with the names of the varied errors
   std::vector<std::string> csv_columns;  ///< headings of the columns of the datasets
 };
 

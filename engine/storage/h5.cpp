@@ -129,12 +129,12 @@ struct Box {
   hsize_t size() const { return std::accumulate(count.begin(), count.end(), hsize_t{1}, std::multiplies()); }
 };
 
-/// Divides a dataset into boxes of at most this many elements, in row-major order, and calls use(box) for each.
-/// Precondition: most > 0, and there are more elements than that.
+/// Divides a dataset into boxes of at most `most` elements, in row-major order, and calls use(box) for each.
+/// Precondition: most > 0, and the dataset has more than `most` elements.
 template <class Use>
 void for_each_box(const Shape& shape, std::size_t most, const Use& use) {
-  // A box has a range of positions on the axis `cut`, one position on each axis before it, and all positions on each
-  // axis after it.
+  // A box has a range of indices on the axis `cut`, one index on each axis before it, and all indices on each axis
+  // after it.
   std::size_t cut = shape.size() - 1;
   std::size_t inner = 1;
   while (inner * shape[cut] <= most) inner *= shape[cut--];

@@ -83,7 +83,7 @@ class File {
   template <Element T>
   void write(const std::string& path, const Shape& shape, std::span<const T> values);
   /// Creates a dataset in slices, so that its numbers need not be in memory all at once. fill(first, to) sets `to` to
-  /// the elements from position `first` on, row-major. It is called for one slice after the other.
+  /// the elements from the row-major index `first` on. It is called for one slice after the other.
   template <Number T>
   void write_slices(const std::string& path, const Shape& shape,
                     const std::function<void(std::size_t first, std::span<T> to)>& fill);

@@ -14,10 +14,10 @@ void make_folder(const std::string& folder);  ///< Makes a folder if it is missi
 
 /// A folder into which a command writes several files of one result. Users may keep their own files in it.
 ///
-/// FOLDER/poesy_manifest.txt has the content_sha256 of the result and lists what poesy wrote there, one name a line.
-/// poesy replaces and removes only files that are listed and were not changed after the manifest. All listed files
-/// belong to one result: when the files of a new result are written, those of the earlier result are removed. Use it in
-/// this order:
+/// The manifest, FOLDER/poesy_manifest.txt, has the content_sha256 of the result and lists the files that poesy wrote
+/// there, one name a line. poesy replaces and removes only files that are listed and that are not newer than the
+/// manifest. All listed files belong to one result: when the files of a new result are written, those of the earlier
+/// result are removed. Use the class in this order:
 ///
 ///     OutputFolder folder("tables", result.content_sha256);
 ///     folder.claim("poses.csv"); ...          // every file, before the first is written
@@ -26,8 +26,9 @@ void make_folder(const std::string& folder);  ///< Makes a folder if it is missi
 /// If a command is killed, old and new files remain. The next command replaces or removes them.
 class OutputFolder {
  public:
-  /// path: the folder, which need not exist. result: content_sha256 of the result. It may be empty if not known; then
-  /// no earlier files are kept. Throws InputError if the folder's poesy_manifest.txt was not written by poesy.
+  /// path: the folder, which need not exist. result: content_sha256 of the result; empty if it is not known, and then
+  /// all earlier files of the folder's manifest are removed. Throws InputError if poesy did not write the folder's
+  /// poesy_manifest.txt.
   OutputFolder(std::string path, const std::string& result);
 
   /// Throws InputError if the command must not replace this file: poesy did not write it, it was changed since poesy

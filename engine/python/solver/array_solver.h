@@ -41,7 +41,7 @@ class ArraySolver {
   /// Throws InputError for the first pose that is not finite or out of reach. poses: [poses x coordinates], SI.
   void check_poses(std::span<const double> poses) const;
 
-  /// Solves all samples of a job. between: is called from time to time, and may throw to end the job.
+  /// Solves all samples of a job. between: a function that is called from time to time, and may throw to end the job.
   void solve(const ArrayJob& job, const std::function<void()>& between) const;
 
  private:
