@@ -129,8 +129,8 @@ def sensitivity(converged, other):
                       *(number(index[factor]) for index in angular)])
     zeros = [sorted(factor for factor in ranking if index[factor] < ROUNDING) for index in angular]
     return ["## Figures 8 and 9: the indices, and their ranking", "",
-            "By the global index of the average linear deformation, in mm/mm or mm/deg. Kendall's tau with the published "
-            f"ranking: **{kendall(ranking, ours[0]):.3f}** converged, **{kendall(ranking, ours[1]):.3f}** by the "
+            "Errors are ranked by the global index of the average linear deformation, in mm/mm or mm/deg. Kendall's tau "
+            f"with the published ranking: **{kendall(ranking, ours[0]):.3f}** converged, **{kendall(ranking, ours[1]):.3f}** by the "
             "published procedure.", "",
             *markdown(["published rank", "error", "converged", "published procedure", "linear, converged",
                        "linear, published procedure", "angular [deg/..], converged", "angular, published procedure"],
@@ -273,8 +273,8 @@ HEAD = """# The first paper compared with poesy
 X. Du, B. Wang, J. Zheng, Machines 2022, 10(11), 990. Written by `./regenerate`; no number is typed by hand: published
 figures come from [published/](published), ours from the exported tables of the studies in [studies/](studies).
 
-**converged**: Newton's method; draws that do not settle are left out. **published procedure**: Gauss-Newton, 50 iterations, and the
-last iterate is kept whether it settled or not. They differ where solves do not settle in 50 iterations: an unfinished iterate can be far
+**converged**: Newton's method; draws that do not converge are left out. **published procedure**: Gauss-Newton, 50 iterations, and the
+last iterate is kept whether it converged or not. They differ where solves need more than 50 iterations: an unfinished iterate can be far
 off, so that a few draws determine an index. Where both differ from the paper, the cause is the printed equations, the inferred workspace
 or the unknown draws: [README.md](README.md) explains it table by table.
 
