@@ -105,7 +105,7 @@ class MpiRanks : public LaunchedRanks {
 
   void send(std::size_t to, std::shared_ptr<const Bytes> bytes) override {
     under_way_.reserve(under_way_.size() + bytes->size() / kPieceBytes +
-                       1);  // there is room for all pieces, so either all are sent or none
+                       1);  // memory for all pieces is reserved first, so either all pieces are sent or none
     std::size_t sent = 0;
     do {
       const std::size_t count = std::min(kPieceBytes, bytes->size() - sent);

@@ -82,12 +82,13 @@ Bytes take_blocks(ByteReader& from) {
   }
 }
 
-/// Fills `to` with the bytes of the file from position `at` on. Throws BytesError if the file is shorter.
+/// Fills `to` with the bytes of the file from byte number `at` on. Throws BytesError if the file is shorter.
 void read_all(const PlainFile& file, std::uintmax_t at, std::span<std::byte> to) {
   if (!file.is_open() || file.read(at, to) != to.size()) throw BytesError("ends too early");
 }
 
-/// Reads the block at position `at`, and moves `at` to its end. The last block of a state is empty. Throws BytesError.
+/// Reads the block that begins at byte number `at` of the file, and moves `at` to its end. The last block of a state is
+/// empty. Throws BytesError.
 void read_block(const PlainFile& file, std::uintmax_t& at, Bytes& block) {
   constexpr std::size_t kMostDigits = 10;
   constexpr std::byte kMore{0x80};

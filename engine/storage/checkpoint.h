@@ -35,7 +35,7 @@ struct RunTime {
 
 /// The place of a state in a checkpoint file.
 struct StoredState {
-  std::size_t offset = 0;                 ///< position of its first block in the file, in bytes
+  std::size_t offset = 0;                 ///< number of bytes in the file before its first block
   std::array<std::byte, 32> sha256 = {};  ///< SHA-256 of the state
 };
 

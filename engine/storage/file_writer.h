@@ -78,10 +78,11 @@ class FileWriter {
 
   /// Functions for a caller that writes in any order and cannot stop at an error, such as HDF5.
   /// @{
-  /// Writes bytes at a position. The first error is kept for check(), and nothing more is written after it.
+  /// Writes bytes that begin at byte number `at` of the file. The first error is kept for check(), and nothing more is
+  /// written after it.
   void put(std::uint64_t at, std::span<const std::byte> bytes) noexcept;
-  /// Reads bytes; where put() wrote nothing they are zero. Returns true if it succeeded; after an error it always
-  /// fails.
+  /// Reads the bytes from byte number `at` on; bytes that put() did not write are zero. Returns true if it succeeded;
+  /// after an error it always fails.
   bool get(std::uint64_t at, std::span<std::byte> to) noexcept;
   /// Sets the length of the file, which is also the expected size, even after an error.
   void end_at(std::uint64_t bytes) noexcept;

@@ -31,7 +31,8 @@ class Evaluation(dict[str, Floats]):
     status_names : tuple of str
         Names of the statuses. The last one, not_assembled, is present only if a solve ended with it.
     converged : ndarray of bool
-        Whether `status` is 0. If not, the response means little, and the program leaves it out of its statistics.
+        Whether `status` is 0. Samples with status 1 (stagnated) are solved too, as exactly as the arithmetic allows.
+        The responses of all other samples mean little, and the program leaves them out of its statistics.
     units : dict of str
         SI unit of each response.
     details : dict of ndarray [M x N x C] or [M x C]
