@@ -171,7 +171,7 @@ std::optional<SweepResult> run_with_progress(const SweepOptions& options, std::s
   return run_to_end(resumable, act, too_little);
 }
 
-/// Prints what was found, and returns the exit code. path: path of the result.
+/// Prints the table of the designs, and returns the exit code. path: path of the result.
 int report(const SweepOptions& options, const SweptDesign& first, const SweepResult& found, const std::string& path) {
   StoredResult result = described(first.study, *build_model(first.study.mechanism), first.poses);
   result.kind = kSweepKind.study.name;

@@ -95,10 +95,11 @@ Cell index_cell(double index, double scale, double rounding);
 /// The text of an index_cell() if rounding hides the index.
 inline constexpr std::string_view kTooSmall = "rounding";
 
-/// A value that study_setting() returns, for people: without quotes and braces, quantities in mm and deg.
+/// Converts a value that study_setting() returned to a text for people: without quotes and braces, with quantities in
+/// mm and deg.
 std::string readable_setting(std::string_view value);
 
-/// The value of a key of a section in a resolved study, for people.
+/// The value of a key of a section in a resolved study, as a text for people.
 std::string readable_setting(std::string_view study_text, std::string_view section, std::string_view key);
 
 }  // namespace poesy

@@ -71,9 +71,9 @@ struct SolveTally {
 
   SolveCounts total() const;                   ///< The counts of all solves; with two fidelities, those of the first.
   std::size_t cells_by_series() const;         ///< The number of cells with samples whose responses a series gave.
-  std::vector<double> shares() const;          ///< [rows x M] The share that did not converge; NaN without solves.
-  std::vector<double> shares_by_row() const;   ///< [rows] The share that did not converge; NaN without solves.
-  std::vector<double> shares_by_pose() const;  ///< [M] The share that did not converge; NaN without solves.
+  std::vector<double> shares() const;          ///< [rows x poses] share_not_converged() of each cell.
+  std::vector<double> shares_by_row() const;   ///< [rows] share_not_converged() over all poses.
+  std::vector<double> shares_by_pose() const;  ///< [poses] share_not_converged() over all rows.
 };
 
 /// The share of solves that did not converge; NaN without solves.

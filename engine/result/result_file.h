@@ -96,13 +96,13 @@ struct StoredResult {
   std::string metric;          ///< the metric of the responses (ModelDescription::metric); empty if there is none
   std::vector<PlatformPoint> metric_points;  ///< points of the platform's metric, in its frame, m
   std::vector<NamedUnit> pose_coordinates;   ///< coordinates of a pose
-  PoseSet poses;                             ///< [M] poses of the study, M in number
-  std::vector<double> condition;             ///< [M] condition number at each pose
-  std::vector<double> time;                  ///< [M] s, ascending, for poses along a trajectory; else empty
+  PoseSet poses;                             ///< poses of the study
+  std::vector<double> condition;             ///< [poses] condition number at each pose
+  std::vector<double> time;                  ///< [poses] s, ascending, for poses along a trajectory; else empty
   std::vector<RejectedPoses> rejected;       ///< poses of the workspace that are not in the study, by reason
   std::uint64_t candidates = 0;              ///< number of poses examined in the workspace; 0: unknown
-  std::vector<NamedUnit> factors;            ///< [P] errors that vary or are tried, P in number
-  std::vector<NamedUnit> responses;          ///< [R] responses of the mechanism, R in number
+  std::vector<NamedUnit> factors;            ///< errors that vary or are tried
+  std::vector<NamedUnit> responses;          ///< responses of the mechanism
   /// Indices of the responses that a summary shows; all, unless the model selects some.
   std::vector<std::size_t> headline;
   std::vector<std::size_t> signed_headline;  ///< indices of the responses that a summary of coupled errors shows

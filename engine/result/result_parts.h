@@ -131,7 +131,7 @@ std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResul
 /// Adds to `tables` the table limits.csv; nothing if the study states no limits.
 void append_limit_table(CsvTables& tables, const StoredResult& result);
 
-/// The confidence level of the intervals of a course, as an attribute of its group or of a dataset.
+/// The confidence level of the intervals of a course of estimates, as an attribute of its group or of a dataset.
 inline const std::vector<Attribute<EstimateCourse>> kCourseLevel{{"conf_level", &EstimateCourse::conf_level}};
 
 /// The names and descriptions of a course: estimates after ascending numbers of samples.

@@ -17,7 +17,7 @@ namespace {
 // A force smaller than this, relative to the largest force of a limb, counts as zero.
 constexpr double kRounding = 1e-12;
 
-/// The force of a limb or of a drive, at each of the result's M poses.
+/// The force of a limb or of a drive, at each of the result's poses.
 struct Force {
   std::size_t limb;
   /// Index of the driven joint in the limb; none: the force is that of the whole limb.

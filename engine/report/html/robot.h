@@ -16,7 +16,7 @@ struct ErrorShares {
   std::string what = {};  ///< words for the shares: "share of the mean square of gap"; empty: there are no shares
   std::vector<double> values = {};  ///< [errors of the result] share of each error; NaN or below 0 counts as 0
   /// The word for errors that are ranked together, "group" or "part"; each of them has an equal part of their share.
-  /// Empty: each error is ranked alone.
+  /// Empty: each error has a rank of its own.
   std::string joined = {};
   /// Words for the quantity `at_poses`: "the effect of all errors on gap"; empty: there are no such values.
   std::string pose_what = {};
