@@ -48,7 +48,7 @@ class Readme(ProgramTest):
             self.assertEqual(command.split()[0], "poesy")
             shown = self.succeeds(*command.split("#")[0].split()[1:])
         ranked = re.findall(r"^ +\d+ +(delta|epsilon)_", shown, re.MULTILINE)
-        angles, errors = map(int, re.search(r"The first (\d+) of (\d+) places are angles", README).groups())
+        angles, errors = map(int, re.search(r"The first (\d+) of (\d+) ranks are angles", README).groups())
         self.assertEqual((ranked.index("delta"), len(ranked)), (angles, errors))
 
     def test_its_rankings_are_of_the_published_study(self):
