@@ -130,8 +130,8 @@ def sensitivity(converged, other):
     zeros = [sorted(factor for factor in ranking if index[factor] < ROUNDING) for index in angular]
     return ["## Figures 8 and 9: the indices, and their ranking", "",
             "Errors are ranked by the global index of the average linear deformation, in mm/mm or mm/deg. Kendall's tau "
-            f"with the published ranking: **{kendall(ranking, ours[0]):.3f}** converged, **{kendall(ranking, ours[1]):.3f}** by the "
-            "published procedure.", "",
+            f"with the published ranking: **{kendall(ranking, ours[0]):.3f}** converged, "
+            f"**{kendall(ranking, ours[1]):.3f}** by the published procedure.", "",
             *markdown(["published rank", "error", "converged", "published procedure", "linear, converged",
                        "linear, published procedure", "angular [deg/..], converged", "angular, published procedure"],
                       lines),
