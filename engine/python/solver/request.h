@@ -14,9 +14,12 @@ using GeometryValue = std::variant<double, std::string>;
 
 /// The options of an evaluator in Python, with the words of study files.
 struct Request {
-  std::string mechanism = {};       ///< name of the catalog, or path of a mechanism file
-  std::string metric = "platform";  ///< metric; ignored if the mechanism does not weigh angles against lengths
-  std::string fidelity = "exact";   ///< accuracy; ignored if the mechanism offers no choice
+  std::string mechanism = {};  ///< name of the catalog, or path of a mechanism file
+  /// The metric. If the mechanism does not weigh angles against lengths, the default has no effect, and another value
+  /// is refused.
+  std::string metric = "platform";
+  /// The accuracy. If the mechanism offers no choice, the default has no effect, and another value is refused.
+  std::string fidelity = "exact";
   /// Errors that vary: a factor set, or names of errors in any order.
   std::variant<std::string, std::vector<std::string>> factors = "all";
   /// True if responses are those after the best correction of the actuators; see [analysis] of study files.
