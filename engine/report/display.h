@@ -24,7 +24,8 @@ std::string count_text(std::uint64_t count);  ///< A whole number with its digit
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 std::string number_text(double value, int digits = 4);  ///< A number to this many significant digits; "-" for NaN.
 /// A share in percent, without the sign "%": "1.25", "99.73"; "-" for NaN. Up to 90 %, three significant digits are
-/// shown. Above 90 %, so many decimals are shown that the difference from 100 % has three digits.
+/// shown. Above 90 %, so many decimals are shown that the difference from 100 % has three digits. Trailing zeros are
+/// left out.
 std::string percent_number(double share);
 /// A share in percent as percent_number() gives it, with the sign: "99.73 %"; "-" for NaN.
 std::string percent_text(double share);

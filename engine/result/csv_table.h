@@ -55,8 +55,8 @@ struct CsvTable {
 using CsvTables = std::vector<CsvTable>;
 
 /// A text as a cell of a CSV file (RFC 4180). A text with a comma, a semicolon or a quote is put in quotes, and its
-/// quotes are doubled. Control characters, including line ends, become "?". A text that begins with = + - or @ gets an
-/// apostrophe in front, because spreadsheets take it for a formula even in quotes.
+/// quotes are doubled. Control characters, including line ends, become "?". A text that begins with = + - or @ and is
+/// not a number gets an apostrophe in front, because spreadsheets take it for a formula even in quotes.
 std::string csv_cell(std::string_view text);
 
 /// A heading "name [unit]", or the name alone for a number without unit.

@@ -53,7 +53,7 @@ struct ShownCells {
 
   std::vector<std::size_t> responses;  ///< indices of the responses that are shown
   std::vector<std::size_t> poses;      ///< indices of the poses that are shown, ascending
-  std::size_t all_responses = 0;       ///< number of responses in the result
+  std::size_t all_responses = 0;       ///< number of responses before some were left out
   std::size_t all_poses = 0;           ///< number of poses in the result
 
   /// Keeps the values at the poses that are shown: [rows x shown poses]. values: values at all poses [rows x all
