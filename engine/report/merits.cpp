@@ -124,8 +124,8 @@ std::string remedy_text(const Merit& first, const Merit& merit, std::size_t resu
   std::string text = name + "they are equal";
   if (!std::isnan(times)) {
     text = name + (times > kTooMany ? std::string("the difference is too small for any number of samples")
-                                    : fmt::format("some {} times as many samples of each tell a difference as large "
-                                                  "as this one",
+                                    : fmt::format("about {} times as many samples of each would show a difference "
+                                                  "as large as this one",
                                                   number_text(times, 2)));
   }
   if (merit.what != kYieldMerit) return text;

@@ -24,7 +24,8 @@ double max_not_converged(const StoredResult& result) {
 
 /// The warning if more than kManyNotConverged of all solves did not converge, unless kMissing applies.
 constexpr std::string_view kDoubt =
-    " That is more than 1 %: all numbers rest on the rest, and both ways of treating such solves are wrong where they "
+    " That is more than 1 %: all numbers come from the solved samples, and both ways of treating such solves are wrong "
+    "where they "
     "are many. Left out, they make numbers too small, because they are mostly the large errors; included, they fill "
     "them with unfinished iterates.";
 

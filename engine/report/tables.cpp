@@ -36,8 +36,8 @@ std::string rule(const LimitVerdicts& verdicts) {
            "the share of all draws that are within the limit";
   }
   return fmt::format(
-      "value: within this magnitude stay {} of the draws at the worst pose; draws that were not solved stay within "
-      "nothing; within: the share of the draws of all poses that are within the limit",
+      "value: {} of the draws at the worst pose are within this magnitude; draws that were not solved are within no "
+      "magnitude; within: the share of the draws of all poses that are within the limit",
       percent_text(verdicts.share));
 }
 
@@ -321,7 +321,7 @@ std::optional<Table> measured_table(const StoredResult& result) {
               .caption = "Errors as measured: mean and standard deviation of the draws are those of the parts",
               .columns = {},
               .notes = {"sigma of the parts: with n - 1; least, greatest: of the parts, and of what is drawn; "
-                        "correlation: of normal scores, with the error that goes most with it"}};
+                        "correlation: of normal scores, with the error whose correlation is largest"}};
   fill(table, positions(found.names.size()),
        {{text_column("error", "error"), [&](std::size_t e) { return text_cell(found.names[e]); }},
         {text_column("unit", "unit"),

@@ -297,7 +297,7 @@ std::vector<std::string> mobility_lines(const Mechanism& mechanism, const Mobili
                   counted(home.idle, "idle freedom", "idle freedoms"),
                   home.left_when_locked == 0 ? std::string("none") : fmt::format("{} idle", home.left_when_locked)));
   const std::optional<double> below = home.below_gap();
-  std::string gap = fmt::format("singular values around the gap, lengths in units of the reach: {} | {}",
+  std::string gap = fmt::format("singular values on both sides of the rank, lengths in units of the reach: {} | {}",
                                 home.rank > 0 ? fmt::format("{:.3g}", home.above_gap()) : "none",
                                 below ? fmt::format("{:.1e}", *below) : "none");
   if (mechanism.precision.rounded()) {

@@ -127,7 +127,7 @@ class CalibratedSensitivity(ProgramTest):
                       " ".join(self.succeeds("show", "r.h5").split()))
         done = self.poesy("tolerances", "r.h5", "--response", "z", "--limit", "0.1 mm")
         self.assertEqual(done.returncode, 2)
-        self.assertIn("its indices are of what a calibration leaves", done.stderr.decode())
+        self.assertIn("its indices describe what a calibration leaves", done.stderr.decode())
         self.assertIn("kind \"allocation\"", done.stderr.decode())
         for other, message in ((text.replace('measured = ["z"]\n', ""), "does not say what is measured"),
                                (text.replace('"delta-puu.toml"', '"delta-puu.toml"\nmechanism.fidelity = "both"'),

@@ -341,7 +341,8 @@ class Calibration {
     result.drive_shift = Array<double, axis::Pose, axis::Drive>({poses, result.drives.size()}, kNaN);
     const auto known = knowledge_of_all();
     if (!known) {
-      made.warnings.emplace_back("what is left is not predicted, because the estimate of all errors was not found");
+      made.warnings.emplace_back(
+          "the remaining displacement is not predicted, because the estimate of all errors was not found");
       return;
     }
     const calibration::Corrected corrected{columns_.directions.F * fit_.theta, fit_.phi, frame()};

@@ -173,7 +173,8 @@ std::string needed_machines_note(const Changes& changes, const ToldErrors& found
   const auto middle = half_widths.begin() + static_cast<std::ptrdiff_t>(half_widths.size() / 2);
   std::ranges::nth_element(half_widths, middle);
   return fmt::format(
-      "{} tell a change of some {} from zero; one of a tenth of that takes {}. The shares of the scatter rank "
+      "With {}, a change of about {} is distinguished from zero; a tenth of it needs {}. The shares of the scatter "
+      "rank "
       "errors with far fewer",
       counted(yield.machines, "machine", "machines"), percent_text(*middle),
       counted(kFiner * kFiner * yield.machines, "machine", "machines"));

@@ -262,7 +262,7 @@ void refuse_calibrated(const TolerancesOptions& options, const StoredResult& res
   const std::optional<Study> study = study_in(result, catalog);
   if (!options.limit || !study || study->analysis.calibration == nullptr) return;
   throw InputError({options.result},
-                   "its indices are of what a calibration leaves, and tolerances are tested without one",
+                   "its indices describe what a calibration leaves, and tolerances are tested without one",
                    "leave out --limit, or take a study of kind \"allocation\" with the same [analysis.calibration]");
 }
 

@@ -203,7 +203,7 @@ std::string caption_of(const WhatIf& made, double conf_level) {
   const std::string level = percent_text(conf_level);
   std::string text = fmt::format(
       "From {} at {}: their solved responses, changed linearly with their errors. A slider scales how far errors are "
-      "from their means. What these machines' yield at the study's sizes differs from the study's is corrected. The "
+      "from their means. The difference between the yield of these machines and that of the study is corrected. The "
       "interval adds up chance, {} for the machines of the study and for these",
       counted(made.machines, "machine of the study", "machines of the study"), counted(made.poses, "pose", "poses"),
       level);

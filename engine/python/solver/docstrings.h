@@ -3,7 +3,7 @@
 /// The texts that help() shows in Python. The types are in the stub poesy_solver.pyi.
 namespace poesy::python {
 
-inline constexpr char kModuleText[] = R"(What errors do to a mechanism, solved on NumPy arrays where they stand.
+inline constexpr char kModuleText[] = R"(What errors do to a mechanism, solved directly in NumPy arrays.
 
     import numpy as np, poesy_solver
     e = poesy_solver.Evaluator("robot.toml")

@@ -39,7 +39,7 @@ class Evaluator:
         self,
         mechanism: str | os.PathLike[str],
         *,
-        metric: Literal["platform", "published"] = "platform",
+        metric: Literal["platform", "published", "stiffness"] = "platform",
         fidelity: Literal["exact", "first-order"] = "exact",
         factors: str | Sequence[str] = "all",
         calibrated: bool = False,

@@ -96,11 +96,12 @@ std::vector<std::string> notes_on(const Merit& a, const Merit& b) {
 /// The half-width of the change is sqrt(2) on either side of 0.5, so it must shrink by sqrt(8) = 2.83.
 TEST(Merits, SayHowManySamplesWouldTellThemApart) {
   const Merit yield{"yield", "%", 90.0, 89.0, 91.0, true};
-  EXPECT_EQ(notes_on(yield, {"yield", "%", 90.5, 89.5, 91.5, true}),
-            std::vector<std::string>{
-                "yield, A and B not told apart: some 8 times as many samples of each tell a difference as large as "
-                "this one; fewer do if the designs differ by keys of one study: poesy sweep gives them the same "
-                "machines"});
+  EXPECT_EQ(
+      notes_on(yield, {"yield", "%", 90.5, 89.5, 91.5, true}),
+      std::vector<std::string>{
+          "yield, A and B not told apart: about 8 times as many samples of each would show a difference as large as "
+          "this one; fewer do if the designs differ by keys of one study: poesy sweep gives them the same "
+          "machines"});
   EXPECT_TRUE(notes_on(yield, {"yield", "%", 95.0, 94.0, 96.0, true}).empty());
   const Merit rms{.what = "rms", .value = 1.0, .low = 0.9, .high = 1.1};
   EXPECT_EQ(
