@@ -170,6 +170,11 @@ class Numbers(FolderTest):
         self.assertEqual({row.name: row.verdict for row in ranked}, {name: row["verdict"] for name, row in rows.items()})
         for row in ranked:
             self.assertEqual(row.share * 4, rows[row.name]["deforming_poses_1"])
+        largest = found.to_xarray("identification")["single_max"].sel(group=found.to_xarray("identification")["group"][0])
+        for row in ranked:
+            alone = float(largest.sel(factor=row.name)) if row.verdict == "deforms alone" else 0.0
+            self.assertAlmostEqual(row.deformation, alone / float(largest.max()), 12)
+        self.assertGreater(len({row.deformation for row in ranked}), 2)
         order = ["deforms alone", "deforms in a coupling", "absorbed"]
         self.assertEqual([row.verdict for row in ranked], sorted((row.verdict for row in ranked), key=order.index))
 

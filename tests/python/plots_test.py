@@ -18,7 +18,7 @@ class Plots(unittest.TestCase):
             "sobol of groups": "ST, share of the variance of gap",
             "monte-carlo": "S1, share of the variance of gap",
             "allocation": "cost",
-            "identification": "share of the poses where the error deforms alone",
+            "identification": "deformation by the error alone, relative to the largest",
         }
         for name, label in labels.items():
             with self.subTest(name):

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
 #include <vector>
 
 #include "engine/kinds/identification/identification.h"
@@ -88,19 +91,41 @@ std::vector<double> share_of_poses(const IdentificationResult& found,
   return list;
 }
 
+/// [groups x errors] The largest deformation by each error alone, as a share of the largest by any error of its group.
+/// 0 if it is rounding. NaN if it is not known.
+std::vector<double> relative_deformations(const IdentificationResult& found) {
+  std::vector<double> list;
+  for (std::size_t g = 0; g < found.groups(); ++g) {
+    const std::span<const double> all = found.single_max.row(g);
+    const double most =
+        std::accumulate(all.begin(), all.end(), 0.0, [](double a, double b) { return std::fmax(a, b); });
+    for (const double one : all) list.push_back(one <= found.rounding ? 0.0 : one / most);
+  }
+  return list;
+}
+
+/// Returns true if some share is neither of no pose nor of all. Otherwise the shares say no more than the verdicts.
+bool differ_by_pose(std::span<const double> shares) {
+  return std::ranges::any_of(shares, [](double share) { return share > 0.0 && share < 1.0; });
+}
+
 Bars bars_of(const StoredResult& result, ArrayPool& pool) {
   const IdentificationResult& found = identification_of(result);
-  const std::vector<std::vector<std::string>> percent(found.groups(), {"%"});
-  const auto quantity = [&](std::string label, const std::string& array, const std::vector<double>& shares) {
-    return BarQuantity{std::move(label), percent, pool.add(array, shares, 0.01)};
+  Bars bars{{{"size of the errors", group_names(result)}}, {}, names_of(result.factors)};
+  const auto add = [&](std::string label, const std::string& array, const std::vector<double>& shares) {
+    bars.quantities.push_back({std::move(label), std::vector<std::vector<std::string>>(found.groups(), {"%"}),
+                               pool.add(array, shares, 0.01)});
   };
-  return {{{"size of the errors", group_names(result)}},
-          {quantity("poses where the error deforms alone", "single", share_of_poses(found, found.single_below, true)),
-           quantity("poses where the errors of its frame deform together", "coupled",
-                    share_of_poses(found, found.coupled_below, true)),
-           quantity("poses where leaving it out of them takes nine tenths away", "coupled_reduced",
-                    share_of_poses(found, found.coupled_reduced, false))},
-          names_of(result.factors)};
+  const auto add_poses = [&](std::string label, const std::string& array, const std::vector<double>& shares) {
+    if (differ_by_pose(shares)) add(std::move(label), array, shares);
+  };
+  add("largest deformation by the error alone, relative to the largest of all errors", "single_max",
+      relative_deformations(found));
+  add_poses("poses where the errors of its frame deform together", "coupled",
+            share_of_poses(found, found.coupled_below, true));
+  add_poses("poses where leaving it out of them takes nine tenths away", "coupled_reduced",
+            share_of_poses(found, found.coupled_reduced, false));
+  return bars;
 }
 
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
@@ -114,7 +139,8 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
       counted(found.groups(), "size", "sizes"), found.rounding, count_text(found.required_poses),
       count_text(found.poses)));
   add_figure(page, section, "deforming", bars_of(result, page.figures.pool),
-             "At how many of the poses each error deforms the mechanism.");
+             "How much each error deforms the mechanism alone, over the poses. An error with 0 is absorbed, or "
+             "deforms only together with another.");
   for (const Table& table : tables) section.table(table);
 }
 

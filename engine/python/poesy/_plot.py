@@ -26,7 +26,7 @@ _RANKED = {
     "S1": "S1, share of the variance of {response}",
     "cost": "cost",
     "mean_square_share": "share of the scatter of {response}",
-    "share": "share of the poses where the error deforms alone",
+    "deformation": "deformation by the error alone, relative to the largest",
 }
 
 

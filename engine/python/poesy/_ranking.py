@@ -112,6 +112,7 @@ class IdentificationRow:
     rank: int
     name: str
     verdict: str  #: "deforms alone", "deforms in a coupling" or "absorbed"
+    deformation: float  #: largest by it alone over that of all errors, averaged over the groups of sizes; rounding is 0
     share: float  #: share of poses where it deforms alone, averaged over the groups of sizes
     description: str
 
@@ -128,7 +129,8 @@ class Ranking(Sequence[Row]):
     title
         What is ranked, and by which quantity.
     value
-        Name of the field that determines the order: "effect", "ST", "S1", "cost", "mean_square_share" or "share".
+        Name of the field that determines the order: "effect", "ST", "S1", "cost", "mean_square_share", "share" or
+        "deformation".
     what
         What a row is: "error", "group" or "part".
     rows
@@ -363,15 +365,24 @@ def _identification(result: Result, response: str | None) -> Ranking:
     found = result.to_xarray("identification")
     poses = result.to_xarray("poses").sizes["pose"]
     share = (1.0 - found["single_below"].values / poses).mean(axis=0)
+    deformation = _relative(found["single_max"].values, found.attrs["rounding"]).mean(axis=0)
     single, coupled = found["single"].values, found["coupled"].values
     names = [str(name) for name in found["factor"].values]
-    order = sorted(range(len(names)), key=lambda p: (single[p], coupled[p], share[p]), reverse=True)
+    order = sorted(range(len(names)), key=lambda p: (single[p], coupled[p], deformation[p]), reverse=True)
     rows = []
     for rank, p in enumerate(order, start=1):
         said = "deforms alone" if single[p] else "deforms in a coupling" if coupled[p] else "absorbed"
-        rows.append(IdentificationRow(rank, names[p], said, float(share[p]), result.description("factor", names[p])))
+        description = result.description("factor", names[p])
+        rows.append(IdentificationRow(rank, names[p], said, float(deformation[p]), float(share[p]), description))
     title = f"{int(single.sum())} of {len(names)} errors deform alone, {int(coupled.sum())} with couplings"
-    return Ranking(title, "share", "error", tuple(rows))
+    return Ranking(title, "deformation", "error", tuple(rows))
+
+
+def _relative(largest: Any, rounding: float) -> Any:
+    """Deformations [groups, errors] over the largest of their group. Rounding counts as 0."""
+    clean = np.where(largest <= rounding, 0.0, largest)
+    most = np.nanmax(clean, axis=1, keepdims=True)
+    return clean / np.where(most > 0.0, most, 1.0)
 
 
 _KINDS: dict[str, Callable[[Result, str | None], Ranking]] = {

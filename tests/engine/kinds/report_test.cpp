@@ -182,6 +182,25 @@ void expect_bars(const Json& page, const Json& figure, const char* member, const
   }
 }
 
+/// An identification of two errors at two sizes and four poses.
+IdentificationResult identified() {
+  IdentificationResult found;
+  found.sizes = {{"small", 1e-4, 1e-3}, {"large", 1e-3, 1e-2}};
+  found.poses = 4;
+  found.rounding = 1e-14;
+  found.required_poses = 4;
+  found.single_below = {{2, 2}, {4, 0, 4, 1}};
+  found.single_max = {{2, 2}, {1e-15, 1e-3, 5e-3, 1e-2}};
+  found.not_solved = {{2, 2}, {0, 0, 0, 0}};
+  found.coupled_below = {{2, 2}, {4, 4, 2, 4}};
+  found.coupled_reduced = {{2, 2}, {0, 0, 2, 0}};
+  found.single_by_group = {{2, 2}, {0, 1, 0, 1}};
+  found.coupled_by_group = {{2, 2}, {0, 1, 0, 1}};
+  found.single = {{2}, {0, 1}};
+  found.coupled = {{2}, {0, 1}};
+  return found;
+}
+
 class HtmlReport : public testing::Test {
  protected:
   ReportedResult stored() const { return {read_result(path), "r.h5"}; }
@@ -220,26 +239,25 @@ TEST_F(HtmlReport, OfEveryKindIsWhole) {
 TEST_F(HtmlReport, OfAnIdentificationIsWhole) {
   ReportedResult result = sensitivity();
   result.stored.kind = "identification";
-  IdentificationResult found;
-  found.sizes = {{"small", 1e-4, 1e-3}, {"large", 1e-3, 1e-2}};
-  found.poses = 4;
-  found.rounding = 1e-14;
-  found.required_poses = 4;
-  found.single_below = {{2, 2}, {4, 0, 4, 1}};
-  found.single_max = {{2, 2}, {0.0, 1e-3, 0.0, 1e-2}};
-  found.not_solved = {{2, 2}, {0, 0, 0, 0}};
-  found.coupled_below = {{2, 2}, {4, 4, 2, 4}};
-  found.coupled_reduced = {{2, 2}, {0, 0, 2, 0}};
-  found.single_by_group = {{2, 2}, {0, 1, 0, 1}};
-  found.coupled_by_group = {{2, 2}, {0, 1, 0, 1}};
-  found.single = {{2}, {0, 1}};
-  found.coupled = {{2}, {0, 1}};
-  result.stored.found = found;
+  result.stored.found = identified();
   const std::string html = report(result);
   check_page(html);
   const Json page = data(html);
-  EXPECT_EQ(array(page, page["figures"]["deforming"]["quantities"][0]["value"]),
-            (std::vector<float>{0.0F, 100.0F, 0.0F, 75.0F}));
+  const Json& quantities = page["figures"]["deforming"]["quantities"];
+  EXPECT_EQ(array(page, quantities[0]["value"]), (std::vector<float>{0.0F, 100.0F, 50.0F, 100.0F}));
+  EXPECT_EQ(quantities.size(), 3u);
+  EXPECT_EQ(array(page, quantities[1]["value"]), (std::vector<float>{0.0F, 0.0F, 50.0F, 0.0F}));
+}
+
+TEST_F(HtmlReport, OfAnIdentificationHasNoBarsThatAreAllOrNothing) {
+  ReportedResult result = sensitivity();
+  result.stored.kind = "identification";
+  IdentificationResult found = identified();
+  found.coupled_below = {{2, 2}, {4, 4, 0, 4}};
+  found.coupled_reduced = {{2, 2}, {0, 0, 4, 0}};
+  result.stored.found = found;
+  const Json page = data(report(result));
+  EXPECT_EQ(page["figures"]["deforming"]["quantities"].size(), 1u);
 }
 
 TEST_F(HtmlReport, OfATrajectoryHasCurvesOverTime) {
