@@ -109,9 +109,7 @@ std::string shown_metric(const TemplateLines& lines, const Study& study) {
 /// geometry.
 std::string shown_points(const TemplateLines& lines, const Study& study) {
   if (study.model().metric.empty()) return {};
-  std::vector<double> geometry;
-  for (const GeometryParameter& parameter : study.model().geometry) geometry.push_back(parameter.published);
-  const std::unique_ptr<Model> model = study.mechanism.entry->build(geometry, 0);
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
   return lines.explained("solver", "points", "# points = " + points_text(model->metric_points(), readable_value));
 }
 

@@ -152,6 +152,7 @@ std::string template_text(const CatalogEntry& entry, const StudyKind& kind, cons
   const TemplateLines lines(kinds.tables, kind.name);
   Study shown;
   shown.mechanism.entry = entry.description.metric == "published" ? &by_metric(entry, "platform") : &entry;
+  for (const GeometryParameter& one : shown.model().geometry) shown.mechanism.geometry.push_back(one.published);
   shown.analysis.kind = &kind;
   shown.analysis.draws = kind.draws;
   POESY_EXPECTS(kind.no_template == nullptr || !kind.no_template(shown.model()));

@@ -5,5 +5,5 @@ poesy_test(io_input_test LABELS unit SOURCES engine/study/study_file_test.cpp en
 poesy_test(allocation_keys_test LABELS unit
            SOURCES engine/kinds/allocation/drawn_part_test.cpp
                    engine/kinds/allocation/keys_test.cpp
-           LINKS poesy_kinds poesy_models)
+           LINKS poesy_kinds poesy_models DATA)
 poesy_test(own_responses_test LABELS unit SOURCES engine/study/own_responses_test.cpp LINKS poesy_kinds poesy_models)

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <set>
 
 #include "engine/base/text.h"
+#include "engine/kinds/allocation/alike_limbs.h"
 #include "engine/kinds/allocation/parts.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/zone_blocks.h"
@@ -73,6 +73,15 @@ void check_own_errors(const StudySection& block, std::span<const AllocatedPart> 
   }
 }
 
+/// Adds a warning to the study if the block joins errors of limbs with other joints, unless another block did.
+void doubt_unlike_limbs(const StudySection& block, Study& study) {
+  const auto identical = block.find("identical_limbs");
+  if (!identical) return;
+  std::string doubt = unlike_limbs_text(read_limbs(*identical, study.model()), study);
+  if (doubt.empty() || std::ranges::find(study.doubts, doubt) != study.doubts.end()) return;
+  study.doubts.push_back(std::move(doubt));
+}
+
 void read_parts(const StudyValue& value, Study& study, const Reading& reading) {
   const auto usual = read_sigmas(reading.root.section("analysis"));
   std::vector<AllocatedPart>& parts = asked_of<AllocationOptions>(study.analysis).parts;
@@ -80,6 +89,7 @@ void read_parts(const StudyValue& value, Study& study, const Reading& reading) {
     const StudySection block = one.section();
     std::vector<AllocatedPart> more = read_part_block(block, study, usual, names(parts));
     check_own_errors(block, parts, more, study.model());
+    doubt_unlike_limbs(block, study);
     parts.insert(parts.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   }
   if (parts.empty()) value.fail("is empty", "write [[analysis.parts]] with factors, e.g. factors = \"linear\"");
@@ -94,55 +104,45 @@ std::string parts_lines(const Study& study) {
   return text;
 }
 
-/// The template's line for the key `identical_limbs`, as a comment, with the first two limbs as an example. Empty if
-/// the mechanism has fewer than two limbs.
-std::string shown_limbs(const ModelDescription& model) {
-  std::set<std::size_t> limbs;
-  for (const Factor& factor : model.factors) limbs.insert(factor.limb);
-  if (limbs.size() < 2) return {};
-  return fmt::format("# identical_limbs = [{}, {}]\n", *limbs.begin(), *std::next(limbs.begin()));
-}
-
-/// A table [[analysis.parts]] for a template, in which each error of this dimension is a part of its own. Empty if the
-/// mechanism has no such error.
-std::string shown_block(Dimension dimension, const ModelDescription& model) {
-  if (std::ranges::count(model.factors, dimension, &Factor::dimension) == 0) return {};
+/// The TOML table [[analysis.parts]] of a template in which each error of this dimension is a part of its own. Empty if
+/// the mechanism has no such error.
+std::string shown_block(Dimension dimension, const Study& study) {
+  if (std::ranges::count(study.model().factors, dimension, &Factor::dimension) == 0) return {};
   return fmt::format(
       "\n[[analysis.parts]]\nfactors = \"{}\"\neach = true\n{}cost = {{ law = \"reciprocal\", b = 1, unit = \"{}\" "
       "}}\n# bounds = [{}, {}]\n",
-      error_kind(dimension), shown_limbs(model), display_unit(dimension).name, example_size(dimension, 0.01),
+      error_kind(dimension), shown_identical_limbs(study), display_unit(dimension).name, example_size(dimension, 0.01),
       example_size(dimension, 1.0));
 }
 
-/// A table [[analysis.parts]] for a template, in which each tolerance zone is a part of its own. Empty if the mechanism
-/// has no zones.
-std::string shown_zone_block(const ModelDescription& model) {
+/// The TOML table [[analysis.parts]] of a template in which each tolerance zone is a part of its own. Empty if the
+/// mechanism has no zones.
+std::string shown_zone_block(const Study& study) {
   const auto has_zone = [](const Feature& feature) { return feature.location || feature.orientation; };
-  if (std::ranges::none_of(model.features, has_zone)) return {};
+  if (std::ranges::none_of(study.model().features, has_zone)) return {};
   return fmt::format(
       "\n[[analysis.parts]]\nzones = \"all\"\neach = true\n{}cost = {{ law = \"reciprocal\", b = 1, unit = \"{}\" "
       "}}\n# bounds = [{}, {}]\n",
-      shown_limbs(model), display_unit(Dimension::length).name, example_size(Dimension::length, 0.01),
+      shown_identical_limbs(study), display_unit(Dimension::length).name, example_size(Dimension::length, 0.01),
       example_size(Dimension::length, 1.0));
 }
 
 /// The template's line for `sigmas`, which applies to parts that are not zones. If the template has no such part, the
 /// line is a comment.
 std::string shown_sigmas(const TemplateLines& lines, const Study& study) {
-  const ModelDescription& model = study.model();
-  const bool has_other = shown_zone_block(model).empty() || !shown_block(Dimension::angle, model).empty();
+  const bool has_other = shown_zone_block(study).empty() || !shown_block(Dimension::angle, study).empty();
   return lines.explained("analysis", "sigmas", has_other ? "sigmas = 3" : "# sigmas = 3");
 }
 
 std::string shown_parts(const TemplateLines& lines, const Study& study) {
   const std::string cost(lines.meaning("analysis.parts.cost"));
   const std::string process(lines.meaning("analysis.parts.processes"));
-  std::string zones = shown_zone_block(study.model());
+  std::string zones = shown_zone_block(study);
   return "\n" + lines.explanation_lines("analysis", "parts") + lines.keys_lines("analysis.parts") +
          comment("    cost: " + cost) + lines.keys_lines("analysis.parts.cost", 3) +
          comment("    processes: " + process) + lines.keys_lines("analysis.parts.processes", 3) +
-         (zones.empty() ? shown_block(Dimension::length, study.model()) : zones).erase(0, 1) +
-         shown_block(Dimension::angle, study.model());
+         (zones.empty() ? shown_block(Dimension::length, study) : zones).erase(0, 1) +
+         shown_block(Dimension::angle, study);
 }
 
 StudyRow samples_row() {

@@ -324,7 +324,7 @@ StudyTable parts_table() {
            .type = "list of integers",
            .usual = "none",
            .meaning = "With each: limbs that are made alike. Errors of them whose names differ only in the limb's "
-                      "number share one tolerance."},
+                      "number share one tolerance. A warning says if the limbs have other joints than each other."},
           {.name = "sigmas",
            .type = "number",
            .bounds = "greater than 0",

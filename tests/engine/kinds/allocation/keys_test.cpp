@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <numbers>
 #include <sstream>
@@ -253,14 +254,17 @@ TEST(BlockOfParts, JoinsOnlyErrorsOfOneFrameAndDimension) {
   }
 }
 
+/// A study in which each error of a mechanism of the registry is a part, but errors of these limbs share one.
+Study study_of_limbs(const std::string& model, const std::string& limit, const std::string& limbs) {
+  return read("format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"" + model +
+                  "\" }\nposes = { count = 3 }\n[analysis]\nkind = \"allocation\"\nsigmas = 3\nlimits = { " + limit +
+                  " }\n[[analysis.parts]]\nfactors = \"all\"\neach = true\nidentical_limbs = " + limbs,
+              registry());
+}
+
 TEST(BlockOfParts, JoinsTheLimbsOfMechanisms) {
   const auto parts = [](const std::string& model, const std::string& limit, const std::string& limbs) {
-    return options_of(
-               read("format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"" + model +
-                        "\" }\nposes = { count = 3 }\n[analysis]\nkind = \"allocation\"\nsigmas = 3\nlimits = { " +
-                        limit + " }\n[[analysis.parts]]\nfactors = \"all\"\neach = true\nidentical_limbs = " + limbs,
-                    registry()))
-        .parts;
+    return options_of(study_of_limbs(model, limit, limbs)).parts;
   };
   const std::vector<AllocatedPart> upr = parts("2upr-rpu", "linear_deformation = \"0.03 mm\"", "[1, 2]");
   EXPECT_EQ(upr.size(), 47u);  // 24 errors of limbs 1 and 2 each, 23 of limb 3
@@ -276,6 +280,27 @@ TEST(BlockOfParts, JoinsTheLimbsOfMechanisms) {
   const Response& first = find(registry(), "3-prs")->description.responses.front();
   const std::string size = first.dimension == Dimension::length ? "\"1 mm\"" : "\"1 deg\"";
   EXPECT_EQ(parts("3-prs", first.name + " = " + size, "[1, 2, 3]").size(), 17u);  // its set "all" has 51 errors
+}
+
+TEST(BlockOfParts, AsksAboutIdenticalLimbsWithOtherJoints) {
+  const std::string limit = "linear_deformation = \"0.03 mm\"";
+  EXPECT_TRUE(study_of_limbs("2upr-rpu", limit, "[1, 2]").doubts.empty());
+  const Study study = study_of_limbs("2upr-rpu", limit, "[1, 3]");
+  ASSERT_EQ(study.doubts.size(), 1u);
+  EXPECT_EQ(study.doubts.front(),
+            "identical_limbs has limb 1 with the joints UPR and limb 3 with RPU, which are not alike; is one tolerance "
+            "for both meant?");
+}
+
+TEST(TemplateOfTolerances, NamesOnlyLimbsWithTheSameJointsIdentical) {
+  const auto text_of = [](const std::string& name) {
+    std::ostringstream text;
+    text << std::ifstream(POESY_TEST_DATA "/mechanisms/" + name).rdbuf();
+    const CatalogEntry entry = registry().from_text(text.str(), name);
+    return template_text(entry, kAllocationStudy, kinds());
+  };
+  EXPECT_NE(text_of("linear-delta.toml").find("\n# identical_limbs = [1, 2]\n"), std::string::npos);
+  EXPECT_EQ(text_of("five-bar.toml").find("\n# identical_limbs"), std::string::npos);
 }
 
 TEST(PartOfADrawing, MayBeRoundedToStepsOfAWorkshop) {
