@@ -13,6 +13,7 @@
 #include "engine/app/progress.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/run/checkpoints.h"
 #include "engine/storage/checkpoint.h"
 
@@ -41,6 +42,21 @@ struct ResumeOptions {
     if (keep_checkpoint) words.emplace_back("--keep-checkpoint");
   }
 };
+
+/// Ends the command line that continues a run: adds the options that commands with checkpoints share, and --resume.
+/// options: those of the command. Returns the command line as a shell reads it.
+template <class Options>
+std::string resume_command(std::vector<std::string> words, const Options& options) {
+  const auto add = [&](const std::string& name, const std::string& value) { words.insert(words.end(), {name, value}); };
+  if (!options.result.empty()) add("-o", options.result);
+  if (options.threads != 0) add("--threads", std::to_string(options.threads));
+  if (options.seed) add("--seed", std::to_string(*options.seed));
+  options.resume.add_words(words);
+  if (options.quiet) words.emplace_back("--quiet");
+  if (options.yes) words.emplace_back("--yes");
+  words.emplace_back("--resume");
+  return shell_command(words);
+}
 
 /// Manages the checkpoints of one run of the program. Without --resume, the run does not start if there are
 /// checkpoints, because these may hold hours of work. With --resume, it does not start if there is a complete result

@@ -50,19 +50,11 @@ struct SweepOptions {
 };
 
 /// The command line that continues this sweep.
-std::string resume_command(const SweepOptions& options) {
+std::string resume_command_of(const SweepOptions& options) {
   std::vector<std::string> words{options.program, "sweep", options.study};
-  const auto add = [&](const std::string& name, const std::string& value) { words.insert(words.end(), {name, value}); };
-  for (const std::string& set : options.set) add("--set", set);
-  if (!options.result.empty()) add("-o", options.result);
-  if (!options.response.empty()) add("--response", options.response);
-  if (options.threads != 0) add("--threads", std::to_string(options.threads));
-  if (options.seed) add("--seed", std::to_string(*options.seed));
-  options.resume.add_words(words);
-  if (options.quiet) words.emplace_back("--quiet");
-  if (options.yes) words.emplace_back("--yes");
-  words.emplace_back("--resume");
-  return shell_command(words);
+  for (const std::string& set : options.set) words.insert(words.end(), {"--set", set});
+  if (!options.response.empty()) words.insert(words.end(), {"--response", options.response});
+  return resume_command(std::move(words), options);
 }
 
 /// The values of a design in words: "mechanism.geometry.R = 260 mm". given: the keys that the sweep changes, with their
@@ -210,7 +202,7 @@ int sweep(const SweepOptions& options) {
       check_result_path(options.result.empty() ? stem + "_sweep.h5" : options.result, inputs_of(options.study, first));
   const std::size_t threads = resolved_threads(options.threads);
   start_threads(threads);  // Threads start before any checkpoint is written.
-  ResumableRun resumable(options.resume, path, resume_command(options));
+  ResumableRun resumable(options.resume, path, resume_command_of(options));
   const auto designs = designs_of(options, grid, stop);
   if (!designs) return interrupted(resumable);
   if (!options.yes && !resumable.continues() && !resumable.ends_within(kLongRun)) {
