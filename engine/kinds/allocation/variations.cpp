@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <string_view>
 
 #include "engine/base/archive.h"
+#include "engine/base/contract.h"
 #include "engine/kinds/allocation/load_solver.h"
 #include "engine/run/unit_fold.h"
 
@@ -89,11 +91,10 @@ class VariationEvaluator : private LoadSolver {
       beyond_.assign(limits_.size() * count_, 0);
       draw(numbers_);
       begin_poses(count_);
-      scale(variation, {});
+      scale(variation);
       calibrate(numbers_);
       for (std::size_t m = 0; m < plan_->poses().size(); ++m) {
-        const std::span<const std::size_t> anew = draw_per_pose(PoseIndex(m), numbers_);
-        if (!anew.empty()) scale(variation, anew);
+        draw_per_pose(PoseIndex(m), numbers_);
         add_pose(PoseIndex(m), loads, missing_, beyond_);
       }
       end_poses(loads, beyond_);
@@ -102,11 +103,9 @@ class VariationEvaluator : private LoadSolver {
     return found;
   }
 
-  /// Multiplies the drawn errors by the factors of a variation. anew: the errors that machines draw anew at the pose.
-  /// If there are any, only these are scaled; otherwise only the errors that stay the same at all poses.
-  void scale(const Variation& variation, std::span<const std::size_t> anew) {
+  /// Multiplies the drawn errors by the factors of a variation.
+  void scale(const Variation& variation) {
     for (const auto& [p, factor] : variation) {
-      if (plan_->is_per_pose(p) != !anew.empty()) continue;
       for (std::size_t b = 0; b < count_; ++b) values_[p * count_ + b] *= factor;
     }
   }
@@ -229,6 +228,8 @@ std::optional<std::vector<double>> try_variations(const Plan& plan, const Model&
                                                   std::span<const std::uint32_t> machines,
                                                   std::span<const Variation> variations, const RunOptions& options,
                                                   const MachineCalibration* calibration) {
+  POESY_EXPECTS(std::ranges::none_of(variations | std::views::join,
+                                     [&](const ErrorFactor& one) { return plan.is_per_pose(one.error); }));
   const VariationJob job{plan, model, {plan, model, limits, calibration}, {machines, variations}, calibration};
   const auto loads = fold_units(job, options);
   if (!loads) return std::nullopt;
