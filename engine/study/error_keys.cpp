@@ -792,23 +792,36 @@ bool states_size(const StudySection& errors, const Factor& factor) {
   return errors.find(error_kind(factor.dimension)) || override_of(errors.section("override"), factor.name);
 }
 
+/// Throws InputError because an error of a feature varies and nothing says how much.
+[[noreturn]] void refuse_missing_size(const Place& place, const std::string& error, const std::string& feature,
+                                      bool has_zones) {
+  const std::string which = "'" + error + "' of the feature '" + feature + "' varies, ";
+  if (has_zones) {
+    throw InputError(place, which + "but no zone of the feature limits it, and the study does not say its size",
+                     "give the feature a zone in the mechanism's file, or write the size of all lengths as "
+                     "errors.linear, or leave the error out of analysis.factors");
+  }
+  throw InputError(place,
+                   "key 'errors.zones' is missing: " + which +
+                       "and the study says neither how much of its zone is used nor another size",
+                   "write errors.zones = { distribution = \"normal\", sigmas = 3 }, or the size of all lengths as "
+                   "errors.linear");
+}
+
 void check_sizes_of_features(const Study& study, const Reading& reading) {
   const StudySection errors = reading.root.section("errors");
-  if (reading.use != StudyUse::run || study.errors.zones) return;
+  if (reading.use != StudyUse::run) return;
+  const std::vector<std::optional<Distribution>> by_zones = distributions_by_zones(study);
   const auto has_no_size = [&](FactorIndex error) {
-    return std::ranges::find(study.analysis.factors, error) != study.analysis.factors.end() &&
+    return std::ranges::find(study.analysis.factors, error) != study.analysis.factors.end() && !by_zones[error.value] &&
            !is_given(study, error.value) && !states_size(errors, study.model().factors[error.value]);
   };
   for (const Feature& feature : study.model().features) {
     const std::vector<FactorIndex> list = feature.errors();
     const auto error = std::ranges::find_if(list, has_no_size);
     if (feature.clearance || error == list.end()) continue;
-    throw InputError(errors.place(),
-                     "key 'errors.zones' is missing: '" + study.model().factors[error->value].name +
-                         "' of the feature '" + feature.name +
-                         "' varies, and the study says neither how much of its zone is used nor another size",
-                     "write errors.zones = { distribution = \"normal\", sigmas = 3 }, or the size of all lengths as "
-                     "errors.linear");
+    refuse_missing_size(errors.place(), study.model().factors[error->value].name, feature.name,
+                        study.errors.zones.has_value());
   }
 }
 

@@ -53,6 +53,20 @@ TEST(ZoneKeys, AreAskedForWhereAFeatureVariesWithoutASize) {
                            {"key 'errors.zones' is missing", "'delta_1' of the feature 'bore_1' varies", "sigmas = 3"});
 }
 
+TEST(ZoneKeys, AreNotEnoughForAnErrorThatNoZoneLimits) {
+  Catalog only_orientation = kCatalog;
+  Feature& bore = only_orientation.front().description.features.front();
+  bore.location.reset();
+  bore.orientation = Zone{"parallelism", 2e-5, "A"};
+  const auto read_with = [&](const std::string& linear) {
+    return study_of_text(study_text("[errors]\nzones = { distribution = \"normal\", sigmas = 3 }\n" + linear),
+                         "study.toml", only_orientation, StudyUse::run);
+  };
+  test::expect_input_error([&] { read_with(""); }, {"study.toml", 5, 1},
+                           {"'delta_1' of the feature 'bore_1' varies, but no zone", "errors.linear"});
+  EXPECT_DOUBLE_EQ(sigma(read_with("linear = { distribution = \"normal\", sigma = \"2 mm\" }\n"), 0), 2e-3);
+}
+
 TEST(ZoneKeys, YieldToAnErrorsOwnDistribution) {
   const Study study = read(
       "[errors]\nlinear = { distribution = \"normal\", sigma = \"2 mm\" }\n"
